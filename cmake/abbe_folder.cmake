@@ -1,0 +1,53 @@
+# abbe_folder(NAME [SOURCES file...] [PUBLIC target...] [PRIVATE target...])
+#
+# One library per folder of the architecture: target abbe_NAME, alias abbe::NAME. Headers are included
+# as "NAME/file.h". Each folder is seen through a directory of its own that holds one link to it, so a
+# target finds the headers of the folders it links and of no other: a wrong arrow does not build.
+function(abbe_folder name)
+  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(view ${PROJECT_BINARY_DIR}/view/${name})
+  file(MAKE_DIRECTORY ${view})
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${name} ${view}/${name} SYMBOLIC)
+  if(arg_SOURCES)
+    add_library(abbe_${name} STATIC ${arg_SOURCES})
+    set(scope PUBLIC)
+    target_link_libraries(abbe_${name} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:abbe_warnings>)
+  else()
+    add_library(abbe_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(abbe::${name} ALIAS abbe_${name})
+  target_link_libraries(abbe_${name} ${scope} ${arg_PUBLIC})
+  target_compile_features(abbe_${name} ${scope} cxx_std_20)
+  target_include_directories(abbe_${name} ${scope} $<BUILD_INTERFACE:${view}>
+                             $<INSTALL_INTERFACE:include/abbe>)
+  set_target_properties(abbe_${name} PROPERTIES EXPORT_NAME ${name})
+  install(TARGETS abbe_${name} EXPORT abbeTargets ARCHIVE DESTINATION lib)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${name}/ DESTINATION include/abbe/${name}
+          FILES_MATCHING PATTERN "*.h" PATTERN "node_modules" EXCLUDE)
+endfunction()
+
+# abbe_tests(NAME LABEL label SOURCES file... LINKS target... [ENVIRONMENT VAR=value...])
+#
+# One GoogleTest program NAME_LABEL_test; every TEST in it is one ctest entry with that label.
+function(abbe_tests name)
+  cmake_parse_arguments(arg "" "LABEL;TIMEOUT" "SOURCES;LINKS;ENVIRONMENT" ${ARGN})
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 120)
+  endif()
+  set(program ${name}_${arg_LABEL}_test)
+  add_executable(${program} ${arg_SOURCES})
+  target_link_libraries(${program} PRIVATE ${arg_LINKS} GTest::gtest_main abbe_warnings)
+  target_compile_definitions(${program} PRIVATE ABBE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                             ABBE_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  gtest_discover_tests(${program} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+    PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} SKIP_REGULAR_EXPRESSION "SKIPPED"
+               ENVIRONMENT "${arg_ENVIRONMENT}")
+endfunction()
+
+# abbe_bench(NAME LINKS target... ): one Google Benchmark program from bench/NAME.cpp.
+function(abbe_bench name)
+  cmake_parse_arguments(arg "" "" "LINKS" ${ARGN})
+  add_executable(${name} ${name}.cpp)
+  target_link_libraries(${name} PRIVATE ${arg_LINKS} benchmark::benchmark abbe_warnings)
+endfunction()

@@ -1,0 +1,47 @@
+#include "settings/unit.h"
+
+#include <array>
+#include <numbers>
+#include <utility>
+
+namespace abbe::settings {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+// Longer endings first.
+constexpr std::array<std::pair<std::string_view, Unit>, 22> kEndings{{
+    {"_ppm_per_c", {"ppm/degC", 1e-6}},
+    {"_nm_per_mm2", {"nm/mm^2", 1e-3}},
+    {"_um_per_c", {"um/degC", 1e-6}},
+    {"_per_mm", {"1/mm", 1e3}},
+    {"_mm_min", {"mm/min", 1e-3 / 60.0}},
+    {"_mm_s", {"mm/s", 1e-3}},
+    {"_urad", {"urad", 1e-6}},
+    {"_mrad", {"mrad", 1e-3}},
+    {"_rad", {"rad", 1.0}},
+    {"_deg", {"deg", kDegree}},
+    {"_ppm", {"ppm", 1e-6}},
+    {"_min", {"min", 60.0}},
+    {"_mm", {"mm", 1e-3}},
+    {"_um", {"um", 1e-6}},
+    {"_nm", {"nm", 1e-9}},
+    {"_ms", {"ms", 1e-3}},
+    {"_us", {"us", 1e-6}},
+    {"_hz", {"Hz", 1.0}},
+    {"_s", {"s", 1.0}},
+    {"_c", {"degC", 1.0}},
+    {"_v", {"V", 1.0}},
+    {"_n", {"N", 1.0}},
+}};
+
+}  // namespace
+
+Unit UnitOf(std::string_view name) {
+  for (const auto& [ending, unit] : kEndings) {
+    if (name.ends_with(ending)) return unit;
+  }
+  return {"", 1.0};
+}
+
+}  // namespace abbe::settings

@@ -1,0 +1,23 @@
+// Units of numbers at the edges. A key or a column carries its unit as the end of its name
+// (`range_um`, `feed_mm_min`); inside abbe every number is SI. This is the one place that converts.
+#pragma once
+
+#include <string_view>
+
+namespace abbe::settings {
+
+inline constexpr double kMillimetre = 1e-3;
+inline constexpr double kMicrometre = 1e-6;
+inline constexpr double kNanometre = 1e-9;
+inline constexpr double kMicroradian = 1e-6;
+
+struct Unit {
+  std::string_view name;  // as printed: "um", "mm/min"; empty for a plain number
+  double si;              // value in SI = value in this unit * si (temperatures stay in degC)
+};
+
+// The unit that the end of `name` says: "probe_a_um" -> {"um", 1e-6}; a name without a known ending is
+// a plain number. The longest ending wins ("feed_mm_min" is mm/min, not minutes).
+Unit UnitOf(std::string_view name);
+
+}  // namespace abbe::settings
