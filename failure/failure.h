@@ -1,5 +1,6 @@
 // The three ways in which abbe fails. The program maps them to exit codes 2, 3 and 4 and prints
-// what() as one line on standard error, so a message says what happened, where, and what to do next.
+// what() as one line on standard error, so a message says what happened, where, and what to do
+// next.
 #pragma once
 
 #include <stdexcept>
@@ -19,7 +20,8 @@ class InputError : public Failure {
   using Failure::Failure;
 };
 
-// A device that did not do its part. The message names the device, what it answered and what was tried.
+// A device that did not do its part. The message names the device, what it answered and what was
+// tried.
 class DeviceError : public Failure {
  public:
   using Failure::Failure;

@@ -1,8 +1,8 @@
 // Random numbers that are a pure function of (seed, stream, index).
 //
 // Nothing is stored between draws, so a result does not depend on the order of the draws, on the
-// number of threads or on the number of ranks: draw number 17 of stream 3 under seed 5 is always the
-// same number. Generator: Philox 4x32-10 (Salmon, Moraes, Dror, Shaw, SC 2011), by Random123.
+// number of threads or on the number of ranks: draw number 17 of stream 3 under seed 5 is always
+// the same number. Generator: Philox 4x32-10 (Salmon, Moraes, Dror, Shaw, SC 2011), by Random123.
 //
 //   const CounterRandom noise(seed, kNoiseStream);
 //   const double reading = truth + sigma * noise.Normal(sample_number);

@@ -1,9 +1,9 @@
 // What the hardware said, as it said it, with what is needed to read it again in ten years.
 //
-// A recording is a header (TOML: kind, machine, axis, start, sources, mounting, ...) and named columns
-// of numbers. The name of a column ends in its unit (`probe_a_um`), and the numbers stay in that unit:
-// a recording keeps what was said, whoever evaluates it converts. Both file forms (CSV for people, HDF5
-// for bulk) hold the same content; see docs/recordings.md.
+// A recording is a header (TOML: kind, machine, axis, start, sources, mounting, ...) and named
+// columns of numbers. The name of a column ends in its unit (`probe_a_um`), and the numbers stay in
+// that unit: a recording keeps what was said, whoever evaluates it converts. Both file forms (CSV
+// for people, HDF5 for bulk) hold the same content; see docs/recordings.md.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,8 @@ struct Recording {
   std::string name;    // the file it came from, for messages
   std::string header;  // TOML text, without the leading "# " of the CSV form, one key a line
   std::vector<Column> columns;
-  std::vector<std::string> warnings;  // e.g. "the file ends in the middle of row 812: that row is dropped"
+  std::vector<std::string>
+      warnings;  // e.g. "the file ends in the middle of row 812: that row is dropped"
 
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
 

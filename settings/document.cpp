@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -10,7 +11,6 @@
 #include <fstream>
 #include <set>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "settings/nearest_word.h"
 #include "settings/unit.h"
@@ -50,9 +50,9 @@ Document::Document(std::shared_ptr<State> state) : state_(std::move(state)) {}
 Document Document::Read(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path)) {
-    throw InputError(fmt::format("{}: cannot be read: {}; check the path", path.string(),
-                                 std::filesystem::is_directory(path) ? "it is a folder"
-                                                                     : std::strerror(errno)));
+    throw InputError(
+        fmt::format("{}: cannot be read: {}; check the path", path.string(),
+                    std::filesystem::is_directory(path) ? "it is a folder" : std::strerror(errno)));
   }
   std::ostringstream text;
   text << file.rdbuf();
@@ -94,8 +94,7 @@ void Table::Ask(std::string_view key, AskedKey asked) const {
 InputError Table::Error(std::string_view key, std::string_view message) const {
   const toml::node* node = key.empty() ? nullptr : Find(node_->table, key);
   const std::size_t line = node != nullptr ? node->source().begin.line : node_->line;
-  const std::string place =
-      line > 0 ? fmt::format("{}:{}", state_->name, line) : state_->name;
+  const std::string place = line > 0 ? fmt::format("{}:{}", state_->name, line) : state_->name;
   const std::string path = key.empty() ? path_ : Join(path_, key);
   return InputError(path.empty() ? fmt::format("{}: {}", place, message)
                                  : fmt::format("{}: {}: {}", place, path, message));
@@ -235,7 +234,8 @@ Table Table::Child(std::string_view key) const {
   auto below = std::make_shared<Node>();
   below->table = node == nullptr ? nullptr : node->as_table();
   below->line = node == nullptr ? 0 : node->source().begin.line;
-  return Table(state_, std::move(below), Join(path_, key), Join(asked_path_, key), std::string(key));
+  return Table(state_, std::move(below), Join(path_, key), Join(asked_path_, key),
+               std::string(key));
 }
 
 std::vector<Table> Table::Children(std::string_view key) const {
@@ -263,8 +263,8 @@ std::vector<Table> Table::Named() const {
     if (!node.is_table() || asked_for.contains(key.str())) continue;
     state_->known[path_].emplace(key.str());
     auto below = std::make_shared<Node>(Node{node.as_table(), node.source().begin.line});
-    named.push_back(Table(state_, std::move(below), Join(path_, key.str()),
-                          Join(asked_path_, "[]"), std::string(key.str())));
+    named.push_back(Table(state_, std::move(below), Join(path_, key.str()), Join(asked_path_, "[]"),
+                          std::string(key.str())));
   }
   return named;
 }

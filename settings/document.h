@@ -1,5 +1,6 @@
-// Strict reading of TOML: every key is asked for by name, converted to SI by the unit in its name, and
-// checked; a key that nobody asked for is an error that names the nearest known key and the line.
+// Strict reading of TOML: every key is asked for by name, converted to SI by the unit in its name,
+// and checked; a key that nobody asked for is an error that names the nearest known key and the
+// line.
 //
 //   const auto document = settings::Document::Read("machine.toml");
 //   const settings::Table head = document.Root().Child("head");
@@ -77,20 +78,21 @@ class Table {
   double Quantity(std::string_view key, const NumberRule& rule = {}) const;
   std::int64_t Integer(std::string_view key, const NumberRule& rule = {}) const;
 
-  // Lists; `size` 0 accepts any length. Without a fallback the key is required. Quantities are SI, their
-  // fallback is in the unit of the key.
+  // Lists; `size` 0 accepts any length. Without a fallback the key is required. Quantities are SI,
+  // their fallback is in the unit of the key.
   std::vector<double> Quantities(std::string_view key, std::size_t size,
                                  const std::optional<std::vector<double>>& fallback = {}) const;
-  std::vector<std::string> Texts(std::string_view key, std::size_t size,
-                                 const std::optional<std::vector<std::string>>& fallback = {}) const;
+  std::vector<std::string> Texts(
+      std::string_view key, std::size_t size,
+      const std::optional<std::vector<std::string>>& fallback = {}) const;
 
   // A table below this one; an absent table reads as an empty one, so that its keys take their
   // fallbacks or say that they are missing.
   Table Child(std::string_view key) const;
   // An array of tables; empty when absent.
   std::vector<Table> Children(std::string_view key) const;
-  // Every table below this one that has a name of the user's choice, e.g. the devices. Keys that were
-  // asked for by name before are not among them.
+  // Every table below this one that has a name of the user's choice, e.g. the devices. Keys that
+  // were asked for by name before are not among them.
   std::vector<Table> Named() const;
 
   // Throws when this table (not the tables below it) holds a key that was not asked for.

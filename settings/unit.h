@@ -16,8 +16,8 @@ struct Unit {
   double si;              // value in SI = value in this unit * si (temperatures stay in degC)
 };
 
-// The unit that the end of `name` says: "probe_a_um" -> {"um", 1e-6}; a name without a known ending is
-// a plain number. The longest ending wins ("feed_mm_min" is mm/min, not minutes).
+// The unit that the end of `name` says: "probe_a_um" -> {"um", 1e-6}; a name without a known ending
+// is a plain number. The longest ending wins ("feed_mm_min" is mm/min, not minutes).
 Unit UnitOf(std::string_view name);
 
 }  // namespace abbe::settings

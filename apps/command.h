@@ -1,0 +1,29 @@
+// How a subcommand joins the program: one file apps/NAME.cpp that defines AddNAME, one declaration
+// and one line of the table here. AddNAME adds the subcommand with its options and an example in
+// its footer, and gives it a callback that parses, calls the library, prints and sets the exit
+// code; failures are thrown and mapped to exit codes in main.cpp.
+//
+//   void AddConvert(CLI::App& program, int& exit_code) {
+//     auto options = std::make_shared<ConvertOptions>();
+//     CLI::App* command = program.add_subcommand("convert", "CSV <-> HDF5, losslessly");
+//     command->add_option("from", options->from)->required();
+//     command->footer("Example: abbe convert sweep_X.csv sweep_X.h5");
+//     command->callback([options, &exit_code] { exit_code = Convert(*options); });
+//   }
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace abbe::apps {
+
+// 0 done; 1 done, but a requirement that the user set is not met; 2 bad input; 3 device; 4
+// numerics.
+inline constexpr int kDone = 0;
+inline constexpr int kRequirementNotMet = 1;
+inline constexpr int kBadInput = 2;
+inline constexpr int kDeviceFailed = 3;
+inline constexpr int kNumericsFailed = 4;
+
+using AddCommand = void (*)(CLI::App& program, int& exit_code);
+
+}  // namespace abbe::apps

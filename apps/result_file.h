@@ -1,0 +1,16 @@
+// Results as data: one JSON object a file.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+namespace abbe::apps {
+
+// Writes `result` (indented, numbers in shortest round-trip form) under a temporary name and
+// renames it. Missing folders are made. InputError when the path cannot be written.
+void WriteResult(const nlohmann::ordered_json& result, const std::filesystem::path& path);
+
+// InputError when the file cannot be read or is not JSON.
+nlohmann::ordered_json ReadResult(const std::filesystem::path& path);
+
+}  // namespace abbe::apps
