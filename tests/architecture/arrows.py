@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""Holds every include of the project against the arrows that the architecture allows.
+
+    arrows.py SOURCE_FOLDER
+
+Prints each include that goes against an arrow and exits with 1 when there is one.
+"""
+import pathlib
+import re
+import sys
+
+# folder -> the folders it may include. Arrows point one way: from a line to the names in it.
+ARROWS = {
+    "failure": "",
+    "random": "",
+    "geometry": "failure",
+    "estimation": "failure random",
+    "standards": "failure",
+    "settings": "failure",
+    "recording": "failure settings",
+    "hal": "failure settings recording",
+    "machine": "failure settings geometry estimation",
+    "probes": "failure random settings recording geometry estimation standards machine",
+    "report": "failure",
+    "rig": "failure random settings recording hal",
+    "apps": "failure random settings recording geometry estimation standards hal machine probes report rig",
+}
+
+# header of a library -> the files that may include it; everybody else goes through them.
+GATES = {
+    "modbus.h": r"hal/modbus_.*",
+    "modbus/modbus.h": r"hal/modbus_.*",
+    "linux/can.h": r"hal/can_socket.*",
+    "hdf5.h": r"recording/hdf5_.*",
+    "ceres/": r"estimation/.*",
+    "Random123/": r"random/.*",
+    "toml++/": r"(settings|recording)/.*\.cpp",
+}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
+
+
+def broken_arrows(root):
+    """Yields one line for each include below `root` that the architecture forbids."""
+    root = pathlib.Path(root)
+    for folder, allowed in ARROWS.items():
+        reachable = set(allowed.split()) | {folder}
+        for file in sorted((root / folder).glob("**/*")):
+            if file.suffix not in (".h", ".cpp") or "node_modules" in file.parts:
+                continue
+            name = file.relative_to(root).as_posix()
+            for header in INCLUDE.findall(file.read_text()):
+                target = header.split("/")[0]
+                if target in ARROWS and "/" in header and target not in reachable:
+                    yield f'{name}: includes "{header}", but {folder} may not use {target}'
+                for gate, may in GATES.items():
+                    is_gated = header.startswith(gate) if gate.endswith("/") else header == gate
+                    if is_gated and not re.fullmatch(may, name):
+                        yield f"{name}: includes <{header}>, which only {may} may"
+
+
+def strangers(root):
+    """Yields a line for each folder with sources that has no line in ARROWS."""
+    outside = {"tests", "bench", "build", "out"}
+    for folder in sorted(pathlib.Path(root).iterdir()):
+        if folder.is_dir() and folder.name not in outside and not folder.name.startswith("."):
+            if folder.name not in ARROWS and any(folder.glob("*.h")):
+                yield f"{folder.name}: has no line in ARROWS"
+
+
+if __name__ == "__main__":
+    found = [*broken_arrows(sys.argv[1]), *strangers(sys.argv[1])]
+    print("\n".join(found) or "every include follows the arrows")
+    sys.exit(1 if found else 0)

@@ -1,0 +1,40 @@
+#!/usr/bin/env python3
+"""The watch must bark: a forbidden include, a library behind a gate, an unknown folder."""
+import pathlib
+import tempfile
+import unittest
+
+import arrows
+
+
+class ArrowsTest(unittest.TestCase):
+    def house(self, files):
+        root = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        for name, text in files.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text)
+        return root
+
+    def test_an_arrow_that_goes_back_is_found(self):
+        root = self.house({"geometry/rotation.h": '#include "probes/head_model.h"\n'})
+        self.assertEqual(len(list(arrows.broken_arrows(root))), 1)
+
+    def test_the_rig_may_not_see_a_model(self):
+        root = self.house({"rig/world.cpp": '#include "geometry/rotation.h"\n'})
+        self.assertEqual(len(list(arrows.broken_arrows(root))), 1)
+
+    def test_a_library_behind_a_gate_is_found(self):
+        root = self.house({"probes/sweep.cpp": "#include <hdf5.h>\n", "recording/hdf5_file.cpp": "#include <hdf5.h>\n"})
+        self.assertEqual(len(list(arrows.broken_arrows(root))), 1)
+
+    def test_an_allowed_arrow_is_not_found(self):
+        root = self.house({"probes/sweep.cpp": '#include "recording/recording.h"\n#include <vector>\n'})
+        self.assertEqual(list(arrows.broken_arrows(root)), [])
+
+    def test_a_folder_without_arrows_is_found(self):
+        root = self.house({"helpers/things.h": ""})
+        self.assertEqual(len(list(arrows.strangers(root))), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

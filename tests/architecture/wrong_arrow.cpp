@@ -1,0 +1,2 @@
+// Must not compile: settings does not link recording.
+#include "recording/recording.h"
