@@ -1,0 +1,97 @@
+#include "machine/chain.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+#include "failure/failure.h"
+
+namespace abbe::machine {
+namespace {
+
+constexpr std::string_view kForm =
+    "write it as \"[w X Y b Z t]\": w, the axes that move the workpiece, b, the axes that move the "
+    "tool, t";
+
+InputError Refuse(std::string_view text, std::string_view reason) {
+  return InputError(fmt::format("the chain \"{}\" {}; {}", text, reason, kForm));
+}
+
+// The letters of the chain without brackets, blanks and axes in parentheses.
+std::string Letters(std::string_view text) {
+  std::string letters;
+  bool in_parentheses = false;
+  for (const char letter : text) {
+    if (std::isspace(static_cast<unsigned char>(letter)) != 0) continue;
+    if (letter == '(' || letter == ')') {
+      if (in_parentheses == (letter == '(')) throw Refuse(text, "has unpaired parentheses");
+      in_parentheses = !in_parentheses;
+    } else if (!in_parentheses) {
+      letters += letter;
+    }
+  }
+  if (in_parentheses) throw Refuse(text, "has unpaired parentheses");
+  if (letters.size() < 2 || letters.front() != '[' || letters.back() != ']') {
+    throw Refuse(text, "does not stand in brackets");
+  }
+  return letters.substr(1, letters.size() - 2);
+}
+
+}  // namespace
+
+Chain Chain::Parse(std::string_view text) {
+  const std::string letters = Letters(text);
+  if (letters.empty() || letters.front() != 'w') throw Refuse(text, "does not begin with w");
+  if (letters.back() != 't') throw Refuse(text, "does not end with t");
+  Chain chain;
+  bool past_bed = false;
+  bool after_axis = false;
+  for (const char letter : letters.substr(1, letters.size() - 2)) {
+    if (letter == '\'') {
+      if (!after_axis) throw Refuse(text, "has a prime that follows no axis");
+      if (past_bed) throw Refuse(text, "has a prime on an axis that moves the tool");
+      after_axis = false;
+    } else if (letter == 'b') {
+      if (past_bed) throw Refuse(text, "has more than one b");
+      past_bed = true;
+      after_axis = false;
+    } else if (letter >= 'X' && letter <= 'Z') {
+      const std::string seen = chain.workpiece_axes_ + chain.tool_axes_;
+      if (seen.find(letter) != std::string::npos) {
+        throw Refuse(text, fmt::format("names the axis {} twice", letter));
+      }
+      (past_bed ? chain.tool_axes_ : chain.workpiece_axes_) += letter;
+      after_axis = true;
+    } else if (letter >= 'A' && letter <= 'C') {
+      throw Refuse(text,
+                   fmt::format("has the rotary axis {}, but only X, Y and Z can be measured: put "
+                               "it in parentheses and hold it still",
+                               letter));
+    } else {
+      throw Refuse(text, fmt::format("has an unknown letter '{}'", letter));
+    }
+  }
+  if (!past_bed) throw Refuse(text, "has no b");
+  for (const char axis : std::string_view("XYZ")) {
+    if ((chain.workpiece_axes_ + chain.tool_axes_).find(axis) == std::string::npos) {
+      throw Refuse(text, fmt::format("lacks the axis {}", axis));
+    }
+  }
+  return chain;
+}
+
+bool Chain::CarriesTarget(char axis) const {
+  if (workpiece_axes_.find(axis) != std::string::npos) return true;
+  if (tool_axes_.find(axis) != std::string::npos) return false;
+  throw InputError(fmt::format("'{}' is no axis of the chain {}; name X, Y or Z", axis, Text()));
+}
+
+std::string Chain::Text() const {
+  std::string text = "[w";
+  for (const char axis : workpiece_axes_) text += fmt::format(" {}", axis);
+  text += " b";
+  for (const char axis : tool_axes_) text += fmt::format(" {}", axis);
+  return text + " t]";
+}
+
+}  // namespace abbe::machine

@@ -1,0 +1,71 @@
+#include "machine/machine.h"
+
+#include <fmt/format.h>
+
+#include "failure/failure.h"
+
+namespace abbe::machine {
+namespace {
+
+Chain ReadChain(const settings::Table& root) {
+  const std::string text = root.Text("chain");
+  try {
+    return Chain::Parse(text);
+  } catch (const InputError& error) {
+    throw root.Error("chain", error.what());
+  }
+}
+
+Travel ReadTravel(const settings::Table& axis) {
+  const std::vector<double> ends = axis.Quantities("travel_mm", 2);
+  axis.RefuseUnknown();
+  if (!(ends[0] < ends[1])) {
+    throw axis.Error("travel_mm", "must be [first, last] with the first below the last");
+  }
+  return {ends[0], ends[1]};
+}
+
+Population ReadPopulation(const settings::Table& table) {
+  const auto tolerance = [&](std::string_view key, double fallback) {
+    return table.Quantity(key, {.fallback = fallback, .at_least = 0.0});
+  };
+  const Population population{
+      .positioning = tolerance("positioning_um", 2.0),
+      .straightness = tolerance("straightness_um", 1.0),
+      .roll = tolerance("roll_urad", 20.0),
+      .pitch = tolerance("pitch_urad", 20.0),
+      .yaw = tolerance("yaw_urad", 20.0),
+      .squareness = tolerance("squareness_urad", 30.0),
+      .scale = tolerance("scale_ppm", 20.0),
+      .smoothness = table.Quantity("smoothness_mm", {.fallback = 15.0, .above = 0.0}),
+  };
+  table.RefuseUnknown();
+  return population;
+}
+
+}  // namespace
+
+int AxisIndex(char axis) {
+  if (axis < 'X' || axis > 'Z') {
+    throw InputError(fmt::format("'{}' is no linear axis; name X, Y or Z", axis));
+  }
+  return axis - 'X';
+}
+
+Machine ReadMachine(const settings::Table& root) {
+  const std::vector<double> reference =
+      root.Quantities("reference_mm", 3, std::vector<double>{0.0, 0.0, 0.0});
+  const settings::Table axes = root.Child("axis");
+  Machine machine{
+      .name = root.Text("name"),
+      .chain = ReadChain(root),
+      .reference = Eigen::Vector3d(reference[0], reference[1], reference[2]),
+      .travels = {ReadTravel(axes.Child("X")), ReadTravel(axes.Child("Y")),
+                  ReadTravel(axes.Child("Z"))},
+      .population = ReadPopulation(root.Child("population")),
+  };
+  axes.RefuseUnknown();
+  return machine;
+}
+
+}  // namespace abbe::machine

@@ -1,0 +1,54 @@
+// The machine as its file describes it: name, chain, axis travels, reference point and the
+// population of machines that its errors come from.
+//
+//   const auto document = settings::Document::Read("machine.toml");
+//   const machine::Machine mill = machine::ReadMachine(document.Root());
+//
+// Frame: M, the machine frame, right-handed, along the axes X, Y, Z; an axis error function is zero
+// and acts at the reference point. SI units. Every key stands in docs/machine-file.md.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+
+#include "machine/chain.h"
+#include "settings/document.h"
+
+namespace abbe::machine {
+
+// 0, 1, 2 for 'X', 'Y', 'Z'; InputError for any other letter.
+int AxisIndex(char axis);
+
+struct Travel {
+  double first;  // m
+  double last;   // m, above first
+};
+
+// Standard deviations of the errors of machines of this kind. An error function over an axis is a
+// stationary Gaussian process with this standard deviation and correlation length `smoothness`.
+struct Population {
+  double positioning;   // m: EXX
+  double straightness;  // m: EYX, EZX
+  double roll;          // rad: EAX
+  double pitch;         // rad
+  double yaw;           // rad
+  double squareness;    // rad: A0Z, B0Z, C0Y
+  double scale;         // relative: slope of EXX
+  double smoothness;    // m
+};
+
+struct Machine {
+  std::string name;
+  Chain chain;
+  Eigen::Vector3d reference;      // m, in M
+  std::array<Travel, 3> travels;  // of X, Y, Z
+  Population population;
+};
+
+// Reads `name`, `chain`, `reference_mm`, `[axis.*]` and `[population]`. Keys of the root that
+// belong to other readers are left alone; whoever has run all readers calls root.RefuseUnknown().
+// InputError with file, line and key.
+Machine ReadMachine(const settings::Table& root);
+
+}  // namespace abbe::machine
