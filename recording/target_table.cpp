@@ -1,0 +1,284 @@
+#include "recording/target_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "settings/unit.h"
+
+namespace abbe::recording {
+namespace {
+
+constexpr int kMaxCycles = 10'000;  // far above any test, so that a slip of the pen is caught
+
+struct Place {
+  int position;
+  int cycle;
+  auto operator<=>(const Place&) const = default;
+};
+
+struct TargetTable {
+  std::string file;
+  double mm_per_unit = 1.0;
+  int cycles = 0;     // 0: not stated
+  int positions = 0;  // 0: not stated
+  std::string target_source, reference_source;
+  std::map<int, double> targets;
+  std::map<Place, double> forward, backward;
+  std::vector<std::string> warnings;
+};
+
+std::string_view Trim(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+// One line "NAME[i,j] = value".
+class Assignment {
+ public:
+  Assignment(const std::string& file, int line, std::string_view text)
+      : at_(fmt::format("{}:{}", file, line)) {
+    const auto equals = text.find('=');
+    if (equals == std::string_view::npos) {
+      throw InputError(
+          fmt::format("{}: \"{}\" is not NAME=value; write comments after #", at_, text));
+    }
+    value_ = Trim(text.substr(equals + 1));
+    std::string_view left = Trim(text.substr(0, equals));
+    const auto bracket = left.find('[');
+    name_ = left.substr(0, bracket);
+    if (bracket == std::string_view::npos) return;
+    if (left.back() != ']') Refuse("has no closing ]");
+    left = left.substr(bracket + 1, left.size() - bracket - 2);
+    for (auto comma = left.find(','); comma != std::string_view::npos; comma = left.find(',')) {
+      indices_.push_back(Parse<int>(Trim(left.substr(0, comma))));
+      left.remove_prefix(comma + 1);
+    }
+    indices_.push_back(Parse<int>(Trim(left)));
+  }
+
+  const std::string& name() const { return name_; }
+  const std::string& value() const { return value_; }
+  int Whole() const { return Index(Parse<int>(value_)); }
+  double Number() const { return Parse<double>(value_); }
+
+  int Position() const {
+    if (indices_.size() != 1) Refuse("needs one index, the position");
+    return Index(indices_[0]);
+  }
+  Place PositionAndCycle() const {
+    if (indices_.size() != 2) Refuse("needs two indices, position and cycle");
+    return {Index(indices_[0]), Index(indices_[1])};
+  }
+
+  [[noreturn]] void Refuse(std::string_view why) const {
+    throw InputError(fmt::format("{}: {} {}", at_, name_, why));
+  }
+
+ private:
+  template <typename T>
+  T Parse(std::string_view text) const {
+    T value{};
+    if (text.starts_with('+')) text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() ||
+        !std::isfinite(static_cast<double>(value))) {
+      Refuse(fmt::format("holds \"{}\" where a number is expected", text));
+    }
+    return value;
+  }
+  int Index(int index) const {
+    if (index < 1) Refuse(fmt::format("holds {}: count from 1", index));
+    return index;
+  }
+
+  std::string at_, name_, value_;
+  std::vector<int> indices_;
+};
+
+double MillimetresPerUnit(const Assignment& unit) {
+  if (unit.value() == "mm") return 1.0;
+  if (unit.value() == "m") return 1.0 / settings::kMillimetre;
+  if (unit.value() == "um") return settings::kMicrometre / settings::kMillimetre;
+  unit.Refuse(fmt::format("is \"{}\": give m, mm or um", unit.value()));
+}
+
+void Take(const Assignment& line, TargetTable& table) {
+  const auto once = [&line](bool is_new) {
+    if (!is_new) line.Refuse("is given twice with these indices: keep one");
+  };
+  if (line.name() == "TGT_DATA") {
+    once(table.targets.emplace(line.Position(), line.Number()).second);
+  } else if (line.name() == "REF_DATA_FWD") {
+    once(table.forward.emplace(line.PositionAndCycle(), line.Number()).second);
+  } else if (line.name() == "REF_DATA_BWD") {
+    once(table.backward.emplace(line.PositionAndCycle(), line.Number()).second);
+  } else if (line.name() == "UNIT") {
+    table.mm_per_unit = MillimetresPerUnit(line);
+  } else if (line.name() == "CYCLES") {
+    table.cycles = line.Whole();
+  } else if (line.name() == "POSITIONS") {
+    table.positions = line.Whole();
+  } else if (line.name() == "TGT_SET_PV") {
+    table.target_source = line.value();
+  } else if (line.name() == "REF_PV") {
+    table.reference_source = line.value();
+  } else if (line.name() != "TEST_PV" && line.name() != "DEC") {
+    table.warnings.push_back(fmt::format("{}: {} is not used", table.file, line.name()));
+  }
+}
+
+TargetTable ReadTable(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path)) {
+    throw InputError(fmt::format("{}: cannot be read: check the path", path.string()));
+  }
+  TargetTable table;
+  table.file = path.string();
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    std::string_view text = Trim(line);
+    constexpr std::string_view kPrefix = "TEST_DATA=";
+    if (number == 1 && text.starts_with(kPrefix)) text = Trim(text.substr(kPrefix.size()));
+    if (text.empty() || text.starts_with('#')) continue;
+    Take(Assignment(table.file, number, text), table);
+  }
+  return table;
+}
+
+// Fills in what was not stated and refuses what does not fit together.
+void Complete(TargetTable& table) {
+  const int targets = table.targets.empty() ? 0 : table.targets.rbegin()->first;
+  if (table.positions == 0) table.positions = targets;
+  int cycles = 0;
+  for (const auto* readings : {&table.forward, &table.backward}) {
+    for (const auto& [place, value] : *readings) {
+      cycles = std::max(cycles, place.cycle);
+      if (place.position > table.positions) {
+        throw InputError(
+            fmt::format("{}: a reading at position {}, but there are {}: correct POSITIONS or "
+                        "add TGT_DATA[{}]",
+                        table.file, place.position, table.positions, place.position));
+      }
+    }
+  }
+  if (cycles == 0) {
+    throw InputError(fmt::format(
+        "{}: no REF_DATA_FWD or REF_DATA_BWD: not a target and cycle table", table.file));
+  }
+  if (table.cycles == 0) table.cycles = cycles;
+  if (table.cycles > kMaxCycles) {
+    throw InputError(
+        fmt::format("{}: {} cycles: at most {} are read; correct CYCLES or the indices", table.file,
+                    table.cycles, kMaxCycles));
+  }
+  if (cycles > table.cycles) {
+    throw InputError(fmt::format("{}: a reading of cycle {}, but CYCLES={}: correct one of them",
+                                 table.file, cycles, table.cycles));
+  }
+  for (int position = 1; position <= std::max(table.positions, targets); ++position) {
+    if (!table.targets.contains(position) || position > table.positions) {
+      throw InputError(fmt::format(
+          "{}: {} positions, but TGT_DATA[{}] is {}: correct POSITIONS or the targets", table.file,
+          table.positions, position, table.targets.contains(position) ? "given" : "missing"));
+    }
+  }
+}
+
+double ForwardDirection(const TargetTable& table) {
+  const double sign = table.targets.rbegin()->second > table.targets.begin()->second ? 1 : -1;
+  for (int position = 2; position <= table.positions; ++position) {
+    const double before = table.targets.at(position - 1), here = table.targets.at(position);
+    if (sign * (here - before) <= 0) {
+      throw InputError(
+          fmt::format("{}: TGT_DATA[{}]={} after {}: targets must ascend, or descend, all the way",
+                      table.file, position, here, before));
+    }
+  }
+  return sign;
+}
+
+std::string Quoted(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+std::string Header(const TargetTable& table, char axis, char small) {
+  std::string header = fmt::format(
+      "abbe-recording = 1\nkind = \"reference\"\naxis = \"{}\"\ntime = \"order\"\nimported_from = "
+      "{}\n",
+      axis, Quoted(std::filesystem::path(table.file).filename().string()));
+  if (table.target_source.empty() && table.reference_source.empty()) return header;
+  header += "[sources]\n";
+  if (!table.target_source.empty()) {
+    header += fmt::format("{}_mm = {}\n", small, Quoted(table.target_source));
+  }
+  if (!table.reference_source.empty()) {
+    header += fmt::format("ref_{}_mm = {}\n", small, Quoted(table.reference_source));
+  }
+  return header;
+}
+
+}  // namespace
+
+Recording ReadTargetTable(const std::filesystem::path& path, char axis) {
+  if (axis != 'X' && axis != 'Y' && axis != 'Z') {
+    throw InputError(fmt::format("{}: axis {}: choose X, Y or Z", path.string(), axis));
+  }
+  TargetTable table = ReadTable(path);
+  Complete(table);
+  const double forward = ForwardDirection(table);
+  const char small = static_cast<char>(axis - 'A' + 'a');
+
+  Recording recording;
+  recording.name = table.file;
+  recording.header = Header(table, axis, small);
+  recording.columns = {{"time_s", {}},    {fmt::format("{}_mm", small), {}},     {"pass", {}},
+                       {"direction", {}}, {fmt::format("ref_{}_mm", small), {}}, {"flags", {}}};
+  recording.warnings = std::move(table.warnings);
+  int order = 0, missing = 0;
+  std::string first_missing;
+  const auto add = [&](std::string_view name, const auto& readings, Place place, double direction) {
+    const double time = order++;
+    const auto reading = readings.find(place);
+    if (reading == readings.end()) {
+      if (missing++ == 0)
+        first_missing = fmt::format("{}[{},{}]", name, place.position, place.cycle);
+      return;
+    }
+    const double row[] = {time,
+                          table.targets.at(place.position) * table.mm_per_unit,
+                          static_cast<double>(place.cycle),
+                          direction,
+                          reading->second * table.mm_per_unit,
+                          0.0};
+    for (std::size_t i = 0; i < std::size(row); ++i) recording.columns[i].values.push_back(row[i]);
+  };
+  for (int cycle = 1; cycle <= table.cycles; ++cycle) {
+    for (int position = 1; position <= table.positions; ++position) {
+      add("REF_DATA_FWD", table.forward, {position, cycle}, forward);
+    }
+    for (int position = table.positions; position >= 1; --position) {
+      add("REF_DATA_BWD", table.backward, {position, cycle}, -forward);
+    }
+  }
+  if (missing > 0) {
+    recording.warnings.push_back(fmt::format("{}: {} of {} readings are missing, the first is {}",
+                                             table.file, missing, order, first_missing));
+  }
+  return recording;
+}
+
+}  // namespace abbe::recording
