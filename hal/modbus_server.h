@@ -23,11 +23,10 @@
 #include <tuple>
 
 #include "failure/failure.h"
+#include "hal/register_table.h"
 #include "hal/serial_line.h"
 
 namespace abbe::hal {
-
-enum class RegisterTable { kHolding, kInput };
 
 // How a server answers: with the registers, with an exception code, or not at all.
 enum class Answer : std::uint8_t {

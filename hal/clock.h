@@ -1,0 +1,49 @@
+// The one monotonic clock of a measurement, behind a seam.
+//
+// Time is seconds since the clock was made. Every stamp of every sample comes from the same clock.
+// Deadlines on sockets do not: a device answers in real time, whatever this clock says.
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+namespace abbe::hal {
+
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  virtual double Now() = 0;
+  // Returns when Now() >= time_s.
+  virtual void SleepUntil(double time_s) = 0;
+};
+
+// The computer's monotonic clock, `speed` seconds a second: 1 for real devices, more for a virtual
+// machine that runs faster than a real one.
+class SteadyClock : public Clock {
+ public:
+  explicit SteadyClock(double speed = 1.0) : speed_(speed) {}
+  double Now() override {
+    return speed_ *
+           std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  void SleepUntil(double time_s) override {
+    std::this_thread::sleep_until(start_ + std::chrono::duration<double>(time_s / speed_));
+  }
+
+ private:
+  double speed_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// A clock that stands still until somebody sleeps on it or moves it: no test waits.
+class HandClock : public Clock {
+ public:
+  double Now() override { return now_s_; }
+  void SleepUntil(double time_s) override { now_s_ = time_s > now_s_ ? time_s : now_s_; }
+  void Advance(double by_s) { now_s_ += by_s; }
+
+ private:
+  double now_s_ = 0.0;
+};
+
+}  // namespace abbe::hal

@@ -1,0 +1,57 @@
+// Modbus requests as bytes, and what makes bytes the reply to a request; no socket, no clock.
+//
+// The library hands over a TCP reply without looking at its unit id, and its raw requests carry no
+// transaction number, so the client frames by itself and checks everything a reply must repeat:
+// transaction, protocol, length, unit, function, count (TCP); unit, function, count, CRC (serial).
+// Source: Modbus application protocol V1.1b3, sections 6.3, 6.4, 6.6 and 7; Modbus messaging on
+// TCP/IP V1.0b, section 3.1.3; Modbus over serial line V1.02, section 2.5.1.2 (CRC).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace abbe::hal {
+
+enum class ModbusFraming { kTcp, kRtu };
+
+struct ModbusRequest {
+  int unit = 1;
+  int function = 4;  // 3 and 4: read `value` registers; 6: write `value`
+  int address = 0;
+  int value = 1;  // the count or the word
+
+  std::string Text() const;  // "read 5 input registers from 0"
+};
+
+inline constexpr std::size_t kLongestFrame = 260;
+
+struct ModbusFrame {
+  std::array<std::uint8_t, 12> bytes{};
+  std::size_t size = 0;
+  std::span<const std::uint8_t> view() const { return {bytes.data(), size}; }
+};
+
+ModbusFrame Encode(const ModbusRequest& request, ModbusFraming framing, std::uint16_t transaction);
+
+// The length that a reply has by what came of it so far; more than `got.size()` while bytes are
+// missing, never more than kLongestFrame.
+std::size_t ReplyLength(std::span<const std::uint8_t> got, ModbusFraming framing);
+
+struct ModbusReply {
+  std::string wrong;  // why the bytes are not a reply to the request; empty when well
+  int exception = 0;  // the device's refusal, 0 for none
+  std::span<const std::uint8_t> words;  // the registers read, two bytes each, high byte first
+};
+
+// Takes a complete reply apart. `words` points into `reply`.
+ModbusReply CheckReply(const ModbusRequest& request, ModbusFraming framing,
+                       std::uint16_t transaction, std::span<const std::uint8_t> reply);
+
+// "exception 2 (illegal data address)".
+std::string ExceptionText(int exception);
+
+std::uint16_t Crc16(std::span<const std::uint8_t> bytes);
+
+}  // namespace abbe::hal

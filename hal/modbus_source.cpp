@@ -1,0 +1,117 @@
+#include "hal/modbus_source.h"
+
+#include <fmt/format.h>
+
+namespace abbe::hal {
+
+ModbusSource::ModbusSource(const DeviceSettings& device, double stale_s, Clock& clock, Log log)
+    : device_(device), clock_(clock), log_(std::move(log)), client_(device_) {
+  for (const BlockSettings& block : device_.blocks) {
+    readings_.push_back({std::vector<std::uint16_t>(static_cast<std::size_t>(block.count))});
+    for (const ChannelSettings& channel : block.channels) {
+      channels_.push_back({channel.name, device_.name});
+      judges_.emplace_back(channel, stale_s);
+    }
+  }
+}
+
+DeviceError ModbusSource::Error(const std::string& fault) const {
+  return DeviceError(
+      fmt::format("device \"{}\" ({}): {}; check that it is on, the link, and its place "
+                  "and unit in the machine file",
+                  device_.name, PlaceOf(device_), fault));
+}
+
+void ModbusSource::Require() {
+  Read();
+  if (!fault_.empty()) throw Error(fault_);
+}
+
+void ModbusSource::StartCycle(std::uint16_t word) {
+  if (!device_.cycle_start) {
+    throw InputError(
+        fmt::format("device \"{}\" has no cycle_start register in the machine file; add "
+                    "it or start the machine's program by hand",
+                    device_.name));
+  }
+  const auto fault = client_.Write(device_.cycle_start->address, word, client_.Deadline());
+  if (fault) throw Error(fault->text);
+}
+
+SampleSet ModbusSource::Read() {
+  ReadBlocks();
+  SampleSet set;
+  set.sequence = ++sequence_;
+  set.samples.reserve(channels_.size());
+  const double now = clock_.Now();
+  std::size_t at = 0;
+  for (std::size_t b = 0; b < readings_.size(); ++b) {
+    const BlockReading& reading = readings_[b];
+    for (const ChannelSettings& channel : device_.blocks[b].channels) {
+      ChannelJudge& judge = judges_[at++];
+      set.samples.push_back(
+          reading.cause != Cause::kNone
+              ? judge.Missing(reading.cause, now)
+              : judge.Judge(reading.words, StatusOf(channel), reading.time_s, now));
+    }
+  }
+  FinishSet(set, now);
+  return set;
+}
+
+void ModbusSource::ReadBlocks() {
+  const auto deadline = client_.Deadline();
+  std::string fault_text;
+  bool link_lost = false;
+  for (std::size_t b = 0; b < readings_.size(); ++b) {
+    BlockReading& reading = readings_[b];
+    reading.cause = Cause::kNoReply;
+    if (link_lost) continue;
+    const BlockSettings& block = device_.blocks[b];
+    const double start = clock_.Now();
+    const auto fault = client_.Read(block.table, block.address, reading.words, deadline);
+    reading.time_s = 0.5 * (start + clock_.Now());
+    if (!fault) {
+      reading.cause = Cause::kNone;
+      continue;
+    }
+    if (fault->kind == ModbusFault::Kind::kException) reading.cause = Cause::kRefused;
+    link_lost = fault->kind != ModbusFault::Kind::kException;
+    if (fault_text.empty()) fault_text = fault->text;
+  }
+  Note(fault_text);
+}
+
+std::optional<std::uint16_t> ModbusSource::StatusOf(const ChannelSettings& channel) const {
+  if (!channel.status) return {};
+  for (std::size_t b = 0; b < readings_.size(); ++b) {
+    const BlockSettings& block = device_.blocks[b];
+    const int at = channel.status->address - block.address;
+    if (block.table != channel.status->table || at < 0 || at >= block.count) continue;
+    if (readings_[b].cause != Cause::kNone) return {};
+    return readings_[b].words[static_cast<std::size_t>(at)];
+  }
+  return {};
+}
+
+void ModbusSource::Note(const std::string& fault) {
+  if (!fault.empty()) {
+    ++failures_;
+    ++failures_in_a_row_;
+  }
+  if (log_ && fault_.empty() && !fault.empty()) {
+    log_(fmt::format("device \"{}\" ({}): {}; its readings are bad until it answers again",
+                     device_.name, PlaceOf(device_), fault));
+  } else if (log_ && !fault_.empty() && fault.empty()) {
+    log_(fmt::format("device \"{}\" ({}): answers again after {} failed readings", device_.name,
+                     PlaceOf(device_), failures_in_a_row_));
+  }
+  if (fault.empty()) failures_in_a_row_ = 0;
+  fault_ = fault;
+}
+
+std::string ModbusSource::Fault() const {
+  return fault_.empty() ? fault_ : fmt::format("device \"{}\": {}", device_.name, fault_);
+}
+
+}  // namespace abbe::hal

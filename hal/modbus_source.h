@@ -1,0 +1,64 @@
+// The readings of one Modbus device.
+//
+// Each Read() asks for every block of the device, one request each, and judges every channel. A
+// sample is stamped with the middle of its exchange. A block that the device refuses (exception) is
+// bad and the others are still read; after any other fault all channels not yet read are bad, too.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hal/channel_judge.h"
+#include "hal/clock.h"
+#include "hal/modbus_client.h"
+#include "hal/sample_source.h"
+
+namespace abbe::hal {
+
+class ModbusSource : public SampleSource {
+ public:
+  // Opens nothing yet. `clock` must outlive the source; `stale_s` as in DevicesSettings.
+  // DeviceError when a host name cannot be resolved.
+  ModbusSource(const DeviceSettings& device, double stale_s, Clock& clock, Log log = {});
+
+  // DeviceError, naming the device and what it answered, unless it now answers every block.
+  void Require();
+
+  // Writes `word` to the register that starts the machine's program. DeviceError when the device
+  // does not take it; InputError when it has no such register.
+  void StartCycle(std::uint16_t word);
+
+  const std::vector<Channel>& channels() const override { return channels_; }
+  SampleSet Read() override;
+  std::string Fault() const override;
+
+  std::uint64_t failures() const { return failures_; }  // readings with a fault, so far
+  std::uint64_t connections() const { return client_.connections(); }
+
+ private:
+  struct BlockReading {
+    std::vector<std::uint16_t> words;
+    double time_s = 0.0;
+    Cause cause = Cause::kNone;
+  };
+  void ReadBlocks();
+  std::optional<std::uint16_t> StatusOf(const ChannelSettings& channel) const;
+  void Note(const std::string& fault);  // counts, and logs a change
+  DeviceError Error(const std::string& fault) const;
+
+  DeviceSettings device_;
+  Clock& clock_;
+  Log log_;
+  ModbusClient client_;
+  std::vector<Channel> channels_;
+  std::vector<ChannelJudge> judges_;  // in the order of channels_
+  std::vector<BlockReading> readings_;
+  std::uint64_t sequence_ = 0;
+  std::string fault_;
+  std::uint64_t failures_ = 0;
+  std::uint64_t failures_in_a_row_ = 0;
+};
+
+}  // namespace abbe::hal

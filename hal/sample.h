@@ -1,0 +1,64 @@
+// One reading of one channel, and whether it may be believed.
+//
+// Only `good` is a measurement. A bad sample carries NaN, so that its number cannot be used by
+// mistake, and exactly one cause; an uncertain one carries a number that was not measured as it
+// stands.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+namespace abbe::hal {
+
+enum class Quality { kGood, kUncertain, kBad };
+
+enum class Cause {
+  kNone,          // good
+  kWaiting,       // no reading yet
+  kStale,         // the reading is older than allowed
+  kFrozen,        // the register has not changed for longer than allowed
+  kOutOfRange,    // saturated, or outside minimum..maximum
+  kSentinel,      // the device's own sign for "no value"
+  kSensorFault,   // the status register says so
+  kNotANumber,    // NaN or infinite in the register
+  kNoReply,       // link down, time-out, or a reply that is not to be trusted
+  kRefused,       // an exception code
+  kIncoherent,    // too far in time from the other samples of its set
+  kInterpolated,  // uncertain: made from neighbours, by whoever wrote the recording
+  kClockJump,     // uncertain: the clock of the recording jumped here
+};
+
+// As printed: "good", "out of range".
+std::string_view NameOf(Quality quality);
+std::string_view NameOf(Cause cause);
+
+struct Sample {
+  double value = std::numeric_limits<double>::quiet_NaN();  // in the unit of the channel's name
+  Quality quality = Quality::kBad;
+  Cause cause = Cause::kWaiting;
+  double time_s = 0.0;         // when it was measured, by the clock of the measurement
+  std::uint64_t sequence = 0;  // counts the readings of this channel; 0: none yet
+  double age_s = 0.0;          // at the moment it was handed over
+
+  static Sample Good(double value, double time_s, std::uint64_t sequence) {
+    return {value, Quality::kGood, Cause::kNone, time_s, sequence, 0.0};
+  }
+  static Sample Bad(Cause cause, double time_s, std::uint64_t sequence) {
+    return {std::numeric_limits<double>::quiet_NaN(), Quality::kBad, cause, time_s, sequence, 0.0};
+  }
+  bool good() const { return quality == Quality::kGood; }
+};
+
+// One sample of every channel of a source, in the order of its channels().
+struct SampleSet {
+  double time_s = 0.0;         // middle of the samples' times
+  std::uint64_t sequence = 0;  // counts the sets, from 1
+  double skew_s = 0.0;         // between the earliest and the latest sample that is not bad
+  std::vector<Sample> samples;
+
+  bool AllGood() const;
+};
+
+}  // namespace abbe::hal
