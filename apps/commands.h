@@ -7,6 +7,8 @@
 
 namespace abbe::apps {
 
-inline constexpr std::array<AddCommand, 0> kCommands{};
+void AddReport(CLI::App& program, int& exit_code);
+
+inline constexpr std::array<AddCommand, 1> kCommands{AddReport};
 
 }  // namespace abbe::apps

@@ -1,0 +1,93 @@
+// Reads the results in the page, builds the sections and the table of contents, draws the figures.
+
+// Results in the order of the kinds, then of axis, start and file.
+function orderedSections(results) {
+  const order = (kind) => (sectionKinds.indexOf(kind) + 1) || sectionKinds.length + 1;
+  const key = ({kind, result, file}) => [String(order(kind)).padStart(3, '0'), result.axis ?? '',
+                                         result.started ?? '', file]
+                                            .join('\n');
+  return results.map(({file, result}) => ({file, result, kind: sectionKindOf(result)}))
+      .sort((one, other) => key(one) < key(other) ? -1 : 1)
+      .map((section, index) => ({...section, id: `result-${index + 1}`}));
+}
+
+function resultSection({id, kind, result, file}) {
+  const summary = kind.summary(result);
+  return element(
+      'section', {id, class: 'result', 'aria-labelledby': `${id}-title`},
+      element('h2', {id: `${id}-title`}, kind.title(result)),
+      summary ? element('p', {class: 'summary'}, summary) : null,
+      factList(allFacts(kind.facts(result), result, file)), kind.body(result));
+}
+
+// A result that no section can read says so in its place and spoils nothing else.
+function safeSection(section) {
+  try {
+    return resultSection(section);
+  } catch (error) {
+    return element(
+        'section', {id: section.id, class: 'result'}, element('h2', {}, section.file),
+        element(
+            'p', {class: 'note'},
+            `This result could not be shown (${error.message}): a key has ` +
+                'another form than docs/report.md says. Write it again with this version of abbe.'));
+  }
+}
+
+function contentsList(sections) {
+  const entry = (id, text) => element('li', {}, element('a', {href: `#${id}`}, text));
+  const repeated = (text) =>
+      sections.filter(({kind, result}) => kind.short(result) === text).length > 1;
+  return element(
+      'ol', {}, entry('overview', 'Overview'), sections.map(({id, kind, result, file}) => {
+        const text = kind.short(result);
+        return entry(id, repeated(text) ? `${text}, ${file}` : text);
+      }));
+}
+
+// The entry of the section in view is marked.
+function followScrolling(contents) {
+  const links = new Map([...contents.querySelectorAll('a')].map(
+      (link) => [link.getAttribute('href').slice(1), link]));
+  const mark = (id) => links.forEach(
+      (link, key) => key === id ? link.setAttribute('aria-current', 'true') :
+                                  link.removeAttribute('aria-current'));
+  const watcher = new IntersectionObserver((entries) => {
+    const seen = entries.filter((entry) => entry.isIntersecting);
+    if (seen.length) mark(seen[0].target.id);
+  }, {rootMargin: '-10% 0px -80% 0px'});
+  links.forEach((link, id) => watcher.observe(document.getElementById(id)));
+}
+
+function writeTitle(folder, sections) {
+  const machines = [...new Set(sections.map(({result}) => result.machine).filter(Boolean))];
+  const title = machines.length ? `Geometric errors of ${joinWords(machines)}` : 'Geometric errors';
+  const count = `${sections.length} result${sections.length === 1 ? '' : 's'}`;
+  const version = sections.map(({result}) => result.abbe).find((abbe) => typeof abbe === 'string');
+  document.title = title;
+  document.getElementById('title').textContent = title;
+  document.getElementById('subtitle').textContent = [
+    `Folder ${folder}`, count, version ? `abbe ${version}` : null
+  ].filter(Boolean).join(' \u00b7 ');
+}
+
+async function showReport() {
+  const {folder, results, notes} = JSON.parse(document.getElementById('results').textContent);
+  const sections = orderedSections(results);
+  writeTitle(folder, sections);
+  const contents = document.getElementById('contents');
+  contents.append(
+      element('p', {class: 'contents-title', 'aria-hidden': 'true'}, 'Contents'),
+      contentsList(sections));
+  document.getElementById('content').append(
+      overviewSection(sections, notes), ...sections.map(safeSection));
+  connectThemeButton(document.getElementById('theme'), redrawFigures);
+  connectPrinting();
+  document.getElementById('print').addEventListener('click', () => print());
+  followScrolling(contents);
+  await document.fonts.ready;
+  await drawFigures();
+  document.documentElement.dataset.ready = 'true';
+}
+
+showReport();

@@ -1,0 +1,135 @@
+#include "report/report_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "report/page_template.h"
+
+namespace abbe::report {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::vector<fs::path> JsonFiles(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    std::error_code gone;
+    if (entry->path().extension() == ".json" && entry->is_regular_file(gone)) {
+      files.push_back(entry->path());
+    }
+  }
+  if (error) {
+    throw InputError(
+        fmt::format("{}: cannot be read as a folder ({}); give the folder that a sweep "
+                    "or a reduction wrote with --out",
+                    folder.string(), error.message()));
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+// An empty text when `value` is a result, else why it is not.
+std::string WhyForeign(const Json& value) {
+  if (value.is_discarded()) return "is not JSON, perhaps cut short; write it again or delete it";
+  const bool result =
+      value.is_object() && value.contains("command") && value["command"].is_string();
+  return result ? "" : "has no text \"command\", so it is no result of abbe; move it elsewhere";
+}
+
+Json ReadJson(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+}
+
+// As text for a script element: nothing in it can end the element or open a comment, because the
+// only place where JSON may hold "<" is a string.
+std::string ScriptText(const Json& value) {
+  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char character : text) {
+    if (character == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += character;
+    }
+  }
+  return safe;
+}
+
+[[noreturn]] void ThrowUnwritable(const fs::path& file, int code) {
+  throw InputError(fmt::format(
+      "{}: the page cannot be written ({}); choose a place that can be written with --out",
+      file.string(), std::generic_category().message(code)));
+}
+
+void WriteWhole(const fs::path& file, const std::string& content) {
+  fs::path temporary = file;
+  temporary += ".part";
+  errno = 0;
+  std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  stream.close();
+  int code = stream ? 0 : errno;
+  if (stream) {
+    std::error_code error;
+    fs::rename(temporary, file, error);
+    code = error.value();
+    if (!error) return;
+  }
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  ThrowUnwritable(file, code);
+}
+
+std::string Compose(const Json& content) {
+  const std::string_view page = PageTemplate();
+  const std::size_t mark = page.find(kResultsMark);
+  std::string composed(page.substr(0, mark));
+  composed += ScriptText(content);
+  composed += page.substr(mark + kResultsMark.size());
+  return composed;
+}
+
+}  // namespace
+
+WrittenReport WriteReport(const fs::path& folder, const fs::path& output_file) {
+  WrittenReport written;
+  Json results = Json::array();
+  Json left_out = Json::array();
+  for (const fs::path& file : JsonFiles(folder)) {
+    Json value = ReadJson(file);
+    const std::string why = WhyForeign(value);
+    if (why.empty()) {
+      results.push_back({{"file", file.filename().string()}, {"result", std::move(value)}});
+    } else {
+      written.notes.push_back(fmt::format("{}: left out: it {}", file.string(), why));
+      left_out.push_back(fmt::format("{} {}", file.filename().string(), why));
+    }
+  }
+  if (results.empty()) {
+    throw InputError(fmt::format(
+        "{}: no result of abbe in this folder ({} other *.json); run `abbe sweep --out {}` or "
+        "`abbe "
+        "reduce RECORDING --json {}` first",
+        folder.string(), written.notes.size(), folder.string(), (folder / "result.json").string()));
+  }
+  written.results = results.size();
+  const fs::path name = fs::absolute(folder).lexically_normal();
+  WriteWhole(
+      output_file,
+      Compose({{"folder", (name.has_filename() ? name : name.parent_path()).filename().string()},
+               {"results", std::move(results)},
+               {"notes", std::move(left_out)}}));
+  return written;
+}
+
+}  // namespace abbe::report

@@ -1,0 +1,43 @@
+// A browser for the page tests, or a reason why there is none.
+import {spawnSync} from 'node:child_process';
+import {copyFileSync, existsSync, mkdirSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {dirname, join} from 'node:path';
+import {fileURLToPath} from 'node:url';
+
+const CHROMIUM = '/usr/bin/chromium';
+const SKIPPED = 77;  // SKIP_RETURN_CODE of the test
+
+function skip(reason) {
+  console.log(`SKIPPED: ${reason}`);
+  process.exit(SKIPPED);
+}
+
+// Fetches the pinned packages into `folder` when they are not there yet.
+function fetchPackages(folder) {
+  if (existsSync(join(folder, 'node_modules/playwright-core/package.json'))) return;
+  mkdirSync(folder, {recursive: true});
+  const here = dirname(fileURLToPath(import.meta.url));
+  for (const name of ['package.json', 'package-lock.json']) {
+    copyFileSync(join(here, name), join(folder, name));
+  }
+  const npm = spawnSync(
+      'npm', ['ci', '--ignore-scripts', '--no-audit', '--no-fund'],
+      {cwd: folder, encoding: 'utf8'});
+  if (npm.status !== 0)
+    skip(`npm ci could not fetch playwright-core: ${npm.stderr?.split('\n')[0]}`);
+}
+
+export async function openBrowser(package_folder) {
+  if (!existsSync(CHROMIUM)) skip(`${CHROMIUM} not found: apt-get install chromium`);
+  fetchPackages(package_folder);
+  const {chromium} = createRequire(join(package_folder, 'from.js'))('playwright-core');
+  return chromium.launch({
+    executablePath: CHROMIUM,
+    headless: true,
+    args: [
+      '--no-sandbox', '--disable-gpu', '--no-first-run', '--disable-background-networking',
+      '--disable-component-update', '--disable-sync'
+    ]
+  });
+}

@@ -1,0 +1,269 @@
+// The report page as a reader meets it: node page.test.mjs ABBE_PROGRAM WORK_FOLDER.
+// Screenshots for a person to look at are left in WORK_FOLDER/screenshots.
+import assert from 'node:assert/strict';
+import {spawnSync} from 'node:child_process';
+import {mkdirSync, readFileSync, rmSync, statSync} from 'node:fs';
+import {join, resolve} from 'node:path';
+import {after, before, test} from 'node:test';
+import {pathToFileURL} from 'node:url';
+
+import {openBrowser} from './browser.mjs';
+import {BOW, writeSamples} from './sample_results.mjs';
+
+const program = resolve(process.argv[2]);
+const work = resolve(process.argv[3]);
+const browser = await openBrowser(join(work, 'packages'));
+const screenshots = join(work, 'screenshots');
+const folder = join(work, 'results');
+const page_file = join(work, 'elsewhere', 'report.html');
+const DESKTOP = {
+  width: 1280,
+  height: 900
+};
+const PHONE = {
+  width: 390,
+  height: 844
+};
+let sample_names;
+
+before(() => {
+  for (const old of [screenshots, folder, join(work, 'elsewhere')])
+    rmSync(old, {recursive: true, force: true});
+  mkdirSync(screenshots, {recursive: true});
+  mkdirSync(join(work, 'elsewhere'), {recursive: true});
+  sample_names = writeSamples(folder);
+  const run = spawnSync(program, ['report', folder, '--out', page_file], {encoding: 'utf8'});
+  assert.equal(run.status, 0, run.stderr);
+  assert.equal(run.stdout, `${page_file}\n`);
+  assert.match(run.stderr, /cut_short\.json: left out: .*\n.*package\.json: left out: /);
+});
+
+after(() => browser.close());
+
+// Opens the page offline and collects everything that a clean page does not do.
+async function open(options = {}) {
+  const context = await browser.newContext({viewport: DESKTOP, offline: true, ...options});
+  const page = await context.newPage();
+  const complaints = [];
+  page.on('console', (message) => {
+    if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
+  });
+  page.on('pageerror', (error) => complaints.push(String(error)));
+  page.on('request', (request) => {
+    if (!/^(file|data|blob):/.test(request.url())) complaints.push(`asks for ${request.url()}`);
+  });
+  await page.goto(pathToFileURL(page_file).href);
+  await page.waitForSelector('html[data-ready="true"]', {timeout: 60000});
+  return {page, context, complaints};
+}
+
+async function withPage(options, use) {
+  const opened = await open(options);
+  try {
+    await use(opened.page);
+    assert.deepEqual(opened.complaints, []);
+  } finally {
+    await opened.context.close();
+  }
+}
+
+const overflow = (page) => page.evaluate(
+    () => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+
+test(
+    'every result has its section, in the order of the kinds',
+    () => withPage({}, async (page) => {
+      const titles = await page.locator('main section.result > h2').allTextContents();
+      assert.equal(titles.length, sample_names.length);
+      assert.deepEqual(
+          titles,
+          ['X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning', 'rig-compare \u00b7 X']);
+      assert.equal(await page.title(), 'Geometric errors of demo-mill');
+      assert.equal(await page.locator('nav a').count(), sample_names.length + 1);
+      await page.screenshot({path: join(screenshots, 'desktop_light.png'), fullPage: true});
+    }));
+
+test(
+    'text in a result stays text',
+    () => withPage({}, async (page) => {
+      assert.equal(await page.evaluate(() => window.escaped), undefined);
+      assert.ok((await page.locator('main').textContent()).includes('</script><script>'));
+    }));
+
+test('files that are no results are named', () => withPage({}, async (page) => {
+                                              const note =
+                                                  await page.locator('[role=note]').textContent();
+                                              assert.match(note, /cut_short\.json/);
+                                              assert.match(note, /package\.json/);
+                                            }));
+
+test(
+    'every figure is drawn and told in words',
+    () => withPage({}, async (page) => {
+      const figures = await page.locator('.plot').evaluateAll(
+          (plots) => plots.map(
+              (plot) => ({
+                about: plot.getAttribute('aria-label'),
+                traces: plot.data.filter((trace) => trace.x.length > 0).length,
+                drawn: plot.querySelectorAll('.scatterlayer .trace, .barlayer .trace').length,
+                height: plot.getBoundingClientRect().height,
+              })));
+      // Three whole sweeps of 5 + 2 + 2 + 1 + 2 panels, one early one with its roll, one
+      // positioning test.
+      assert.equal(figures.length, 3 * 12 + 1 + 1);
+      for (const {about, traces, drawn, height} of figures) {
+        assert.ok(about.length > 20, about);
+        assert.ok(traces > 0 && drawn >= traces, about);
+        assert.ok(height >= 200, about);
+      }
+    }));
+
+test(
+    'numbers are rounded by their uncertainty',
+    () => withPage({}, async (page) => {
+      // The bow of X in Z: 1.5 um by each line, u = 0.035 um, so U95 = 0.070 um gives three
+      // decimals.
+      const row = page.locator('#result-2 table.cards tr', {hasText: 'EZX'});
+      const text = (await row.textContent());
+      assert.equal(text.split('1.500\u00b10.070').length - 1, 3, text);
+      assert.equal(
+          await page.locator('#result-2 table.cards tr', {hasText: 'EAX'})
+              .locator('td')
+              .nth(-1)
+              .textContent(),
+          '0.62');
+    }));
+
+test(
+    'the minimum zone is as wide as the bow is high',
+    () => withPage({}, async (page) => {
+      const plot = page.locator('#result-2 .plot[aria-label*="EZX"][aria-label*="minimum zone"]');
+      const zone =
+          await plot.evaluate((div) => div.data.find((trace) => trace.name === 'Minimum zone'));
+      const width = Math.abs(zone.y[0] - zone.y.at(-1));
+      assert.ok(Math.abs(width - BOW * 1e6) < 1e-9, String(width));
+    }));
+
+test(
+    'the values of a figure can be read as a table',
+    () => withPage({}, async (page) => {
+      const first = page.locator('#result-2 figure').first();
+      await first.locator('summary').click();
+      assert.equal(await first.locator('tbody tr').count(), 61);
+    }));
+
+test('dark and light by choice and by preference', async () => {
+  const look = (page) => page.evaluate(() => ({
+                                         page: getComputedStyle(document.body).backgroundColor,
+                                         figure: document.querySelector('.plot').layout.font.color,
+                                       }));
+  await withPage({colorScheme: 'light'}, async (page) => {
+    const light = await look(page);
+    await page.getByRole('button', {name: 'Dark'}).click();
+    const dark = await look(page);
+    assert.notEqual(light.page, dark.page);
+    assert.notEqual(light.figure, dark.figure);
+    assert.equal(
+        await page.getByRole('button', {name: 'Dark'}).getAttribute('aria-pressed'), 'true');
+    await page.screenshot({path: join(screenshots, 'desktop_dark.png'), fullPage: true});
+    await withPage(
+        {colorScheme: 'dark'}, async (other) => assert.deepEqual(await look(other), dark));
+  });
+});
+
+test('text is legible in both themes', async () => {
+  for (const colorScheme of ['light', 'dark']) {
+    await withPage({colorScheme}, async (page) => {
+      const contrasts = await page.evaluate(() => {
+        const luminance = (colour) =>
+            colour.match(/[\d.]+/g)
+                .slice(0, 3)
+                .map((part) => part / 255)
+                .map((part) => part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4)
+                .reduce((sum, part, index) => sum + part * [0.2126, 0.7152, 0.0722][index], 0);
+        const of = (selector, key) =>
+            luminance(getComputedStyle(document.querySelector(selector))[key]);
+        const ground = of('body', 'backgroundColor');
+        return ['body', '.intro', 'main a', '.code', '.plus-minus'].map((selector) => {
+          const [low, high] = [of(selector, 'color'), ground].sort((a, b) => a - b);
+          return (high + 0.05) / (low + 0.05);
+        });
+      });
+      // WCAG 2.2, 1.4.3: 4.5 for text of normal size.
+      for (const contrast of contrasts) assert.ok(contrast >= 4.5, `${colorScheme}: ${contrasts}`);
+    });
+  }
+});
+
+test(
+    'all controls are reached and used by the keyboard',
+    () => withPage({}, async (page) => {
+      await page.keyboard.press('Tab');
+      assert.equal(await page.evaluate(() => document.activeElement.className), 'skip');
+      const expected = await page.locator('button, summary, nav a').count();
+      const reached = new Set();
+      for (let step = 0; step < 2 * expected + 100; ++step) {
+        const control = await page.evaluate(() => {
+          const active = document.activeElement;
+          if (active === document.body) return null;
+          const all = [...document.querySelectorAll('button, summary, nav a')];
+          return {index: all.indexOf(active), outline: getComputedStyle(active).outlineStyle};
+        });
+        if (control === null) break;
+        assert.notEqual(control.outline, 'none');
+        if (control.index >= 0) reached.add(control.index);
+        await page.keyboard.press('Tab');
+      }
+      assert.equal(reached.size, expected);
+
+      const forward = page.locator('#result-2').getByRole('button', {name: 'Forward'}).first();
+      const plot = page.locator('#result-2 .plot').first();
+      const traces = () => plot.evaluate((div) => div.data.length);
+      const few = await traces();
+      await forward.focus();
+      await page.keyboard.press('Space');
+      assert.equal(await forward.getAttribute('aria-pressed'), 'true');
+      assert.equal(await traces(), few + 1);
+    }));
+
+test('fits a phone', async () => {
+  for (const width of [390, 320]) {
+    await withPage({viewport: {...PHONE, width}, hasTouch: true, isMobile: true}, async (page) => {
+      assert.equal(await overflow(page), 0);
+      if (width === 390) {
+        await page.screenshot({path: join(screenshots, 'phone.png'), fullPage: true});
+      }
+    });
+  }
+});
+
+test(
+    'prints on light paper, figures within the page',
+    () => withPage({colorScheme: 'dark'}, async (page) => {
+      const pdf = await page.pdf({path: join(screenshots, 'print.pdf'), preferCSSPageSize: true});
+      const pages = pdf.toString('latin1').match(/\/Type\s*\/Page\b/g).length;
+      assert.ok(pages >= sample_names.length, `${pages} pages`);
+
+      await page.emulateMedia({media: 'print'});
+      await page.setViewportSize(
+          {width: 688, height: 1017});  // A4 less 14 mm margins, at 96 px an inch
+      await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+      assert.equal(
+          await page.evaluate(() => getComputedStyle(document.body).backgroundColor),
+          'rgb(255, 255, 255)');
+      const too_wide = await page.locator('.plot').evaluateAll(
+          (plots) => plots
+                         .filter(
+                             (plot) => plot.querySelector('svg').getBoundingClientRect().right >
+                                 innerWidth)
+                         .length);
+      assert.equal(too_wide, 0);
+      await page.screenshot({path: join(screenshots, 'print.png'), fullPage: true});
+      await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+    }));
+
+test('the page is one file that names no other place to load from', () => {
+  const text = readFileSync(page_file, 'utf8');
+  assert.equal(text.match(/<(?:script|link|img|iframe)[^>]+(?:src|href)=["']?https?:/gi), null);
+  assert.ok(statSync(page_file).size < 8e6);
+});

@@ -1,0 +1,236 @@
+// Results as a sweep of three axes and a positioning test would leave them, from closed curves:
+// node sample_results.mjs FOLDER. Nothing here comes from the reduction; docs/report.md has the
+// keys.
+import {mkdirSync, writeFileSync} from 'node:fs';
+import {join} from 'node:path';
+import {pathToFileURL} from 'node:url';
+
+const PROBES = ['probe_a', 'probe_b', 'probe_c', 'probe_d', 'probe_e'];
+const stations = Array.from({length: 61}, (unused, index) => index * 1e-3);
+
+// A sum of three waves over the travel with a pseudo-random phase: smooth, repeatable.
+function curve(seed, amplitude) {
+  const phase = (wave) => ((seed * 7919 + wave * 104729) % 6283) / 1000;
+  return stations.map(
+      (at) => amplitude *
+          [1, 2, 3].reduce(
+              (sum, wave) =>
+                  sum + Math.cos(2 * Math.PI * wave * at / 0.08 + phase(wave)) / wave ** 1.6,
+              0));
+}
+
+// A linear congruential generator, for clouds of residuals.
+function noiseSource(seed) {
+  let state = seed >>> 0;
+  const uniform = () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
+  return () => Math.sqrt(-2 * Math.log(uniform() + 1e-12)) * Math.cos(2 * Math.PI * uniform());
+}
+
+const range = (list) => Math.max(...list) - Math.min(...list);
+const mean = (list) => list.reduce((sum, value) => sum + value, 0) / list.length;
+
+// A bow h (x/L)^2 about the middle of the travel: all three lines are as wide as the bow is high.
+function bowOf(height, slope) {
+  const half = stations.at(-1) / 2;
+  return stations.map((at) => height * ((at - half) / half) ** 2 + slope * at);
+}
+
+const widthAbout = (values, slope) =>
+    range(values.map((value, index) => value - slope * stations[index]));
+
+// The three lines of a curve by their definitions: through the ends, by the normal equations, and
+// the slope that makes the zone narrowest (a golden-section search: the width is convex in the
+// slope).
+function linesOf(values) {
+  const ends = (values.at(-1) - values[0]) / (stations.at(-1) - stations[0]);
+  const centre = mean(stations);
+  const fit = mean(stations.map((at, index) => (at - centre) * values[index])) /
+      mean(stations.map((at) => (at - centre) ** 2));
+  let [low, high] = [fit - 1e-3, fit + 1e-3];
+  for (let step = 0; step < 100; ++step) {
+    const [one, other] = [high - 0.618034 * (high - low), low + 0.618034 * (high - low)];
+    [low, high] = widthAbout(values, one) < widthAbout(values, other) ? [low, other] : [one, high];
+  }
+  const rest = values.map((value, index) => value - low * stations[index]);
+  return {
+    end_points: {slope: ends, offset: values[0] - ends * stations[0]},
+    least_squares: {slope: fit, offset: mean(values) - fit * centre},
+    minimum_zone: {slope: low, offset: (Math.max(...rest) + Math.min(...rest)) / 2},
+  };
+}
+
+const straightnessOf = (values, lines, u) => ({
+  u,
+  ...Object.fromEntries(
+      Object.entries(lines).map(([line, {slope}]) => [line, widthAbout(values, slope)]))
+});
+
+function component(unit, kind, values, u, backlash) {
+  return {
+    unit,
+    kind,
+    value: values,
+    u: values.map(() => u),
+    forward: values.map((value, index) => value + backlash / 2 + 0.4 * u * Math.sin(index / 3)),
+    backward: values.map((value, index) => value - backlash / 2 + 0.4 * u * Math.cos(index / 2))
+  };
+}
+
+const reversalOf = ({forward, backward, u}) => {
+  const value = forward.map((one, index) => one - backward[index]);
+  return {value, mean: mean(value), max: Math.max(...value.map(Math.abs)), u: Math.SQRT2 * u[0]};
+};
+
+export const BOW = 1.5e-6;
+export const SLOPE = 4e-5;
+
+export function sweepResult(axis, moves, seed) {
+  const [straight_1, straight_2] = {X: ['EYX', 'EZX'], Y: ['EXY', 'EZY'], Z: ['EXZ', 'EYZ']}[axis];
+  const turns = {X: ['EAX', 'EBX', 'ECX'], Y: ['EBY', 'EAY', 'ECY'], Z: [
+                   'ECZ', 'EBZ', 'EAZ'
+                 ]}[axis];
+  const errors = {
+    [turns[0]]: component('rad', 'roll', curve(seed, 12e-6), 0.31e-6, 0.2e-6),
+    [turns[1]]: component('rad', 'pitch', curve(seed + 1, 18e-6), 0.28e-6, 1.9e-6),
+    [turns[2]]: component('rad', 'yaw', curve(seed + 2, 9e-6), 0.44e-6, 0.1e-6),
+    [straight_1]: component(
+        'm', 'straightness',
+        curve(seed + 3, 0.6e-6).map((value, index) => value + SLOPE * stations[index]), 0.042e-6,
+        0.03e-6),
+    [straight_2]: component('m', 'straightness', bowOf(BOW, SLOPE), 0.031e-6, 0.25e-6),
+  };
+  const names = Object.keys(errors);
+  const dwell_count = 61 * 10;
+  const normal = noiseSource(seed);
+  const straights = [straight_1, straight_2];
+  const lines = Object.fromEntries(straights.map((name) => [name, linesOf(errors[name].value)]));
+  return {
+    abbe: '0.1.0',
+    command: 'reduce',
+    kind: 'sweep',
+    recording: `sweep_${axis}.csv`,
+    machine: 'demo-mill',
+    chain: '[w X Y b Z t]',
+    axis,
+    moves,
+    started: '2026-11-21T09:00:00Z',
+    conditions: {
+      temp_column_c: {min: 20.08, max: 20.41, mean: 20.22},
+      temp_table_c: {min: 20.31, max: 20.35, mean: 20.33},
+      duration_s: 1284,
+      feed_mm_min: 600
+    },
+    stations,
+    passes: 5,
+    samples: {rows: 256800, used: 61000, flagged: 12, moving: 195640, outliers: 148},
+    errors,
+    errors_at_target: {
+      [straight_1]: {
+        value: errors[straight_1].value.map(
+            (value, index) => value + 0.02 * errors[turns[2]].value[index])
+      }
+    },
+    straightness: Object.fromEntries(
+        straights.map((name) => [name, straightnessOf(errors[name].value, lines[name], 0.035e-6)])),
+    straightness_lines: lines,
+    angular_ranges: Object.fromEntries(turns.map(
+        (name) => [name, {value: range(errors[name].value), u: 1.3 * errors[name].u[0]}])),
+    reversal: Object.fromEntries(names.map((name) => [name, reversalOf(errors[name])])),
+    residuals: Object.fromEntries(PROBES.map(
+        (probe, which) =>
+            [probe,
+             Array.from(
+                 {length: dwell_count},
+                 (unused, index) =>
+                     9e-9 * normal() + (which === 3 ? 12e-9 * Math.sin(index / 60) : 0))])),
+    dwells: {
+      time_s: Array.from({length: dwell_count}, (unused, index) => 2 + index * 2.1),
+      station: Array.from(
+          {length: dwell_count},
+          (unused, index) => index % 122 < 61 ? index % 61 : 60 - index % 61),
+      direction: Array.from({length: dwell_count}, (unused, index) => index % 122 < 61 ? 1 : -1),
+      pass: Array.from({length: dwell_count}, (unused, index) => 1 + Math.floor(index / 122))
+    },
+    noise: {
+      ...Object.fromEntries(PROBES.map((probe, which) => [probe, {
+                                         white_m: (18 + which) * 1e-9,
+                                         lag1: 0.04 * which,
+                                         drift_m: (22 + 5 * which) * 1e-9
+                                       }])),
+      chi2: 2461.2,
+      dof: 2440
+    },
+    budget: Object.fromEntries(names.map((name, index) => {
+      const shares = {
+        noise: 0.5,
+        gain: 0.2 + 0.1 * index,
+        position: 0.35,
+        installation: 0.3,
+        form: straights.includes(name) ? 0.8 : 0.4
+      };
+      const scale = errors[name].u[0] / Math.hypot(...Object.values(shares));
+      return [
+        name,
+        Object.fromEntries(Object.entries(shares).map(([cause, share]) => [cause, share * scale]))
+      ];
+    })),
+  };
+}
+
+export function referenceResult(axis) {
+  const position = Array.from({length: 11}, (unused, index) => index * 0.03 + (index % 3) * 1e-3);
+  const forward = position.map((at) => 110e-6 * (at / 0.3) ** 1.3 + 6e-6 * Math.sin(40 * at));
+  return {
+    abbe: '0.1.0',
+    command: 'reduce',
+    kind: 'reference',
+    recording: `positioning_${axis}.csv`,
+    machine: 'demo-mill',
+    axis,
+    started: '2026-11-20T14:30:00Z',
+    cycles: 5,
+    conditions: {temp_column_c: {min: 19.9, max: 20.2, mean: 20.05}},
+    iso230_2:
+        {A_um: 142.3, R_um: 31.7, E_um: 138.1, M_um: 112.9, B_um: 27.4, mean_reversal_um: -25.2},
+    targets: {
+      position,
+      mean_forward: forward,
+      mean_backward: forward.map((value) => value + 25.2e-6),
+      s_forward: position.map((at, index) => (1.2 + 0.2 * (index % 4)) * 1e-6),
+      s_backward: position.map((at, index) => (1.5 + 0.1 * (index % 5)) * 1e-6)
+    },
+  };
+}
+
+export function writeSamples(folder) {
+  mkdirSync(folder, {recursive: true});
+  const write = (name, content) => writeFileSync(join(folder, name), content);
+  const results = {
+    'sweep_X.json': sweepResult('X', 'target', 11),
+    'sweep_Y.json': sweepResult('Y', 'target', 42),
+    'sweep_Z.json': sweepResult('Z', 'head', 73),
+    'positioning_X.json': referenceResult('X'),
+    // A result of a later version: no section of its own, and text that tries to leave its element.
+    'compare_X.json': {
+      abbe: '0.1.0',
+      command: 'rig-compare',
+      axis: 'X',
+      pulls: {EAX: [0.3, -1.2]},
+      remark: '</script><script>window.escaped = true</script><!--'
+    },
+    // What an early or a partial reduction may leave out.
+    'early.json': {
+      command: 'reduce',
+      kind: 'sweep',
+      axis: 'X',
+      stations: [0, 0.01, 0.02],
+      errors: {EAX: {unit: 'rad', kind: 'roll', value: [0, null, 2e-6], u: 1e-7}}
+    },
+  };
+  for (const [name, result] of Object.entries(results)) write(name, JSON.stringify(result));
+  write('cut_short.json', '{"command": "reduce", "kind"');
+  write('package.json', '{"name": "foreign"}');
+  return Object.keys(results);
+}
+
+if (import.meta.url === pathToFileURL(process.argv[1]).href) writeSamples(process.argv[2]);
