@@ -74,7 +74,10 @@ function sweepSummary(result) {
   if (turns.length) {
     const most = Math.max(...turns.map((turn) => turn.value));
     sentences.push(
-        'The largest of these rotations alone moves a point 100\u00a0mm away by ' +
+        `${
+            turns.length > 1 ? 'The largest of these rotations' :
+                               'This rotation'} alone moves a point ` +
+        '100\u00a0mm away by ' +
         `${significant(most * 0.1 * 1e6, 2)}\u00a0\u00b5m`);
   }
   sentences.push(...reversalSentence(result));
