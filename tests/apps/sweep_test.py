@@ -23,6 +23,7 @@ dwell_s = 0.25
 settle_s = 0.02
 window_um = 20.0
 feed_mm_min = 600.0
+idle_s = 2.0
 [sweep.X]
 first_mm = 0.0
 last_mm = 30.0
@@ -50,7 +51,7 @@ class SweepTest(unittest.TestCase):
     def start(self, port, *arguments, **replace):
         return subprocess.Popen(
             [ABBE, "sweep", "--axis", "X", "--machine", self.machine_file(port, **replace), "--out", self.out,
-             "--quiet", "--still-timeout", "2", *arguments],
+             "--quiet", *arguments],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def finish(self, sweep):

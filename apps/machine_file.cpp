@@ -1,0 +1,33 @@
+#include "apps/machine_file.h"
+
+#include <fmt/format.h>
+
+#include "rig/rig_settings.h"
+
+namespace abbe::apps {
+
+const hal::SweepPlan& MachineFile::SweepPlanOf(char axis) const {
+  const auto plan = sweep_plans.find(axis);
+  if (plan == sweep_plans.end()) {
+    throw InputError(
+        fmt::format("{}: has no table [sweep.{}]; add one with first_mm, last_mm and step_mm",
+                    document.name(), axis));
+  }
+  return plan->second;
+}
+
+MachineFile ReadMachineFile(const std::filesystem::path& path) {
+  const settings::Document document = settings::Document::Read(path);
+  const settings::Table root = document.Root();
+  MachineFile file{
+      document, probes::ReadSweepSetup(root), hal::ReadDevices(root.Child("devices")), {}};
+  const settings::Table sweep = root.Child("sweep");
+  for (const char axis : {'X', 'Y', 'Z'}) {
+    if (sweep.Has(std::string(1, axis))) file.sweep_plans[axis] = hal::ReadSweepPlan(sweep, axis);
+  }
+  rig::ReadRigSettings(root);
+  root.RefuseUnknown();
+  return file;
+}
+
+}  // namespace abbe::apps

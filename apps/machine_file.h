@@ -1,0 +1,28 @@
+// The machine file as a whole: every folder reads its own table, and a key that nobody knows is
+// refused, whatever the command needs of the file.
+#pragma once
+
+#include <filesystem>
+#include <map>
+
+#include "hal/device_settings.h"
+#include "hal/sweep_plan.h"
+#include "probes/sweep_reduction.h"
+#include "settings/document.h"
+
+namespace abbe::apps {
+
+struct MachineFile {
+  settings::Document document;
+  probes::SweepSetup sweep_setup;
+  hal::DevicesSettings devices;
+  std::map<char, hal::SweepPlan> sweep_plans;  // by axis, of the tables [sweep.X] that are there
+
+  // InputError naming the file when it has no [sweep.AXIS].
+  const hal::SweepPlan& SweepPlanOf(char axis) const;
+};
+
+// InputError with file, line and key.
+MachineFile ReadMachineFile(const std::filesystem::path& path);
+
+}  // namespace abbe::apps

@@ -1,0 +1,173 @@
+// `abbe sweep`: measures one axis with the head, records every row, reduces, prints and writes the
+// result.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "apps/command.h"
+#include "apps/interrupt.h"
+#include "apps/machine_file.h"
+#include "apps/progress.h"
+#include "apps/reduce_sweep.h"
+#include "apps/result_file.h"
+#include "hal/combined_source.h"
+#include "hal/sweep_recorder.h"
+
+namespace abbe::apps {
+namespace {
+
+struct SweepCommand {
+  std::string axis;
+  std::string machine;
+  std::filesystem::path out = "out";
+  std::string json;
+  std::string mounting;
+  double clock_speed = 1.0;
+  bool hdf5 = false;
+  bool prompt = false;
+  bool quiet = false;
+};
+
+// OUT/sweep_X.csv, or the first of sweep_X_2.csv, sweep_X_3.csv ... that is free: nothing measured
+// is ever overwritten.
+std::filesystem::path FreeName(const SweepCommand& options) {
+  const std::string extension = options.hdf5 ? ".h5" : ".csv";
+  for (int number = 1;; ++number) {
+    const std::string suffix = number == 1 ? "" : fmt::format("_{}", number);
+    const auto path = options.out / fmt::format("sweep_{}{}", options.axis, suffix);
+    if (!std::filesystem::exists(path.string() + ".csv") &&
+        !std::filesystem::exists(path.string() + ".h5")) {
+      return path.string() + extension;
+    }
+  }
+}
+
+// Asks the operator to move the axis; false when the input has ended or the sweep is interrupted.
+bool AskOperator(const hal::SweepPlan& plan, const hal::Visit& visit) {
+  fmt::print("pass {} of {}, coming from {}: move {} to {:.3f} mm, then press Enter ", visit.pass,
+             plan.passes, visit.direction > 0 ? "below" : "above", plan.axis,
+             1e3 * plan.stations[visit.station]);
+  std::cout.flush();
+  std::string line;
+  return static_cast<bool>(std::getline(std::cin, line)) && !InterruptFlag();
+}
+
+std::string NoteOf(const hal::SweepPlan& plan, const hal::SweepProgress& progress) {
+  if (!progress.fault.empty()) return progress.fault;
+  if (progress.visits_done == 0) return "waiting for the first station";
+  const hal::Visit visit = plan.Visits()[progress.visits_done - 1];
+  return fmt::format("{} {:.3f} mm, pass {} {}", plan.axis, 1e3 * plan.stations[visit.station],
+                     visit.pass, visit.direction > 0 ? "forward" : "backward");
+}
+
+hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
+                         const hal::SweepPlan& plan, const std::filesystem::path& path) {
+  hal::SteadyClock clock(options.clock_speed);
+  const bool operator_asks = options.prompt;
+  const hal::OpenedDevices devices =
+      hal::OpenDevices(file.devices, clock, hal::Presence::kRequired,
+                       [&](const std::string& line) { fmt::print(stderr, "abbe: {}\n", line); });
+  const hal::SweepAbout about{
+      file.sweep_setup.machine.name, hal::UtcNow(), "modbus",
+      options.mounting.empty() ? std::string()
+                               : fmt::format("mounting = {{ id = \"{}\" }}\n", options.mounting)};
+  const auto& channels = devices.source->channels();
+  const auto writer = recording::Writer::Create(path, hal::SweepHeader(plan, about, channels),
+                                                hal::SweepColumns(channels));
+
+  Progress progress(fmt::format("sweep {}", plan.axis), options.quiet || operator_asks);
+  hal::SweepOptions sweep;
+  sweep.rate = file.devices.rate;
+  sweep.stopped = [] { return InterruptFlag().load(); };
+  sweep.progress = [&](const hal::SweepProgress& at) {
+    progress.Show(at.visits_done, at.visits_total, NoteOf(plan, at));
+  };
+  if (operator_asks) {
+    sweep.prompt = [&](const hal::Visit& visit) { return AskOperator(plan, visit); };
+  } else if (devices.start_cycle) {
+    devices.start_cycle(plan.axis);
+  } else if (!options.quiet) {
+    fmt::print("start the machine's program for {} now\n", plan.axis);
+  }
+  return hal::RecordSweep(*devices.source, plan, clock, *writer, sweep);
+}
+
+// What ended the sweep before its last visit, with what to do; the recording is kept in any case.
+void RefuseUnfinished(const hal::SweepOutcome& outcome, const std::filesystem::path& path) {
+  if (outcome.end == hal::SweepEnd::kComplete) return;
+  const std::string kept = fmt::format(
+      "{} rows are kept in {}; `abbe reduce` evaluates what is there", outcome.rows, path.string());
+  if (outcome.end == hal::SweepEnd::kStopped) {
+    throw DeviceError(fmt::format("interrupted after {:.0f} s: {}", outcome.seconds, kept));
+  }
+  throw DeviceError(fmt::format("the sweep ended before its last station: {}{}{}: {}",
+                                NameOf(outcome.end), outcome.fault.empty() ? "" : ": ",
+                                outcome.fault, kept));
+}
+
+int Sweep(const SweepCommand& options) {
+  const MachineFile file = ReadMachineFile(options.machine);
+  const hal::SweepPlan& plan = file.SweepPlanOf(options.axis[0]);
+  InterruptFlag();
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error) {
+    throw InputError(fmt::format("{}: cannot be made: {}; choose another folder with --out",
+                                 options.out.string(), error.message()));
+  }
+  const std::filesystem::path path = FreeName(options);
+  const hal::SweepOutcome outcome = Record(options, file, plan, path);
+  RefuseUnfinished(outcome, path);
+
+  const probes::SweepResult result = probes::ReduceSweep(recording::Read(path), file.sweep_setup);
+  const auto json = SweepJson(result);
+  auto beside = path;
+  WriteResult(json, options.json.empty() ? beside.replace_extension(".json")
+                                         : std::filesystem::path(options.json));
+  if (!options.quiet) {
+    fmt::print("{}", SweepTable(result));
+    fmt::print("recorded {} rows in {} ({} flagged, worst skew {:.1f} ms)\n", outcome.rows,
+               path.string(), outcome.flagged, 1e3 * outcome.worst_skew_s);
+  }
+  if (!outcome.lacking.empty()) {
+    fmt::print(stderr,
+               "abbe: {} of {} visits lack good readings; the first is {:.3f} mm in pass {}\n",
+               outcome.lacking.size(), plan.Visits().size(),
+               1e3 * plan.stations[outcome.lacking.front().station], outcome.lacking.front().pass);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddSweep(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<SweepCommand>();
+  CLI::App* command = program.add_subcommand("sweep", "Measure an axis with the five-probe head");
+  command->add_option("--axis", options->axis, "the axis: X, Y or Z")
+      ->required()
+      ->check(CLI::IsMember({"X", "Y", "Z"}));
+  command->add_option("--machine", options->machine, "the machine file")->required();
+  command->add_option("--out", options->out, "folder of the recording and the result")
+      ->capture_default_str();
+  command->add_option("--json", options->json,
+                      "the result as data (default: beside the recording)");
+  command->add_option(
+      "--mounting", options->mounting,
+      "name of this set-up of head and target; sweeps that share it can give squareness");
+  command->add_flag("--hdf5", options->hdf5, "record as HDF5 instead of CSV");
+  command->add_flag("--prompt", options->prompt, "ask the operator to move to each station");
+  command
+      ->add_option("--clock-speed", options->clock_speed,
+                   "for a virtual machine that runs this much faster")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--quiet", options->quiet, "print nothing but problems");
+  command->footer("Example: abbe sweep --axis X --machine mill.toml --out measured");
+  command->callback([options, &exit_code] { exit_code = Sweep(*options); });
+}
+
+}  // namespace abbe::apps
