@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include "hal/modbus_server.h"
 #include "scripted_modbus_server.h"
 
 namespace abbe::hal {
@@ -160,6 +161,40 @@ TEST(ModbusClient, APortWhereNobodyListensIsNamedAndBackedOffFrom) {
   ASSERT_TRUE(fault.has_value());
   EXPECT_EQ(fault->kind, Kind::kNoLink);
   EXPECT_EQ(client.connections(), 0u);
+}
+
+// Serial replies carry no number. The first answer comes 200 ms after the client has given up.
+class LateOnceBank : public RegisterBank {
+ public:
+  Answer Read(int, RegisterTable, int, std::span<std::uint16_t> words) override {
+    words[0] = static_cast<std::uint16_t>(++asked_);
+    if (asked_ == 1) poll(nullptr, 0, 600);
+    return Answer::kOk;
+  }
+  int asked() const { return asked_; }
+
+ private:
+  std::atomic<int> asked_{0};
+};
+
+TEST(ModbusClient, ALateSerialReplyIsNeverTakenForTheNextOne) {
+  LateOnceBank bank;
+  const auto server = ModbusServer::OpenPty(1, bank);
+  DeviceSettings device = Device(0);
+  device.transport = Transport::kModbusRtu;
+  device.serial = {server->device(), 115200, 'N', 1};
+  device.times.response = 0.4;
+  ModbusClient client(device);
+  std::array<std::uint16_t, 1> word{};
+  EXPECT_EQ(client.Read(RegisterTable::kInput, 0, word, client.Deadline())->kind, Kind::kTimeout);
+  int good = 0;
+  for (int i = 0; i < 1000 && good < 5; ++i) {
+    poll(nullptr, 0, 5);
+    if (client.Read(RegisterTable::kInput, 0, word, client.Deadline())) continue;
+    EXPECT_EQ(word[0], bank.asked());
+    ++good;
+  }
+  EXPECT_EQ(good, 5);
 }
 
 TEST(ModbusClient, AHostThatDoesNotExistIsADeviceError) {
