@@ -81,7 +81,9 @@ class MbpollTest : public testing::Test {
     image_.Set(3, RegisterTable::kInput, 10, {1000, 0xFFFF, 0x4148, 0x0000});
     image_.Set(3, RegisterTable::kHolding, 100, {0});
   }
-  static std::string Run(std::vector<std::string> command) { return ChildProcess(command).Rest(); }
+  static std::string Run(const std::vector<std::string>& command) {
+    return ChildProcess(command).Rest();
+  }
 
   RegisterImage image_;
 };

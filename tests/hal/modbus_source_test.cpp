@@ -260,6 +260,7 @@ TEST(ModbusServer, ServesSeveralClientsAndGivesItsPlaceAway) {
   device.port = server->port();
   device.times.response = device.times.deadline = 5.0;
   std::vector<std::unique_ptr<ModbusClient>> clients;
+  clients.reserve(10);
   for (int i = 0; i < 10; ++i) clients.push_back(std::make_unique<ModbusClient>(device));
   for (int round = 0; round < 3; ++round) {
     for (const auto& client : clients) {
