@@ -10,6 +10,8 @@ ChannelJudge::ChannelJudge(const ChannelSettings& channel, double stale_s)
 
 Sample ChannelJudge::Judge(std::span<const std::uint16_t> block,
                            std::optional<std::uint16_t> status, double time_s, double now_s) {
+  if (sequence_ > 0 && time_s <= last_s_) return Missing(Cause::kStale, now_s);
+  last_s_ = time_s;
   std::array<std::uint16_t, 2> words{};
   std::copy_n(block.begin() + channel_->at, WordCount(channel_->type), words.begin());
   if (sequence_ == 0 || words != last_words_) {

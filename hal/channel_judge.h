@@ -1,5 +1,6 @@
 // Decides whether the registers of one channel are a measurement.
 //
+// A reading that is not younger than the one before it (late, doubled, out of order) is discarded.
 // The order of the questions, the first that fails gives the cause: is the reading younger than
 // `stale`; does the status register approve; is the raw number a sentinel; is it a number; is the
 // value within minimum..maximum; have the registers changed within `stale` (unless the channel may
@@ -34,7 +35,8 @@ class ChannelJudge {
   const ChannelSettings* channel_;
   double stale_s_;
   std::array<std::uint16_t, 2> last_words_{};
-  double changed_s_ = 0.0;
+  double last_s_ = 0.0;     // of the last reading
+  double changed_s_ = 0.0;  // of the last reading that differed from the one before
   std::uint64_t sequence_ = 0;
 };
 

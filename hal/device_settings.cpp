@@ -123,7 +123,7 @@ DeviceTimes ReadTimes(const Table& table, Transport transport) {
   times.byte = ReadTime(table, "byte_timeout_ms", 50.0);
   times.deadline = ReadTime(table, "deadline_ms", 500.0);
   times.backoff_first = ReadTime(table, "backoff_first_ms", 100.0);
-  times.backoff_most = ReadTime(table, "backoff_most_ms", 5000.0);
+  times.backoff_most = ReadTime(table, "backoff_most_ms", 1000.0);
   times.wait = table.Quantity(
       "wait_ms", {.fallback = transport == Transport::kModbusRtu ? 5.0 : 0.0, .at_least = 0.0});
   if (times.deadline < times.response) {

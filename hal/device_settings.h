@@ -56,7 +56,7 @@ struct DeviceTimes {
   double byte = 0.05;          // between two bytes of a reply
   double deadline = 0.5;       // a reading of all blocks of the device, whatever happens
   double backoff_first = 0.1;  // before the second attempt to reconnect (the first is at once)
-  double backoff_most = 5.0;   // doubled up to this
+  double backoff_most = 1.0;   // doubled up to this
   double wait = 0.0;           // silence between two requests
 };
 

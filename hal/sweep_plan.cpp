@@ -72,6 +72,7 @@ SweepPlan ReadSweepPlan(const settings::Table& sweep, char axis) {
   plan.window = sweep.Quantity("window_um", {.fallback = 20.0, .above = 0.0});
   plan.feed = sweep.Quantity("feed_mm_min", {.fallback = 600.0, .above = 0.0});
   plan.overrun = sweep.Quantity("overrun_mm", {.fallback = 0.5, .above = 0.0});
+  plan.idle = sweep.Quantity("idle_s", {.fallback = 60.0, .above = 0.0});
   for (const char* name : {"X", "Y", "Z"}) sweep.Child(name);
   sweep.RefuseUnknown();
 

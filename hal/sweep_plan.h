@@ -33,6 +33,7 @@ struct SweepPlan {
   double settle = 0.1;    // s from arrival to the first reading that counts
   double window = 2e-5;   // m; nearer than this to a station is standing on it
   double feed = 0.01;     // m/s, commanded between stations
+  double idle = 60.0;     // s without motion after which the sweep is over
   double overrun = 5e-4;  // m beyond the end stations, at least four windows
 
   // All visits in their order: 2 * passes * stations.

@@ -1,0 +1,72 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <map>
+
+#include "hal/sweep_recorder.h"
+#include "settings/unit.h"
+
+namespace abbe::hal {
+namespace {
+
+using settings::kMicrometre;
+using settings::kMillimetre;
+
+bool IsPosition(const std::string& name) {
+  return name == "x_mm" || name == "y_mm" || name == "z_mm";
+}
+
+// A text as TOML writes it.
+std::string Quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return quoted + "\"";
+}
+
+}  // namespace
+
+std::string UtcNow() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::time(nullptr)));
+}
+
+std::vector<std::string> SweepColumns(const std::vector<Channel>& channels) {
+  std::vector<std::string> columns = {"time_s", "x_mm",      "y_mm",       "z_mm",
+                                      "pass",   "direction", "feed_mm_min"};
+  for (const Channel& channel : channels) {
+    if (!IsPosition(channel.name)) columns.push_back(channel.name);
+  }
+  columns.push_back("flags");
+  return columns;
+}
+
+std::string SweepHeader(const SweepPlan& plan, const SweepAbout& about,
+                        const std::vector<Channel>& channels) {
+  std::map<std::string, std::string> by_device;
+  for (const Channel& channel : channels) {
+    std::string& names = by_device[channel.device];
+    names += (names.empty() ? "" : ", ") + channel.name;
+  }
+  std::string text = fmt::format("kind = \"sweep\"\nmachine = {}\naxis = \"{:c}\"\nstarted = {}\n",
+                                 Quoted(about.machine), plan.axis, about.started);
+  text += "[sources]\n";
+  for (const auto& [device, names] : by_device) {
+    text += fmt::format("{} = {}\n", Quoted(device), Quoted(about.source + ": " + names));
+  }
+  std::string stations;
+  for (const double station : plan.stations) {
+    stations += fmt::format("{}{:.9g}", stations.empty() ? "" : ", ", station / kMillimetre);
+  }
+  text += fmt::format(
+      "[sweep]\nstations_mm = [{}]\npasses = {}\ndwell_s = {:.9g}\nsettle_s = {:.9g}\n"
+      "window_um = {:.9g}\nfeed_mm_min = {:.9g}\noverrun_mm = {:.9g}\n",
+      stations, plan.passes, plan.dwell, plan.settle, plan.window / kMicrometre,
+      plan.feed / settings::UnitOf("feed_mm_min").si, plan.overrun / kMillimetre);
+  return text + about.more;
+}
+
+}  // namespace abbe::hal

@@ -1,0 +1,199 @@
+#include "hal/sweep_recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "hal/sample_flag.h"
+#include "hal/sweep_follower.h"
+#include "settings/unit.h"
+
+namespace abbe::hal {
+namespace {
+
+using settings::kMillimetre;
+
+constexpr std::size_t kTime = 0, kX = 1, kPass = 4, kDirection = 5, kFeed = 6, kFirstReading = 7;
+
+class SweepRecorder {
+ public:
+  SweepRecorder(SampleSource& source, const SweepPlan& plan, Clock& clock,
+                recording::Writer& writer, const SweepOptions& options)
+      : source_(source),
+        plan_(plan),
+        clock_(clock),
+        writer_(writer),
+        options_(options),
+        visits_(plan.Visits()),
+        follower_(plan),
+        row_(SweepColumns(source.channels()).size()) {
+    std::size_t column = kFirstReading;
+    for (const Channel& channel : source.channels()) {
+      const char axis = channel.name[0];
+      const bool position = channel.name.substr(1) == "_mm" && axis >= 'x' && axis <= 'z';
+      columns_.push_back(position ? kX + static_cast<std::size_t>(axis - 'x') : column++);
+    }
+    for (std::size_t i = 0; i < 3; ++i) row_[kX + i] = options.rest[i] / kMillimetre;
+    row_[kFeed] = plan.feed / settings::UnitOf("feed_mm_min").si;
+    swept_ = kX + static_cast<std::size_t>(plan.axis - 'X');
+    has_position_ = std::find(columns_.begin(), columns_.end(), swept_) != columns_.end();
+  }
+
+  SweepOutcome Run() {
+    start_s_ = next_s_ = clock_.Now();
+    try {
+      outcome_.end = options_.prompt ? Prompted() : Followed();
+    } catch (...) {
+      writer_.Close();
+      throw;
+    }
+    writer_.Close();
+    outcome_.seconds = clock_.Now() - start_s_;
+    outcome_.fault = source_.Fault();
+    return outcome_;
+  }
+
+ private:
+  // Reads one set into the row; the flags of the set.
+  std::uint32_t Read() {
+    clock_.SleepUntil(next_s_);
+    next_s_ = std::max(next_s_ + 1.0 / options_.rate, clock_.Now());
+    const SampleSet set = source_.Read();
+    std::uint32_t flags = 0;
+    for (std::size_t i = 0; i < set.samples.size(); ++i) {
+      row_[columns_[i]] = set.samples[i].value;
+      flags |= FlagOf(set.samples[i].cause);
+    }
+    outcome_.worst_skew_s = std::max(outcome_.worst_skew_s, set.skew_s);
+    set_s_ = set.time_s - start_s_;
+    return flags;
+  }
+
+  void Write(int pass, int direction, std::uint32_t flags) {
+    if (!(set_s_ > row_s_)) return;  // the very same set again is no new row
+    row_[kTime] = row_s_ = set_s_;
+    row_[kPass] = pass;
+    row_[kDirection] = direction;
+    row_.back() = flags;
+    writer_.Append(row_);
+    ++outcome_.rows;
+    outcome_.flagged += flags != 0 ? 1 : 0;
+  }
+
+  // Tells the caller when something has changed.
+  void Report(std::size_t done) {
+    std::string fault = source_.Fault();
+    if (!options_.progress || (done == reported_ && fault == reported_fault_)) return;
+    reported_ = done;
+    reported_fault_ = fault;
+    options_.progress({done, visits_.size(), set_s_, std::move(fault)});
+  }
+
+  bool Stopped() const { return options_.stopped && options_.stopped(); }
+
+  SweepEnd Followed() {
+    if (!has_position_) {
+      throw InputError(
+          fmt::format("no device gives {:c}_mm, so the sweep cannot be followed; add the "
+                      "channel to the machine file or let the operator confirm each station",
+                      plan_.axis - 'X' + 'x'));
+    }
+    while (true) {
+      if (Stopped()) return End(SweepEnd::kStopped);
+      if (source_.Ended()) return End(SweepEnd::kSourceEnded);
+      const std::uint32_t flags = Read();
+      const double position = row_[swept_] * kMillimetre;
+      const SweepState& state = follower_.Step(
+          std::isnan(position) ? std::optional<double>{} : position, set_s_, flags == 0);
+      if (state.pass > plan_.passes) return End(SweepEnd::kComplete);
+      if (state.pass > 0) Write(state.pass, state.direction, flags);
+      Report(follower_.visits_done());
+      if (follower_.complete()) return End(SweepEnd::kComplete);
+      if (set_s_ - follower_.last_motion_s() > plan_.idle) return Standstill();
+    }
+  }
+
+  SweepEnd Standstill() {
+    if (follower_.moved()) return End(SweepEnd::kStandstill);
+    const std::string fault = source_.Fault();
+    throw DeviceError(fmt::format(
+        "the {:c} axis did not move for {:.6g} s{}; start the machine's program and try again",
+        plan_.axis, plan_.idle, fault.empty() ? std::string() : " (" + fault + ")"));
+  }
+
+  SweepEnd End(SweepEnd end) {
+    outcome_.lacking = follower_.Lacking();
+    return end;
+  }
+
+  SweepEnd Prompted() {
+    for (std::size_t i = 0; i < visits_.size(); ++i) {
+      const bool goes_on = !Stopped() && options_.prompt(visits_[i]) && Dwell(visits_[i]);
+      if (!goes_on) {
+        outcome_.lacking.insert(outcome_.lacking.end(), visits_.begin() + static_cast<long>(i),
+                                visits_.end());
+        return source_.Ended() ? SweepEnd::kSourceEnded : SweepEnd::kStopped;
+      }
+      Report(i + 1);
+    }
+    return SweepEnd::kComplete;
+  }
+
+  // Records one visit that the operator has confirmed; false when it was cut short.
+  bool Dwell(const Visit& visit) {
+    next_s_ = clock_.Now();
+    const double end_s = next_s_ + plan_.settle + plan_.dwell;
+    const double settled_s = next_s_ + plan_.settle;
+    bool good = false;
+    do {
+      if (Stopped() || source_.Ended()) return false;
+      const std::uint32_t flags = Read();
+      if (!has_position_) row_[swept_] = plan_.stations[visit.station] / kMillimetre;
+      good = good || (flags == 0 && set_s_ + start_s_ >= settled_s);
+      Write(visit.pass, visit.direction, flags);
+    } while (next_s_ <= end_s);
+    if (!good) outcome_.lacking.push_back(visit);
+    return true;
+  }
+
+  SampleSource& source_;
+  const SweepPlan& plan_;
+  Clock& clock_;
+  recording::Writer& writer_;
+  const SweepOptions& options_;
+  const std::vector<Visit> visits_;
+  SweepFollower follower_;
+  std::vector<double> row_;
+  std::vector<std::size_t> columns_;  // of the row, for each channel
+  std::size_t swept_ = kX;
+  bool has_position_ = false;
+  double start_s_ = 0.0, next_s_ = 0.0, set_s_ = 0.0, row_s_ = -1.0;
+  std::size_t reported_ = 0;
+  std::string reported_fault_;
+  SweepOutcome outcome_;
+};
+
+}  // namespace
+
+std::string_view NameOf(SweepEnd end) {
+  switch (end) {
+    case SweepEnd::kComplete:
+      return "complete";
+    case SweepEnd::kStopped:
+      return "stopped";
+    case SweepEnd::kSourceEnded:
+      return "the recording has ended";
+    case SweepEnd::kStandstill:
+      return "the machine stands still";
+  }
+  return "";
+}
+
+SweepOutcome RecordSweep(SampleSource& source, const SweepPlan& plan, Clock& clock,
+                         recording::Writer& writer, const SweepOptions& options) {
+  return SweepRecorder(source, plan, clock, writer, options).Run();
+}
+
+}  // namespace abbe::hal

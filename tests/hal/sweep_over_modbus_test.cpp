@@ -1,0 +1,128 @@
+// A whole sweep over real sockets into a real file, with a server that vanishes in the middle of
+// it.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <thread>
+
+#include "hal/combined_source.h"
+#include "hal/modbus_server.h"
+#include "hal/sweep_recorder.h"
+#include "swept_machine.h"
+
+namespace abbe::hal {
+namespace {
+
+constexpr char kDevices[] = R"(
+[devices.head]
+host = "127.0.0.1"
+port = 1
+unit = 1
+deadline_ms = 5000
+response_timeout_ms = 2000
+backoff_first_ms = 20
+backoff_most_ms = 20
+[[devices.head.block]]
+address = 0
+count = 5
+channel = [
+  { name = "probe_a_um", at = 0, type = "uint16", scale = 0.003 },
+  { name = "probe_b_um", at = 1, type = "uint16", scale = 0.003 },
+  { name = "probe_c_um", at = 2, type = "uint16", scale = 0.003 },
+  { name = "probe_d_um", at = 3, type = "uint16", scale = 0.003 },
+  { name = "probe_e_um", at = 4, type = "uint16", scale = 0.003 },
+]
+[devices.machine]
+host = "127.0.0.1"
+port = 1
+unit = 2
+deadline_ms = 5000
+response_timeout_ms = 2000
+backoff_first_ms = 20
+backoff_most_ms = 20
+[[devices.machine.block]]
+function = "holding"
+address = 0
+count = 2
+channel = [{ name = "x_mm", at = 0, type = "int32", scale = 0.00001, may_freeze = true }]
+)";
+
+// Probes and scale of a machine that moves by the clock.
+class MovingBank : public RegisterBank {
+ public:
+  MovingBank(const DevicesSettings& devices, const SweepPlan& plan, Clock& clock)
+      : devices_(devices), machine_(plan, 0.0, 0.5), clock_(clock) {}
+  const SweptMachine& machine() const { return machine_; }
+
+  Answer Read(int unit, RegisterTable, int, std::span<std::uint16_t> words) override {
+    const double now = clock_.Now();
+    for (const ChannelSettings& channel :
+         devices_.devices[static_cast<std::size_t>(unit - 1)].blocks[0].channels) {
+      const double value = channel.name == "x_mm" ? 1e3 * machine_.PositionAt(now)
+                                                  : 100.0 + 10.0 * std::sin(50.0 * now);
+      StoreValue(channel, value, words);
+    }
+    return Answer::kOk;
+  }
+
+ private:
+  const DevicesSettings& devices_;
+  SweptMachine machine_;
+  Clock& clock_;
+};
+
+TEST(SweepOverModbus, GoesOnWhenTheServerVanishesAndReturns) {
+  DevicesSettings devices =
+      ReadDevices(settings::Document::Parse(kDevices, "m.toml").Root().Child("devices"));
+  devices.max_skew = 10.0;  // a busy computer is not the subject here
+  SweepPlan plan = SmallPlan();
+  plan.passes = 1;
+  SteadyClock clock(2.0);
+  MovingBank bank(devices, plan, clock);
+  auto server = ModbusServer::ListenTcp("127.0.0.1", 0, bank);
+  const int port = server->port();
+  for (DeviceSettings& device : devices.devices) device.port = port;
+  const OpenedDevices opened = OpenDevices(devices, clock, Presence::kRequired);
+
+  const auto path =
+      std::filesystem::temp_directory_path() / ("abbe_sweep_" + std::to_string(getpid()) + ".csv");
+  std::filesystem::remove(path);
+  const auto& channels = opened.source->channels();
+  const auto writer = recording::Writer::Create(
+      path, SweepHeader(plan, {"test", UtcNow(), "modbus", ""}, channels), SweepColumns(channels));
+  // Away from the middle of the second stand to the middle of the fourth.
+  const auto& stands = bank.machine().stands();
+  const double gone_s = 0.5 * (stands[1].from_s + stands[1].to_s);
+  const double back_s = 0.5 * (stands[3].from_s + stands[3].to_s);
+  std::jthread fate([&] {
+    clock.SleepUntil(gone_s);
+    server.reset();
+    clock.SleepUntil(back_s);
+    server = ModbusServer::ListenTcp("127.0.0.1", port, bank);
+  });
+  const SweepOutcome outcome = RecordSweep(*opened.source, plan, clock, *writer, {.rate = 100.0});
+  fate.join();
+  EXPECT_EQ(outcome.end, SweepEnd::kComplete);
+  EXPECT_GT(outcome.flagged, 0u);
+  ASSERT_GE(outcome.lacking.size(), 1u);
+  for (const Visit& visit : outcome.lacking) {
+    EXPECT_TRUE(visit.station == 2 || (visit.station == 1 && visit.direction > 0));
+  }
+
+  const recording::Recording read = recording::Read(path);
+  std::filesystem::remove(path);
+  EXPECT_EQ(read.rows(), outcome.rows);
+  EXPECT_EQ(read.HeaderText("axis").value_or(""), "X");
+  const auto flags = read.At("flags"), probe = read.At("probe_c_um"), position = read.At("x_mm");
+  std::size_t good_after = 0;
+  for (std::size_t i = 0; i < read.rows(); ++i) {
+    EXPECT_EQ(std::isnan(probe[i]) || std::isnan(position[i]), flags[i] != 0.0);
+    good_after += flags[i] == 0.0 && read.At("direction")[i] < 0 ? 1 : 0;
+  }
+  EXPECT_GT(good_after, 50u);
+}
+
+}  // namespace
+}  // namespace abbe::hal
