@@ -9,6 +9,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "settings/unit.h"
@@ -21,7 +22,9 @@ constexpr int kMaxCycles = 10'000;  // far above any test, so that a slip of the
 struct Place {
   int position;
   int cycle;
-  auto operator<=>(const Place&) const = default;
+  bool operator<(const Place& other) const {
+    return std::tie(position, cycle) < std::tie(other.position, other.cycle);
+  }
 };
 
 struct TargetTable {
@@ -217,7 +220,7 @@ std::string Quoted(std::string_view text) {
 
 std::string Header(const TargetTable& table, char axis, char small) {
   std::string header = fmt::format(
-      "abbe-recording = 1\nkind = \"reference\"\naxis = \"{}\"\ntime = \"order\"\nimported_from = "
+      "kind = \"reference\"\naxis = \"{}\"\ntime = \"order\"\nimported_from = "
       "{}\n",
       axis, Quoted(std::filesystem::path(table.file).filename().string()));
   if (table.target_source.empty() && table.reference_source.empty()) return header;

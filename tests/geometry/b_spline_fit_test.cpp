@@ -149,6 +149,23 @@ TEST(BSplineFit, ValueGaugeIsZeroThereAndKeepsTheSlope) {
               1e-11);  // slopes are about 100
 }
 
+// What the gauge takes away and what it leaves add up to the free fit, also where x does not start
+// at 0.
+TEST(BSplineFit, GaugeTakesALineAndNothingElse) {
+  const auto basis = BSplineBasis::Uniform(3, -0.02, 0.04, 10);
+  const Points points = Stations();
+  const Eigen::VectorXd x = points.x.array() - 0.02;
+  const auto free = FitBSpline(basis, x, points.y);
+  for (const Gauge gauge : {Gauge::kEndPointLine, Gauge::kLeastSquaresLine, Gauge::kValueAt}) {
+    const auto fit = FitBSpline(basis, x, points.y, {.gauge = gauge, .gauge_position = 0.01});
+    for (const double at : {-0.02, 0.013, 0.04}) {
+      EXPECT_NEAR(fit.spline.Value(at) + fit.removed_offset + fit.removed_slope * at,
+                  free.spline.Value(at), 64 * kEps);
+    }
+    EXPECT_EQ(fit.residual_rms, free.residual_rms);
+  }
+}
+
 std::string MessageOf(const BSplineBasis& basis, const Points& points) {
   try {
     FitBSpline(basis, points.x, points.y);

@@ -76,7 +76,7 @@ TEST_F(TargetTable, TheHeaderSaysWhatItIsAndThatItKnowsNoTime) {
   EXPECT_EQ(recording.columns[1].name, "y_mm");
   EXPECT_EQ(recording.columns[4].name, "ref_y_mm");
   const std::string expected =
-      "abbe-recording = 1\nkind = \"reference\"\naxis = \"Y\"\ntime = \"order\"\nimported_from = "
+      "kind = \"reference\"\naxis = \"Y\"\ntime = \"order\"\nimported_from = "
       "\"" +
       path_.filename().string() +
       "\"\n[sources]\ny_mm = \"AXIS:X-PosCmd\"\nref_y_mm = \"IOC:\\\"ref\\\"\"\n";
