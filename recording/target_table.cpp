@@ -218,7 +218,7 @@ std::string Quoted(std::string_view text) {
   return quoted + '"';
 }
 
-std::string Header(const TargetTable& table, char axis, char small) {
+std::string Header(const TargetTable& table, const std::string& axis, char small) {
   std::string header = fmt::format(
       "kind = \"reference\"\naxis = \"{}\"\ntime = \"order\"\nimported_from = "
       "{}\n",
@@ -236,14 +236,14 @@ std::string Header(const TargetTable& table, char axis, char small) {
 
 }  // namespace
 
-Recording ReadTargetTable(const std::filesystem::path& path, char axis) {
-  if (axis != 'X' && axis != 'Y' && axis != 'Z') {
-    throw InputError(fmt::format("{}: axis {}: choose X, Y or Z", path.string(), axis));
+Recording ReadTargetTable(const std::filesystem::path& path, const std::string& axis) {
+  if (axis != "X" && axis != "Y" && axis != "Z") {
+    throw InputError(fmt::format("{}: axis \"{}\": choose X, Y or Z", path.string(), axis));
   }
   TargetTable table = ReadTable(path);
   Complete(table);
   const double forward = ForwardDirection(table);
-  const char small = static_cast<char>(axis - 'A' + 'a');
+  const char small = static_cast<char>(axis[0] - 'A' + 'a');
 
   Recording recording;
   recording.name = table.file;

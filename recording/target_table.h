@@ -27,12 +27,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "recording/recording.h"
 
 namespace abbe::recording {
 
-// `axis` is X, Y or Z.
-Recording ReadTargetTable(const std::filesystem::path& path, char axis = 'X');
+// `axis` is "X", "Y" or "Z".
+Recording ReadTargetTable(const std::filesystem::path& path, const std::string& axis = "X");
 
 }  // namespace abbe::recording

@@ -19,13 +19,13 @@ class TargetTable : public testing::Test {
   }
   ~TargetTable() override { std::filesystem::remove(path_); }
 
-  Recording ReadText(const std::string& text, char axis = 'X') const {
+  Recording ReadText(const std::string& text, const std::string& axis = "X") const {
     std::ofstream(path_) << text;
     return ReadTargetTable(path_, axis);
   }
 
   // The message with which the text is refused, without the folder.
-  std::string Refusal(const std::string& text, char axis = 'X') const {
+  std::string Refusal(const std::string& text, const std::string& axis = "X") const {
     try {
       ReadText(text, axis);
     } catch (const InputError& error) {
@@ -72,7 +72,7 @@ TEST_F(TargetTable, BecomesAReferenceRecordingInTheOrderOfMeasurement) {
 }
 
 TEST_F(TargetTable, TheHeaderSaysWhatItIsAndThatItKnowsNoTime) {
-  const Recording recording = ReadText(kTable, 'Y');
+  const Recording recording = ReadText(kTable, "Y");
   EXPECT_EQ(recording.columns[1].name, "y_mm");
   EXPECT_EQ(recording.columns[4].name, "ref_y_mm");
   const std::string expected =
@@ -149,7 +149,7 @@ TEST_F(TargetTable, RefusesWhatDoesNotFitTogether) {
   EXPECT_NE(
       Refusal("CYCLES=1000000000\nTGT_DATA[1]=0\nREF_DATA_FWD[1,1]=0\n").find("at most 10000"),
       std::string::npos);
-  EXPECT_NE(Refusal(kTable, 'A').find("choose X, Y or Z"), std::string::npos);
+  EXPECT_NE(Refusal(kTable, "XY").find("choose X, Y or Z"), std::string::npos);
   EXPECT_THROW(ReadTargetTable("nowhere/nothing.dat"), InputError);
   EXPECT_THROW(ReadTargetTable(testing::TempDir()), InputError);
 }
