@@ -24,10 +24,10 @@
 
 namespace abbe::probes {
 
-// The plane z = height + slope_u u + slope_s s through three points; precomputed for fixed (u, s).
+// The slopes of the plane through three readings, from the layout's inverse computed once.
 class TopPlane {
  public:
-  explicit TopPlane(const std::array<TopPosition<double>, kTopProbes>& positions);
+  explicit TopPlane(const HeadLayout<>& layout);
 
   struct Slopes {
     double u, s;
@@ -44,12 +44,27 @@ class TopPlane {
 class SimplifiedInversion {
  public:
   SimplifiedInversion(const HeadLayout<>& layout, MovingBody moving);
-  HeadErrors<> operator()(const PerProbe<>& readings, double d, double exx = 0) const;
+
+  // A moving head sees what a target that moves the other way would show at d = 0.
+  HeadErrors<> operator()(const PerProbe<>& readings, double d, double exx = 0) const {
+    const auto& [x_a, y_a] = layout_.top[0];
+    const auto& [x_d, z_d] = layout_.side[0];
+    const double sign = sign_, lever = travels_ * (d + exx);
+    const auto [slope_u, slope_s] = top_(readings);
+    HeadErrors<> e{.eax = sign * slope_s, .ebx = -sign * slope_u, .exx = exx};
+    const double side = sign * (readings[4] - readings[3]);
+    e.ecx = (side + e.eax * (layout_.side[1].n - z_d)) * inverse_span_;
+    e.eyx = sign * readings[3] + z_d * e.eax + (lever - x_d) * e.ecx;
+    e.ezx = sign * readings[0] - y_a * e.eax - (lever - x_a) * e.ebx;
+    return e;
+  }
 
  private:
   HeadLayout<> layout_;
-  MovingBody moving_;
   TopPlane top_;
+  double sign_;          // +1 a moving target, -1 a moving head
+  double travels_;       // 1 a moving target, 0 a moving head
+  double inverse_span_;  // 1/m: of the side probes along u
 };
 
 class DocumentInversion {
@@ -58,10 +73,12 @@ class DocumentInversion {
   HeadErrors<> operator()(const PerProbe<>& readings, double d, double exx = 0) const;
 
  private:
+  HeadErrors<> MovingTarget(const PerProbe<>& readings, double d, double exx) const;
+
   HeadLayout<> layout_;
   MovingBody moving_;
   TopPlane top_;
-  SimplifiedInversion linear_;  // a moving head: the document's model is linear
+  SimplifiedInversion linear_;  // exact for a moving head: there the document's model is linear
 };
 
 class RigidInversion {

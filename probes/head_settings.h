@@ -12,6 +12,7 @@
 #include <array>
 #include <optional>
 
+#include "machine/machine.h"
 #include "probes/electrode.h"
 #include "probes/head_layout.h"
 #include "probes/installation.h"
@@ -22,7 +23,7 @@ namespace abbe::probes {
 struct ProbeSettings {
   double range;                    // m: the largest gap
   std::optional<double> zero_gap;  // m: gap at the start; without it the mean of the first station
-  double gain = 1;                 // reading = gain * Delta
+  double gain;                     // what the probe shows = gain * Delta
 };
 
 // Standard deviations that remain after manufacture and mounting.
@@ -45,10 +46,10 @@ struct HeadSettings {
   Electrode electrode;
   Installation<> installation;
   HeadTolerance tolerance;
-  std::array<std::optional<AxisFrame>, 3> axes;  // of the sweeps of X, Y, Z
+  std::array<AxisFrame, 3> axes;  // of the sweeps of X, Y, Z
 
-  // The frame for the sweep of `axis` ('X', 'Y', 'Z'); InputError when the file has none.
-  const AxisFrame& Frame(char axis) const;
+  // The frame for the sweep of `axis`, 'X', 'Y' or 'Z', else InputError.
+  const AxisFrame& Frame(char axis) const { return axes[machine::AxisIndex(axis)]; }
 };
 
 struct TargetSettings {
