@@ -38,7 +38,8 @@ double SideSpan(const HeadLayout<>& layout) {
   const double span = e.u - d.u;
   if (!(std::abs(span) > kDegenerate * std::hypot(d.u, d.n))) {
     throw InputError(
-        "probe head: the side probes D and E stand at the same place along the sweep, so yaw cannot "
+        "probe head: the side probes D and E stand at the same place along the sweep, so yaw "
+        "cannot "
         "be seen; check [head.probe_d] and [head.probe_e] position_mm");
   }
   return span;
@@ -59,8 +60,8 @@ HeadLayout<> LayoutOf(const MeasuringLines<>& lines) {
   throw NumericalError(fmt::format(
       "probe head: no small motion gives the readings {:.3f}, {:.3f}, {:.3f}, {:.3f}, {:.3f} um of "
       "probes A to E at d = {:.3f} mm; check the zero gaps and the layout in [head]",
-      readings[0] * 1e6, readings[1] * 1e6, readings[2] * 1e6, readings[3] * 1e6,
-      readings[4] * 1e6, d * 1e3));
+      readings[0] * 1e6, readings[1] * 1e6, readings[2] * 1e6, readings[3] * 1e6, readings[4] * 1e6,
+      d * 1e3));
 }
 
 }  // namespace
@@ -85,8 +86,8 @@ DocumentInversion::DocumentInversion(const HeadLayout<>& layout, MovingBody movi
     : layout_(layout), moving_(moving), top_(layout), linear_(layout, moving) {}
 
 HeadErrors<> DocumentInversion::operator()(const PerProbe<>& readings, double d, double exx) const {
-  const HeadErrors<> e = moving_ == MovingBody::kHead ? linear_(readings, d, exx)
-                                                      : MovingTarget(readings, d, exx);
+  const HeadErrors<> e =
+      moving_ == MovingBody::kHead ? linear_(readings, d, exx) : MovingTarget(readings, d, exx);
   if (!(std::abs(e.eax) + std::abs(e.ebx) + std::abs(e.ecx) < 1)) RefuseReadings(readings, d);
   if (!std::isfinite(e.eyx + e.ezx)) RefuseReadings(readings, d);
   return e;
@@ -113,8 +114,7 @@ HeadErrors<> DocumentInversion::MovingTarget(const PerProbe<>& readings, double 
   // Both straightnesses: EZX - q EYX and EYX + w EZX are known.
   const double b2 = 1 + e.ebx * e.ebx;
   const double s = (e.ecx - e.eax * e.ebx) / b2, w = (e.eax + e.ebx * e.ecx) / b2;
-  const double top =
-      readings[0] - q * layout_.top[0].s - p * (d + exx - layout_.top[0].u);
+  const double top = readings[0] - q * layout_.top[0].s - p * (d + exx - layout_.top[0].u);
   const double side = readings[3] + s * (d + exx - side_d.u) + w * side_d.n;
   e.ezx = (top + q * side) / (1 + q * w);
   e.eyx = side - w * e.ezx;
@@ -128,8 +128,8 @@ RigidInversion::RigidInversion(const MeasuringLines<>& lines, MovingBody moving)
   SideSpan(layout);
 }
 
-// Five points of the two surfaces, seen from the head: three give the normal of the top surface, the
-// other two the normal of the side surface, which is square to it.
+// Five points of the two surfaces, seen from the head: three give the normal of the top surface,
+// the other two the normal of the side surface, which is square to it.
 HeadErrors<> RigidInversion::operator()(const PerProbe<>& readings, double d, double exx) const {
   std::array<Vector3d, kProbes> at;
   for (std::size_t i = 0; i < kProbes; ++i) {
@@ -151,9 +151,12 @@ HeadErrors<> RigidInversion::operator()(const PerProbe<>& readings, double d, do
   const Vector3d angles = geometry::LogRotation<double>(R_HT);
   const double top_rest = at_top - top.x() * (d + exx), side_rest = at_side - side.x() * (d + exx);
   const double determinant = top.z() * side.y() - top.y() * side.z();
-  return {angles.x(), angles.y(), angles.z(),
+  return {angles.x(),
+          angles.y(),
+          angles.z(),
           (top.z() * side_rest - side.z() * top_rest) / determinant,
-          (side.y() * top_rest - top.y() * side_rest) / determinant, exx};
+          (side.y() * top_rest - top.y() * side_rest) / determinant,
+          exx};
 }
 
 }  // namespace abbe::probes

@@ -59,9 +59,12 @@ HeadTolerance ReadTolerance(const Table& table) {
 
 Installation<> ReadInstallation(const Table& table) {
   const auto zero = [&](const char* key) { return table.Quantity(key, {.fallback = 0.0}); };
-  const Installation<> installation{
-      .roll = zero("roll_urad"), .pitch = zero("pitch_urad"), .yaw = zero("yaw_urad"),
-      .du = zero("du_um"),       .ds = zero("ds_um"),         .dn = zero("dn_um")};
+  const Installation<> installation{.roll = zero("roll_urad"),
+                                    .pitch = zero("pitch_urad"),
+                                    .yaw = zero("yaw_urad"),
+                                    .du = zero("du_um"),
+                                    .ds = zero("ds_um"),
+                                    .dn = zero("dn_um")};
   table.RefuseUnknown();
   return installation;
 }
@@ -70,7 +73,8 @@ Vector3d Direction(const Table& table, const std::string& text) {
   const bool reversed = text.size() == 2 && text.front() == '-';
   const char letter = text.empty() ? ' ' : text.back();
   if (text.size() != (reversed ? 2U : 1U) || letter < 'x' || letter > 'z') {
-    throw table.Error("rotation", "must name three machine directions, as in [\"y\", \"-x\", \"z\"]");
+    throw table.Error("rotation",
+                      "must name three machine directions, as in [\"y\", \"-x\", \"z\"]");
   }
   return (reversed ? -1.0 : 1.0) * Vector3d::Unit(letter - 'x');
 }
@@ -82,8 +86,9 @@ AxisFrame ReadFrame(const Table& table, int axis) {
   AxisFrame frame;
   for (int i = 0; i < 3; ++i) frame.R_MH.col(i) = Direction(table, names[i]);
   if (frame.R_MH.col(0) != Vector3d::Unit(axis)) {
-    throw table.Error("rotation", fmt::format("must begin with \"{}\": u points along the swept axis",
-                                              kDefault[axis][0]));
+    throw table.Error(
+        "rotation",
+        fmt::format("must begin with \"{}\": u points along the swept axis", kDefault[axis][0]));
   }
   if (frame.R_MH.determinant() != 1) {
     throw table.Error("rotation", fmt::format("must be right-handed, as [\"{}\"]",
