@@ -1,0 +1,72 @@
+// The head, the target and the probes' noise as the machine file describes them.
+//
+//   const auto document = settings::Document::Read("machine.toml");
+//   const HeadSettings head = ReadHeadSettings(document.Root());
+//
+// Frames: H, the head frame (u, s, n) of head_layout.h; M, the machine frame. SI units.
+// Failure: InputError with file, line and key, also for an unknown key in one of these tables.
+// Every key stands in docs/machine-file.md.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+
+#include "machine/machine.h"
+#include "probes/electrode.h"
+#include "probes/head_layout.h"
+#include "probes/installation.h"
+#include "settings/document.h"
+
+namespace abbe::probes {
+
+struct ProbeSettings {
+  double range;                    // m: the largest gap
+  std::optional<double> zero_gap;  // m: gap at the start; without it the mean of the first station
+  double gain;                     // what the probe shows = gain * Delta
+};
+
+// Standard deviations that remain after manufacture and mounting.
+struct HeadTolerance {
+  double probe_position;  // m
+  double installation;    // rad
+  double offset;          // m, of the installation
+  double gain;            // relative
+};
+
+// Where the head frame stands in the machine for the sweep of one axis.
+struct AxisFrame {
+  Eigen::Matrix3d R_MH;  // columns u, s, n
+  Eigen::Vector3d p_MH;  // m: the origin of H when the sweep starts
+};
+
+struct HeadSettings {
+  HeadLayout<> layout;
+  PerProbe<ProbeSettings> probes;
+  Electrode electrode;
+  Installation<> installation;
+  HeadTolerance tolerance;
+  std::array<AxisFrame, 3> axes;  // of the sweeps of X, Y, Z
+
+  // The frame for the sweep of `axis`, 'X', 'Y' or 'Z', else InputError.
+  const AxisFrame& Frame(char axis) const { return axes[machine::AxisIndex(axis)]; }
+};
+
+struct TargetSettings {
+  double form;          // m: standard deviation of the flatness of a face
+  double form_length;   // m: its correlation length
+  double squareness;    // rad: side face against top face, from its certificate
+  double u_squareness;  // rad: standard uncertainty of that
+};
+
+struct ProbeNoise {
+  double probe;       // m: standard deviation of one reading of one probe
+  double drift;       // m: standard deviation of the slow drift
+  double drift_time;  // s: its correlation time
+};
+
+HeadSettings ReadHeadSettings(const settings::Table& root);
+TargetSettings ReadTargetSettings(const settings::Table& root);
+ProbeNoise ReadProbeNoise(const settings::Table& root);
+
+}  // namespace abbe::probes
