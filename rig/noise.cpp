@@ -1,0 +1,61 @@
+#include "rig/noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rig/streams.h"
+
+namespace abbe::rig {
+namespace {
+
+constexpr double kStep = 0.1;                // s, between grid points at most
+constexpr double kStepsPerConstant = 50.0;   // and at least so many in a time constant
+constexpr double kTemperatureTime = 3600.0;  // s
+
+}  // namespace
+
+SlowDrift::SlowDrift(const random::CounterRandom& random, double sd, double time_constant)
+    : random_(random),
+      sd_(sd),
+      step_(std::min(kStep, time_constant / kStepsPerConstant)),
+      kept_(std::exp(-step_ / time_constant)) {}
+
+double SlowDrift::At(double time) {
+  const double place = time / step_;
+  const auto before = static_cast<std::size_t>(place);
+  const double fresh = std::sqrt(1.0 - kept_ * kept_);
+  while (grid_.size() < before + 2) {
+    const double normal = random_.Normal(grid_.size());
+    grid_.push_back(grid_.empty() ? sd_ * normal : kept_ * grid_.back() + sd_ * fresh * normal);
+  }
+  const double share = place - static_cast<double>(before);
+  return (1.0 - share) * grid_[before] + share * grid_[before + 1];
+}
+
+SensorNoise::SensorNoise(const RigSettings& settings, std::uint64_t seed, std::uint64_t run)
+    : seed_(seed),
+      first_stream_(kRunStreams * run),
+      white_(settings.white),
+      temperature_drift_(settings.temperature_drift) {
+  for (std::uint64_t probe = 0; probe < kProbes; ++probe) {
+    white_random_.emplace_back(seed, kNoiseStream + first_stream_ + probe);
+    drifts_.emplace_back(random::CounterRandom(seed, kDriftStream + first_stream_ + probe),
+                         settings.drift, settings.drift_time);
+  }
+}
+
+double SensorNoise::OfProbe(int probe, std::uint64_t tick, double time) {
+  const auto at = static_cast<std::size_t>(probe);
+  return white_ * white_random_[at].Normal(tick) + drifts_[at].At(time);
+}
+
+double SensorNoise::OfTemperature(std::size_t sensor, double time) {
+  while (temperatures_.size() <= sensor) {
+    const std::uint64_t stream = kTemperatureStream + first_stream_ + temperatures_.size();
+    temperatures_.emplace_back(random::CounterRandom(seed_, stream), temperature_drift_,
+                               kTemperatureTime);
+  }
+  return temperatures_[sensor].At(time);
+}
+
+}  // namespace abbe::rig

@@ -1,0 +1,54 @@
+// The noise of the rig's sensors as a function of the time: white noise from one update to the next
+// and a slow drift.
+//
+// White: one independent normal number for each probe and update. Drift: an Ornstein-Uhlenbeck
+// process, covariance sd^2 * exp(-|t1 - t2| / time_constant), drawn on a grid of time by the exact
+// recursion and joined by straight lines; between two grid points its variance is too small by at
+// most step / (2 time_constant), 1 % or less. Every number is a pure function of (seed, run, time),
+// so it does not matter when or how often a sensor is read.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "random/counter_random.h"
+#include "rig/rig_settings.h"
+
+namespace abbe::rig {
+
+class SlowDrift {
+ public:
+  SlowDrift(const random::CounterRandom& random, double sd, double time_constant);
+
+  // At a time of at least 0, s. Keeps the grid up to the latest time asked for: 80 bytes/s at most.
+  double At(double time);
+
+ private:
+  random::CounterRandom random_;
+  double sd_;
+  double step_;
+  double kept_;  // share of the old value in the next one
+  std::vector<double> grid_;
+};
+
+// The noise of the five probes and of temperatures in one run. Two runs of one seed are
+// independent.
+class SensorNoise {
+ public:
+  SensorNoise(const RigSettings& settings, std::uint64_t seed, std::uint64_t run);
+
+  // m, of one probe at the update `tick`, which is at `time`.
+  double OfProbe(int probe, std::uint64_t tick, double time);
+  // degC, of one temperature sensor. Time constant: an hour.
+  double OfTemperature(std::size_t sensor, double time);
+
+ private:
+  std::uint64_t seed_, first_stream_;
+  double white_;
+  double temperature_drift_;
+  std::vector<random::CounterRandom> white_random_;
+  std::vector<SlowDrift> drifts_;
+  std::vector<SlowDrift> temperatures_;
+};
+
+}  // namespace abbe::rig

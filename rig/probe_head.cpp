@@ -1,0 +1,108 @@
+#include "rig/probe_head.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "random/counter_random.h"
+#include "rig/streams.h"
+
+namespace abbe::rig {
+namespace {
+
+std::uint64_t FaceStream(int side) { return kFaceStream + static_cast<std::uint64_t>(side); }
+
+Eigen::Vector3d NormalVector(const random::CounterRandom& random, std::uint64_t first) {
+  return {random.Normal(first), random.Normal(first + 1), random.Normal(first + 2)};
+}
+
+}  // namespace
+
+TargetFace::TargetFace(const RigSettings& settings, int side, const Eigen::Vector3d& normal,
+                       const Eigen::Vector3d& corner, double reach, std::uint64_t seed)
+    : normal_axis_(side / 2),
+      normal_(normal),
+      corner_(corner),
+      form_(random::CounterRandom(seed, FaceStream(side)), settings.form, settings.form_length,
+            -reach, reach) {}
+
+double TargetFace::GapFrom(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const {
+  const double cosine = -direction.dot(normal_);
+  const double to_plane = (point - corner_).dot(normal_) / cosine;
+  const Eigen::Vector3d hit = point + to_plane * direction - corner_;
+  // The form is a function of the two coordinates in the face.
+  const double form = form_(hit[(normal_axis_ + 1) % 3], hit[(normal_axis_ + 2) % 3]);
+  return to_plane - form / cosine;
+}
+
+std::array<ProbeTruth, kProbes> DrawProbes(const RigSettings& settings, std::uint64_t seed) {
+  const random::CounterRandom random(seed, kProbeStream);
+  std::array<ProbeTruth, kProbes> probes{};
+  for (std::uint64_t probe = 0; probe < kProbes; ++probe) {
+    const Eigen::Vector3d place = settings.probe_position * NormalVector(random, 4 * probe);
+    const ProbePlace& nominal = settings.probes[probe];
+    probes[probe] = {nominal.along + place[0], nominal.across + place[1], place[2],
+                     settings.gain * random.Normal(4 * probe + 3)};
+  }
+  return probes;
+}
+
+HeadInstallation DrawInstallation(const RigSettings& settings, int axis, std::uint64_t seed) {
+  const random::CounterRandom random(seed, kInstallationStream);
+  const std::uint64_t first = 8 * static_cast<std::uint64_t>(axis);
+  HeadInstallation installation{settings.installation_angle * NormalVector(random, first),
+                                settings.installation_offset * NormalVector(random, first + 3),
+                                {}};
+  for (const bool top : {true, false}) {
+    double middle = 0.0, count = 0.0;
+    for (const ProbePlace& probe : settings.probes) {
+      if (probe.top != top) continue;
+      middle += 0.5 * probe.range;
+      count += 1.0;
+    }
+    installation.set_gap[top ? 0 : 1] =
+        middle / std::max(1.0, count) + settings.gap_setting * random.Normal(first + (top ? 6 : 7));
+  }
+  return installation;
+}
+
+std::array<Electrode, kProbes> PlaceElectrodes(const RigSettings& settings, const HeadPlace& place,
+                                               const std::array<ProbeTruth, kProbes>& probes,
+                                               const HeadInstallation& installation) {
+  const Eigen::Matrix3d turn = FullRotation(installation.angles);
+  std::array<Electrode, kProbes> electrodes;
+  for (int probe = 0; probe < kProbes; ++probe) {
+    const bool top = settings.probes[probe].top;
+    const auto& [along, across, depth, gain] = probes[probe];
+    const double away = installation.set_gap[top ? 0 : 1] + depth;
+    const Eigen::Vector3d in_head(along, top ? across : away, top ? away : across);
+    electrodes[probe] = {place.position + place.rotation * (turn * in_head + installation.offsets),
+                         -(place.rotation * turn).col(top ? 2 : 1)};
+  }
+  return electrodes;
+}
+
+TargetMounting TargetMounting::Draw(const RigSettings& settings, std::uint64_t seed) {
+  const random::CounterRandom random(seed, kTargetStream);
+  TargetMounting mounting;
+  for (int i = 0; i < 3; ++i) {
+    const auto index = static_cast<std::uint64_t>(i);
+    mounting.tilt[i] = random.Uniform(index, -settings.target_tilt, settings.target_tilt);
+    mounting.squareness[i] =
+        settings.target_squareness + settings.u_target_squareness * random.Normal(index + 3);
+  }
+  return mounting;
+}
+
+Eigen::Vector3d TargetMounting::NormalOf(const Eigen::Vector3d& nominal) const {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  if (nominal.x() != 0.0) turn = FullRotation(0.0, squareness.y(), squareness.z());
+  if (nominal.y() != 0.0) turn = FullRotation(squareness.x(), 0.0, 0.0);
+  return FullRotation(tilt) * turn * nominal;
+}
+
+double TiltResponse(double gap, double tilt, double electrode) {
+  const double share = electrode * tilt / gap;
+  return gap * 0.5 * (1.0 + std::sqrt(std::max(0.0, 1.0 - share * share)));
+}
+
+}  // namespace abbe::rig

@@ -1,0 +1,87 @@
+// The five-probe head and its target as they really are: where the electrodes stand, how the head
+// was installed for the sweep of an axis, how the target sits and what form its faces have.
+//
+// Drawn by the seed, once:  each electrode's place in the fixture (three coordinates), each probe's
+// gain, the target's tilt, the squareness of its faces, their form. For each axis: the installation
+// of the head (three angles, three offsets) and the gap to which the fitter set each unit.
+//
+// The target is one corner with faces +-x, +-y, +-z (those that the head looks at), mounted once:
+// a face keeps its tilt and its form through the sweeps of all axes. The fitter sets the mean gap
+// of the top unit and of the side unit to the middle of the range, within `gap_setting`, at the
+// start of each sweep. Faces are planes without end; the form of a face adds to them along its
+// normal.
+//
+// Lengths in m, angles in rad; directions and points in the machine frame with all axes at zero.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "rig/gaussian_field.h"
+#include "rig/rig_settings.h"
+#include "rig/rotation.h"
+
+namespace abbe::rig {
+
+using Readings = std::array<double, kProbes>;
+
+struct Electrode {
+  Eigen::Vector3d place;      // of its centre, moves with the head
+  Eigen::Vector3d direction;  // to which it looks
+};
+
+class TargetFace {
+ public:
+  // `side`: 0 to 5 for -x +x -y +y -z +z; `normal` outward, as mounted; `reach`: half of the
+  // extent over which the form is kept.
+  TargetFace(const RigSettings& settings, int side, const Eigen::Vector3d& normal,
+             const Eigen::Vector3d& corner, double reach, std::uint64_t seed);
+
+  // The distance from a point to the face along a direction; both seen from the target.
+  double GapFrom(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
+  const Eigen::Vector3d& normal() const { return normal_; }
+
+ private:
+  int normal_axis_;
+  Eigen::Vector3d normal_;
+  Eigen::Vector3d corner_;
+  GaussianSurface form_;
+};
+
+// The head, drawn, and how it was installed for the sweep of one axis.
+struct HeadInstallation {
+  Eigen::Vector3d angles;         // about u, s, n
+  Eigen::Vector3d offsets;        // along u, s, n; the last two as the gap setting left them
+  std::array<double, 2> set_gap;  // mean gap of the top and of the side unit at the start
+};
+
+struct ProbeTruth {
+  double along, across, depth;  // true place in the head: u, then s or n; depth > 0: farther away
+  double gain;                  // relative error of the sensitivity, about the middle of the range
+};
+
+std::array<ProbeTruth, kProbes> DrawProbes(const RigSettings& settings, std::uint64_t seed);
+HeadInstallation DrawInstallation(const RigSettings& settings, int axis, std::uint64_t seed);
+
+// The electrodes of an installed head, with the mean gap of each unit at `set_gap` if nothing else
+// were wrong.
+std::array<Electrode, kProbes> PlaceElectrodes(const RigSettings& settings, const HeadPlace& place,
+                                               const std::array<ProbeTruth, kProbes>& probes,
+                                               const HeadInstallation& installation);
+
+// The target's orientation: [tilt about x, y, z, squareness A, B, C of its faces].
+struct TargetMounting {
+  Eigen::Vector3d tilt;
+  Eigen::Vector3d squareness;  // YZ: face y turned about x; XZ, XY: face x turned about y, z
+
+  static TargetMounting Draw(const RigSettings& settings, std::uint64_t seed);
+  // The outward normal of the face whose nominal normal is an axis direction of the machine.
+  Eigen::Vector3d NormalOf(const Eigen::Vector3d& nominal) const;
+};
+
+// The gap that a circular electrode of this radius shows at a true gap and a tilt of the face.
+double TiltResponse(double gap, double tilt, double electrode);
+
+}  // namespace abbe::rig

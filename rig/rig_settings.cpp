@@ -1,0 +1,195 @@
+#include "rig/rig_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
+namespace abbe::rig {
+namespace {
+
+using settings::Table;
+
+constexpr std::array<const char*, kAxes> kAxisNames = {"X", "Y", "Z"};
+
+// The letters of "[w X Y b Z t]" without blanks, primes and spindles in parentheses.
+std::string ChainLetters(const std::string& text) {
+  std::string letters;
+  bool spindle = false;
+  for (const char letter : text) {
+    if (letter == '(') spindle = true;
+    if (letter == ')') {
+      spindle = false;
+    } else if (!spindle && (std::isalpha(static_cast<unsigned char>(letter)) != 0)) {
+      letters += letter;
+    }
+  }
+  return letters;
+}
+
+void ReadChain(const Table& root, RigSettings& rig) {
+  const std::string letters = ChainLetters(root.Text("chain"));
+  const std::size_t bed = letters.find('b');
+  std::string axes = letters;
+  std::erase_if(axes, [](char letter) { return letter == 'w' || letter == 'b' || letter == 't'; });
+  std::sort(axes.begin(), axes.end());
+  if (letters.size() != 6 || letters.front() != 'w' || letters.back() != 't' ||
+      bed == std::string::npos || axes != "XYZ") {
+    throw root.Error("chain",
+                     "must hold w, then X, Y, Z and b in any order, then t: \"[w X Y b Z t]\"");
+  }
+  rig.workpiece_axes = letters.substr(1, bed - 1);
+  rig.tool_axes = letters.substr(bed + 1, letters.size() - bed - 2);
+}
+
+void ReadMachine(const Table& root, RigSettings& rig) {
+  rig.name = root.Text("name");
+  ReadChain(root, rig);
+  const auto reference = root.Quantities("reference_mm", 3, std::vector{0.0, 0.0, 0.0});
+  rig.reference = Eigen::Vector3d(reference[0], reference[1], reference[2]);
+  for (int axis = 0; axis < kAxes; ++axis) {
+    const auto ends = root.Child("axis").Child(kAxisNames[axis]).Quantities("travel_mm", 2);
+    rig.travels[axis] = {ends[0], ends[1]};
+  }
+  const Table table = root.Child("population");
+  const auto sd = [&](const char* key, double fallback) {
+    return table.Quantity(key, {.fallback = fallback, .at_least = 0.0});
+  };
+  rig.population = {
+      sd("positioning_um", 2.0), sd("straightness_um", 1.0),
+      sd("roll_urad", 20.0),     sd("pitch_urad", 20.0),
+      sd("yaw_urad", 20.0),      sd("squareness_urad", 30.0),
+      sd("scale_ppm", 20.0),     table.Quantity("smoothness_mm", {.fallback = 15.0, .above = 0.0})};
+}
+
+// "x", "-y": a direction of M.
+Eigen::Vector3d Direction(const Table& table, const std::string& text) {
+  const bool turned = text.size() == 2 && text.front() == '-';
+  const char letter = text.empty() ? ' ' : text.back();
+  if (letter < 'x' || letter > 'z' || text.size() != (turned ? 2U : 1U)) {
+    throw table.Error("rotation", "must name three directions of the machine, like \"-x\"");
+  }
+  return (turned ? -1.0 : 1.0) * Eigen::Vector3d::Unit(letter - 'x');
+}
+
+HeadPlace ReadHeadPlace(const Table& table, int axis) {
+  static const std::array<std::vector<std::string>, kAxes> frames = {
+      {{"x", "y", "z"}, {"y", "-x", "z"}, {"z", "y", "-x"}}};
+  HeadPlace place;
+  const auto names = table.Texts("rotation", 3, frames[axis]);
+  for (int i = 0; i < 3; ++i) place.rotation.col(i) = Direction(table, names[i]);
+  const Eigen::Vector3d u = place.rotation.col(0), s = place.rotation.col(1);
+  if (u != Eigen::Vector3d::Unit(axis) || u.cross(s) != place.rotation.col(2)) {
+    throw table.Error("rotation", "must be right-handed and begin with the swept axis");
+  }
+  const auto position = table.Quantities("position_mm", 3, std::vector{0.0, 0.0, 0.0});
+  place.position = Eigen::Vector3d(position[0], position[1], position[2]);
+  return place;
+}
+
+void ReadHead(const Table& head, RigSettings& rig) {
+  struct Nominal {
+    const char* table;
+    const char* unit;
+    double along, across;  // mm
+  };
+  static constexpr std::array<Nominal, kProbes> nominals = {{{"probe_a", "top", 10.0, 0.0},
+                                                             {"probe_b", "top", 0.0, 10.0},
+                                                             {"probe_c", "top", 0.0, -10.0},
+                                                             {"probe_d", "side", 0.0, 20.0},
+                                                             {"probe_e", "side", 10.0, 20.0}}};
+  for (int probe = 0; probe < kProbes; ++probe) {
+    const Nominal& nominal = nominals[probe];
+    const Table table = head.Child(nominal.table);
+    const auto position =
+        table.Quantities("position_mm", 2, std::vector{nominal.along, nominal.across});
+    const std::string unit = table.Text("unit", nominal.unit);
+    if (unit != "top" && unit != "side") throw table.Error("unit", "must be \"top\" or \"side\"");
+    rig.probes[probe] = {unit == "top", position[0], position[1],
+                         table.Quantity("range_um", {.fallback = 200.0, .above = 0.0})};
+  }
+  const Table tolerance = head.Child("tolerance");
+  const auto sd = [&](const char* key, double fallback) {
+    return tolerance.Quantity(key, {.fallback = fallback, .at_least = 0.0});
+  };
+  rig.probe_position = sd("probe_position_um", 10.0);
+  rig.installation_angle = sd("installation_urad", 500.0);
+  rig.installation_offset = sd("installation_um", 50.0);
+  rig.gain = sd("gain_ppm", 500.0);
+  for (int axis = 0; axis < kAxes; ++axis) {
+    rig.head[axis] = ReadHeadPlace(head.Child(std::string("axis_") + kAxisNames[axis]), axis);
+  }
+}
+
+void ReadNoise(const Table& target, const Table& noise, RigSettings& rig) {
+  rig.form = target.Quantity("form_nm", {.fallback = 10.0, .at_least = 0.0});
+  rig.form_length = target.Quantity("form_length_mm", {.fallback = 15.0, .above = 0.0});
+  rig.target_squareness = target.Quantity("squareness_urad", {.fallback = 0.0});
+  rig.u_target_squareness =
+      target.Quantity("u_squareness_urad", {.fallback = 0.0, .at_least = 0.0});
+  rig.white = noise.Quantity("probe_nm", {.fallback = 20.0, .at_least = 0.0});
+  rig.drift = noise.Quantity("drift_nm", {.fallback = 30.0, .at_least = 0.0});
+  rig.drift_time = noise.Quantity("drift_time_s", {.fallback = 600.0, .above = 0.0});
+}
+
+void ReadOwn(const Table& own, RigSettings& rig) {
+  rig.acceleration = own.Quantity("acceleration_mm_s2", {.fallback = 200.0, .above = 0.0});
+  rig.lag = own.Quantity("lag_ms", {.fallback = 15.0, .above = 0.0});
+  rig.update_rate = own.Quantity("update_hz", {.fallback = 1000.0, .above = 0.0, .at_most = 1e6});
+  rig.target_tilt = own.Quantity("target_tilt_urad", {.fallback = 100.0, .at_least = 0.0});
+  rig.gap_setting = own.Quantity("gap_setting_um", {.fallback = 10.0, .at_least = 0.0});
+  rig.electrode = own.Quantity("electrode_mm", {.fallback = 0.0, .at_least = 0.0});
+  rig.temperature = own.Quantity("temperature_c", {.fallback = 20.0});
+  rig.temperature_drift = own.Quantity("temperature_drift_c", {.fallback = 0.1, .at_least = 0.0});
+  own.RefuseUnknown();
+}
+
+Eigen::Vector3d Selected(const std::string& axes, const Eigen::Vector3d& command) {
+  Eigen::Vector3d travel = Eigen::Vector3d::Zero();
+  for (const char letter : axes) travel[letter - 'X'] = command[letter - 'X'];
+  return travel;
+}
+
+}  // namespace
+
+RigSettings ReadRigSettings(const Table& root) {
+  RigSettings rig;
+  ReadMachine(root, rig);
+  ReadHead(root.Child("head"), rig);
+  const Table sweep = root.Child("sweep");
+  for (int axis = 0; axis < kAxes; ++axis) {
+    if (!sweep.Has(kAxisNames[axis])) continue;
+    rig.sweeps[axis] = hal::ReadSweepPlan(sweep, static_cast<char>('X' + axis));
+  }
+  ReadNoise(root.Child("target"), root.Child("noise"), rig);
+  ReadOwn(root.Child("rig"), rig);
+  return rig;
+}
+
+bool RigSettings::CarriesTarget(int axis) const {
+  return workpiece_axes.find(static_cast<char>('X' + axis)) != std::string::npos;
+}
+
+Eigen::Vector3d RigSettings::StartOf(int axis) const {
+  Eigen::Vector3d start(travels[0].first, travels[1].first, travels[2].first);
+  if (sweeps[axis]) start[axis] = sweeps[axis]->first();
+  return start;
+}
+
+Eigen::Vector3d RigSettings::TargetTravel(const Eigen::Vector3d& command) const {
+  return Selected(workpiece_axes, command);
+}
+
+Eigen::Vector3d RigSettings::HeadTravel(const Eigen::Vector3d& command) const {
+  return Selected(tool_axes, command);
+}
+
+int AxisNumber(char letter) {
+  if (letter < 'X' || letter > 'Z') {
+    throw InputError(fmt::format("'{}' is no axis of the rig; name X, Y or Z", letter));
+  }
+  return letter - 'X';
+}
+
+}  // namespace abbe::rig

@@ -1,0 +1,89 @@
+// What the rig takes from the machine file: the tables that describe the machine, its population of
+// errors, the head, the target and the noise, read by the rig's own code, and its own table [rig].
+//
+// SI units. Frames: M, the machine; H, the head: u along the sweep, s along the outward normal of
+// the target's side face, n along that of its top face.
+//
+// [rig] (all optional): acceleration_mm_s2 (200), lag_ms (15), update_hz (1000), target_tilt_urad
+// (100), gap_setting_um (10), electrode_mm (0: no tilt response), temperature_c (20),
+// temperature_drift_c (0.1). InputError with file, line and key; keys of shared tables that the rig
+// does not need are left to their owners.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "hal/sweep_plan.h"
+#include "settings/document.h"
+
+namespace abbe::rig {
+
+inline constexpr int kAxes = 3;    // X, Y, Z
+inline constexpr int kProbes = 5;  // a, b, c, d, e
+
+struct AxisTravel {
+  double first;
+  double last;
+};
+
+// Standard deviations of the population; m, rad, relative.
+struct ErrorPopulation {
+  double positioning, straightness, roll, pitch, yaw, squareness, scale;
+  double smoothness;  // m, correlation length
+};
+
+struct ProbePlace {
+  bool top;       // looks on the top face, else on the side face
+  double along;   // u
+  double across;  // s for a top probe, n for a side probe
+  double range;   // largest gap
+};
+
+// Where the head stands for the sweep of one axis.
+struct HeadPlace {
+  Eigen::Matrix3d rotation;  // columns u, s, n in M
+  Eigen::Vector3d position;  // of the head's origin in M, at the start of the sweep
+};
+
+struct RigSettings {
+  std::string name;
+  std::string workpiece_axes;  // "XY" of [w X Y b Z t]: from the workpiece to the bed
+  std::string tool_axes;       // "Z": from the bed to the tool
+  Eigen::Vector3d reference;   // in M: where the error motions act
+  std::array<AxisTravel, kAxes> travels;
+  ErrorPopulation population;
+
+  std::array<ProbePlace, kProbes> probes;
+  std::array<HeadPlace, kAxes> head;
+  std::array<std::optional<hal::SweepPlan>, kAxes> sweeps;  // of [sweep]: those that it has
+  double probe_position, installation_angle, installation_offset, gain;  // standard deviations
+
+  double form, form_length;  // of the target's faces
+  double target_squareness, u_target_squareness;
+  double white, drift, drift_time;  // noise of one reading of one probe
+
+  double acceleration, lag;               // of the motion
+  double update_rate;                     // Hz
+  double target_tilt;                     // uniform within +-
+  double gap_setting;                     // standard deviation
+  double electrode;                       // radius; 0: none
+  double temperature, temperature_drift;  // degC; standard deviation of the slow drift
+
+  bool CarriesTarget(int axis) const;
+  // The command at which the sweep of an axis begins to count: its first station, the other axes at
+  // the first ends of their travels.
+  Eigen::Vector3d StartOf(int axis) const;
+  // How far the axes have moved the target, and the head, nominally, at a command.
+  Eigen::Vector3d TargetTravel(const Eigen::Vector3d& command) const;
+  Eigen::Vector3d HeadTravel(const Eigen::Vector3d& command) const;
+};
+
+RigSettings ReadRigSettings(const settings::Table& root);
+
+// 0, 1, 2 of 'X', 'Y', 'Z'; InputError for any other letter.
+int AxisNumber(char letter);
+
+}  // namespace abbe::rig

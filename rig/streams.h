@@ -1,0 +1,23 @@
+// The random streams of a rig: everything that is drawn has its own, so that one more effect
+// changes no number of another.
+#pragma once
+
+#include <cstdint>
+
+namespace abbe::rig {
+
+enum Stream : std::uint64_t {
+  kErrorStream = 0x100,          // + 6 * axis + component
+  kScaleStream = 0x120,          // index: axis
+  kSquarenessStream = 0x121,     // index: A0Z, B0Z, C0Y
+  kProbeStream = 0x200,          // index: 4 * probe + along, across, depth, gain
+  kInstallationStream = 0x201,   // index: 8 * axis + three angles, three offsets, two gap settings
+  kTargetStream = 0x300,         // index: three angles, three squarenesses
+  kFaceStream = 0x310,           // + face: -x +x -y +y -z +z
+  kNoiseStream = 0x10000,        // + kRunStreams * run + probe
+  kDriftStream = 0x10008,        // + kRunStreams * run + probe
+  kTemperatureStream = 0x10010,  // + kRunStreams * run + sensor, up to the next run
+};
+
+inline constexpr std::uint64_t kRunStreams = 0x100;
+}  // namespace abbe::rig
