@@ -70,6 +70,13 @@ function factList(facts) {
               element('dd', {}, content))));
 }
 
+function notesBlock(title, notes) {
+  if (!notes?.length) return null;
+  return element(
+      'div', {class: 'note', role: 'note'}, element('p', {}, element('strong', {}, title)),
+      element('ul', {}, notes.map((note) => element('li', {}, note))));
+}
+
 // A row of toggle buttons that are the legend too. items: [{key, label, swatch, on}]; `changed`
 // gets the set of keys that are on.
 function toggles(label, items, changed) {

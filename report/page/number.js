@@ -2,7 +2,7 @@
 
 const MINUS = '\u2212';
 const THIN_SPACE = '\u2009';
-const COVERAGE = 2;  // U95 = 2 u
+const COVERAGE = 2;  // U95 = 2 u, unless a result states another factor
 
 // How an SI unit is shown: shown value = value * scale.
 const SHOWN_UNITS = {

@@ -16,14 +16,6 @@ function overviewTables(sections) {
   });
 }
 
-function notesBlock(notes) {
-  if (!notes.length) return null;
-  return element(
-      'div', {class: 'note', role: 'note'},
-      element('p', {}, element('strong', {}, 'Files that are not in this report')),
-      element('ul', {}, notes.map((note) => element('li', {}, note))));
-}
-
 function overviewSection(sections, notes) {
   const tables = overviewTables(sections);
   const hasUncertainty = sections.some(({result}) => result.kind === 'sweep');
@@ -36,5 +28,5 @@ function overviewSection(sections, notes) {
                                'expanded uncertainty ',
                            symbolU95(), '; straightness is the minimum zone.') :
                        null,
-      tables, notesBlock(notes));
+      tables, notesBlock('Files that are not in this report', notes));
 }

@@ -24,27 +24,32 @@ function referenceSummary(result) {
 }
 
 function isoTable(result) {
-  const known = ISO_230_2_FIGURES.filter(([key]) => isNumber(result.iso230_2?.[key]));
+  const figures = result.iso230_2 ?? {};
+  const text = (key) => isNumber(figures[key]) ? significant(figures[key]) : null;
+  const known = ISO_230_2_FIGURES.filter(([key]) => isNumber(figures[key]));
+  const numeric = (head) => ({head, unit: '\u00b5m', numeric: true});
   return table({
     caption: `ISO\u00a0230-2 figures of ${result.axis ?? 'the axis'}`,
-    columns: [{head: 'Figure'}, {head: 'Value', unit: '\u00b5m', numeric: true}, {head: 'Meaning'}],
-    rows:
-        known.map(([key, symbol, meaning]) => [symbol, significant(result.iso230_2[key]), meaning]),
+    columns: [
+      {head: 'Figure'}, numeric('Both'), numeric('Forward'), numeric('Backward'), {head: 'Meaning'}
+    ],
+    rows: known.map(
+        ([key, symbol, meaning]) =>
+            [symbol, text(key), text(key.replace('_um', '_up_um')),
+             text(key.replace('_um', '_down_um')), meaning]),
   });
 }
 
-// The target positions in mm and the lists of one direction in um; docs/report.md has the keys.
+// The targets as lists, in mm and um.
 function targetsOf(result) {
-  const targets = result.targets;
-  if (!targets || !numbers(targets.position).length) return null;
-  const direction = (name) => ({
-    mean: scaled(targets[`mean_${name}`], 1e6),
-    s: scaled(targets[`s_${name}`], 1e6),
-  });
+  const targets = result.iso230_2?.targets ?? [];
+  if (!targets.length) return null;
+  const list = (key) => targets.map((target) => target[key] ?? null);
   return {
-    x: scaled(targets.position, 1e3),
-    forward: direction('forward'),
-    backward: direction('backward')
+    x: list('target_mm'),
+    forward: {mean: list('mean_up_um'), s: list('std_up_um')},
+    backward: {mean: list('mean_down_um'), s: list('std_down_um')},
+    both: list('mean_um'),
   };
 }
 
@@ -64,11 +69,7 @@ function directionTraces(name, x, {mean, s}, colours, shown) {
 function deviationGroup(result) {
   const targets = targetsOf(result);
   if (!targets) return null;
-  const {x, forward, backward} = targets;
-  const both = forward.mean.map(
-      (value, index) => isNumber(value) && isNumber(backward.mean[index]) ?
-          (value + backward.mean[index]) / 2 :
-          null);
+  const {x, forward, backward, both} = targets;
   return figureGroup({
     title: 'Deviation at the targets',
     intro:
@@ -121,7 +122,12 @@ registerSection({
   facts: (result) => [
       ['Axis', result.axis],
       ['Targets', targetsOf(result)?.x.length],
-      ['Cycles', result.cycles],
+      ['Cycles', result.iso230_2?.cycles],
+      [
+        'Left out',
+        result.iso230_2?.left_out_rows ? `${grouped(result.iso230_2.left_out_rows)} flagged rows` :
+                                         null
+      ],
 ],
   body: (result) => [isoTable(result), deviationGroup(result)].filter(Boolean),
   overview: {

@@ -15,20 +15,39 @@ function componentName(component, error) {
   return component[1] === component[2] ? 'Positioning' : `Straightness in ${component[1]}`;
 }
 
-// Peak to peak in SI with its standard uncertainty.
+// The factor of U95: of a component with few degrees of freedom it is Student's t.
+const coverageOf = (error) => error.coverage ?? COVERAGE;
+
+// An uncertain number is {value, u}, in SI; a plain number takes the `u` beside it.
+const uncertain = (given, u) => isNumber(given) ? {value: given, u: typical(u)} : given ?? {};
+
+// Peak to peak.
 function angularRange(result, component) {
-  const given = result.angular_ranges?.[component];
-  if (given) return {value: given.value, u: given.u};
   const error = result.errors[component];
-  return {value: rangeOf(error.value), u: Math.SQRT2 * typical(error.u)};
+  return result.angular_ranges?.[component] ??
+      {value: rangeOf(error.value), u: Math.SQRT2 * typical(error.u)};
 }
 
-function shownQuantity(value, u, unit, withUnit = false) {
+const straightnessAbout = (result, component, line) => {
+  const one = result.straightness?.[component];
+  return uncertain(one?.[line], one?.u);
+};
+const meanReversal = ([, reversal]) => uncertain(reversal.mean, reversal.u);
+const largestReversal = ([, reversal]) => uncertain(reversal.max, reversal.u);
+
+function shownQuantity({value, u}, error) {
   if (!isNumber(value)) return null;
-  return quantity(value * unit.scale, COVERAGE * u * unit.scale, withUnit ? unit.name : '');
+  const {scale} = unitOf(error);
+  return quantity(value * scale, coverageOf(error) * u * scale);
 }
 
-const isSignificant = (reversal) => isNumber(reversal.u) && reversal.max > COVERAGE * reversal.u;
+// The components whose mean reversal exceeds its U95. The mean decides, not the largest: among many
+// stations some exceed it by chance.
+const seenReversals = (result) =>
+    Object.entries(result.reversal ?? {}).filter(([component, one]) => {
+      const {value, u} = meanReversal([component, one]);
+      return Math.abs(value) > coverageOf(result.errors?.[component] ?? {}) * u;
+    });
 
 function travelText(result) {
   const stations = numbers(result.stations);
@@ -45,67 +64,64 @@ function joinWords(words) {
   return words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} and ${words.at(-1)}`;
 }
 
-function bound(value, u, unit) {
-  const text = rounded(value * unit.scale, COVERAGE * u * unit.scale);
-  return `${text.value}\u00a0${unit.name}`;
+function inWords({value, u}, error) {
+  const {scale, name} = unitOf(error);
+  return `${rounded(Math.abs(value) * scale, coverageOf(error) * u * scale).value}\u00a0${name}`;
 }
 
-// "Over 60 mm of travel, X rolls by 42 urad ... : at a point 100 mm away the roll alone shows as 4
-// um."
+const TURN_VERBS = {
+  roll: 'rolls',
+  pitch: 'pitches',
+  yaw: 'yaws'
+};
+
+// "Over 60 mm of travel, X rolls by 42 urad and pitches by 31 urad. Its path is straight within
+// ..."
 function sweepSummary(result) {
-  const travel = rangeOf(result.stations ?? []) * 1e3;
-  const verbs = {roll: 'rolls', pitch: 'pitches', yaw: 'yaws'};
+  const sentences = [
+    turnSentence(result), straightSentence(result), leverSentence(result), reversalSentence(result)
+  ];
+  return sentences.filter(Boolean).map((sentence) => `${capital(sentence)}.`).join(' ');
+}
+
+function turnSentence(result) {
   const turns = angularOf(result).map(([component, error]) => {
-    const {value, u} = angularRange(result, component);
-    return {
-      value,
-      text: `${verbs[error.kind] ?? `turns (${component})`} by ${bound(value, u, unitOf(error))}`
-    };
+    const verb = TURN_VERBS[error.kind] ?? `turns (${component})`;
+    return `${verb} by ${inWords(angularRange(result, component), error)}`;
   });
-  const bows = Object.entries(result.straightness ?? {})
-                   .map(
-                       ([component, one]) =>
-                           `${bound(one.minimum_zone, one.u, SHOWN_UNITS.m)} in ${component[1]}`);
+  const travel = rangeOf(result.stations) * 1e3;
   const start = Number.isFinite(travel) ? `Over ${positionText(travel)}\u00a0mm of travel, ` : '';
-  const sentences = [];
-  if (turns.length)
-    sentences.push(`${start}${result.axis} ${joinWords(turns.map((turn) => turn.text))}`);
-  if (bows.length) sentences.push(`Its path is straight within ${joinWords(bows)} (minimum zone)`);
-  if (turns.length) {
-    const most = Math.max(...turns.map((turn) => turn.value));
-    sentences.push(
-        `${
-            turns.length > 1 ? 'The largest of these rotations' :
-                               'This rotation'} alone moves a point ` +
-        '100\u00a0mm away by ' +
-        `${significant(most * 0.1 * 1e6, 2)}\u00a0\u00b5m`);
-  }
-  sentences.push(...reversalSentence(result));
-  return capital(sentences.map((sentence) => `${sentence}.`).join(' '));
+  return turns.length ? `${start}${result.axis} ${joinWords(turns)}` : null;
+}
+
+function straightSentence(result) {
+  const bows = linearOf(result).filter(([component]) => result.straightness?.[component]);
+  const widths = bows.map(([component, error]) => {
+    const width = straightnessAbout(result, component, 'minimum_zone');
+    return `${inWords(width, error)} in ${component[1]}`;
+  });
+  return widths.length ? `Its path is straight within ${joinWords(widths)} (minimum zone)` : null;
+}
+
+function leverSentence(result) {
+  const ranges = angularOf(result).map(([component]) => angularRange(result, component).value);
+  if (!ranges.length) return null;
+  const which = ranges.length > 1 ? 'The largest of these rotations' : 'This rotation';
+  const effect = significant(Math.max(...ranges) * 0.1 * 1e6, 2);
+  return `${which} alone moves a point 100\u00a0mm away by ${effect}\u00a0\u00b5m`;
 }
 
 function reversalSentence(result) {
-  const reversals = Object.entries(result.reversal ?? {});
-  if (!reversals.length) return [];
-  const seen = reversals.filter(([, reversal]) => isSignificant(reversal));
-  if (!seen.length) return ['Forward and backward travel agree within the uncertainty'];
-  return [
-    'Forward and backward travel differ by up to ' +
-    joinWords(seen.map(
-        ([component, reversal]) => `${
-            bound(reversal.max, reversal.u, unitOf(result.errors?.[component] ?? {unit: 'm'}))} (${
-            component})`))
-  ];
+  if (!filled(result.reversal)) return null;
+  const seen = seenReversals(result).map(
+      ([component, one]) =>
+          `${inWords(meanReversal([component, one]), result.errors[component])} (${component})`);
+  return seen.length ? `Forward and backward travel differ on average by ${joinWords(seen)}` :
+                       'Forward and backward travel agree within the uncertainty';
 }
 
-const reversalCells = (reversal, unit) => reversal ?
-    [
-      shownQuantity(reversal.mean, reversal.u, unit), shownQuantity(reversal.max, reversal.u, unit)
-    ] :
-    [null, null];
-
 function stationUncertainty(error) {
-  const U = COVERAGE * typical(error.u) * unitOf(error).scale;
+  const U = coverageOf(error) * typical(error.u) * unitOf(error).scale;
   return fixed(U, placesFor(U, 2));
 }
 
@@ -120,69 +136,67 @@ function componentTable(result, caption, found, heads, cells) {
       numeric('Reversal, max.'),
       {...numeric(element('span', {}, symbolU95(), ' of a station')), label: 'U95 of a station'}
     ],
-    rows: found.map(
-        ([component, error]) =>
-            [element('span', {}, `${componentName(component, error)} `, code(component)),
-             ...cells(component, unit), ...reversalCells(result.reversal?.[component], unit),
-             stationUncertainty(error)]),
+    rows: found.map(([component, error]) => {
+      const reversal = [component, result.reversal?.[component] ?? {}];
+      const shown = [...cells(component), meanReversal(reversal), largestReversal(reversal)];
+      return [
+        element('span', {}, `${componentName(component, error)} `, code(component)),
+        ...shown.map((one) => shownQuantity(one, error)), stationUncertainty(error)
+      ];
+    }),
   });
 }
 
 function sweepTables(result) {
   const [turns, bows] = [angularOf(result), linearOf(result)];
-  const range = (component, unit) => {
-    const {value, u} = angularRange(result, component);
-    return [shownQuantity(value, u, unit)];
-  };
-  const widths = (component, unit) => {
-    const one = result.straightness?.[component] ?? {};
-    return STRAIGHTNESS_LINES.map(({key}) => shownQuantity(one[key], one.u, unit));
-  };
+  const lines = STRAIGHTNESS_LINES.map(({label}) => label);
+  const widths = (component) =>
+      STRAIGHTNESS_LINES.map(({key}) => straightnessAbout(result, component, key));
   return [
-    turns.length ? componentTable(result, 'Rotations', turns, ['Range'], range) : null,
-    bows.length ?
-        componentTable(
-            result, 'Straightness', bows, STRAIGHTNESS_LINES.map(({label}) => label), widths) :
-        null,
+    turns.length ? componentTable(
+                       result, 'Rotations', turns, ['Range'],
+                       (component) => [angularRange(result, component)]) :
+                   null,
+    bows.length ? componentTable(result, 'Straightness', bows, lines, widths) : null,
   ].filter(Boolean);
 }
 
 function sampleText(samples) {
   if (!samples || !isNumber(samples.used)) return null;
-  const left = [['moving', 'between stations'], ['flagged', 'flagged'], ['outliers', 'outliers']]
-                   .filter(([key]) => samples[key] > 0)
-                   .map(([key, name]) => `${grouped(samples[key])} ${name}`);
-  return `${grouped(samples.used)} of ${grouped(samples.rows)} used` +
-      (left.length ? ` (left out: ${left.join(', ')})` : '');
+  const parts = [
+    ['moving', 'between stations'], ['flagged', 'flagged'],
+    ['outliers', 'outliers with less weight']
+  ];
+  return [
+    `${grouped(samples.used)} of ${grouped(samples.rows)} used`,
+    ...parts.filter(([key]) => samples[key] > 0).map(([key,
+                                                       name]) => `${grouped(samples[key])} ${name}`)
+  ].join(', ');
 }
 
 const grouped = (count) =>
     isNumber(count) ? String(count).replace(/\B(?=(\d{3})+$)/g, THIN_SPACE) : '\u2013';
 
-function overviewCell(result, [component, error], value, u) {
-  return element(
-      'span', {class: 'stacked'}, shownQuantity(value, u, unitOf(error)), code(component));
+function overviewCell(component, error, one) {
+  return element('span', {class: 'stacked'}, shownQuantity(one, error), code(component));
 }
 
 function sweepOverviewRow(result) {
-  const byKind = (kind) => angularOf(result).find(([, error]) => error.kind === kind);
-  const turn = (kind) => {
-    const found = byKind(kind);
-    if (!found) return null;
-    const {value, u} = angularRange(result, found[0]);
-    return overviewCell(result, found, value, u);
-  };
-  const straight = linearOf(result)
-                       .filter(([component]) => result.straightness?.[component])
-                       .map(
-                           (found) => overviewCell(
-                               result, found, result.straightness[found[0]].minimum_zone,
-                               result.straightness[found[0]].u));
-  const reversals = Object.entries(result.reversal ?? {});
-  const seen = reversals.filter(([, reversal]) => isSignificant(reversal)).map(([name]) => name);
+  const turn = (kind) =>
+      angularOf(result)
+          .filter(([, error]) => error.kind === kind)
+          .map(([component,
+                 error]) => overviewCell(component, error, angularRange(result, component)))[0];
+  const straight =
+      linearOf(result)
+          .filter(([component]) => result.straightness?.[component])
+          .map(
+              ([component, error]) => overviewCell(
+                  component, error, straightnessAbout(result, component, 'minimum_zone')));
+  const seen = seenReversals(result).map(([component]) => component).join(', ');
   return [
     result.axis, travelText(result), turn('roll'), turn('pitch'), turn('yaw'), straight[0],
-    straight[1], reversals.length ? seen.join(', ') || 'none' : null
+    straight[1], filled(result.reversal) ? seen || 'none' : null
   ];
 }
 
@@ -213,10 +227,12 @@ registerSection({
             `${result.stations.length}, ${travelText(result)}\u00a0mm` :
             null
       ],
-      ['Passes', isNumber(result.passes) ? `${result.passes}, both directions` : null],
+      ['Passes', result.passes],
+      ['Mounting', result.mounting],
       ['Samples', sampleText(result.samples), true],
 ],
-  body: (result) => [...sweepTables(result), ...sweepFigures(result)],
+  body: (result) =>
+      [notesBlock('Notes', result.notes), ...sweepTables(result), ...sweepFigures(result)],
   overview: {
     title: 'Axes',
     columns: [
@@ -225,8 +241,8 @@ registerSection({
       {head: 'Roll', unit: '\u00b5rad', numeric: true},
       {head: 'Pitch', unit: '\u00b5rad', numeric: true},
       {head: 'Yaw', unit: '\u00b5rad', numeric: true},
-      {head: 'Straightness', label: 'Straightness', unit: '\u00b5m', numeric: true},
-      {head: 'Straightness', label: 'Straightness', unit: '\u00b5m', numeric: true},
+      {head: 'Straightness', unit: '\u00b5m', numeric: true},
+      {head: 'Straightness', unit: '\u00b5m', numeric: true},
       {head: 'Reversal seen in', numeric: true},
     ],
     row: sweepOverviewRow,

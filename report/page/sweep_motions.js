@@ -3,19 +3,6 @@
 const positionTitle = (result) => `${result.axis} position (mm)`;
 const positionsOf = (result) => scaled(result.stations, 1e3);
 
-// Least-squares line of y over x, as a function of x.
-function levelLine(x, y) {
-  const points = x.map((at, index) => [at, y[index]]).filter((point) => point.every(isNumber));
-  const mean = (which) => points.reduce((sum, point) => sum + point[which], 0) / points.length;
-  const [mean_x, mean_y] = [mean(0), mean(1)];
-  const sum = (of) => points.reduce((total, [px, py]) => total + of(px - mean_x, py - mean_y), 0);
-  const slope = sum((dx, dy) => dx * dy) / (sum((dx) => dx * dx) || 1);
-  return (at) => mean_y + slope * (at - mean_x);
-}
-
-const minus = (x, y, line) =>
-    y.map((value, index) => isNumber(value) ? value - line(x[index]) : null);
-
 function lineTrace(name, x, y, colour, unit, extra = {}) {
   return {
     type: 'scatter',
@@ -31,23 +18,19 @@ function lineTrace(name, x, y, colour, unit, extra = {}) {
 
 // --- the five error motions
 
-// The lists of one component in shown units; the slope of a straightness is how the target was
-// aligned, so it may be taken off.
+// The lists of one component in shown units.
 function motionLists(result, component, shown) {
   const source = shown.has('target') ? result.errors_at_target ?? {} : {};
   const error = {...result.errors[component], ...source[component]};
-  const unit = unitOf(error);
+  const {name, scale} = unitOf(error);
   const x = positionsOf(result);
-  const value = scaled(error.value, unit.scale);
-  const level = !isAngular(error) && shown.has('level') ? levelLine(x, value) : () => 0;
-  const of = (list) => minus(x, scaled(list, unit.scale), level);
   return {
     x,
-    unit,
-    value: minus(x, value, level),
-    forward: of(error.forward),
-    backward: of(error.backward),
-    U: scaled(listOf(error.u, x.length), COVERAGE * unit.scale)
+    unit: name,
+    value: scaled(error.value, scale),
+    forward: scaled(error.forward, scale),
+    backward: scaled(error.backward, scale),
+    U: scaled(listOf(error.u, x.length), coverageOf(error) * scale)
   };
 }
 
@@ -55,7 +38,7 @@ const listOf = (u, length) => Array.isArray(u) ? u : Array(length).fill(u ?? nul
 
 function motionTraces(result, component, colours, shown) {
   const {x, unit, value, forward, backward, U} = motionLists(result, component, shown);
-  const marked = (name, y, colour, symbol) => lineTrace(name, x, y, colour, unit.name, {
+  const marked = (name, y, colour, symbol) => lineTrace(name, x, y, colour, unit, {
     mode: 'lines+markers',
     line: {color: colour, width: 1},
     marker: {symbol, size: 4, color: colour}
@@ -69,8 +52,7 @@ function motionTraces(result, component, colours, shown) {
         marked('backward', backward, colours.backward, 'triangle-left') :
         null,
     shown.has('mean') ?
-        lineTrace(
-            'mean', x, value, colours.mean, unit.name, {line: {color: colours.mean, width: 2}}) :
+        lineTrace('mean', x, value, colours.mean, unit, {line: {color: colours.mean, width: 2}}) :
         null,
   ].filter(Boolean);
 }
@@ -117,14 +99,14 @@ function motionGroup(result) {
     {key: 'band', label: '95\u00a0% band', swatch: 'band'},
     has('forward') ? {key: 'forward', label: 'Forward', swatch: 'forward', on: false} : null,
     has('backward') ? {key: 'backward', label: 'Backward', swatch: 'backward', on: false} : null,
-    linearOf(result).length ? {key: 'level', label: 'Straightness without slope'} : null,
     result.errors_at_target ? {key: 'target', label: 'Seen at the target', on: false} : null,
   ].filter(Boolean);
   return figureGroup({
     title: 'Error motions',
     intro:
         'The mean of all passes in both directions. The band holds the true error with 95\u00a0% ' +
-        'probability. The slope of a straightness is the alignment of the target, not the machine.',
+        'probability. An angle counts from the first station; the slope of a straightness is the ' +
+        'alignment of the target and is taken off.',
     items,
     panels: [...angularOf(result), ...linearOf(result)].map((found) => motionPanel(result, found)),
   });
@@ -138,43 +120,44 @@ const STRAIGHTNESS_LINES = [
   {key: 'minimum_zone', label: 'Minimum zone', swatch: 'zone', dash: 'solid'},
 ];
 
-// The three lines and the zone, after taking off the level line of the curve.
+// A result states its lines in the recording's own slope and its curve without: what is shown is
+// each line less the least-squares line.
+function lineOverStations(result, component, key) {
+  const lines = result.straightness_lines[component];
+  const [line, level] = [lines[key], lines.least_squares];
+  if (!line || !level) return null;
+  return result.stations.map(
+      (at) => 1e6 * (line.offset - level.offset + (line.slope - level.slope) * at));
+}
+
+// The narrowest parallels: through the highest and the lowest point of the curve over the line.
+function zoneTrace(x, curve, line, colour) {
+  const over = numbers(curve.map((value, index) => isNumber(value) ? value - line[index] : null));
+  const [low, high] = [Math.min(...over), Math.max(...over)];
+  const middle = line.map((value) => value + (low + high) / 2);
+  return {...bandTrace(x, middle, middle.map(() => (high - low) / 2), colour), opacity: 0.5};
+}
+
 function straightnessTraces(result, component, colours, shown) {
-  const metres = numbers(result.stations);
   const x = positionsOf(result);
   const curve = scaled(result.errors[component].value, 1e6);
-  const level = levelLine(x, curve);
-  const shownLines = STRAIGHTNESS_LINES.filter((line) => shown.has(line.key)).flatMap((line) => {
-    const given = result.straightness_lines?.[component]?.[line.key];
-    if (!given) return [];
-    const straight = metres.map((at) => (given.offset + given.slope * at) * 1e6);
-    const y = minus(x, straight, level);
-    if (line.key !== 'minimum_zone') {
-      return [lineTrace(
-          line.label, x, y, colours[line.swatch], '\u00b5m',
-          {line: {color: colours[line.swatch], width: 1.5, dash: line.dash}})];
+  const traceOf = ({key, label, swatch, dash}) => {
+    const line = shown.has(key) ? lineOverStations(result, component, key) : null;
+    if (!line) return [];
+    if (key === 'minimum_zone') {
+      return [{...zoneTrace(x, curve, line, colours[swatch]), name: label}];
     }
-    const deviation =
-        numbers(curve.map((value, index) => isNumber(value) ? value - straight[index] : null));
-    const [low, high] = [Math.min(...deviation), Math.max(...deviation)];
-    const middle = y.map((value) => value + (low + high) / 2);
-    return [{
-      ...bandTrace(x, middle, middle.map(() => (high - low) / 2), colours.zone),
-      name: line.label,
-      opacity: 0.5
-    }];
-  });
-  return [
-    ...shownLines.sort((one, other) => (one.fill ? 0 : 1) - (other.fill ? 0 : 1)),
-    lineTrace(
-        'measured', x, minus(x, curve, level), colours.mean, '\u00b5m',
-        {line: {color: colours.mean, width: 2}})
-  ];
+    const style = {line: {color: colours[swatch], width: 1.5, dash}};
+    return [lineTrace(label, x, line, colours[swatch], '\u00b5m', style)];
+  };
+  const [ends, squares, zone] = STRAIGHTNESS_LINES.map(traceOf);
+  const measured = lineTrace(
+      'measured', x, curve, colours.mean, '\u00b5m', {line: {color: colours.mean, width: 2}});
+  return [...zone, ...ends, ...squares, measured];
 }
 
 function straightnessPanel(result, [component, error]) {
   const name = componentName(component, error);
-  const one = result.straightness?.[component];
   return {
     name,
     code: component,
@@ -187,14 +170,12 @@ function straightnessPanel(result, [component, error]) {
       data: straightnessTraces(result, component, colours, shown),
       layout: figureLayout(colours, {x: positionTitle(result), yaxis: {zeroline: false}}),
     }),
-    values: one ?
-        () => ({
-          columns:
-              [{head: 'Reference line'}, {head: 'Straightness', unit: '\u00b5m', numeric: true}],
-          rows: STRAIGHTNESS_LINES.map(
-              (line) => [line.label, shownQuantity(one[line.key], one.u, SHOWN_UNITS.m)]),
-        }) :
-        null,
+    values: () => ({
+      columns: [{head: 'Reference line'}, {head: 'Straightness', unit: '\u00b5m', numeric: true}],
+      rows: STRAIGHTNESS_LINES.map(
+          ({key,
+            label}) => [label, shownQuantity(straightnessAbout(result, component, key), error)]),
+    }),
   };
 }
 
@@ -217,8 +198,8 @@ function reversalPanel(result, found, name, swatches) {
   const unit = unitOf(found[0][1]);
   const x = positionsOf(result);
   const of = (component) => result.reversal[component];
-  const U =
-      COVERAGE * unit.scale * Math.max(...found.map(([component]) => typical(of(component).u)));
+  const U = unit.scale *
+      Math.max(...found.map(([component, error]) => coverageOf(error) * typical(of(component).u)));
   return {
     name,
     unit: unit.name,

@@ -19,7 +19,7 @@ function budgetPanel(result, components, causes) {
   const total = (component) => Math.hypot(...causes.map((cause) => u(component, cause)));
   const label = (component) => {
     const unit = unitOf(result.errors?.[component] ?? {unit: 'm'});
-    const U = COVERAGE * total(component) * unit.scale;
+    const U = coverageOf(result.errors?.[component] ?? {}) * total(component) * unit.scale;
     return `${fixed(U, placesFor(U, 2))}\u00a0${unit.name}`;
   };
   return {
@@ -130,7 +130,8 @@ function residualPanel(result, probes) {
     unit: unit.name,
     height: 56 + 72 * probes.length,
     about:
-        `Measured minus fitted reading of each probe at each dwell over time, in ${unit.name}; ` +
+        `Reading of each probe at each dwell less the mean of its station and direction, over time, in ${
+            unit.name}; ` +
         'root mean squares follow as a table.',
     draw: (colours, shown) => ({
       data: probes.flatMap(
@@ -278,7 +279,8 @@ function quietGroup(result) {
   return figureGroup({
     title: 'Residuals and noise',
     intro:
-        'What the five error motions leave of the readings. A pattern in time is a disturbance; an ' +
+        'What each dwell leaves over the mean of its station and direction. A pattern in time is a ' +
+        'disturbance; an ' +
         `even cloud is noise.${chiSquareText(result.noise)}`,
     items: result.dwells?.direction && residual.length ? DIRECTIONS : [],
     panels: [

@@ -147,6 +147,19 @@ test(
     }));
 
 test(
+    'the line through the end points meets the ends of the curve',
+    () => withPage({}, async (page) => {
+      const plot = page.locator('#result-2 .plot[aria-label*="EYX"][aria-label*="minimum zone"]');
+      const [ends, measured] = await plot.evaluate(
+          (div) => ['End points', 'measured'].map(
+              (name) => div.data.find((trace) => trace.name === name).y));
+      for (const at of [0, -1]) {
+        assert.ok(
+            Math.abs(ends.at(at) - measured.at(at)) < 1e-9, `${ends.at(at)} ${measured.at(at)}`);
+      }
+    }));
+
+test(
     'the values of a figure can be read as a table',
     () => withPage({}, async (page) => {
       const first = page.locator('#result-2 figure').first();

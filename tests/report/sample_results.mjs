@@ -30,10 +30,13 @@ const range = (list) => Math.max(...list) - Math.min(...list);
 const mean = (list) => list.reduce((sum, value) => sum + value, 0) / list.length;
 
 // A bow h (x/L)^2 about the middle of the travel: all three lines are as wide as the bow is high.
-function bowOf(height, slope) {
+function bowOf(height) {
   const half = stations.at(-1) / 2;
-  return stations.map((at) => height * ((at - half) / half) ** 2 + slope * at);
+  return stations.map((at) => height * ((at - half) / half) ** 2);
 }
+
+// As it was measured, on a target that is not aligned.
+const sloped = (values) => values.map((value, index) => value + OFFSET + SLOPE * stations[index]);
 
 const widthAbout = (values, slope) =>
     range(values.map((value, index) => value - slope * stations[index]));
@@ -59,6 +62,12 @@ function linesOf(values) {
   };
 }
 
+// Less its least-squares line.
+const level = (values) => {
+  const {slope, offset} = linesOf(values).least_squares;
+  return values.map((value, index) => value - offset - slope * stations[index]);
+};
+
 const straightnessOf = (values, lines, u) => ({
   u,
   ...Object.fromEntries(
@@ -82,7 +91,8 @@ const reversalOf = ({forward, backward, u}) => {
 };
 
 export const BOW = 1.5e-6;
-export const SLOPE = 4e-5;
+const SLOPE = 4e-4;
+const OFFSET = 2e-5;
 
 export function sweepResult(axis, moves, seed) {
   const [straight_1, straight_2] = {X: ['EYX', 'EZX'], Y: ['EXY', 'EZY'], Z: ['EXZ', 'EYZ']}[axis];
@@ -93,17 +103,15 @@ export function sweepResult(axis, moves, seed) {
     [turns[0]]: component('rad', 'roll', curve(seed, 12e-6), 0.31e-6, 0.2e-6),
     [turns[1]]: component('rad', 'pitch', curve(seed + 1, 18e-6), 0.28e-6, 1.9e-6),
     [turns[2]]: component('rad', 'yaw', curve(seed + 2, 9e-6), 0.44e-6, 0.1e-6),
-    [straight_1]: component(
-        'm', 'straightness',
-        curve(seed + 3, 0.6e-6).map((value, index) => value + SLOPE * stations[index]), 0.042e-6,
-        0.03e-6),
-    [straight_2]: component('m', 'straightness', bowOf(BOW, SLOPE), 0.031e-6, 0.25e-6),
+    [straight_1]: component('m', 'straightness', level(curve(seed + 3, 0.6e-6)), 0.042e-6, 0.03e-6),
+    [straight_2]: component('m', 'straightness', level(bowOf(BOW)), 0.031e-6, 0.25e-6),
   };
   const names = Object.keys(errors);
   const dwell_count = 61 * 10;
   const normal = noiseSource(seed);
   const straights = [straight_1, straight_2];
-  const lines = Object.fromEntries(straights.map((name) => [name, linesOf(errors[name].value)]));
+  const lines =
+      Object.fromEntries(straights.map((name) => [name, linesOf(sloped(errors[name].value))]));
   return {
     abbe: '0.1.0',
     command: 'reduce',
@@ -130,8 +138,8 @@ export function sweepResult(axis, moves, seed) {
             (value, index) => value + 0.02 * errors[turns[2]].value[index])
       }
     },
-    straightness: Object.fromEntries(
-        straights.map((name) => [name, straightnessOf(errors[name].value, lines[name], 0.035e-6)])),
+    straightness: Object.fromEntries(straights.map(
+        (name) => [name, straightnessOf(sloped(errors[name].value), lines[name], 0.035e-6)])),
     straightness_lines: lines,
     angular_ranges: Object.fromEntries(turns.map(
         (name) => [name, {value: range(errors[name].value), u: 1.3 * errors[name].u[0]}])),
@@ -178,8 +186,19 @@ export function sweepResult(axis, moves, seed) {
 }
 
 export function referenceResult(axis) {
-  const position = Array.from({length: 11}, (unused, index) => index * 0.03 + (index % 3) * 1e-3);
-  const forward = position.map((at) => 110e-6 * (at / 0.3) ** 1.3 + 6e-6 * Math.sin(40 * at));
+  const targets = Array.from({length: 11}, (unused, index) => {
+    const target_mm = 30 * index + index % 3;
+    const mean_up_um = 110 * (target_mm / 300) ** 1.3 + 6 * Math.sin(target_mm / 25);
+    return {
+      target_mm,
+      mean_up_um,
+      mean_down_um: mean_up_um + 25.2,
+      mean_um: mean_up_um + 12.6,
+      reversal_um: -25.2,
+      std_up_um: 1.2 + 0.2 * (index % 4),
+      std_down_um: 1.5 + 0.1 * (index % 5)
+    };
+  });
   return {
     abbe: '0.1.0',
     command: 'reduce',
@@ -188,16 +207,23 @@ export function referenceResult(axis) {
     machine: 'demo-mill',
     axis,
     started: '2026-11-20T14:30:00Z',
-    cycles: 5,
     conditions: {temp_column_c: {min: 19.9, max: 20.2, mean: 20.05}},
-    iso230_2:
-        {A_um: 142.3, R_um: 31.7, E_um: 138.1, M_um: 112.9, B_um: 27.4, mean_reversal_um: -25.2},
-    targets: {
-      position,
-      mean_forward: forward,
-      mean_backward: forward.map((value) => value + 25.2e-6),
-      s_forward: position.map((at, index) => (1.2 + 0.2 * (index % 4)) * 1e-6),
-      s_backward: position.map((at, index) => (1.5 + 0.1 * (index % 5)) * 1e-6)
+    iso230_2: {
+      A_um: 142.3,
+      A_up_um: 117.4,
+      A_down_um: 118.1,
+      R_um: 31.7,
+      R_up_um: 7.2,
+      R_down_um: 7.6,
+      E_um: 138.1,
+      E_up_um: 112.9,
+      E_down_um: 112.9,
+      M_um: 112.9,
+      B_um: 27.4,
+      mean_reversal_um: -25.2,
+      cycles: 5,
+      left_out_rows: 0,
+      targets
     },
   };
 }
