@@ -24,8 +24,10 @@ function fetchPackages(folder) {
   const npm = spawnSync(
       'npm', ['ci', '--ignore-scripts', '--no-audit', '--no-fund'],
       {cwd: folder, encoding: 'utf8'});
-  if (npm.status !== 0)
-    skip(`npm ci could not fetch playwright-core: ${npm.stderr?.split('\n')[0]}`);
+  if (npm.status === 0) return;
+  const reason = npm.error?.message ?? npm.stderr.split('\n')[0];
+  skip(
+      `npm ci could not fetch playwright-core (${reason}): apt-get install npm, allow the network`);
 }
 
 export async function openBrowser(package_folder) {
