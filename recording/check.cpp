@@ -1,0 +1,229 @@
+#include "recording/check.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "settings/nearest_word.h"
+
+namespace abbe::recording {
+namespace {
+
+constexpr double kAllFlags = kStale | kOutOfRange | kDeviceError | kInterpolated | kClockJump;
+
+// Each inner list is satisfied by any one of its names.
+using Required = std::vector<std::vector<std::string>>;
+
+struct KindRule {
+  std::string_view kind;
+  Required required;
+};
+
+const std::vector<KindRule>& KindRules() {
+  static const std::vector<KindRule> rules{
+      {"sweep",
+       {{"time_s"},
+        {"x_mm"},
+        {"y_mm"},
+        {"z_mm"},
+        {"pass"},
+        {"direction"},
+        {"probe_a_um"},
+        {"probe_b_um"},
+        {"probe_c_um"},
+        {"probe_d_um"},
+        {"probe_e_um"}}},
+      {"linkage", {{"time_s"}, {"x_mm"}, {"y_mm"}, {"z_mm"}, {"pivot_1_rad"}}},
+      {"reference", {{"x_mm", "y_mm", "z_mm"}, {"ref_x_mm", "ref_y_mm", "ref_z_mm"}}},
+      {"length", {{"x_mm"}, {"y_mm"}, {"z_mm"}, {"length_mm"}}},
+      {"plate", {{"x_mm"}, {"y_mm"}, {"setup"}, {"hole"}, {"plate_x_mm"}, {"plate_y_mm"}}},
+      {"dwell", {{"time_s"}}},
+  };
+  return rules;
+}
+
+// What a value of a column that abbe knows may be, besides finite.
+struct ValueRule {
+  std::string_view begin, end;  // of the column's name; equal to the name when it stands alone
+  bool (*allows)(double);
+  std::string_view wanted;
+};
+
+bool Any(double) { return true; }
+bool NotNegative(double value) { return value >= 0.0; }
+bool Positive(double value) { return value > 0.0; }
+bool Count(double value) { return value >= 0.0 && value == std::floor(value); }
+bool Sign(double value) { return value == -1.0 || value == 0.0 || value == 1.0; }
+
+constexpr std::array<ValueRule, 16> kValueRules{{
+    {"x_mm", "x_mm", Any, ""},
+    {"y_mm", "y_mm", Any, ""},
+    {"z_mm", "z_mm", Any, ""},
+    {"pass", "pass", Count, "a whole number from 0"},
+    {"direction", "direction", Sign, "-1, 0 or 1"},
+    {"feed_mm_min", "feed_mm_min", NotNegative, "0 or above"},
+    {"probe_", "_um", NotNegative, "a gap, 0 or above"},
+    {"pivot_", "_rad", Any, ""},
+    {"cap_force_n", "cap_force_n", Any, ""},
+    {"ref_", "_mm", Any, ""},
+    {"length_mm", "length_mm", Positive, "above 0"},
+    {"u_", "_um", NotNegative, "0 or above"},
+    {"setup", "setup", Count, "a whole number from 0"},
+    {"hole", "hole", Count, "a whole number from 0"},
+    {"plate_", "_mm", Any, ""},
+    {"temp_", "_c", Any, ""},
+}};
+
+const ValueRule* RuleOf(std::string_view name) {
+  for (const ValueRule& rule : kValueRules) {
+    const bool whole = rule.begin == rule.end;
+    if (whole ? name == rule.begin : name.starts_with(rule.begin) && name.ends_with(rule.end)) {
+      return &rule;
+    }
+  }
+  return nullptr;
+}
+
+[[noreturn]] void Refuse(std::string_view place, std::string_view what, std::string_view message) {
+  throw InputError(fmt::format("{}: {}: {}", place, what, message));
+}
+
+void CheckTime(std::span<const double> time, const Places& places) {
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (!std::isfinite(time[i])) {
+      Refuse(places.Row(i), "time_s", fmt::format("is {}; every row needs a time", time[i]));
+    }
+    if (i > 0 && time[i] < time[i - 1]) {
+      Refuse(places.Row(i), "time_s",
+             fmt::format("goes back from {} to {}; rows must stand in the order of their time",
+                         time[i - 1], time[i]));
+    }
+  }
+}
+
+void CheckFlags(std::span<const double> flags, const Places& places) {
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    if (!Count(flags[i]) || flags[i] > kAllFlags) {
+      Refuse(places.Row(i), "flags",
+             fmt::format("is {}; it must be a sum of 1 stale, 2 out of range, 4 device error, 8 "
+                         "interpolated, 16 clock jump, or 0",
+                         flags[i]));
+    }
+  }
+}
+
+void CheckValues(const Column& column, const ValueRule& rule, std::span<const double> flags,
+                 const Places& places) {
+  for (std::size_t i = 0; i < column.values.size(); ++i) {
+    const double value = column.values[i];
+    if (std::isfinite(value) && rule.allows(value)) continue;
+    if (!flags.empty() && flags[i] != 0.0) continue;
+    if (std::isfinite(value)) {
+      Refuse(places.Row(i), column.name,
+             fmt::format("is {}; it must be {}, or the row must carry a flag", value, rule.wanted));
+    }
+    Refuse(places.Row(i), column.name,
+           fmt::format("is {} in a row without a flag; say in the column flags why the value is "
+                       "missing, or remove the row",
+                       value));
+  }
+}
+
+}  // namespace
+
+std::string Places::Header(std::size_t line) const {
+  return header_line > 0 ? fmt::format("{}:{}", file, header_line + line - 1)
+                         : fmt::format("{}: header line {}", file, line);
+}
+
+std::string Places::Row(std::size_t row) const {
+  return first_row_line > 0 ? fmt::format("{}:{}", file, first_row_line + row)
+                            : fmt::format("{}: row {}", file, row + 1);
+}
+
+void CheckColumnNames(const std::vector<std::string>& names, std::string_view place) {
+  if (names.empty()) throw InputError(fmt::format("{}: a recording needs a column", place));
+  std::set<std::string_view> seen;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string& name = names[i];
+    if (name.empty()) {
+      throw InputError(fmt::format("{}: column {} has no name; give it one", place, i + 1));
+    }
+    const bool control = std::any_of(name.begin(), name.end(),
+                                     [](char c) { return c >= 0 && (c < 32 || c == 127); });
+    if (control || name.find_first_of(",;\"/") != std::string::npos || name.front() == '#' ||
+        name.front() == ' ' || name.back() == ' ' || name == ".") {
+      throw InputError(fmt::format("{}: column {} is named `{}`; use letters, digits and _ only",
+                                   place, i + 1, control ? std::string("?") : name));
+    }
+    if (!seen.insert(name).second) {
+      Refuse(place, name, "two columns have this name; rename one");
+    }
+  }
+}
+
+void CheckHeader(const std::string& header, const std::vector<std::string>& names,
+                 const Places& places) {
+  toml::table table;
+  try {
+    table = toml::parse(header);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}: the header is not valid TOML: {}",
+                                 places.Header(error.source().begin.line), error.description()));
+  }
+  std::vector<std::string> kinds;
+  for (const KindRule& rule : KindRules()) kinds.emplace_back(rule.kind);
+  const toml::node* node = table.get("kind");
+  if (node == nullptr) {
+    Refuse(places.Header(1), "kind",
+           fmt::format("is missing; it must be one of: {}", fmt::join(kinds, ", ")));
+  }
+  const std::string kind = node->value_or(std::string{});
+  const auto rule = std::find_if(KindRules().begin(), KindRules().end(),
+                                 [&](const KindRule& candidate) { return candidate.kind == kind; });
+  if (rule == KindRules().end()) {
+    Refuse(places.Header(node->source().begin.line), "kind",
+           fmt::format("\"{}\" is not a kind of recording; did you mean \"{}\"? ({})", kind,
+                       settings::NearestWord(kind, kinds), fmt::join(kinds, ", ")));
+  }
+  const std::string place = places.first_row_line > 0
+                                ? fmt::format("{}:{}", places.file, places.first_row_line - 1)
+                                : places.file;
+  for (const std::vector<std::string>& any : rule->required) {
+    const bool found = std::any_of(any.begin(), any.end(), [&](const std::string& name) {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    });
+    if (!found) {
+      Refuse(place, fmt::format("{}", fmt::join(any, " or ")),
+             fmt::format("is missing; a {} recording needs this column", kind));
+    }
+  }
+}
+
+void Check(const Recording& recording, const Places& places) {
+  std::vector<std::string> names;
+  for (const Column& column : recording.columns) names.push_back(column.name);
+  CheckColumnNames(names, places.file);
+  CheckHeader(recording.header, names, places);
+  for (const Column& column : recording.columns) {
+    if (column.values.size() != recording.rows()) {
+      Refuse(places.file, column.name,
+             fmt::format("has {} rows, but {} has {}; all columns must be of one length",
+                         column.values.size(), recording.columns.front().name, recording.rows()));
+    }
+  }
+  if (const auto time = recording.Find("time_s")) CheckTime(*time, places);
+  const std::span<const double> flags = recording.Find("flags").value_or(std::span<const double>{});
+  CheckFlags(flags, places);
+  for (const Column& column : recording.columns) {
+    const ValueRule* rule = RuleOf(column.name);
+    if (rule != nullptr) CheckValues(column, *rule, flags, places);
+  }
+}
+
+}  // namespace abbe::recording

@@ -1,0 +1,38 @@
+// What makes a recording believable: the rules of docs/recordings.md that hold for its kind.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recording/recording.h"
+
+namespace abbe::recording {
+
+// Where the parts of a recording stand, for messages: "runs/a.csv:17", or "runs/a.h5: row 5".
+struct Places {
+  std::string file;
+  std::size_t header_line = 0;     // line of the file with the first line of the header; 0: HDF5
+  std::size_t first_row_line = 0;  // line of the file with the first row; 0: HDF5
+
+  std::string Header(std::size_t line) const;  // from 1
+  std::string Row(std::size_t row) const;      // from 0; printed from 1
+};
+
+// Throws InputError when the names cannot be columns: none, one twice, or one that is empty, holds
+// a comma, a quote, a slash, a '#' in front or a control character, or has blanks at its ends.
+void CheckColumnNames(const std::vector<std::string>& names, std::string_view place);
+
+// Throws InputError when the header is not TOML, its kind is unknown, or `names` lack a column that
+// the kind requires.
+void CheckHeader(const std::string& header, const std::vector<std::string>& names,
+                 const Places& places);
+
+// Throws InputError, naming place and column, unless the recording keeps every rule: names, header,
+// columns of one length, time that never goes back, flags that are known, and in the columns that
+// abbe knows no NaN, infinity or impossible value in a row without a flag. Other columns may hold
+// anything.
+void Check(const Recording& recording, const Places& places);
+
+}  // namespace abbe::recording

@@ -1,0 +1,87 @@
+#include "recording/line_reader.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "failure/failure.h"
+
+namespace abbe::recording {
+namespace {
+
+constexpr std::size_t kBlock = std::size_t{1} << 20;
+
+}  // namespace
+
+LineReader::LineReader(const std::filesystem::path& path) : name_(path.string()) {
+  file_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file_ < 0) {
+    throw InputError(
+        fmt::format("{}: cannot be read: {}; check the path", name_, std::strerror(errno)));
+  }
+  block_.resize(kBlock);
+}
+
+LineReader::~LineReader() { close(file_); }
+
+std::size_t LineReader::ReadSome(char* to, std::size_t size) {
+  ssize_t count = 0;
+  do {
+    count = read(file_, to, size);
+  } while (count < 0 && errno == EINTR);
+  if (count < 0) {
+    throw InputError(fmt::format("{}:{}: cannot be read further: {}; check the disk", name_,
+                                 number_ + 1, std::strerror(errno)));
+  }
+  return static_cast<std::size_t>(count);
+}
+
+std::optional<std::string_view> LineReader::Next() {
+  std::size_t searched = begin_;
+  while (true) {
+    const void* found = std::memchr(block_.data() + searched, '\n', end_ - searched);
+    if (found != nullptr) {
+      const char* line = block_.data() + begin_;
+      const auto length = static_cast<std::size_t>(static_cast<const char*>(found) - line);
+      begin_ += length + 1;
+      ++number_;
+      return std::string_view(line, length > 0 && line[length - 1] == '\r' ? length - 1 : length);
+    }
+    // Make room for the rest of the line.
+    std::memmove(block_.data(), block_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+    searched = end_;
+    if (end_ == block_.size()) {
+      throw InputError(fmt::format("{}:{}: this line is longer than 1 MiB; is this a recording?",
+                                   name_, number_ + 1));
+    }
+    const std::size_t count = ReadSome(block_.data() + end_, block_.size() - end_);
+    if (count == 0) break;
+    end_ += count;
+  }
+  if (end_ == 0) return std::nullopt;
+  complete_ = false;
+  ++number_;
+  const std::string_view rest(block_.data(), end_);
+  begin_ = end_ = 0;
+  return rest;
+}
+
+std::size_t LineReader::CountLineEnds() {
+  const off_t here = lseek(file_, 0, SEEK_CUR);
+  lseek(file_, 0, SEEK_SET);
+  std::vector<char> block(kBlock);
+  std::size_t line_ends = 0;
+  while (const std::size_t size = ReadSome(block.data(), block.size())) {
+    line_ends += static_cast<std::size_t>(std::count(block.data(), block.data() + size, '\n'));
+  }
+  lseek(file_, here, SEEK_SET);
+  return line_ends;
+}
+
+}  // namespace abbe::recording

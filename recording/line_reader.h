@@ -1,0 +1,46 @@
+// The lines of a file, one after the other, through one block of memory.
+//
+//   LineReader lines("runs/a.csv");
+//   while (const auto line = lines.Next()) Parse(*line);  // the view lives until the next call
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace abbe::recording {
+
+class LineReader {
+ public:
+  // InputError when the file cannot be opened.
+  explicit LineReader(const std::filesystem::path& path);
+  ~LineReader();
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
+
+  // The next line without its "\n" or "\r\n"; nothing at the end of the file. InputError when a
+  // line is longer than the block (1 MiB).
+  std::optional<std::string_view> Next();
+  // Whether the line that Next() gave last ended in a line end, and its number, from 1.
+  bool complete() const { return complete_; }
+  std::size_t number() const { return number_; }
+
+  // The number of line ends in the whole file, by one pass through it; Next() goes on as before.
+  std::size_t CountLineEnds();
+
+ private:
+  std::size_t ReadSome(char* to, std::size_t size);
+
+  std::string name_;
+  int file_ = -1;
+  std::vector<char> block_;
+  std::size_t begin_ = 0;  // of what is not handed out yet, in block_
+  std::size_t end_ = 0;
+  std::size_t number_ = 0;
+  bool complete_ = true;
+};
+
+}  // namespace abbe::recording

@@ -1,0 +1,86 @@
+#include "recording/output_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "failure/failure.h"
+
+namespace abbe::recording {
+
+int CreateFile(const std::filesystem::path& path, bool only_new) {
+  const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (only_new ? O_EXCL : O_TRUNC);
+  const int file = open(path.c_str(), flags, 0666);
+  if (file >= 0) return file;
+  if (errno == EEXIST) {
+    throw InputError(
+        fmt::format("{}: exists already, and nothing recorded is overwritten; choose another name",
+                    path.string()));
+  }
+  throw InputError(fmt::format("{}: cannot be created: {}; choose a folder that can be written",
+                               path.string(), std::strerror(errno)));
+}
+
+void ThrowWriteFailure(std::string_view file, std::string_view saved) {
+  const int error = errno;
+  if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
+    throw DeviceError(
+        fmt::format("{}: disk full; {}; free some space and record again", file, saved));
+  }
+  throw DeviceError(fmt::format("{}: cannot be written: {}; {}; check the disk", file,
+                                std::strerror(error), saved));
+}
+
+void Synchronize(const std::filesystem::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool done = file >= 0 && fsync(file) == 0;
+  const int error = errno;
+  if (file >= 0) close(file);
+  errno = error;
+  if (!done) ThrowWriteFailure(path.string(), "nothing is saved");
+}
+
+OutputFile::OutputFile(const std::filesystem::path& path, bool only_new)
+    : name_(path.string()), file_(CreateFile(path, only_new)) {}
+
+OutputFile::~OutputFile() {
+  if (file_ >= 0) close(file_);
+}
+
+void OutputFile::Append(std::string_view bytes) {
+  std::size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t count = write(file_, bytes.data() + written, bytes.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) {
+      const int error = errno;
+      const std::size_t line_end = bytes.substr(0, written).rfind('\n');
+      size_ += line_end == std::string_view::npos ? 0 : line_end + 1;
+      if (ftruncate(file_, static_cast<off_t>(size_)) != 0) {
+        // The rest of a line stays at the end; whoever reads the file drops it.
+      }
+      errno = error;
+      ThrowWriteFailure(name_, "all rows that fitted are saved");
+    }
+    written += static_cast<std::size_t>(count);
+  }
+  size_ += bytes.size();
+}
+
+void OutputFile::Sync() {
+  // A device that has no way to synchronize (EINVAL) has taken the bytes already.
+  if (fdatasync(file_) != 0 && errno != EINVAL && errno != EROFS) {
+    ThrowWriteFailure(name_, "the last rows may be lost");
+  }
+}
+
+void OutputFile::Close() {
+  const int file = file_;
+  file_ = -1;
+  if (file >= 0 && close(file) != 0) ThrowWriteFailure(name_, "the last rows may be lost");
+}
+
+}  // namespace abbe::recording

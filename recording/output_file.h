@@ -1,0 +1,41 @@
+// A file that is written, with failures that say what to do.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace abbe::recording {
+
+// Creates an empty file, for its owner to write. With `only_new` an existing one is InputError:
+// nothing measured is ever overwritten. Returns its descriptor.
+int CreateFile(const std::filesystem::path& path, bool only_new);
+
+// DeviceError for the current errno: "disk full" where it is that, and what was saved.
+[[noreturn]] void ThrowWriteFailure(std::string_view file, std::string_view saved);
+
+// Returns when what was written to the file is on the disk; DeviceError when it cannot be.
+void Synchronize(const std::filesystem::path& path);
+
+// A plain file that takes bytes at its end. Closes itself, without a word on failure.
+class OutputFile {
+ public:
+  OutputFile(const std::filesystem::path& path, bool only_new);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  // Returns when the bytes are with the kernel. When not all of them can be taken, takes them back
+  // up to the last whole line and throws DeviceError.
+  void Append(std::string_view bytes);
+  // Returns when the bytes are on the disk.
+  void Sync();
+  void Close();
+
+ private:
+  std::string name_;
+  int file_ = -1;
+  std::size_t size_ = 0;
+};
+
+}  // namespace abbe::recording

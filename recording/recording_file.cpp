@@ -1,0 +1,118 @@
+#include "recording/recording_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "recording/background_writer.h"
+#include "recording/check.h"
+#include "recording/csv_reader.h"
+#include "recording/csv_writer.h"
+#include "recording/hdf5_reader.h"
+#include "recording/hdf5_writer.h"
+#include "recording/output_file.h"
+#include "recording/row_file.h"
+
+namespace abbe::recording {
+namespace {
+
+constexpr std::string_view kHdf5Begin = "\x89HDF\r\n\x1a\n";
+
+enum class Form { kCsv, kHdf5 };
+
+Form FormOf(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (extension == ".csv") return Form::kCsv;
+  if (extension == ".h5" || extension == ".hdf5") return Form::kHdf5;
+  throw InputError(
+      fmt::format("{}: a recording's name ends in .csv, .h5 or .hdf5; rename it", path.string()));
+}
+
+std::string Begin(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw InputError(fmt::format("{}: there is no such file; check the path", name));
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw InputError(
+        fmt::format("{}: is {}, not a file; check the path", name,
+                    std::filesystem::is_directory(status) ? "a folder" : "a device or a pipe"));
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(kHdf5Begin.size(), '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  if (!file.is_open() || file.bad()) {
+    throw InputError(
+        fmt::format("{}: cannot be read: {}; check the path", name, std::strerror(errno)));
+  }
+  begin.resize(static_cast<std::size_t>(file.gcount()));
+  if (begin.empty())
+    throw InputError(fmt::format("{}: the file is empty; nothing was recorded", name));
+  return begin;
+}
+
+// A header as both forms keep it: lines that end in "\n".
+std::string KeptHeader(std::string_view header) {
+  std::string kept;
+  while (!header.empty()) {
+    const std::size_t end = std::min(header.find('\n'), header.size());
+    std::string_view line = header.substr(0, end);
+    header.remove_prefix(std::min(end + 1, header.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    kept.append(line).append("\n");
+  }
+  return kept;
+}
+
+}  // namespace
+
+Recording Read(const std::filesystem::path& path) {
+  const Form form = FormOf(path);
+  const bool hdf5 = Begin(path) == kHdf5Begin;
+  if (form == Form::kCsv && hdf5) {
+    throw InputError(fmt::format(
+        "{}: is an HDF5 file under the name of a CSV file; rename it to .h5", path.string()));
+  }
+  if (form == Form::kHdf5 && !hdf5) {
+    throw InputError(
+        fmt::format("{}: is not an HDF5 file; check the path, or rename it if it is a CSV file",
+                    path.string()));
+  }
+  return hdf5 ? ReadHdf5(path) : ReadCsv(path);
+}
+
+void Write(const Recording& recording, const std::filesystem::path& path) {
+  const Form form = FormOf(path);
+  Check(recording, Places{path.string()});
+  const std::filesystem::path part = path.string() + ".part";
+  try {
+    (form == Form::kCsv ? WriteCsv : WriteHdf5)(recording, KeptHeader(recording.header), part);
+    Synchronize(part);
+    std::filesystem::rename(part, path);
+  } catch (const std::exception& failure) {
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);
+    if (dynamic_cast<const Failure*>(&failure) != nullptr) throw;
+    throw InputError(
+        fmt::format("{}: cannot be written: {}; check the path", path.string(), failure.what()));
+  }
+}
+
+std::unique_ptr<Writer> Writer::Create(const std::filesystem::path& path, const std::string& header,
+                                       const std::vector<std::string>& columns) {
+  const Form form = FormOf(path);
+  const std::string kept = KeptHeader(header);
+  CheckColumnNames(columns, path.string());
+  CheckHeader(kept, columns, Places{path.string()});
+  auto file = (form == Form::kCsv ? CreateCsv : CreateHdf5)(path, kept, columns);
+  return std::make_unique<BackgroundWriter>(path.string(), std::move(file), columns.size());
+}
+
+}  // namespace abbe::recording
