@@ -13,10 +13,11 @@
 //                     line of the probe, whichever way the line points.
 // They differ by terms of second order, about |angle|^2 d: 0.06 um at 1 mrad and 60 mm.
 //
-// Units: m and rad. Shapes: five readings in the order A, B, C, D, E; T is any scalar, also
-// ceres::Jet. Failure: none; angles must stay well below 1 rad, where a line meets the plane.
-// Source: seed 004, equations 2 to 7 (its printed matrix has lost the sign of the -EBX entry; the
-// equations are right). The case of a moving head is the project's, docs/theory-head.md.
+// Units: m and rad. Shapes: five readings in the order A, B, C, D, E. T is any scalar, also a jet
+// of Ceres. Failure: none; the angles must stay well below 1 rad, where a line meets the plane.
+// Source: Kweon, Liu, Yang (docs/theory-head.md), equations 2 to 7. The matrix printed there has
+// lost the sign of its -EBX entry; the equations are right. The case of a moving head is the
+// project's. Validity: a rigid target with flat faces that are square to each other.
 #pragma once
 
 #include <array>
