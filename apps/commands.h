@@ -8,7 +8,8 @@
 namespace abbe::apps {
 
 void AddReport(CLI::App& program, int& exit_code);
+void AddSensitivity(CLI::App& program, int& exit_code);
 
-inline constexpr std::array<AddCommand, 1> kCommands{AddReport};
+inline constexpr std::array<AddCommand, 2> kCommands{AddReport, AddSensitivity};
 
 }  // namespace abbe::apps
