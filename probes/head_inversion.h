@@ -16,8 +16,8 @@
 // probes on a line, or side probes with the same u. The exact inversions throw NumericalError for
 // readings that no small motion gives (never NaN); SimplifiedInversion does not fail.
 // Source: Kweon, Liu, Yang, equations 8 to 12; the exact ones are derived in docs/theory-head.md.
-// Validity: SimplifiedInversion neglects second order: at 1 mrad and 50 um up to 1e-6 rad and
-// 0.09 um against the document's model, at any travel; against the rigid model also |angle|^2 d.
+// Validity: SimplifiedInversion neglects second order: for the nominal layout, 1 mrad and 50 um up
+// to 1e-6 rad and 0.09 um, at any travel.
 #pragma once
 
 #include "probes/head_model.h"

@@ -11,7 +11,7 @@
 //   RigidReadings     the moved body turns by the full rotation exp([EAX EBX ECX]x), which knows no
 //                     order of the three angles; the plane of the target is cut by the measuring
 //                     line of the probe, whichever way the line points.
-// They differ by terms of second order, about |angle|^2 d: 0.06 um at 1 mrad and 60 mm.
+// They differ by half a product of two angles times the lever: 0.04 um at 1 mrad and 60 mm.
 //
 // Units: m and rad. Shapes: five readings in the order A, B, C, D, E. T is any scalar, also a jet
 // of Ceres. Failure: none; the angles must stay well below 1 rad, where a line meets the plane.
@@ -41,8 +41,7 @@ struct HeadErrors {
   T exx{};  // m: positioning, along u; known from elsewhere or zero, no probe sees it
 };
 
-// Equation 2: the top surface under a probe at (x, y), target moving; EZX stands before the
-// fraction.
+// Equation 2, with EZX before the fraction: the top surface under a probe at (x, y), target moving.
 template <typename T>
 T DocumentTop(const HeadErrors<T>& e, const T& x, const T& y, const T& d) {
   const T lever = d - x + e.exx;

@@ -1,4 +1,5 @@
 // CSV and HDF5 hold the same: random recordings go through both, in either order, twice.
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <bit>
