@@ -7,9 +7,10 @@
 
 namespace abbe::apps {
 
+void AddRig(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 void AddSensitivity(CLI::App& program, int& exit_code);
 
-inline constexpr std::array<AddCommand, 2> kCommands{AddReport, AddSensitivity};
+inline constexpr std::array<AddCommand, 3> kCommands{AddRig, AddReport, AddSensitivity};
 
 }  // namespace abbe::apps

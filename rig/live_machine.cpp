@@ -3,37 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "settings/unit.h"
+#include "rig/rig_channel.h"
 
 namespace abbe::rig {
-namespace {
-
-// The number of "probe_a_um", or -1.
-int ProbeOf(std::string_view channel) {
-  if (!channel.starts_with("probe_") || channel.size() < 8 || channel[7] != '_') return -1;
-  const int probe = channel[6] - 'a';
-  return probe >= 0 && probe < kProbes ? probe : -1;
-}
-
-// The number of "x_mm", or -1.
-int AxisOf(std::string_view channel) {
-  const bool position = channel.size() > 2 && channel[0] >= 'x' && channel[0] <= 'z' &&
-                        channel[1] == '_' && !settings::UnitOf(channel).name.empty();
-  return position ? channel[0] - 'x' : -1;
-}
-
-bool IsTemperature(std::string_view channel) {
-  return channel.starts_with("temp_") && channel.ends_with("_c");
-}
-
-}  // namespace
-
 LiveMachine::LiveMachine(const World& world)
     : world_(world), noise_(world.settings(), world.seed(), 0) {}
-
-bool LiveMachine::Has(std::string_view channel) const {
-  return ProbeOf(channel) >= 0 || AxisOf(channel) >= 0 || IsTemperature(channel);
-}
 
 bool LiveMachine::Start(int axis, double time) {
   const RigSettings& settings = world_.settings();
@@ -64,15 +38,18 @@ LiveMachine::Snapshot LiveMachine::Take(std::uint64_t tick) {
 }
 
 std::optional<double> LiveMachine::ReadingOf(std::string_view channel, double time) {
+  const std::optional<RigChannel> parsed = ParseChannel(channel);
+  if (!parsed) return std::nullopt;
   const double rate = world_.settings().update_rate;
   const auto tick = static_cast<std::uint64_t>(std::max(0.0, time) * rate);
   if (!latest_ || latest_->tick != tick) latest_ = Take(tick);
-  const double unit = settings::UnitOf(channel).si;
-  if (const int axis = AxisOf(channel); axis >= 0) return latest_->position[axis] / unit;
-  if (const int probe = ProbeOf(channel); probe >= 0) {
-    const double gap = latest_->gaps[probe];
-    if (gap < 0.0 || gap > world_.settings().probes[probe].range) return std::nullopt;
-    return gap / unit;
+  if (parsed->quantity == RigChannel::Quantity::kPosition) {
+    return latest_->position[parsed->index] / parsed->unit;
+  }
+  if (parsed->quantity == RigChannel::Quantity::kGap) {
+    const double gap = latest_->gaps[parsed->index];
+    if (gap < 0.0 || gap > world_.settings().probes[parsed->index].range) return std::nullopt;
+    return gap / parsed->unit;
   }
   auto found = std::find(temperatures_.begin(), temperatures_.end(), channel);
   if (found == temperatures_.end()) {

@@ -30,12 +30,9 @@ class LiveMachine {
   ProgramState StateAt(double time) const;
   int axis() const { return axis_; }  // started last
 
-  // What a channel reads, in the unit of its name, at the latest update: "x_mm", "probe_a_um",
-  // "temp_NAME_c". Empty: the gap is out of the probe's range, 0 to `range`.
+  // What a channel (rig_channel.h) reads, in the unit of its name, at the latest update. Empty: the
+  // gap is out of the probe's range, 0 to `range`, or the rig has no such channel.
   std::optional<double> ReadingOf(std::string_view channel, double time);
-
-  // Whether ReadingOf knows the channel.
-  bool Has(std::string_view channel) const;
 
  private:
   struct Snapshot {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "rig/rig_channel.h"
+
 namespace abbe::rig {
 namespace {
 
@@ -40,11 +42,11 @@ double SentinelOf(const ChannelSettings& channel) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-void CheckChannels(const hal::DevicesSettings& devices, const LiveMachine& machine) {
+void CheckChannels(const hal::DevicesSettings& devices) {
   for (const DeviceSettings& device : devices.devices) {
     for (const BlockSettings& block : device.blocks) {
       for (const ChannelSettings& channel : block.channels) {
-        if (machine.Has(channel.name)) continue;
+        if (ParseChannel(channel.name)) continue;
         throw InputError(
             fmt::format("devices.{}: the rig has no channel \"{}\"; it serves x_mm, y_mm, z_mm, "
                         "probe_a_um to probe_e_um and temp_NAME_c",
@@ -61,7 +63,7 @@ RegisterServer::RegisterServer(const World& world, const hal::DevicesSettings& d
     : devices_(devices),
       clock_(options.clock ? options.clock : ComputerClock(options.speed)),
       machine_(world) {
-  CheckChannels(devices_, machine_);
+  CheckChannels(devices_);
   for (const DeviceSettings& device : devices_.devices) {
     const auto claim = [&](RegisterTable table, int address, int count) {
       for (int i = 0; i < count; ++i) {

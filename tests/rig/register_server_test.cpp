@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -25,7 +26,7 @@ class Served {
   explicit Served(const RigSettings& settings, std::uint64_t seed = 7)
       : world(settings, seed),
         devices(hal::ReadDevices(DemoMill().Root().Child("devices"))),
-        server(world, devices, {.port = 0, .speed = 1.0, .clock = [this] { return now; }}),
+        server(world, devices, {.port = 0, .speed = 1.0, .clock = [this] { return now.load(); }}),
         head(At(0)),
         machine(At(1)) {}
 
@@ -43,7 +44,7 @@ class Served {
     return words;
   }
 
-  double now = 0.0;
+  std::atomic<double> now{0.0};
   World world;
   hal::DevicesSettings devices;
   RegisterServer server;
