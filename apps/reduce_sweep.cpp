@@ -68,7 +68,8 @@ void AddComponent(const ComponentResult& c, ordered_json& data) {
     data["reversal"][name] = {{"value", List(c.reversal->value)},
                               {"mean", c.reversal->mean.value},
                               {"max", std::abs(c.reversal->largest.value)},
-                              {"u", c.reversal->largest.u}};
+                              {"u", c.reversal->largest.u},
+                              {"seen", c.reversal->seen}};
   }
   for (std::size_t source = 0; source < probes::kSources; ++source) {
     data["budget"][name][std::string(probes::kSourceNames[source])] = c.budget[source];
@@ -103,11 +104,11 @@ ordered_json NoiseData(const probes::NoiseFigures& noise) {
   return data;
 }
 
-// "0.31 +- 0.12" or an empty cell.
+// The largest reversal "0.31 +- 0.12", with a star where it is more than chance.
 std::string Cell(const std::optional<probes::Reversal>& reversal, double coverage) {
   if (!reversal) return "-";
-  return fmt::format("{:.3f} +- {:.3f}", reversal->largest.value * kToMicro,
-                     coverage * reversal->largest.u * kToMicro);
+  return fmt::format("{:.3f} +- {:.3f}{}", reversal->largest.value * kToMicro,
+                     coverage * reversal->largest.u * kToMicro, reversal->seen ? "*" : " ");
 }
 
 std::string AngleTable(const SweepResult& result) {
@@ -185,7 +186,9 @@ std::string SweepTable(const SweepResult& result) {
       result.moving == probes::MovingBody::kTarget ? "target" : "head", result.stations.size(),
       result.stations.front() * kToMillimetre, result.stations.back() * kToMillimetre,
       result.passes);
-  text += AngleTable(result) + StraightnessTable(result) + NoiseText(result.noise);
+  text += AngleTable(result) + StraightnessTable(result);
+  text += "  * a reversal beyond what chance leaves in so many stations (95 %)\n";
+  text += NoiseText(result.noise);
   text += fmt::format("rows: {} read, {} used, {} flagged, {} moving; {} outliers\n", counts.rows,
                       counts.used, counts.flagged, counts.moving, counts.outliers);
   for (const std::string& note : result.notes) text += fmt::format("note: {}\n", note);

@@ -84,6 +84,8 @@ class DwellFinder {
       ++found_.counts.moving;
       return;
     }
+    if (gaps_[0].empty()) first_time_ = rows_.time[row];
+    last_time_ = rows_.time[row];
     time_ += rows_.time[row];
     position_ += rows_.position[row];
     for (std::size_t probe = 0; probe < kProbes; ++probe)
@@ -95,6 +97,7 @@ class DwellFinder {
     if (open_ && samples > 0) {
       const double n = static_cast<double>(samples);
       Dwell dwell{.time = time_ / n,
+                  .duration = last_time_ - first_time_,
                   .position = position_ / n * kMillimetre,
                   .pass = static_cast<int>(rows_.pass[start_]),
                   .direction = static_cast<int>(rows_.direction[start_]),
@@ -135,7 +138,8 @@ class DwellFinder {
   SweepDwells& found_;
   std::size_t start_ = 0;
   bool open_ = false;
-  double time_ = 0.0;
+  double time_ = 0.0;  // s, sum
+  double first_time_ = 0.0, last_time_ = 0.0;
   double position_ = 0.0;
   PerProbe<std::vector<double>> gaps_;  // um
   PerProbe<Sums> sums_;

@@ -27,6 +27,7 @@ struct DwellRule {
 
 struct Dwell {
   double time;      // s, mean of its rows
+  double duration;  // s, from the first to the last of them
   double position;  // m, of the swept axis
   int pass;
   int direction;          // +1, -1: of the approach

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
@@ -91,13 +92,17 @@ class ComponentEvaluation {
     Eigen::MatrixXd D = Eigen::MatrixXd::Zero(stations, groups.size());
     for (Eigen::Index i = 0; i < stations; ++i) D.row(i).segment(2 * i, 2) << 1.0, -1.0;
     const Eigen::MatrixXd reversal_V = D * V * D.transpose();
-    Reversal reversal;
+    Reversal reversal{};
     reversal.value = result.forward - result.backward;
     reversal.u = Deviations(reversal_V);
     reversal.mean = {reversal.value.mean(), std::sqrt(std::max(0.0, reversal_V.mean()))};
     Eigen::Index at = 0;
     reversal.value.cwiseAbs().maxCoeff(&at);
     reversal.largest = {reversal.value[at], reversal.u[at]};
+    // Sidak: each of n independent stations stays inside with 0.95^(1/n).
+    const double each = std::pow(0.95, 1.0 / static_cast<double>(stations));
+    const double limit = boost::math::quantile(boost::math::normal(), 0.5 + each / 2.0);
+    reversal.seen = (reversal.value.array().abs() > limit * reversal.u.array()).any();
     result.reversal = reversal;
   }
 

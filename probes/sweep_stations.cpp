@@ -107,15 +107,22 @@ class DwellFit {
   int group_count_ = 0;
 };
 
-// The variance of a dwell's mean from the scatter within the dwells.
-Eigen::MatrixXd WhiteFromWithin(const StationMeans& means, const PerProbe<Scatter>& scatter) {
+// The variance of a dwell's mean from the scatter within the dwells. The mean over a dwell of
+// length T has s^2 T / (3 tau) less of the drift's variance than the drift at one time, to first
+// order in T / tau.
+Eigen::MatrixXd WhiteFromWithin(const StationMeans& means, const PerProbe<Scatter>& scatter,
+                                const ProbeNoise& noise) {
+  constexpr double kLeastShare = 0.1;  // of the white variance stays where the drift dominates
   Eigen::MatrixXd white(means.dwells.size(), kProbes);
   for (std::size_t probe = 0; probe < kProbes; ++probe) {
     const double r = std::clamp(scatter[probe].lag1, 0.0, 0.99);
     const double one = scatter[probe].white * scatter[probe].white * (1.0 + r) / (1.0 - r);
     for (std::size_t i = 0; i < means.dwells.size(); ++i) {
-      const double variance = one / static_cast<double>(means.dwells[i].samples);
-      white(static_cast<Eigen::Index>(i), Row(probe)) = std::max(variance, kLeastVariance);
+      const Dwell& dwell = means.dwells[i];
+      const double variance = one / static_cast<double>(dwell.samples);
+      const double averaged = noise.drift * noise.drift * dwell.duration / (3.0 * noise.drift_time);
+      white(static_cast<Eigen::Index>(i), Row(probe)) =
+          std::max({variance - averaged, kLeastShare * variance, kLeastVariance});
     }
   }
   return white;
@@ -146,7 +153,7 @@ Eigen::MatrixXd ChooseWhite(const SweepDwells& sweep, const ProbeNoise& noise, c
   }
   if (within_dof >= kFewDwells) {
     means.noise.u_dof = dof;
-    return WhiteFromWithin(means, sweep.scatter);
+    return WhiteFromWithin(means, sweep.scatter, noise);
   }
   if (fit.dof() > 0.0) {
     means.noise.u_dof = fit.dof();

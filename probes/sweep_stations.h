@@ -5,9 +5,11 @@
 // white noise. The drift is the Ornstein-Uhlenbeck process of the machine file, independent for
 // each probe; the white variance of a dwell is
 //
-//   s^2 / n * (1 + r) / (1 - r)    s, r: scatter and lag-1 correlation of the readings within the
-//   dwells,
-//                                  pooled over all dwells of the probe; n readings
+//   s^2 / n * (1 + r) / (1 - r) - S^2 T / (3 tau)
+//
+//   s, r    scatter and lag-1 correlation of the readings within the dwells, pooled over all dwells
+//   n, T    readings and length of the dwell
+//   S, tau  standard deviation and time of the drift, part of which the mean over T takes out
 //
 // Recordings with one reading per dwell have no such scatter: the variance is then taken from the
 // scatter between the passes, or, with one pass, from the machine file.

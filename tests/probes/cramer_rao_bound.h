@@ -15,8 +15,9 @@
 #include <cmath>
 #include <vector>
 
+#include "rig/campaign.h"
+#include "rig/motion.h"
 #include "rig/world.h"
-#include "tests/probes/rig_sweep.h"
 
 namespace abbe::probes {
 
@@ -24,10 +25,11 @@ class CramerRaoBound {
  public:
   CramerRaoBound(const rig::RigSettings& settings, int axis)
       : settings_(settings), axis_(axis), plan_(*settings.sweeps[static_cast<std::size_t>(axis)]) {
-    const rig::SweepMotion motion = MotionOf(settings, axis);
+    const rig::SweepMotion motion(
+        plan_, {.acceleration = settings.acceleration, .lag = settings.lag}, plan_.first());
     for (const auto& stand : motion.standstills()) {
       const double counted = stand.end - stand.start - plan_.settle;
-      dwells_.push_back({stand.end - counted / 2.0, counted * kRowsPerSecond,
+      dwells_.push_back({stand.end - counted / 2.0, counted, counted * rig::CampaignOptions{}.rate,
                          static_cast<Eigen::Index>(stand.visit.station)});
     }
     stations_ = static_cast<Eigen::Index>(plan_.stations.size());
@@ -78,7 +80,7 @@ class CramerRaoBound {
  private:
   using Row = Eigen::Matrix<double, 1, 5>;
   struct Dwell {
-    double time, readings;
+    double time, seconds, readings;
     Eigen::Index station;
   };
 
@@ -153,7 +155,8 @@ class CramerRaoBound {
             entry = settings_.form * settings_.form * std::exp(-form / 2.0);
             if (p != q) continue;
             entry += settings_.drift * settings_.drift *
-                     std::exp(-std::abs(a.time - b.time) / settings_.drift_time);
+                     (k == l ? MeanOfDrift(a.seconds / settings_.drift_time)
+                             : std::exp(-std::abs(a.time - b.time) / settings_.drift_time));
             if (k == l) entry += settings_.white * settings_.white / a.readings;
           }
         }
@@ -161,6 +164,10 @@ class CramerRaoBound {
     }
     return V;
   }
+
+  // The variance of the mean over a time t of an Ornstein-Uhlenbeck process of unit variance and
+  // time.
+  static double MeanOfDrift(double t) { return 2.0 * (t - 1.0 + std::exp(-t)) / (t * t); }
 
   Eigen::Matrix<double, 5, 1> AtReference(const rig::World& world, Eigen::Index station) const {
     const auto motions = world.ErrorsOf(axis_, plan_.stations[static_cast<std::size_t>(station)]);

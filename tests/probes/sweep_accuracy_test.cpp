@@ -7,6 +7,7 @@
 
 #include "probes/sweep_reduction.h"
 #include "random/counter_random.h"
+#include "rig/campaign.h"
 #include "tests/probes/cramer_rao_bound.h"
 
 namespace abbe::probes {
@@ -30,11 +31,13 @@ Score ScoreOf(int axis, int seeds) {
       settings::Document::Read(std::string(ABBE_SOURCE_DIR) + "/machines/demo_mill.toml");
   const SweepSetup setup = ReadSweepSetup(document.Root());
   const rig::RigSettings rig_settings = rig::ReadRigSettings(document.Root());
+  const auto channels = rig::ChannelsOf(hal::ReadDevices(document.Root().Child("devices")));
   const CramerRaoBound bound(rig_settings, axis);
   Score score;
   for (int seed = 1; seed <= seeds; ++seed) {
     const rig::World world(rig_settings, static_cast<std::uint64_t>(seed));
-    const SweepResult result = ReduceSweep(RecordRig(world, axis), setup);
+    const SweepResult result =
+        ReduceSweep(rig::RecordSweep(world, "XYZ" [axis], channels, { .moving = false }), setup);
     const Eigen::MatrixXd truth = bound.Truth(world), limit = bound.Deviations(world);
     const random::CounterRandom pick(static_cast<std::uint64_t>(seed), 0xACC);
     const auto component = static_cast<std::size_t>(kComponents * pick.Uniform(0));
@@ -74,9 +77,11 @@ void Check(int axis) {
   EXPECT_GT(score.pull_square, std::pow(1.0 - q - 2.576 * std::sqrt(q), 3));
   EXPECT_LT(score.pull_square, std::pow(1.0 - q + 2.576 * std::sqrt(q), 3));
   EXPECT_NEAR(score.inside, 0.95, 2.576 * std::sqrt(0.95 * 0.05 / n));
-  // The bound is reached within 10 %, in what is achieved and in what is stated.
-  EXPECT_LT(std::sqrt(score.to_bound), 1.10);
-  EXPECT_LT(std::sqrt(score.to_bound_all), 1.10);
+  // The bound is reached within 10 %, in what is achieved and in what is stated; an rms of fewer
+  // seeds scatters more than that.
+  const double largest = seeds < 200 ? 1.0 + 2.576 / std::sqrt(2.0 * n) : 1.10;
+  EXPECT_LT(std::sqrt(score.to_bound), largest);
+  EXPECT_LT(std::sqrt(score.to_bound_all), largest);
   EXPECT_NEAR(std::sqrt(score.stated_to_bound), 1.0, 0.05);
 }
 
