@@ -94,9 +94,9 @@ Table::Table(std::shared_ptr<Document::State> state, std::shared_ptr<const Node>
       asked_path_(std::move(asked_path)),
       key_(std::move(key)) {}
 
-void Table::Ask(std::string_view key, AskedKey asked) const {
+void Table::Ask(std::string_view key, const AskedKey& asked) const {
   state_->known[path_].emplace(key);
-  state_->asked.try_emplace(Join(asked_path_, key), std::move(asked));
+  state_->asked.try_emplace(Join(asked_path_, key), asked);
 }
 
 InputError Table::Error(std::string_view key, std::string_view message) const {

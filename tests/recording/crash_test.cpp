@@ -21,7 +21,6 @@ namespace {
 
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
-using std::chrono::steady_clock;
 
 constexpr std::uint64_t kTrials = 200;
 const std::vector<std::string> kColumns{"time_s", "x_mm", "a", "b", "c", "flags"};

@@ -96,6 +96,7 @@ TEST_P(EachForm, OverwritesAtOnceOrNotAtAll) {
 // Two recorders and a reader at the same time, as in a program with several devices.
 TEST_P(EachForm, WorksFromManyThreads) {
   std::vector<std::jthread> threads;
+  threads.reserve(4);
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([&, t] {
       const auto path = scratch_ / (std::to_string(t) + GetParam());
