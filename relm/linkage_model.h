@@ -35,6 +35,12 @@ struct LinkageReadings {
   Eigen::Index poses() const { return angles.cols(); }
 };
 
+struct TipDerivatives {
+  Eigen::Vector3d tip;  // p_BT, m
+  RowMatrix J_tip_x;    // 3 x parameters
+  RowMatrix J_tip_q;    // 3 x joints, by the encoder angles
+};
+
 class LinkageModel {
  public:
   // The blocks hold the parameters of `motions`, in the same order.
