@@ -21,11 +21,12 @@
 #include <vector>
 
 #include "estimation/parameter.h"
+#include "estimation/residual.h"
 #include "relm/motion_chain.h"
 
 namespace abbe::relm {
 
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using estimation::RowMatrix;
 
 // What the encoders say in some poses, one column each, and how much warmer than the reference
 // temperature the links are (empty: not at all).

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <span>
 #include <string>
 
@@ -28,6 +27,32 @@ std::vector<Column> AngleColumns(const recording::Recording& recording, Eigen::I
   return columns;
 }
 
+// Empty when the settings name none or the recording lacks it.
+Column TemperatureColumn(const recording::Recording& recording, const LinkageSettings& settings) {
+  if (settings.temperature.empty()) return {};
+  return recording.Find(settings.temperature).value_or(Column{});
+}
+
+std::vector<std::size_t> GoodRows(const recording::Recording& recording) {
+  const Column flags = recording.Find("flags").value_or(Column{});
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    if (flags.empty() || flags[row] == 0) rows.push_back(row);
+  }
+  if (rows.empty()) {
+    throw InputError(fmt::format("{}: none of the {} rows is without a flag; nothing to evaluate",
+                                 recording.name, recording.rows()));
+  }
+  return rows;
+}
+
+double Finite(const recording::Recording& recording, Column column, std::size_t row,
+              const std::string& name) {
+  if (std::isfinite(column[row])) return column[row];
+  throw InputError(
+      fmt::format("{}: row {}: {} is no number and has no flag", recording.name, row + 1, name));
+}
+
 // An encoder turns less than half a turn from row to row, or its counter has wrapped or slipped.
 void RefuseJump(const recording::Recording& recording, const GoodReadings& good,
                 Eigen::Index pose) {
@@ -45,42 +70,22 @@ void RefuseJump(const recording::Recording& recording, const GoodReadings& good,
 }  // namespace
 
 GoodReadings ReadAngles(const recording::Recording& recording, const LinkageSettings& settings) {
-  const Eigen::Index joints = settings.chain.joints();
-  const std::vector<Column> columns = AngleColumns(recording, joints);
-  const auto flags = recording.Find("flags");
-  const auto temperature =
-      settings.temperature.empty() ? std::optional<Column>{} : recording.Find(settings.temperature);
+  const std::vector<Column> columns = AngleColumns(recording, settings.chain.joints());
+  const Column temperatures = TemperatureColumn(recording, settings);
   GoodReadings good;
-  for (std::size_t row = 0; row < recording.rows(); ++row) {
-    if (flags && (*flags)[row] != 0) {
-      ++good.flagged;
-    } else {
-      good.rows.push_back(row);
-    }
-  }
-  if (good.rows.empty()) {
-    throw InputError(fmt::format("{}: none of the {} rows is without a flag; nothing to evaluate",
-                                 recording.name, recording.rows()));
-  }
-  const auto poses = static_cast<Eigen::Index>(good.rows.size());
-  good.readings.angles.resize(joints, poses);
-  if (temperature) good.readings.warmth.resize(poses);
-  for (Eigen::Index pose = 0; pose < poses; ++pose) {
+  good.rows = GoodRows(recording);
+  good.flagged = recording.rows() - good.rows.size();
+  good.readings.angles.resize(settings.chain.joints(), static_cast<Eigen::Index>(good.rows.size()));
+  if (!temperatures.empty()) good.readings.warmth.resize(good.readings.poses());
+  for (Eigen::Index pose = 0; pose < good.readings.poses(); ++pose) {
     const std::size_t row = good.rows[static_cast<std::size_t>(pose)];
-    for (Eigen::Index i = 0; i < joints; ++i) {
-      const double angle = columns[static_cast<std::size_t>(i)][row];
-      if (!std::isfinite(angle)) {
-        throw InputError(fmt::format("{}: row {}: pivot_{}_rad is no number and has no flag",
-                                     recording.name, row + 1, i + 1));
-      }
-      good.readings.angles(i, pose) = angle;
+    for (Eigen::Index i = 0; i < good.readings.angles.rows(); ++i) {
+      good.readings.angles(i, pose) = Finite(recording, columns[static_cast<std::size_t>(i)], row,
+                                             fmt::format("pivot_{}_rad", i + 1));
     }
-    if (temperature) {
-      if (!std::isfinite((*temperature)[row])) {
-        throw InputError(fmt::format("{}: row {}: {} is no number and has no flag", recording.name,
-                                     row + 1, settings.temperature));
-      }
-      good.readings.warmth[pose] = (*temperature)[row] - settings.reference_temperature;
+    if (!temperatures.empty()) {
+      good.readings.warmth[pose] = Finite(recording, temperatures, row, settings.temperature) -
+                                   settings.reference_temperature;
     }
     RefuseJump(recording, good, pose);
   }
