@@ -8,9 +8,12 @@
 namespace abbe::apps {
 
 void AddRig(CLI::App& program, int& exit_code);
-void AddReport(CLI::App& program, int& exit_code);
+void AddSweep(CLI::App& program, int& exit_code);
+void AddReduce(CLI::App& program, int& exit_code);
 void AddSensitivity(CLI::App& program, int& exit_code);
+void AddReport(CLI::App& program, int& exit_code);
 
-inline constexpr std::array<AddCommand, 3> kCommands{AddRig, AddReport, AddSensitivity};
+inline constexpr std::array<AddCommand, 5> kCommands{AddRig, AddSweep, AddReduce, AddSensitivity,
+                                                     AddReport};
 
 }  // namespace abbe::apps

@@ -53,6 +53,7 @@ class Accumulator {
  private:
   void Scatter(const RowMatrix& j, const std::vector<int>& columns) {
     const Index n = j.cols();
+    if (n == 0) return;
     square_.setZero(n, n);
     square_.selfadjointView<Eigen::Lower>().rankUpdate(j.transpose());
     slope_.noalias() = j.transpose() * r_;

@@ -134,6 +134,7 @@ std::vector<WeakDirection> FindWeakDirections(const MatrixXd& data, const Matrix
   MatrixXd reference = Reference(data, prior);
   reference.diagonal() += tolerance;
   const Spectrum spectrum = SpectrumOf(data, std::move(reference));
+  if (spectrum.weak == 0) return {};
   const VectorXd scale = spectrum.reference.diagonal().cwiseSqrt();
   MatrixXd directions = spectrum.Unwhiten(spectrum.whitened.leftCols(spectrum.weak));
   MatrixXd coefficients = scale.asDiagonal() * directions;

@@ -103,7 +103,8 @@ double GaussianSurface::operator()(double a, double b) const {
       for (int j = 0; j < BellWindow::kNodes; ++j) along_b += window_b.bells[j] * weights[j];
     } else {
       for (int j = 0; j < BellWindow::kNodes; ++j) {
-        along_b += window_b.bells[j] * random_.Normal(Index(window_a.first + i, window_b.first + j));
+        along_b +=
+            window_b.bells[j] * random_.Normal(Index(window_a.first + i, window_b.first + j));
       }
     }
     sum += window_a.bells[i] * along_b;

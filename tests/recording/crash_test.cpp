@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -134,6 +136,38 @@ TEST_P(Crash, LosesAtMostTheLastSecond) {
     recorder.Kill();
     ExpectRows(Read(path), a_second_old);
   }
+}
+
+// After a power cut a file may lack its end too: what is kept are rows as they were, never zeros.
+TEST_P(Crash, KeepsOnlyTrueRowsOfAFileThatWasCutToo) {
+  const Scratch scratch(FastFolder());
+  const auto path = scratch / ("a" + GetParam());
+  Recorder recorder([&](Progress& progress) {
+    const auto writer = Writer::Create(path, "kind = \"dwell\"", kColumns);
+    for (std::uint64_t i = 0;; ++i) {
+      writer->Append(RowAt(i));
+      if (i % 97 != 0) continue;
+      writer->Flush();
+      progress.flushed = i + 1;
+    }
+    return 0;
+  });
+  while (recorder.progress().flushed < 10'000) std::this_thread::sleep_for(microseconds(100));
+  recorder.Kill();
+  const std::string whole = Bytes(path);
+  std::uint64_t saved = 0;
+  for (std::size_t part = 1; part < 256; ++part) {
+    Put(path, std::string_view(whole).substr(0, whole.size() * part / 256));
+    try {
+      const Recording kept = Read(path);
+      ExpectRows(kept, 0);
+      EXPECT_EQ(kept.warnings.empty(), Bytes(path).ends_with('\n'));
+      saved = std::max<std::uint64_t>(saved, kept.rows());
+    } catch (const InputError&) {
+    }
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(saved, 5'000u);
 }
 
 // While its recorder lives, a file can be read, and what was read before stays as it was.

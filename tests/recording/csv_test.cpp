@@ -102,7 +102,7 @@ TEST_F(Csv, OpensWhereverItIsCut) {
   for (std::size_t size = 1; size < whole.size(); ++size) {
     const std::string part = whole.substr(0, size);
     if (size < kHead.size()) {
-      ExpectHas(Refusal(part), size <= 20 ? "recording" : "nothing was recorded");
+      ExpectHas(Refusal(part), size < 20 ? "is not a recording" : "nothing was recorded");
       continue;
     }
     const auto lines = static_cast<std::size_t>(std::count(part.begin(), part.end(), '\n'));

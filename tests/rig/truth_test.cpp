@@ -67,6 +67,16 @@ TEST(Truth, SeesAnErrorOfOneStation) {
   EXPECT_NEAR(found[0].rms_error, 1e-6 * std::sqrt((1.0 - hat) / 61.0), 1e-15);
 }
 
+// The first station of an angle has no uncertainty, for it is zero by definition.
+TEST(Truth, LeavesOutTheStationThatIsZeroByDefinition) {
+  const ordered_json truth = TruthOf(World(DemoRig(), 9));
+  ordered_json result = ResultOf(truth, 1e-6);
+  result["errors"]["EAX"]["u"][0] = 0.0;
+  EXPECT_NEAR(Compare(truth, result, "r.json")[1].rms_pull, 10.0 / std::sqrt(60.0), 1e-10);
+  result["errors"]["EAX"]["u"][7] = 0.0;
+  EXPECT_TRUE(std::isnan(Compare(truth, result, "r.json")[1].rms_pull));
+}
+
 TEST(Truth, RefusesWhatIsNoResult) {
   const ordered_json truth = TruthOf(World(DemoRig(), 9));
   EXPECT_THROW(Compare(truth, ordered_json::object(), "r.json"), InputError);
