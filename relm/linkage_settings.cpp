@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "relm/error_models.h"
@@ -73,11 +74,10 @@ std::vector<int> ReadOrders(const Table& table, const char* key,
                             const std::vector<double>& by_default) {
   std::vector<int> orders;
   for (const double value : table.Quantities(key, 0, by_default)) {
-    const int order = static_cast<int>(value);
-    if (order != value || order < 1 || order > 64) {
+    if (!(value >= 1 && value <= 64 && value == std::floor(value))) {
       throw table.Error(key, "must hold whole numbers from 1 to 64: the harmonics per turn");
     }
-    orders.push_back(order);
+    orders.push_back(static_cast<int>(value));
   }
   return orders;
 }
