@@ -37,7 +37,7 @@ LinkageReadings PosesInVolume(const LinkageSettings& settings, const Sensitivity
                               double warmth = 0);
 
 struct SensitivityOptions {
-  bool displacement = false;  // errors relative to that of the first pose
+  bool displacement = false;  // errors relative to that of the first pose, which does not count
   std::uint64_t draws = 2048;
   std::uint64_t seed = 1;
   int threads = 0;  // 0: all
