@@ -347,8 +347,8 @@ TEST(CompleteErrorModel, ContainsThePublishedBearingsToSecondOrder) {
   }
 }
 
-// The other way round it is not true: no parameter of the published model does what the tilt of
-// pivot 3 about link 2's plane and the eccentricity of an encoder do.
+// The other way round it is not true: no published parameter does what a lean of pivot 3 along
+// link 1, an eccentric encoder or gravity does.
 TEST(PublishedErrorModel, DoesNotContainTheCompleteOne) {
   const LinkageSettings settings = TestLinkage();
   const Eigen::MatrixXd published = JacobianOver(PublishedErrorModel(settings, true), 100, 5);

@@ -73,6 +73,17 @@ TEST(PivotLinkage, HasTheDerivativesOfTheEquations) {
   }
 }
 
+// |det| = r L1 L2 |cos q3|: what makes a pose singular.
+TEST(PivotLinkage, IsSingularInLineAndOnTheAxis) {
+  const PivotLinkage linkage(kL1, kL2);
+  const Matrix3Xd angles = AnyAngles(200);
+  for (const Vector3d q : angles.colwise()) {
+    const Vector3d p = linkage.Tip(q);
+    const double expected = std::hypot(p.x(), p.y()) * kL1 * kL2 * std::cos(q[2]);
+    EXPECT_NEAR(std::abs(linkage.JacobianTipAngles(q).determinant()), std::abs(expected), 1e-17);
+  }
+}
+
 // Not a multiple of the block that the batch functions work in. The vector functions of the C
 // library are right to 4 units in the last place.
 TEST(PivotLinkage, SaysTheSameForManyPosesAsForOne) {
