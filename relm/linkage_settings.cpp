@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "relm/error_models.h"
@@ -73,24 +74,24 @@ std::vector<int> ReadOrders(const Table& table, const char* key,
                             const std::vector<double>& by_default) {
   std::vector<int> orders;
   for (const double value : table.Quantities(key, 0, by_default)) {
-    const int order = static_cast<int>(value);
-    if (order != value || order < 1 || order > 64) {
+    if (!(value >= 1 && value <= 64 && value == std::floor(value))) {
       throw table.Error(key, "must hold whole numbers from 1 to 64: the harmonics per turn");
     }
-    orders.push_back(order);
+    orders.push_back(static_cast<int>(value));
   }
   return orders;
 }
 
-// Two links and three pivots as six segments with the encoders on theta 0, phi 2 and phi 4; the
-// offsets of pivots 2 and 3 are segments 1 and 3, the stem of the ball is segment 5.
+// Two links and three pivots as six segments with the encoders on theta 0, phi 2 and phi 4. The
+// segments 1, 3 and 5 have no length: pivot 2 beside pivot 1, pivot 3 above the end of link 1, and
+// the ball beside link 2, along the axis of pivot 3.
 std::vector<Segment> SegmentsOf(const PivotLinkage& linkage) {
   return {{.encoder = SegmentEncoder::kTheta},
           {.phi = kRightAngle},
           {.length = linkage.link_1(), .encoder = SegmentEncoder::kPhi},
           {.phi = -kRightAngle},
           {.length = linkage.link_2(), .encoder = SegmentEncoder::kPhi},
-          {}};
+          {.theta = kRightAngle, .phi = kRightAngle}};
 }
 
 std::vector<Segment> ReadSegments(const Table& linkage) {
