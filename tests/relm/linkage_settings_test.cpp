@@ -144,7 +144,7 @@ TEST(LinkageSettings, RefuseWhatCannotBe) {
   ExpectRefusal(pivots("graduation_harmonics = [1.5]"), "whole numbers from 1 to 64");
   ExpectRefusal(pivots("graduation_harmonics = [1e30]"), "whole numbers from 1 to 64");
   ExpectRefusal(pivots("") + "rotation = [\"x\", \"y\", \"-z\"]\n", "right-handed");
-  ExpectRefusal(pivots("") + "rotation = [\"x\", \"x\", \"z\"]\n", "three different");
+  ExpectRefusal(pivots("") + "rotation = [\"x\", \"x\", \"z\"]\n", "right-handed");
   ExpectRefusal(pivots("") + "tilt = 1\n", "tilt");
   ExpectRefusal(pivots("") + "[linkage.tolerance]\nlink_um = -1\n", "link_um");
   ExpectRefusal(pivots("") + "[linkage.tolerance]\nlink_mm = 1\n", "link_um");
