@@ -69,13 +69,16 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
                          const hal::SweepPlan& plan, const std::filesystem::path& path) {
   hal::SteadyClock clock(options.clock_speed);
   const bool operator_asks = options.prompt;
+  bool opened = false;  // what fails before that is thrown
   const hal::OpenedDevices devices =
-      hal::OpenDevices(file.devices, clock, hal::Presence::kRequired,
-                       [&](const std::string& line) { fmt::print(stderr, "abbe: {}\n", line); });
+      hal::OpenDevices(file.devices, clock, hal::Presence::kRequired, [&](const std::string& line) {
+        if (opened) fmt::print(stderr, "abbe: {}\n", line);
+      });
+  opened = true;
   const hal::SweepAbout about{
       file.sweep_setup.machine.name, hal::UtcNow(), "modbus",
       options.mounting.empty() ? std::string()
-                               : fmt::format("mounting = {{ id = \"{}\" }}\n", options.mounting)};
+                               : fmt::format("[mounting]\nid = \"{}\"\n", options.mounting)};
   const auto& channels = devices.source->channels();
   const auto writer = recording::Writer::Create(path, hal::SweepHeader(plan, about, channels),
                                                 hal::SweepColumns(channels));
@@ -110,6 +113,15 @@ void RefuseUnfinished(const hal::SweepOutcome& outcome, const std::filesystem::p
                                 outcome.fault, kept));
 }
 
+void WarnOfLackingVisits(const hal::SweepOutcome& outcome, const hal::SweepPlan& plan) {
+  if (outcome.lacking.empty()) return;
+  const hal::Visit& first = outcome.lacking.front();
+  fmt::print(stderr,
+             "abbe: {} of {} visits lack good readings, the first at {:.3f} mm in pass {}{}{}\n",
+             outcome.lacking.size(), plan.Visits().size(), 1e3 * plan.stations[first.station],
+             first.pass, outcome.worst_channel.empty() ? "" : "; ", outcome.worst_channel);
+}
+
 int Sweep(const SweepCommand& options) {
   const MachineFile file = ReadMachineFile(options.machine);
   const hal::SweepPlan& plan = file.SweepPlanOf(options.axis[0]);
@@ -122,6 +134,7 @@ int Sweep(const SweepCommand& options) {
   }
   const std::filesystem::path path = FreeName(options);
   const hal::SweepOutcome outcome = Record(options, file, plan, path);
+  WarnOfLackingVisits(outcome, plan);
   RefuseUnfinished(outcome, path);
 
   const probes::SweepResult result = probes::ReduceSweep(recording::Read(path), file.sweep_setup);
@@ -133,12 +146,6 @@ int Sweep(const SweepCommand& options) {
     fmt::print("{}", SweepTable(result));
     fmt::print("recorded {} rows in {} ({} flagged, worst skew {:.1f} ms)\n", outcome.rows,
                path.string(), outcome.flagged, 1e3 * outcome.worst_skew_s);
-  }
-  if (!outcome.lacking.empty()) {
-    fmt::print(stderr,
-               "abbe: {} of {} visits lack good readings; the first is {:.3f} mm in pass {}\n",
-               outcome.lacking.size(), plan.Visits().size(),
-               1e3 * plan.stations[outcome.lacking.front().station], outcome.lacking.front().pass);
   }
   return kDone;
 }

@@ -22,6 +22,8 @@ const SweepState& SweepFollower::Step(std::optional<double> position, double tim
   FollowDirection(*position);
   FollowStation(*position, time_s);
   CountVisit(time_s, good);
+  const bool left_the_last = done_.back() && !state_.station && state_.pass == plan_.passes;
+  complete_ = complete_ || left_the_last;  // a program may leave before the whole dwell is over
   return state_;
 }
 

@@ -28,7 +28,8 @@ class SweepRecorder {
         options_(options),
         visits_(plan.Visits()),
         follower_(plan),
-        row_(SweepColumns(source.channels()).size()) {
+        row_(SweepColumns(source.channels()).size()),
+        bad_(source.channels().size()) {
     std::size_t column = kFirstReading;
     for (const Channel& channel : source.channels()) {
       const char axis = channel.name[0];
@@ -52,6 +53,7 @@ class SweepRecorder {
     writer_.Close();
     outcome_.seconds = clock_.Now() - start_s_;
     outcome_.fault = source_.Fault();
+    outcome_.worst_channel = WorstChannel();
     return outcome_;
   }
 
@@ -63,8 +65,13 @@ class SweepRecorder {
     const SampleSet set = source_.Read();
     std::uint32_t flags = 0;
     for (std::size_t i = 0; i < set.samples.size(); ++i) {
-      row_[columns_[i]] = set.samples[i].value;
-      flags |= FlagOf(set.samples[i].cause);
+      const Sample& sample = set.samples[i];
+      row_[columns_[i]] = sample.value;
+      flags |= FlagOf(sample.cause);
+      if (sample.quality == Quality::kBad) {
+        ++bad_[i].rows;
+        bad_[i].last = sample.cause;
+      }
     }
     outcome_.worst_skew_s = std::max(outcome_.worst_skew_s, set.skew_s);
     set_s_ = set.time_s - start_s_;
@@ -80,6 +87,15 @@ class SweepRecorder {
     writer_.Append(row_);
     ++outcome_.rows;
     outcome_.flagged += flags != 0 ? 1 : 0;
+  }
+
+  std::string WorstChannel() const {
+    const auto worst = std::max_element(bad_.begin(), bad_.end(),
+                                        [](const Bad& a, const Bad& b) { return a.rows < b.rows; });
+    if (worst == bad_.end() || worst->rows == 0) return {};
+    const auto channel = static_cast<std::size_t>(worst - bad_.begin());
+    return fmt::format("{} was bad in {} rows, last: {}", source_.channels()[channel].name,
+                       worst->rows, NameOf(worst->last));
   }
 
   // Tells the caller when something has changed.
@@ -167,6 +183,11 @@ class SweepRecorder {
   SweepFollower follower_;
   std::vector<double> row_;
   std::vector<std::size_t> columns_;  // of the row, for each channel
+  struct Bad {
+    std::uint64_t rows = 0;
+    Cause last = Cause::kNone;
+  };
+  std::vector<Bad> bad_;  // for each channel
   std::size_t swept_ = kX;
   bool has_position_ = false;
   double start_s_ = 0.0, next_s_ = 0.0, set_s_ = 0.0, row_s_ = -1.0;

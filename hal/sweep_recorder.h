@@ -56,7 +56,8 @@ struct SweepOutcome {
   std::uint64_t flagged = 0;  // of them
   double worst_skew_s = 0.0;
   double seconds = 0.0;
-  std::string fault;           // of the source at the end, empty when all was well
+  std::string fault;          // of the source at the end, empty when all was well
+  std::string worst_channel;  // "probe_a_um was bad in 812 rows, last: frozen"; empty when none was
   std::vector<Visit> lacking;  // visits without a good reading during half of their dwell
 };
 

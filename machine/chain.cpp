@@ -86,6 +86,13 @@ bool Chain::CarriesTarget(char axis) const {
   throw InputError(fmt::format("'{}' is no axis of the chain {}; name X, Y or Z", axis, Text()));
 }
 
+std::string Chain::Movers(char axis) const {
+  const std::string from_bed = CarriesTarget(axis)
+                                   ? std::string(workpiece_axes_.rbegin(), workpiece_axes_.rend())
+                                   : tool_axes_;
+  return from_bed.substr(0, from_bed.find(axis) + 1);
+}
+
 std::string Chain::Text() const {
   std::string text = "[w";
   for (const char axis : workpiece_axes_) text += fmt::format(" {}", axis);

@@ -31,6 +31,10 @@ class Chain {
   // InputError.
   bool CarriesTarget(char axis) const;
 
+  // The axes that move the carriage of `axis`: those between the bed and it, and itself. For
+  // [w X Y b Z t]: X is moved by "YX", Z by "Z".
+  std::string Movers(char axis) const;
+
   // The chain without primes and parentheses: "[w X Y b Z t]".
   std::string Text() const;
 

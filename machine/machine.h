@@ -4,8 +4,9 @@
 //   const auto document = settings::Document::Read("machine.toml");
 //   const machine::Machine mill = machine::ReadMachine(document.Root());
 //
-// Frame: M, the machine frame, right-handed, along the axes X, Y, Z; an axis error function is zero
-// and acts at the reference point. SI units. Every key stands in docs/machine-file.md.
+// Frame: M, the machine frame, right-handed, along the axes X, Y, Z. The error motions of an axis
+// act at the reference point, which travels with the carriage and is named by where it stands with
+// all axes at zero. SI units. Every key stands in docs/machine-file.md.
 #pragma once
 
 #include <Eigen/Core>

@@ -9,10 +9,12 @@
 //           m = g / (1 + k g),                         and back:   g = m / (1 - k m)
 //
 // Both together: the tilt first, then the stray capacitance. Both need the gap itself, not its
-// change. Units: m, rad, 1/m. Failure: InputError where the edge of the electrode would touch the
-// surface (a phi >= g), or where no finite gap gives the reading (k m >= 1). Source: integral of
-// 1/gap over the disc, docs/theory-head.md; models beyond seed 004. Validity: parallel field lines,
-// no fringe: the gap small against the radius.
+// change.
+//
+// Units: m, rad, 1/m.
+// Failure: InputError where the edge of the electrode would touch the surface (a phi >= g), or
+// where no finite gap gives the reading (k m >= 1). Source: the integral of 1/gap over the disc,
+// docs/theory-head.md. Validity: straight field lines, no fringe: the gap small against the radius.
 #pragma once
 
 #include <cmath>

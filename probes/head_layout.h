@@ -9,9 +9,10 @@
 // the side surface (s = 0). A position is where the measuring line meets the surface when the sweep
 // starts, so the height of a probe above the surface plays no part.
 //
-// Units: m. Failure: none here; a layout that cannot tell the five errors apart is refused by the
-// inversions. Source: seed 004, figure 5 and section 3: A (l, 0), B (0, l), C (0, -l) on top and
-// D (0, l''), E (l, l'') on the side, l = 10 mm, l'' = 20 mm.
+// Units: m.
+// Failure: none; a layout that cannot tell the five errors apart is refused by the inversions.
+// Source: Kweon, Liu, Yang (docs/theory-head.md), figure 5: A (l, 0), B (0, l), C (0, -l) on top
+// and D (0, l''), E (l, l'') on the side, l = 10 mm, l'' = 20 mm.
 #pragma once
 
 #include <Eigen/Core>

@@ -11,12 +11,13 @@
 //   RigidReadings     the moved body turns by the full rotation exp([EAX EBX ECX]x), which knows no
 //                     order of the three angles; the plane of the target is cut by the measuring
 //                     line of the probe, whichever way the line points.
-// They differ by terms of second order, about |angle|^2 d: 0.06 um at 1 mrad and 60 mm.
+// They differ by half a product of two angles times the lever: 0.04 um at 1 mrad and 60 mm.
 //
-// Units: m and rad. Shapes: five readings in the order A, B, C, D, E; T is any scalar, also
-// ceres::Jet. Failure: none; angles must stay well below 1 rad, where a line meets the plane.
-// Source: seed 004, equations 2 to 7 (its printed matrix has lost the sign of the -EBX entry; the
-// equations are right). The case of a moving head is the project's, docs/theory-head.md.
+// Units: m and rad. Shapes: five readings in the order A, B, C, D, E. T is any scalar, also a jet
+// of Ceres. Failure: none; the angles must stay well below 1 rad, where a line meets the plane.
+// Source: Kweon, Liu, Yang (docs/theory-head.md), equations 2 to 7. The matrix printed there has
+// lost the sign of its -EBX entry; the equations are right. The case of a moving head is the
+// project's. Validity: a rigid target with flat faces that are square to each other.
 #pragma once
 
 #include <array>
@@ -40,24 +41,22 @@ struct HeadErrors {
   T exx{};  // m: positioning, along u; known from elsewhere or zero, no probe sees it
 };
 
-// Equation 2: the top surface under a probe at (x, y), target moving.
+// Equation 2, with EZX before the fraction: the top surface under a probe at (x, y), target moving.
 template <typename T>
 T DocumentTop(const HeadErrors<T>& e, const T& x, const T& y, const T& d) {
   const T lever = d - x + e.exx;
-  const T c2 = T(1) + e.ecx * e.ecx;
-  return (e.eax * (y - e.eyx + lever * e.ecx) + e.ebx * (lever + (e.eyx - y) * e.ecx) +
-          e.ezx * c2) /
-         c2;
+  const T scale = T(1) / (T(1) + e.ecx * e.ecx);
+  return e.ezx + scale * (e.eax * (y - e.eyx + lever * e.ecx) +  //
+                          e.ebx * (lever + (e.eyx - y) * e.ecx));
 }
 
 // Equations 6 and 7: the side surface under a probe at (x, z), target moving.
 template <typename T>
 T DocumentSide(const HeadErrors<T>& e, const T& x, const T& z, const T& d) {
   const T lever = d - x + e.exx;
-  const T b2 = T(1) + e.ebx * e.ebx;
-  return (e.eax * (e.ezx - z + lever * e.ebx) + e.eyx * b2 -
-          (lever + (z - e.ezx) * e.ebx) * e.ecx) /
-         b2;
+  const T scale = T(1) / (T(1) + e.ebx * e.ebx);
+  return e.eyx + scale * (e.eax * (e.ezx - z + lever * e.ebx) -  //
+                          e.ecx * (lever + (z - e.ezx) * e.ebx));
 }
 
 template <typename T>

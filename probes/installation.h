@@ -5,8 +5,8 @@
 // order.
 //
 // Units: m and rad. Failure: none; angles must stay well below 1 rad.
-// Source: seed 004, section 6, the 4x4 transform before equation 16. Its printed entry (2,3),
-// -Sin(pitch) Sin(roll), must be -Cos(pitch) Sin(roll), or the matrix is no rotation.
+// Source: Kweon, Liu, Yang (docs/theory-head.md), the transform before equation 16. Its printed
+// entry (2,3), -sin(pitch) sin(roll), must be -cos(pitch) sin(roll), or the matrix is no rotation.
 // Validity: InstalledLines is exact. InstalledLayout is the source's first-order form, in which the
 // lines keep their direction: per surface only the coordinates in it move. It neglects the square
 // of the angles times the position (0.04 um for 2 mrad and 10 mm, in the position of a probe, so

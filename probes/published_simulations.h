@@ -1,4 +1,4 @@
-// Simulations I and II of the head's source: how far an inversion is off under random errors.
+// Simulations I and II of the head's paper: how far an inversion is off under random errors.
 //
 //   const SimulationErrors errors =
 //       RunSimulation({.simulation = Simulation::kOne, .inversion = Inversion::kSimplified});
@@ -13,11 +13,14 @@
 //         measuring lines play no part in the source's model). The inversion knows the nominal
 //         layout only, unless it is kCalibrated.
 //
-// Random numbers: 32-bit uniforms, the words of random/counter_words.h; one draw takes five words
-// in kOne, ten in kTwo. The result is a pure function of simulation, inversion, draws and seed: it
-// does not depend on the number of threads. Units: m and rad. Failure: InputError for no draws or a
-// negative number of threads. Source: seed 004, sections 5 and 6 and appendix; its bounds for
-// II: 1.5e-5 rad, 0.6 um.
+// Random numbers: 32-bit uniforms from the words of random/counter_words.h, five a draw in kOne,
+// ten in kTwo; in each block of 256 draws, word 256 c + i is number c of draw i. The result is a
+// pure function of simulation, inversion, draws and seed, whatever the number of threads.
+//
+// Units: m and rad.
+// Failure: InputError for no draws or a negative number of threads.
+// Source: Kweon, Liu, Yang (docs/theory-head.md), sections 5 and 6 and appendix. What it
+// found is in BoundsOf.
 #pragma once
 
 #include <array>
@@ -53,6 +56,17 @@ inline constexpr std::size_t kComponents = 5;
 inline constexpr std::array<const char*, kComponents> kComponentNames{"EAX", "EBX", "ECX", "EYX",
                                                                       "EZX"};
 using SimulationErrors = std::array<ErrorStatistics, kComponents>;
+
+// The largest errors that the source reports for the simplified inversion. For kOne it shows one
+// run of 61 draws; of 20 000 draws the largest translation is 0.09 um.
+struct PublishedBounds {
+  double angle;        // rad
+  double translation;  // m
+};
+constexpr PublishedBounds BoundsOf(Simulation simulation) {
+  return simulation == Simulation::kOne ? PublishedBounds{1e-6, 0.06e-6}
+                                        : PublishedBounds{1.5e-5, 0.6e-6};
+}
 
 SimulationErrors RunSimulation(const SimulationOptions& options);
 

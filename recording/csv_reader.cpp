@@ -35,7 +35,7 @@ void CheckSignature(std::string_view line, const Places& places) {
     if (kBlanks.find(c) == std::string_view::npos) packed += c;
   }
   const std::string_view key = "#abbe-recording=";
-  if (!packed.starts_with(key)) {
+  if (!packed.starts_with(key) || packed == key) {
     const bool binary =
         std::any_of(line.begin(), line.end(), [](char c) { return c >= 0 && c < 9; });
     throw Error(places, 1,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <limits>
 
 #include "recording/check.h"
 #include "recording/hdf5_handle.h"
@@ -30,21 +31,24 @@ OpenFile Open(const std::string& name) {
                                name, open.trouble));
 }
 
-// A text attribute of a file or a data set.
+// A text attribute, of fixed length as ours or of variable length as others write it.
 std::string Text(hid_t object, const char* attribute_name, const std::string& file) {
   const Handle attribute(H5Aopen(object, attribute_name, H5P_DEFAULT), H5Aclose);
   const Handle type(attribute.good() ? H5Aget_type(attribute.id()) : H5I_INVALID_HID, H5Tclose);
-  if (!type.good() || H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0) {
-    throw InputError(
-        fmt::format("{}: is not a recording: it has no text `{}` of fixed length; check the path",
-                    file, attribute_name));
+  if (!type.good() || H5Tget_class(type.id()) != H5T_STRING) {
+    throw InputError(fmt::format("{}: is not a recording: it has no text `{}`; check the path",
+                                 file, attribute_name));
   }
-  std::string text(H5Tget_size(type.id()), '\0');
-  if (H5Aread(attribute.id(), type.id(), text.data()) < 0) {
+  char* variable = nullptr;
+  std::string fixed(H5Tget_size(type.id()), '\0');
+  const bool is_variable = H5Tis_variable_str(type.id()) > 0;
+  void* const to = is_variable ? static_cast<void*>(&variable) : fixed.data();
+  if (H5Aread(attribute.id(), type.id(), to) < 0) {
     throw InputError(fmt::format("{}: the text `{}` cannot be read: {}; use a copy that is whole",
                                  file, attribute_name, Hdf5Reason()));
   }
-  text.resize(std::min(text.find('\0'), text.size()));
+  const std::string text = is_variable ? (variable == nullptr ? "" : variable) : fixed.c_str();
+  if (is_variable) H5free_memory(variable);
   return text;
 }
 
@@ -81,7 +85,7 @@ std::vector<std::string> ColumnNames(hid_t file) {
 class DataSet {
  public:
   DataSet(hid_t file, const std::string& name, const std::string& file_name)
-      : set_(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose) {
+      : name_(name), set_(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose) {
     const Handle space(set_.good() ? H5Dget_space(set_.id()) : H5I_INVALID_HID, H5Sclose);
     const Handle type(set_.good() ? H5Dget_type(set_.id()) : H5I_INVALID_HID, H5Tclose);
     const bool number = type.good() && (H5Tget_class(type.id()) == H5T_FLOAT ||
@@ -94,56 +98,61 @@ class DataSet {
     H5Sget_simple_extent_dims(space.id(), &rows_, nullptr);
   }
 
+  const std::string& name() const { return name_; }
   hsize_t rows() const { return rows_; }
 
-  // Reads the first `rows` values; how many could be read, which is fewer when the file is cut.
-  hsize_t Read(hsize_t rows, std::vector<double>& values) const {
-    values.resize(rows);
-    if (rows == 0 || ReadPart(0, rows, values.data())) return rows;
-    constexpr hsize_t kPart = 4096;
-    for (hsize_t first = 0; first < rows; first += kPart) {
-      if (!ReadPart(first, std::min(kPart, rows - first), values.data() + first)) return first;
+  // The rows before the first chunk that lies beyond the end of a file of `size` bytes. HDF5 would
+  // read zeros there.
+  hsize_t RowsWithin(std::uintmax_t size) const {
+    const Handle layout(H5Dget_create_plist(set_.id()), H5Pclose);
+    hsize_t chunk = 0;
+    if (H5Pget_chunk(layout.id(), 1, &chunk) < 0 || chunk == 0) return rows_;
+    for (hsize_t first = 0; first < rows_; first += chunk) {
+      haddr_t begin = HADDR_UNDEF;
+      hsize_t bytes = 0;
+      H5Dget_chunk_info_by_coord(set_.id(), &first, nullptr, &begin, &bytes);
+      if (begin != HADDR_UNDEF && begin + bytes > size) return first;
     }
-    return rows;
+    return rows_;
+  }
+
+  // The first `rows` values.
+  std::vector<double> Read(hsize_t rows, const std::string& file_name) const {
+    std::vector<double> values(rows);
+    const Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
+    const Handle space(H5Dget_space(set_.id()), H5Sclose);
+    const hsize_t first = 0;
+    if (rows == 0) return values;
+    H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, nullptr, &rows, nullptr);
+    if (H5Dread(set_.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, values.data()) <
+        0) {
+      throw InputError(fmt::format("{}: {}: cannot be read: {}; use a copy that is whole",
+                                   file_name, name_, Hdf5Reason()));
+    }
+    return values;
   }
 
  private:
-  bool ReadPart(hsize_t first, hsize_t count, double* to) const {
-    const Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
-    const Handle space(H5Dget_space(set_.id()), H5Sclose);
-    H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, nullptr, &count, nullptr);
-    return H5Dread(set_.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, to) >= 0;
-  }
-
+  std::string name_;
   Handle set_;
   hsize_t rows_ = 0;
 };
 
-void ReadColumns(hid_t file, Recording& recording, bool whole) {
+std::vector<DataSet> OpenColumns(hid_t file, const std::string& file_name) {
   std::vector<DataSet> sets;
-  for (const std::string& name : ColumnNames(file)) {
-    sets.emplace_back(file, name, recording.name);
-    recording.columns.push_back({name, {}});
-  }
-  // Columns grow one after the other: a row is whole when the shortest has it.
-  hsize_t rows = sets.empty() ? 0 : sets.front().rows();
-  for (const DataSet& set : sets) rows = std::min(rows, set.rows());
-  const hsize_t extent = rows;
-  for (std::size_t c = 0; c < sets.size(); ++c) {
-    rows = std::min(rows, sets[c].Read(whole ? sets[c].rows() : rows, recording.columns[c].values));
-  }
-  if (whole && rows < extent) {
-    throw InputError(fmt::format("{}: row {}: cannot be read: {}; use a copy that is whole",
-                                 recording.name, rows + 1, Hdf5Reason()));
-  }
-  if (whole) return;
-  const auto unwritten = [](double value) {
-    return std::bit_cast<std::uint64_t>(value) == kUnwrittenBits;
-  };
+  for (const std::string& name : ColumnNames(file)) sets.emplace_back(file, name, file_name);
+  return sets;
+}
+
+// The rows that every column of a file has that was not closed: columns grow one after the other.
+void KeepWholeRows(Recording& recording) {
+  std::size_t rows = recording.rows();
   for (const Column& column : recording.columns) {
     const auto end = column.values.begin() + static_cast<std::ptrdiff_t>(rows);
-    rows = static_cast<hsize_t>(std::find_if(column.values.begin(), end, unwritten) -
-                                column.values.begin());
+    const auto unwritten = std::find_if(column.values.begin(), end, [](double value) {
+      return std::bit_cast<std::uint64_t>(value) == kUnwrittenBits;
+    });
+    rows = static_cast<std::size_t>(unwritten - column.values.begin());
   }
   for (Column& column : recording.columns) column.values.resize(rows);
 }
@@ -157,11 +166,23 @@ Recording ReadHdf5(const std::filesystem::path& path) {
   const OpenFile open = Open(recording.name);
   CheckVersion(open.file.id(), recording.name);
   recording.header = Text(open.file.id(), kHeaderAttribute, recording.name);
-  ReadColumns(open.file.id(), recording, open.trouble.empty());
-  if (!open.trouble.empty()) {
+  const std::vector<DataSet> sets = OpenColumns(open.file.id(), recording.name);
+  if (open.trouble.empty()) {
+    for (const DataSet& set : sets) {
+      recording.columns.push_back({set.name(), set.Read(set.rows(), recording.name)});
+    }
+  } else {
+    hsize_t rows = std::numeric_limits<hsize_t>::max();
+    const std::uintmax_t size = std::filesystem::file_size(path);
+    for (const DataSet& set : sets) rows = std::min(rows, set.RowsWithin(size));
+    for (const DataSet& set : sets) {
+      recording.columns.push_back({set.name(), set.Read(rows, recording.name)});
+    }
+    KeepWholeRows(recording);
     recording.warnings.push_back(
-        fmt::format("{}: was not closed, or was cut ({}): the {} rows that are whole are kept",
-                    recording.name, open.trouble, recording.rows()));
+        fmt::format("{}: was not closed, for its recorder was killed or still records: the {} rows "
+                    "that reached the disk are kept",
+                    recording.name, recording.rows()));
   }
   Check(recording, Places{recording.name});
   return recording;

@@ -1,8 +1,9 @@
 // Recordings as files: reading, writing, and writing as they grow.
 //
 // The form is chosen by the extension: .csv, or .h5 / .hdf5. A file is refused (InputError with
-// file and line or row) when a column that its kind requires is missing, a row is ragged, time does
-// not increase, or a NaN stands in a row without a flag; a truncated file opens with a warning.
+// file and line or row) when a column that its kind requires is missing, a row is ragged, time goes
+// back, or a NaN stands in a row without a flag; a file whose end is missing, because its recorder
+// was killed, opens with a warning. docs/recordings.md has every rule.
 #pragma once
 
 #include <filesystem>
@@ -15,25 +16,28 @@
 
 namespace abbe::recording {
 
+// The whole recording. Its `warnings` are for the person who asked for it.
 Recording Read(const std::filesystem::path& path);
 
-// Writes the whole recording; the file appears under its name only when it is complete.
+// Writes the whole recording, over what is there; the file appears under its name only when it is
+// complete. InputError for a recording that Read() would refuse, DeviceError when the disk is full.
 void Write(const Recording& recording, const std::filesystem::path& path);
 
-// Appends rows to a file while they are measured. At the latest every second, and whenever Flush()
-// is called, everything appended so far is on disk. Memory does not grow with the length.
+// Appends rows to a file while they are measured. Within a second, and when Flush() or Close()
+// returns, a row is on the disk, also when no other follows it. Memory does not grow with the
+// length. One thread appends; a thread of the writer's own waits for the disk.
 class Writer {
  public:
   virtual ~Writer() = default;
 
-  // Creates the file. InputError when it exists already (nothing measured is ever overwritten) or
-  // when the folder cannot be written.
+  // Creates the file. InputError when it exists already (nothing measured is ever overwritten),
+  // when the folder cannot be written, or for a header or names that Read() would refuse.
   static std::unique_ptr<Writer> Create(const std::filesystem::path& path,
                                         const std::string& header,
                                         const std::vector<std::string>& columns);
 
-  // `row` has one value per column. DeviceError ("disk full ...") when the disk takes no more; rows
-  // written before stay readable.
+  // `row` has one value per column. DeviceError ("disk full ...") when the disk takes no more, from
+  // then on each time; rows written before stay readable.
   virtual void Append(std::span<const double> row) = 0;
   virtual void Flush() = 0;
   // Flushes and closes; the destructor does the same and swallows errors.

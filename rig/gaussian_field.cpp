@@ -90,23 +90,24 @@ GaussianSurface::GaussianSurface(const random::CounterRandom& random, double sd,
   }
 }
 
-double GaussianSurface::WeightOf(std::int64_t a, std::int64_t b) const {
-  const std::int64_t row = a - first_, column = b - first_;
-  if (row >= 0 && row < count_ && column >= 0 && column < count_) {
-    return weights_[static_cast<std::size_t>(row * count_ + column)];
-  }
-  return random_.Normal(Index(a, b));
-}
-
 double GaussianSurface::operator()(double a, double b) const {
   const BellWindow window_a(a, length_), window_b(b, length_);
+  const std::int64_t row = window_a.first - first_, column = window_b.first - first_;
+  const std::int64_t last = count_ - BellWindow::kNodes;
+  const bool kept = row >= 0 && row <= last && column >= 0 && column <= last;
   double sum = 0.0;
   for (int i = 0; i < BellWindow::kNodes; ++i) {
-    double row = 0.0;
-    for (int j = 0; j < BellWindow::kNodes; ++j) {
-      row += window_b.bells[j] * WeightOf(window_a.first + i, window_b.first + j);
+    double along_b = 0.0;
+    if (kept) {
+      const double* weights = weights_.data() + (row + i) * count_ + column;
+      for (int j = 0; j < BellWindow::kNodes; ++j) along_b += window_b.bells[j] * weights[j];
+    } else {
+      for (int j = 0; j < BellWindow::kNodes; ++j) {
+        along_b +=
+            window_b.bells[j] * random_.Normal(Index(window_a.first + i, window_b.first + j));
+      }
     }
-    sum += window_a.bells[i] * row;
+    sum += window_a.bells[i] * along_b;
   }
   return amplitude_ * sum;
 }

@@ -57,8 +57,6 @@ class GaussianSurface {
   double operator()(double a, double b) const;
 
  private:
-  double WeightOf(std::int64_t a, std::int64_t b) const;
-
   random::CounterRandom random_;
   double amplitude_;
   double length_;

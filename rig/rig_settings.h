@@ -10,7 +10,7 @@
 // does not need are left to their owners.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <optional>

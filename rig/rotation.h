@@ -4,7 +4,7 @@
 //   FullRotation(a, b, c) = Rz(c) * Ry(b) * Rx(a)     right-hand rule, radians, no small angles
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace abbe::rig {

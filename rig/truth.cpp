@@ -23,6 +23,7 @@ std::vector<double> StationsOf(const RigSettings& settings, int axis) {
   if (settings.sweeps[axis]) return settings.sweeps[axis]->stations;
   const auto [first, last] = settings.travels[axis];
   std::vector<double> stations;
+  stations.reserve(kStepsWithoutPlan + 1);
   for (int i = 0; i <= kStepsWithoutPlan; ++i) {
     stations.push_back(first + (last - first) * i / kStepsWithoutPlan);
   }
@@ -130,19 +131,20 @@ ComponentComparison CompareComponent(const std::string& component,
                                      const std::vector<double>& errors,
                                      const std::vector<double>& u) {
   ComponentComparison comparison{component, errors.size(), 0.0, 0.0, 0.0, 0.0};
-  const auto n = static_cast<double>(errors.size());
-  double squares = 0.0, pulls = 0.0, inside = 0.0;
+  double squares = 0.0, pulls = 0.0, inside = 0.0, uncertain = 0.0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const double pull = u[i] > 0.0 ? errors[i] / u[i] : std::numeric_limits<double>::quiet_NaN();
     squares += errors[i] * errors[i];
+    comparison.max_error = std::max(comparison.max_error, std::abs(errors[i]));
+    if (u[i] == 0.0 && errors[i] == 0.0) continue;
+    const double pull = u[i] > 0.0 ? errors[i] / u[i] : std::numeric_limits<double>::quiet_NaN();
     pulls += pull * pull;
     inside += std::abs(pull) <= 2.0 ? 1.0 : 0.0;
-    comparison.max_error = std::max(comparison.max_error, std::abs(errors[i]));
+    uncertain += 1.0;
   }
-  comparison.rms_error = std::sqrt(squares / n);
-  comparison.rms_pull = std::sqrt(pulls / n);
+  comparison.rms_error = std::sqrt(squares / static_cast<double>(errors.size()));
+  comparison.rms_pull = std::sqrt(pulls / uncertain);
   comparison.share_inside_2u =
-      std::isnan(pulls) ? std::numeric_limits<double>::quiet_NaN() : inside / n;
+      std::isnan(pulls) ? std::numeric_limits<double>::quiet_NaN() : inside / uncertain;
   return comparison;
 }
 

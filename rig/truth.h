@@ -10,7 +10,8 @@
 // {"EYX": {"value": [], "u": []}, ...}. An angle is compared relative to the first station, a
 // straightness as the deviation from its own least-squares line over the stations, truth and result
 // alike, so that only what a sweep defines is compared. Truth between its stations is interpolated
-// linearly.
+// linearly. A station that is zero by definition (u = 0 and no error, the first one of an angle)
+// does not count in what is said about u.
 #pragma once
 
 #include <cstdint>

@@ -11,7 +11,8 @@ namespace {
 // thousand times closer.
 constexpr int kSettingRounds = 4;
 
-// The larger of the sweep and the head, twice: beyond it the form of a face costs more time.
+// Half of the extent over which the form of a face is kept: beyond it the same form costs more
+// time.
 double FaceReach(const RigSettings& settings, int axis) {
   double arm = 0.0;
   for (const ProbePlace& probe : settings.probes) {

@@ -21,7 +21,9 @@ struct Document::State {
   std::string name;
   toml::table root;
   std::map<std::string, AskedKey> asked;
-  std::map<std::string, std::set<std::string, std::less<>>> known;  // real table path -> keys
+  // Real table path -> keys that were asked for by name, and keys that Named() gave.
+  std::map<std::string, std::set<std::string, std::less<>>> known;
+  std::map<std::string, std::set<std::string, std::less<>>> named;
 };
 
 struct Table::Node {
@@ -37,6 +39,12 @@ std::string Join(const std::string& path, std::string_view key) {
 
 const toml::node* Find(const toml::table* table, std::string_view key) {
   return table == nullptr ? nullptr : table->get(key);
+}
+
+// A whole number is a number, however large.
+double AsNumber(const toml::node& node) {
+  if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
+  return node.as_floating_point()->get();
 }
 
 std::string WithUnit(double value, const Unit& unit) {
@@ -86,9 +94,9 @@ Table::Table(std::shared_ptr<Document::State> state, std::shared_ptr<const Node>
       asked_path_(std::move(asked_path)),
       key_(std::move(key)) {}
 
-void Table::Ask(std::string_view key, AskedKey asked) const {
+void Table::Ask(std::string_view key, const AskedKey& asked) const {
   state_->known[path_].emplace(key);
-  state_->asked.try_emplace(Join(asked_path_, key), std::move(asked));
+  state_->asked.try_emplace(Join(asked_path_, key), asked);
 }
 
 InputError Table::Error(std::string_view key, std::string_view message) const {
@@ -142,7 +150,7 @@ double Table::ReadNumber(std::string_view key, const NumberRule& rule) const {
     return *rule.fallback;
   }
   if (!node->is_number()) throw Error(key, "must be a number");
-  const double value = node->value<double>().value();
+  const double value = AsNumber(*node);
   if (!std::isfinite(value)) throw Error(key, "must be a finite number");
   const auto refuse = [&](std::string_view relation, double bound) {
     throw Error(key, fmt::format("is {}, it must be {} {}", WithUnit(value, unit), relation,
@@ -190,10 +198,10 @@ std::vector<double> Table::Quantities(std::string_view key, std::size_t size,
       throw Error(key, fmt::format("must be {}", wanted));
     }
     for (const toml::node& element : *array) {
-      if (!element.is_number() || !std::isfinite(element.value<double>().value())) {
+      if (!element.is_number() || !std::isfinite(AsNumber(element))) {
         throw Error(key, fmt::format("must be {}", wanted));
       }
-      values.push_back(element.value<double>().value());
+      values.push_back(AsNumber(element));
     }
   }
   for (double& value : values) value *= unit.si;
@@ -258,10 +266,10 @@ std::vector<Table> Table::Children(std::string_view key) const {
 std::vector<Table> Table::Named() const {
   std::vector<Table> named;
   if (node_->table == nullptr) return named;
-  const auto asked_for = state_->known[path_];
+  const auto& asked_for = state_->known[path_];
   for (const auto& [key, node] : *node_->table) {
     if (!node.is_table() || asked_for.contains(key.str())) continue;
-    state_->known[path_].emplace(key.str());
+    state_->named[path_].emplace(key.str());
     auto below = std::make_shared<Node>(Node{node.as_table(), node.source().begin.line});
     named.push_back(Table(state_, std::move(below), Join(path_, key.str()), Join(asked_path_, "[]"),
                           std::string(key.str())));
@@ -272,8 +280,9 @@ std::vector<Table> Table::Named() const {
 void Table::RefuseUnknown() const {
   if (node_->table == nullptr) return;
   const auto& known = state_->known[path_];
+  const auto& named = state_->named[path_];
   for (const auto& [key, node] : *node_->table) {
-    if (known.contains(key.str())) continue;
+    if (known.contains(key.str()) || named.contains(key.str())) continue;
     const std::string nearest =
         NearestWord(key.str(), std::vector<std::string>(known.begin(), known.end()));
     throw Error(key.str(), nearest.empty()

@@ -109,7 +109,7 @@ class Table {
   struct Node;  // hides the TOML library
   Table(std::shared_ptr<Document::State> state, std::shared_ptr<const Node> node, std::string path,
         std::string asked_path, std::string key);
-  void Ask(std::string_view key, AskedKey asked) const;
+  void Ask(std::string_view key, const AskedKey& asked) const;
   double ReadNumber(std::string_view key, const NumberRule& rule) const;
 
   std::shared_ptr<Document::State> state_;

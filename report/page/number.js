@@ -42,7 +42,7 @@ const significant = (value, digits = 3) => fixed(value, placesFor(value, digits)
 
 // A position without the digits of its binary form: 12, 12.5, 0.
 const positionText = (value) =>
-    isNumber(value) ? String(Number(value.toPrecision(7)) || 0).replace('-', MINUS) : '\u2013';
+    isNumber(value) ? String(Number(value.toFixed(4)) || 0).replace('-', MINUS) : '\u2013';
 
 // Value and U95, both rounded to two significant digits of U95: {value: "42.3", U: "1.2"}.
 function rounded(value, U) {

@@ -19,7 +19,8 @@ class Machine:
 
     def __init__(self, stations=(0.0, 10.0, 20.0, 30.0), passes=2, dwell_s=0.25, move_s=0.05):
         self.stations, self.dwell_s, self.move_s = list(stations), dwell_s, move_s
-        self.path = (self.stations + self.stations[::-1]) * passes
+        below, above = self.stations[0] - 0.5, self.stations[-1] + 0.5  # where the axis turns
+        self.path = [below, *self.stations, above, *self.stations[::-1]] * passes + [below]
         self.started = None
         self.frozen_at = None
         self.stop_after = None

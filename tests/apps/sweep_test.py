@@ -146,7 +146,7 @@ class SweepTest(unittest.TestCase):
         server.machine.stop_after = 1.0
         code, _, err = self.finish(self.start(server.port))
         self.assertEqual(code, 3)
-        self.assertIn("moved", err)
+        self.assertIn("stands still", err)
         self.assertGreater(len(self.rows()), 20)
 
     def test_ctrl_c_ends_cleanly(self):

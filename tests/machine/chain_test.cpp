@@ -56,6 +56,14 @@ TEST(Chain, RefusesWhatIsNoChainAndSaysWhy) {
   }
 }
 
+TEST(Chain, SaysWhichAxesMoveACarriage) {
+  const Chain column = Chain::Parse("[w X Y b Z t]");
+  EXPECT_EQ(column.Movers('X'), "YX");
+  EXPECT_EQ(column.Movers('Y'), "Y");
+  EXPECT_EQ(column.Movers('Z'), "Z");
+  EXPECT_EQ(Chain::Parse("[w b Y X Z t]").Movers('Z'), "YXZ");
+}
+
 TEST(Chain, RefusesAnAxisThatIsNotThere) {
   EXPECT_THROW(Chain::Parse("[w X Y b Z t]").CarriesTarget('A'), InputError);
 }

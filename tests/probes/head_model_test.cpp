@@ -162,9 +162,10 @@ double LargestDifference(double scale, MovingBody moving) {
 TEST(HeadModel, TheTwoModelsDifferBySecondOrder) {
   for (const MovingBody moving : {MovingBody::kTarget, MovingBody::kHead}) {
     const double full = LargestDifference(1, moving), tenth = LargestDifference(0.1, moving);
-    // |angle|^2 d = 0.06 um is the size of a second-order term at 1 mrad and 60 mm.
-    EXPECT_LT(full, 1.5 * 1e-6 * kTravel);
-    EXPECT_GT(full, 1e-9);
+    // Half a product of two angles (1 mrad)^2 times the lever: d + l, or 2 l for a moving head.
+    const double lever = moving == MovingBody::kTarget ? kTravel + 30e-3 : 30e-3;
+    EXPECT_LT(full, 0.5e-6 * lever);
+    EXPECT_GT(full, 0.25e-6 * lever);
     EXPECT_NEAR(full / tenth, 100, 2);  // third order changes the ratio by a few parts in 1000
   }
 }

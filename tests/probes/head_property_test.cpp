@@ -69,20 +69,6 @@ RC_GTEST_PROP(HeadProperty, TheRigidInversionLeavesOnlyRounding, ()) {
              kAngleRounding * kReach);
 }
 
-// The error of the simplified inversion is of second order: at a tenth of the errors it is a
-// hundredth. Both models agree on that; only the constant differs.
-RC_GTEST_PROP(HeadProperty, TheSimplifiedInversionNeglectsSecondOrder, ()) {
-  const HeadLayout<> layout = AnyLayout();
-  const MovingBody moving = AnyBody();
-  const HeadErrors<> e = AnyErrors(1e-3, 50e-6);
-  const double d = In(0, 0.06);
-  const PerProbe<> delta = RigidReadings(LinesOf(layout), moving, e, d);
-  const HeadErrors<> found = SimplifiedInversion(layout, moving)(delta, d, e.exx);
-  // At most some ten terms of (1 mrad)^2, magnified by positions over arms, up to 27 mm / 4 mm.
-  constexpr double kSecondOrder = 10 * 7 * 1e-6;
-  AssertNear(found, e, kSecondOrder, kSecondOrder * kReach);
-}
-
 RC_GTEST_PROP(HeadProperty, AHeadWithoutErrorMotionReadsZeroHoweverInstalled, ()) {
   const Installation<> askew{In(-0.1, 0.1),   In(-0.1, 0.1),   In(-0.1, 0.1),
                              In(-1e-3, 1e-3), In(-1e-3, 1e-3), In(-1e-3, 1e-3)};

@@ -1,0 +1,119 @@
+// abbe reduce: from recordings to results.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/machine_file.h"
+#include "apps/reduce_reference.h"
+#include "apps/reduce_sweep.h"
+#include "apps/result_file.h"
+#include "probes/sweep_reduction.h"
+#include "recording/recording_file.h"
+
+namespace abbe::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReduceOptions {
+  std::vector<fs::path> recordings;
+  fs::path machine, out, json;
+  bool squareness = false;
+  bool quiet = false;
+};
+
+class Reduction {
+ public:
+  explicit Reduction(const ReduceOptions& options) : options_(options) {}
+
+  int Run() {
+    if (!options_.json.empty() && options_.recordings.size() > 1) {
+      throw InputError("--json takes the result of one recording; use --out for several");
+    }
+    for (const fs::path& path : options_.recordings) {
+      const recording::Recording recording = recording::Read(path);
+      for (const std::string& warning : recording.warnings) {
+        fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
+      }
+      Reduce(recording, path);
+    }
+    if (options_.squareness) Squareness();
+    return kDone;
+  }
+
+ private:
+  void Reduce(const recording::Recording& recording, const fs::path& path) {
+    const std::string kind = recording.Kind();
+    if (kind == "sweep") {
+      sweeps_.push_back(probes::ReduceSweep(recording, Setup()));
+      Show(SweepTable(sweeps_.back()));
+      Keep(SweepJson(sweeps_.back()), path.stem().string());
+    } else if (kind == "reference") {
+      const nlohmann::ordered_json result = ReduceReference(recording);
+      Show(ReferenceTable(result));
+      Keep(result, path.stem().string());
+    } else {
+      throw InputError(
+          fmt::format("{}: kind is \"{}\"; reduce takes recordings of kind sweep or reference",
+                      path.string(), kind));
+    }
+  }
+
+  void Squareness() {
+    if (sweeps_.size() != 2) {
+      throw InputError(
+          fmt::format("--squareness compares two sweeps, {} given; name the sweeps of two axes",
+                      sweeps_.size()));
+    }
+    const auto result = probes::SquarenessOfSweeps(sweeps_[0], sweeps_[1], Setup().target);
+    Show(SquarenessLine(result));
+    Keep(SquarenessJson(result), "squareness_" + result.name);
+  }
+
+  const probes::SweepSetup& Setup() {
+    if (!file_) {
+      if (options_.machine.empty()) {
+        throw InputError("a sweep is reduced with its machine file; add --machine FILE");
+      }
+      file_ = ReadMachineFile(options_.machine);
+    }
+    return file_->sweep_setup;
+  }
+
+  void Show(const std::string& text) const {
+    if (!options_.quiet) fmt::print("{}", text);
+  }
+
+  void Keep(const nlohmann::ordered_json& result, const std::string& name) const {
+    if (!options_.json.empty()) WriteResult(result, options_.json);
+    if (!options_.out.empty()) WriteResult(result, options_.out / (name + ".json"));
+  }
+
+  const ReduceOptions& options_;
+  std::optional<MachineFile> file_;
+  std::vector<probes::SweepResult> sweeps_;
+};
+
+}  // namespace
+
+void AddReduce(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<ReduceOptions>();
+  CLI::App* command =
+      program.add_subcommand("reduce", "From recordings to errors with uncertainty");
+  command->add_option("recordings", options->recordings, "Recordings of kind sweep or reference")
+      ->required();
+  command->add_option("--machine", options->machine, "Machine file; sweeps need it");
+  command->add_option("--out", options->out, "Folder for one result (RECORDING.json) each");
+  command->add_option("--json", options->json, "File for the result of one recording");
+  command->add_flag("--squareness", options->squareness, "Squareness of two sweeps, one mounting");
+  command->add_flag("--quiet", options->quiet, "No table");
+  command->footer("Example: abbe reduce sweep_X.csv --machine mill.toml --out measured");
+  command->callback([options, &exit_code] { exit_code = Reduction(*options).Run(); });
+}
+
+}  // namespace abbe::apps

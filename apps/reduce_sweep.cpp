@@ -1,0 +1,212 @@
+#include "apps/reduce_sweep.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace abbe::apps {
+namespace {
+
+using nlohmann::ordered_json;
+using probes::ComponentResult;
+using probes::LineFigure;
+using probes::SweepResult;
+
+constexpr double kToMicro = 1e6;       // m -> um, rad -> urad
+constexpr double kToNano = 1e9;        // m -> nm
+constexpr double kToMillimetre = 1e3;  // m -> mm
+
+ordered_json List(const Eigen::VectorXd& values) {
+  return std::vector<double>(values.data(), values.data() + values.size());
+}
+
+std::string_view UnitOf(const ComponentResult& c) { return c.component.angle() ? "rad" : "m"; }
+
+std::string ProbeName(std::size_t probe) { return fmt::format("probe_{:c}", 'a' + probe); }
+
+ordered_json ConditionsData(const probes::SweepConditions& conditions) {
+  ordered_json data;
+  for (const auto& [name, spread] : conditions.temperatures) {
+    data[name] = {{"min", spread.min}, {"max", spread.max}, {"mean", spread.mean}};
+  }
+  data["duration_s"] = conditions.duration;
+  data["feed_mm_min"] = conditions.feed * kToMillimetre * 60.0;
+  return data;
+}
+
+ordered_json ErrorData(const ComponentResult& c) {
+  ordered_json data{
+      {"unit", UnitOf(c)}, {"kind", c.component.kind}, {"value", List(c.value)}, {"u", List(c.u)}};
+  if (c.forward.size() > 0) data["forward"] = List(c.forward);
+  if (c.backward.size() > 0) data["backward"] = List(c.backward);
+  return data;
+}
+
+ordered_json LineData(const LineFigure& figure) {
+  return {{"slope", figure.line.slope}, {"offset", figure.line.offset}};
+}
+
+// Adds what one component came to.
+void AddComponent(const ComponentResult& c, ordered_json& data) {
+  const std::string& name = c.component.name;
+  data["errors"][name] = ErrorData(c);
+  data["errors_at_target"][name] = {{"value", List(c.at_target)}, {"u", List(c.u_at_target)}};
+  if (c.straightness) {
+    const probes::StraightnessFigures& s = *c.straightness;
+    data["straightness"][name] = {{"end_points", s.end_points.error},
+                                  {"least_squares", s.least_squares.error},
+                                  {"minimum_zone", s.minimum_zone.error},
+                                  {"u", s.u}};
+    data["straightness_lines"][name] = {{"end_points", LineData(s.end_points)},
+                                        {"least_squares", LineData(s.least_squares)},
+                                        {"minimum_zone", LineData(s.minimum_zone)}};
+    data["slopes"][name] = {{"value", s.slope.value}, {"u", s.slope.u}};
+  }
+  if (c.range) data["angular_ranges"][name] = {{"value", c.range->value}, {"u", c.range->u}};
+  if (c.reversal) {
+    data["reversal"][name] = {{"value", List(c.reversal->value)},
+                              {"mean", c.reversal->mean.value},
+                              {"max", std::abs(c.reversal->largest.value)},
+                              {"u", c.reversal->largest.u},
+                              {"seen", c.reversal->seen}};
+  }
+  for (std::size_t source = 0; source < probes::kSources; ++source) {
+    data["budget"][name][std::string(probes::kSourceNames[source])] = c.budget[source];
+  }
+  data["coverage"][name] = c.coverage;
+}
+
+void AddDwells(const SweepResult& result, ordered_json& data) {
+  for (std::size_t probe = 0; probe < probes::kProbes; ++probe) {
+    data["residuals"][ProbeName(probe)] =
+        List(result.residual.row(static_cast<Eigen::Index>(probe)).transpose());
+  }
+  ordered_json& dwells = data["dwells"];
+  for (const probes::Dwell& dwell : result.dwells) {
+    dwells["time_s"].push_back(dwell.time);
+    dwells["station"].push_back(dwell.station);
+    dwells["direction"].push_back(dwell.direction);
+    dwells["pass"].push_back(dwell.pass);
+  }
+}
+
+ordered_json NoiseData(const probes::NoiseFigures& noise) {
+  ordered_json data;
+  for (std::size_t probe = 0; probe < probes::kProbes; ++probe) {
+    const probes::ProbeFigures& figures = noise.probes[probe];
+    data[ProbeName(probe)] = {
+        {"white_m", figures.white}, {"lag1", figures.lag1}, {"drift_m", figures.drift}};
+  }
+  data["chi2"] = noise.chi2;
+  data["dof"] = noise.dof;
+  data["scale"] = noise.scale;
+  return data;
+}
+
+// The largest reversal "0.31 +- 0.12", with a star where it is more than chance.
+std::string Cell(const std::optional<probes::Reversal>& reversal, double coverage) {
+  if (!reversal) return "-";
+  return fmt::format("{:.3f} +- {:.3f}{}", reversal->largest.value * kToMicro,
+                     coverage * reversal->largest.u * kToMicro, reversal->seen ? "*" : " ");
+}
+
+std::string AngleTable(const SweepResult& result) {
+  std::string text =
+      fmt::format("{:<22}{:>10}{:>10}{:>22}\n", "angle, urad", "range", "U95", "largest reversal");
+  for (const ComponentResult& c : result.components) {
+    if (!c.range) continue;
+    text += fmt::format("  {} {:<16}{:>10.3f}{:>10.3f}{:>22}\n", c.component.name, c.component.kind,
+                        c.range->value * kToMicro, c.coverage * c.range->u * kToMicro,
+                        Cell(c.reversal, c.coverage));
+  }
+  return text;
+}
+
+std::string StraightnessTable(const SweepResult& result) {
+  std::string text =
+      fmt::format("{:<22}{:>10}{:>10}{:>22}{:>12}{:>14}{:>14}\n", "straightness, um", "least sq.",
+                  "U95", "largest reversal", "end points", "minimum zone", "slope, urad");
+  for (const ComponentResult& c : result.components) {
+    if (!c.straightness) continue;
+    const probes::StraightnessFigures& s = *c.straightness;
+    text += fmt::format(
+        "  {:<20}{:>10.4f}{:>10.4f}{:>22}{:>12.4f}{:>14.4f}{:>14.2f}\n", c.component.name,
+        s.least_squares.error * kToMicro, c.coverage * s.u * kToMicro, Cell(c.reversal, c.coverage),
+        s.end_points.error * kToMicro, s.minimum_zone.error * kToMicro, s.slope.value * kToMicro);
+  }
+  return text;
+}
+
+std::string NoiseText(const probes::NoiseFigures& noise) {
+  std::string text = "noise of one reading, nm:";
+  for (std::size_t probe = 0; probe < probes::kProbes; ++probe) {
+    text += fmt::format(" {:c} {:.1f}", 'a' + probe, noise.probes[probe].white * kToNano);
+  }
+  if (noise.dof <= 0.0) return text + "; one pass, no check\n";
+  return text + fmt::format("; scatter between passes: chi2 {:.0f} for {:.0f} degrees of freedom\n",
+                            noise.chi2, noise.dof);
+}
+
+}  // namespace
+
+ordered_json SweepJson(const SweepResult& result) {
+  ordered_json data{
+      {"abbe", ABBE_VERSION},
+      {"command", "reduce"},
+      {"kind", "sweep"},
+      {"recording", std::filesystem::path(result.recording).filename().string()},
+      {"machine", result.machine},
+      {"chain", result.chain},
+      {"axis", std::string(1, result.axis)},
+      {"moves", result.moving == probes::MovingBody::kTarget ? "target" : "head"},
+      {"started", result.conditions.started},
+      {"conditions", ConditionsData(result.conditions)},
+      {"stations", result.stations},
+      {"passes", result.passes},
+      {"samples",
+       {{"rows", result.counts.rows},
+        {"used", result.counts.used},
+        {"flagged", result.counts.flagged},
+        {"moving", result.counts.moving},
+        {"outliers", result.counts.outliers}}},
+  };
+  for (const ComponentResult& component : result.components) AddComponent(component, data);
+  AddDwells(result, data);
+  data["noise"] = NoiseData(result.noise);
+  data["notes"] = result.notes;
+  return data;
+}
+
+std::string SweepTable(const SweepResult& result) {
+  const probes::SampleCounts& counts = result.counts;
+  std::string text = fmt::format(
+      "{} axis of {} {}, the {} moves: {} stations from {:.3f} to {:.3f} mm, {} passes\n",
+      result.axis, result.machine, result.chain,
+      result.moving == probes::MovingBody::kTarget ? "target" : "head", result.stations.size(),
+      result.stations.front() * kToMillimetre, result.stations.back() * kToMillimetre,
+      result.passes);
+  text += AngleTable(result) + StraightnessTable(result);
+  text += "  * a reversal beyond what chance leaves in so many stations (95 %)\n";
+  text += NoiseText(result.noise);
+  text += fmt::format("rows: {} read, {} used, {} flagged, {} moving; {} outliers\n", counts.rows,
+                      counts.used, counts.flagged, counts.moving, counts.outliers);
+  for (const std::string& note : result.notes) text += fmt::format("note: {}\n", note);
+  return text;
+}
+
+ordered_json SquarenessJson(const probes::SquarenessResult& result) {
+  return {{"abbe", ABBE_VERSION},        {"command", "reduce"},         {"kind", "squareness"},
+          {"name", result.name},         {"value", result.value},       {"u", result.u},
+          {"u_slopes", result.u_slopes}, {"u_target", result.u_target}, {"line", "least_squares"}};
+}
+
+std::string SquarenessLine(const probes::SquarenessResult& result) {
+  constexpr double kNormal = 1.96;
+  return fmt::format(
+      "squareness {}: {:.2f} +- {:.2f} urad (least-squares lines; U95, of it the target {:.2f})\n",
+      result.name, result.value * kToMicro, kNormal * result.u * kToMicro,
+      kNormal * result.u_target * kToMicro);
+}
+
+}  // namespace abbe::apps

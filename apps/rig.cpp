@@ -1,0 +1,201 @@
+// abbe rig: serves the virtual rig; records a sweep of it directly; compares results with its
+// truth.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/interrupt.h"
+#include "apps/result_file.h"
+#include "hal/device_settings.h"
+#include "hal/sweep_recorder.h"
+#include "recording/recording_file.h"
+#include "rig/campaign.h"
+#include "rig/register_server.h"
+#include "rig/truth.h"
+
+namespace abbe::apps {
+namespace {
+
+struct RigOptions {
+  std::string machine;
+  std::uint64_t seed = 1;
+  std::optional<int> port;
+  double speed = 1.0;
+  std::vector<std::string> rtu;  // DEVICE=LINK
+  std::filesystem::path truth, ready_file, out;
+  std::string start, axis;
+  double rate = 200.0;
+  std::filesystem::path truth_to_compare;
+  std::vector<std::filesystem::path> results;
+};
+
+// The world, with the devices of the same file.
+struct Rig {
+  explicit Rig(const RigOptions& options)
+      : document(settings::Document::Read(options.machine)),
+        world(rig::ReadRigSettings(document.Root()), options.seed),
+        devices(hal::ReadDevices(document.Root().Child("devices"))) {
+    if (!options.truth.empty()) WriteResult(rig::TruthOf(world), options.truth);
+  }
+
+  settings::Document document;
+  rig::World world;
+  hal::DevicesSettings devices;
+};
+
+rig::ServerOptions PlaceToListen(const Rig& rig, const RigOptions& options) {
+  rig::ServerOptions server;
+  server.speed = options.speed;
+  for (const hal::DeviceSettings& device : rig.devices.devices) {
+    if (device.transport != hal::Transport::kModbusTcp) continue;
+    server.host = device.host;
+    server.port = device.port;
+    break;
+  }
+  if (options.port) server.port = *options.port;
+  return server;
+}
+
+// Makes the link that a client opens; a link of an earlier rig is replaced, a file never.
+std::string ServeRtu(rig::RegisterServer& server, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) {
+    throw InputError(fmt::format("--rtu {}: must be DEVICE=LINK, such as head=/tmp/head", text));
+  }
+  const std::filesystem::path link = text.substr(equals + 1);
+  const std::string terminal = server.OpenRtu(text.substr(0, equals));
+  std::error_code error;
+  if (std::filesystem::is_symlink(link)) std::filesystem::remove(link, error);
+  std::filesystem::create_symlink(terminal, link, error);
+  if (error) {
+    throw InputError(fmt::format("--rtu {}: cannot make the link: {}; choose another place", text,
+                                 error.message()));
+  }
+  return link;
+}
+
+void WriteReadyFile(const std::filesystem::path& path, int port) {
+  const std::filesystem::path unfinished = path.string() + ".part";
+  std::ofstream file(unfinished);
+  file << port << '\n';
+  file.close();
+  if (!file)
+    throw InputError(fmt::format("{}: cannot be written; choose another place", path.string()));
+  std::filesystem::rename(unfinished, path);
+}
+
+int Serve(const RigOptions& options) {
+  if (options.machine.empty()) {
+    throw InputError("rig: --machine FILE is missing, such as --machine machines/demo_mill.toml");
+  }
+  const auto& interrupted = InterruptFlag();
+  const Rig rig(options);
+  const rig::ServerOptions place = PlaceToListen(rig, options);
+  rig::RegisterServer server(rig.world, rig.devices, place);
+  std::vector<std::filesystem::path> links;
+  for (const std::string& text : options.rtu) links.emplace_back(ServeRtu(server, text));
+  if (!options.start.empty() &&
+      server.Start(rig::AxisNumber(options.start.front())) != hal::Answer::kOk) {
+    throw InputError(
+        fmt::format("--start {}: no sweep of this axis is programmed in {}; add a table "
+                    "[sweep.{}]",
+                    options.start, options.machine, options.start));
+  }
+  fmt::print("rig of {}, seed {}: listening on {} port {}, {:g} times real time\n{}",
+             rig.world.settings().name, options.seed, place.host, server.port(), options.speed,
+             server.MapText());
+  for (const auto& link : links) fmt::print("  RTU on {}\n", link.string());
+  fmt::print("Ctrl-C ends it.\n");
+  std::fflush(stdout);
+  if (!options.ready_file.empty()) WriteReadyFile(options.ready_file, server.port());
+  while (!interrupted) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  for (const auto& link : links) std::filesystem::remove(link);
+  fmt::print("rig: answered {} requests\n", server.requests());
+  return kDone;
+}
+
+int Record(const RigOptions& options) {
+  const Rig rig(options);
+  recording::Write(rig::RecordSweep(rig.world, options.axis.front(), rig::ChannelsOf(rig.devices),
+                                    {.rate = options.rate, .started = hal::UtcNow()}),
+                   options.out);
+  fmt::print("{}\n", options.out.string());
+  return kDone;
+}
+
+int Compare(const RigOptions& options) {
+  const auto truth = ReadResult(options.truth_to_compare);
+  for (const auto& path : options.results) {
+    const auto result = ReadResult(path);
+    const auto comparison = rig::Compare(truth, result, path.string());
+    fmt::print("{} axis against the truth of seed {} ({})\n", result.value("axis", "?"),
+               truth.value("seed", std::uint64_t{0}), path.string());
+    fmt::print("  {:<9} {:>5} {:>11} {:>11} {:>5}  {:>9} {:>10}\n", "component", "n", "rms error",
+               "max error", "", "rms e/u", "inside 2u");
+    for (const rig::ComponentComparison& row : comparison) {
+      const bool angle = row.component.size() > 1 && row.component[1] <= 'C';
+      fmt::print("  {:<9} {:>5} {:>11.4f} {:>11.4f} {:<5} {:>9.2f} {:>8.0f} %\n", row.component,
+                 row.stations, 1e6 * row.rms_error, 1e6 * row.max_error, angle ? "urad" : "um",
+                 row.rms_pull, 100.0 * row.share_inside_2u);
+    }
+  }
+  return kDone;
+}
+
+void AddWorldOptions(CLI::App* command, RigOptions& options) {
+  command->add_option("--machine", options.machine, "Machine file (TOML)");
+  command->add_option("--seed", options.seed, "Which machine of the population")
+      ->capture_default_str();
+  command->add_option("--truth", options.truth, "Write what the rig knows (JSON)");
+}
+
+}  // namespace
+
+void AddRig(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<RigOptions>();
+  CLI::App* rig = program.add_subcommand("rig", "The virtual rig: a machine that was never built");
+  const auto axis = CLI::IsMember({"X", "Y", "Z"});
+  AddWorldOptions(rig, *options);
+  rig->add_option("--port", options->port,
+                  "TCP port, 0 for a free one (default: the machine file's)")
+      ->check(CLI::Range(0, 65535));
+  rig->add_option("--speed", options->speed, "Simulated seconds in a second")
+      ->check(CLI::Range(1e-3, 1e4))
+      ->capture_default_str();
+  rig->add_option("--rtu", options->rtu,
+                  "Serve a device over RTU too: DEVICE=LINK to the terminal");
+  rig->add_option("--start", options->start, "Sweep this axis at once")->check(axis);
+  rig->add_option("--ready-file", options->ready_file, "Write the port here when listening");
+  rig->footer(
+      "Example: abbe rig --machine machines/demo_mill.toml --seed 7 --port 1502 --speed 10");
+  rig->callback([rig, options, &exit_code] {
+    if (rig->get_subcommands().empty()) exit_code = Serve(*options);
+  });
+
+  CLI::App* record = rig->add_subcommand("record", "Write the recording of a sweep directly");
+  AddWorldOptions(record, *options);
+  record->get_option("--machine")->required();
+  record->add_option("--axis", options->axis, "X, Y or Z")->required()->check(axis);
+  record->add_option("--out", options->out, "Recording (.csv, .h5)")->required();
+  record->add_option("--rate", options->rate, "Rows in a second")->capture_default_str();
+  record->footer("Example: abbe rig record --machine machines/demo_mill.toml --axis X --out x.csv");
+  record->callback([options, &exit_code] { exit_code = Record(*options); });
+
+  CLI::App* compare = rig->add_subcommand("compare", "How near results came to the truth");
+  compare->add_option("truth", options->truth_to_compare, "What --truth wrote")->required();
+  compare->add_option("results", options->results, "JSON of sweeps")->required();
+  compare->footer("Example: abbe rig compare out/rig_truth.json out/sweep_X.json");
+  compare->callback([options, &exit_code] { exit_code = Compare(*options); });
+}
+
+}  // namespace abbe::apps

@@ -1,0 +1,92 @@
+// The one description of unknown numbers: calibration, fusion, diagnosis, files and reports share
+// it.
+//
+// A block is a handful of parameters of one kind and unit that belong together: the lengths of the
+// links, the coefficients of one error function, the offsets of one run. A parameter is addressed
+// by its full name "block.entry", never by a position in a mask.
+//
+//   ParameterBlock links{"link", {"mm", 1e-3}, {{"length_1", 0.200, 50e-6}, {"length_2", 0.180,
+//   50e-6}}}; links["length_2"].held = true;      // keeps its value, is not estimated
+//   links.Values();                     // [0.200 0.180], m
+//
+// Units: SI (or any one coherent set; estimation/ knows no metrology). `unit` is for printing only.
+// Frames: none. Failure: InputError from a name that is not in the block (it lists those that are).
+// A prior is the state of knowledge before the data: a normal distribution around `nominal`.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "failure/failure.h"
+
+namespace abbe::estimation {
+
+inline constexpr double kNoPrior = std::numeric_limits<double>::infinity();
+inline constexpr double kNoTolerance = std::numeric_limits<double>::infinity();
+
+// What a number in SI is printed in: printed = SI / si.
+struct PrintUnit {
+  std::string name;  // empty: a plain number
+  double si = 1.0;
+};
+
+struct Parameter {
+  std::string name;
+  double nominal = 0.0;
+  double prior_sd = kNoPrior;  // standard deviation of the prior around `nominal`
+  double value = nominal;      // before a solve the start, after it the estimate
+  // Standard uncertainty of `value` after a solve; infinite where the data and the prior do not
+  // determine it, 0 where it is held, NaN before.
+  double uncertainty = std::numeric_limits<double>::quiet_NaN();
+  // The size from which on an error of this parameter matters. Where there is no prior it decides
+  // when a direction counts as not seen (weak_directions.h). It does not pull the estimate.
+  double tolerance = kNoTolerance;
+  bool held = false;
+};
+
+struct ParameterBlock {
+  ParameterBlock(std::string block_name, PrintUnit print_unit, std::vector<Parameter> parameters)
+      : name(std::move(block_name)), unit(std::move(print_unit)), entries(std::move(parameters)) {}
+
+  std::string name;
+  PrintUnit unit;
+  std::vector<Parameter> entries;
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(entries.size()); }
+
+  Parameter& operator[](std::string_view entry) { return entries[Find(entry)]; }
+  const Parameter& operator[](std::string_view entry) const { return entries[Find(entry)]; }
+
+  std::string FullName(std::size_t entry) const { return name + "." + entries[entry].name; }
+
+  void Hold(bool held = true) {
+    for (Parameter& entry : entries) entry.held = held;
+  }
+  void Free() { Hold(false); }
+
+  Eigen::VectorXd Values() const {
+    Eigen::VectorXd values(size());
+    for (Eigen::Index i = 0; i < size(); ++i)
+      values[i] = entries[static_cast<std::size_t>(i)].value;
+    return values;
+  }
+
+ private:
+  std::size_t Find(std::string_view entry) const {
+    std::string known;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (entries[i].name == entry) return i;
+      known += (i == 0 ? "" : ", ") + entries[i].name;
+    }
+    throw InputError(
+        fmt::format("block '{}' has no parameter '{}'; it has {}", name, entry, known));
+  }
+};
+
+}  // namespace abbe::estimation

@@ -1,0 +1,118 @@
+// Problem -> Solve -> Result: weighted nonlinear least squares with named parameters and priors.
+//
+// Finds the parameters x that minimise
+//
+//   sum over sources of sum over rows of rho(r_i(x) / sigma_i)  +  sum of ((x_j - nominal_j) /
+//   prior_j)^2
+//
+// with rho(t) = t^2 unless the source has a robust loss. Every row is divided by its stated
+// standard deviation, so the minimum is a chi-square, the inverse of J'J is the covariance in the
+// parameters' own units, and "the data do not see this" has a meaning (weak_directions.h).
+//
+//   Problem problem;
+//   const BlockId line = problem.Add({"line", {"um", 1e-6}, {{"offset"}, {"slope", 0.0, 1e-3}}});
+//   const SourceId gauge = problem.AddSource("gauge", {.loss = RobustLoss::Huber()});
+//   problem.Add(gauge, std::make_shared<LineResidual>(at, y), {line}, 0.1e-6);
+//   const Result result = problem.Solve();
+//   fmt::print("{}", result.Report());
+//   result.Value("line.slope");  result.Uncertainty("line.slope");
+//
+// A source is a named group of rows (a run, an instrument): chi-square and redundancy are told per
+// source. `is_prior` marks a source that is knowledge, not data: smoothness, a certificate.
+// Priors of parameters are added by the problem itself, as source "prior".
+// Units: SI, those of the residual for sigma. Shapes: x is the inputs of the residual,
+// concatenated. Failure: InputError for a wrong set-up (names, sizes, deviations). NumericalError
+// from Solve when a residual or a derivative is not finite at the start or the iteration does not
+// settle; it names the source and the parameter. Parameters that nothing determines are no failure:
+// the result is then not usable and names them. Method: Ceres (Levenberg-Marquardt) while its
+// Jacobian fits in `jacobian_bytes`, then passes over the rows that keep only the n x n normal
+// equations, until what is left to go is below `settled` standard uncertainties. Beyond that size
+// it is passes alone: memory does not grow with the rows; start them near the solution (solve a
+// subsample first). Validity: n up to about 1000.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimation/parameter.h"
+#include "estimation/residual.h"
+#include "estimation/result.h"
+#include "estimation/robust_loss.h"
+
+namespace abbe::estimation {
+
+struct BlockId {
+  int index = 0;
+};
+struct SourceId {
+  int index = 0;
+};
+
+// The entries [first, first + count) of a block; count -1: to its end.
+struct Input {
+  Input(BlockId id, int first_entry = 0, int entry_count = -1)  // NOLINT: a block is an input
+      : block(id), first(first_entry), count(entry_count) {}
+  BlockId block;
+  int first;
+  int count;
+};
+
+struct SourceOptions {
+  RobustLoss loss = RobustLoss::None();
+  bool is_prior = false;
+};
+
+struct Source {
+  std::string name;
+  SourceOptions options;
+  Eigen::Index rows = 0;
+};
+
+// One residual as the problem holds it.
+struct Term {
+  SourceId source;
+  std::shared_ptr<const Residual> residual;
+  std::vector<int> entries;            // of all entries of all blocks in order: the residual's x
+  Eigen::VectorXd standard_deviation;  // 1 x 1 for all rows, or one each
+  Eigen::Index first_row;              // within the source
+};
+
+struct SolveOptions {
+  int max_iterations = 100;
+  int threads = 0;        // 0: all; the result does not depend on it
+  double settled = 1e-6;  // standard uncertainties
+  std::size_t jacobian_bytes = 200'000'000;
+};
+
+class Problem {
+ public:
+  BlockId Add(ParameterBlock block);
+  SourceId AddSource(std::string name, const SourceOptions& options = {});
+  void Add(SourceId source, std::shared_ptr<const Residual> residual,
+           const std::vector<Input>& inputs, double standard_deviation);
+  void Add(SourceId source, std::shared_ptr<const Residual> residual,
+           const std::vector<Input>& inputs, Eigen::VectorXd standard_deviations);
+
+  Result Solve(const SolveOptions& options = {}) const;
+
+  // To hold, free and start parameters between solves. The entries must stay the same ones.
+  ParameterBlock& Block(BlockId id) { return blocks_[static_cast<std::size_t>(id.index)]; }
+  BlockId Find(const std::string& block) const;
+
+  const std::vector<ParameterBlock>& blocks() const { return blocks_; }
+  const std::vector<Source>& sources() const { return sources_; }
+  const std::vector<Term>& terms() const { return terms_; }
+
+ private:
+  std::vector<int> EntriesOf(const std::vector<Input>& inputs) const;
+
+  std::vector<ParameterBlock> blocks_;
+  std::vector<int> first_entry_;  // of each block
+  std::vector<Source> sources_;
+  std::vector<Term> terms_;
+};
+
+}  // namespace abbe::estimation

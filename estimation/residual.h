@@ -1,0 +1,62 @@
+// What a fit makes small: the difference between what was measured and what the parameters predict.
+//
+// A residual takes the parameters it depends on, as one vector x in the order in which they were
+// named when it was added to the problem, and gives `Rows()` numbers in SI units, and their
+// derivatives. It is not whitened: the problem divides it by the standard deviation that is stated
+// with it.
+//
+//   class LineResidual : public Residual {           // x = [offset slope]
+//    public:
+//     LineResidual(VectorXd at, VectorXd y) : at_(at), y_(y) {}
+//     Eigen::Index Rows() const override { return y_.size(); }
+//     void Evaluate(const VectorXd& x, VectorXd& values, RowMatrix* jacobian) const override {
+//       values = x[0] + x[1] * at_.array() - y_.array();
+//       if (jacobian) *jacobian << VectorXd::Ones(Rows()), at_;
+//     }
+//   };
+//
+// Many rows in one residual are cheap, many residuals of one row are not: put the readings of a run
+// that depend on the same parameters into one. It keeps no Jacobian, so a million rows cost no
+// memory. For derivatives without algebra see autodiff_residual.h.
+// Threads: Evaluate is called from several at once. Shapes: values n x 1 and jacobian n x x.size()
+// arrive with their size set; every element must be written.
+// Failure: throw NumericalError where the parameters are outside the model's domain (out of reach,
+// singular): at the start it is reported with the source's name, later the step is taken back.
+// Values that are not finite are treated the same way.
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+
+namespace abbe::estimation {
+
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+class Residual {
+ public:
+  virtual ~Residual() = default;
+  virtual Eigen::Index Rows() const = 0;
+  virtual void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& values,
+                        RowMatrix* jacobian) const = 0;
+};
+
+// A x - b: a model that is linear, or a prior that ties several parameters together (smoothness).
+class LinearResidual : public Residual {
+ public:
+  LinearResidual(Eigen::MatrixXd a, Eigen::VectorXd b) : a_(std::move(a)), b_(std::move(b)) {}
+
+  Eigen::Index Rows() const override { return b_.size(); }
+
+  void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& values,
+                RowMatrix* jacobian) const override {
+    values.noalias() = a_ * x;
+    values -= b_;
+    if (jacobian != nullptr) *jacobian = a_;
+  }
+
+ private:
+  Eigen::MatrixXd a_;
+  Eigen::VectorXd b_;
+};
+
+}  // namespace abbe::estimation

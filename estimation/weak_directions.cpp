@@ -1,0 +1,213 @@
+#include "estimation/weak_directions.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace abbe::estimation {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Of a parameter's own information: what sums of products in double precision leave to be seen.
+constexpr double kRounding = 1e-12;
+constexpr double kUnseen = 1.0;  // lambda below which the data halve no variance
+constexpr double kShownCoefficient = 0.1;
+constexpr std::size_t kMostTerms = 6;
+constexpr int kMostTurns = 50;
+
+MatrixXd Reference(const MatrixXd& data, const MatrixXd& prior) {
+  MatrixXd reference = prior;
+  VectorXd rounding = kRounding * (data.diagonal() + prior.diagonal());
+  // A parameter that appears nowhere has no scale of its own; any will do.
+  for (double& r : rounding) r = r > 0.0 ? r : 1.0;
+  reference.diagonal() += rounding;
+  return reference;
+}
+
+// Directions v = L^-T q of the whitened space, W = L L', and what the data add to W along each.
+struct Spectrum {
+  MatrixXd reference;
+  MatrixXd whitened;  // q, orthonormal columns, lambda rising
+  VectorXd lambda;
+  Index weak = 0;  // how many of the first ones have lambda < 1
+  Eigen::LLT<MatrixXd> factor;
+
+  MatrixXd Unwhiten(const MatrixXd& q) const { return factor.matrixU().solve(q); }
+};
+
+Spectrum SpectrumOf(const MatrixXd& data, MatrixXd reference) {
+  Spectrum s;
+  s.reference = std::move(reference);
+  s.factor.compute(s.reference);
+  MatrixXd scaled = s.factor.matrixL().solve(data);
+  scaled = s.factor.matrixL().solve(scaled.transpose()).eval();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (scaled + scaled.transpose()));
+  s.whitened = eigen.eigenvectors();
+  s.lambda = eigen.eigenvalues().cwiseMax(0.0);
+  while (s.weak < s.lambda.size() && s.lambda[s.weak] < kUnseen) ++s.weak;
+  return s;
+}
+
+// Turns the columns of `a` among themselves (and those of `along` with them) so that the sum of
+// fourth powers is largest: each column few large numbers.
+void TurnToSimple(MatrixXd& a, MatrixXd& along) {
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    double largest = 0.0;
+    for (Index i = 0; i < a.cols(); ++i) {
+      for (Index j = i + 1; j < a.cols(); ++j) {
+        const VectorXd u = a.col(i).cwiseAbs2() - a.col(j).cwiseAbs2();
+        const VectorXd w = 2.0 * a.col(i).cwiseProduct(a.col(j));
+        const double angle = 0.25 * std::atan2(2.0 * u.dot(w), u.squaredNorm() - w.squaredNorm());
+        const Eigen::JacobiRotation<double> rotation(std::cos(angle), -std::sin(angle));
+        a.applyOnTheRight(i, j, rotation);
+        along.applyOnTheRight(i, j, rotation);
+        largest = std::max(largest, std::abs(angle));
+      }
+    }
+    if (largest < 1e-9) break;
+  }
+}
+
+void MakeFirstLargePositive(VectorXd& coefficients) {
+  const double large = 0.99 * coefficients.cwiseAbs().maxCoeff();
+  for (const double c : coefficients) {
+    if (std::abs(c) < large) continue;
+    if (c < 0.0) coefficients *= -1.0;
+    return;
+  }
+}
+
+WeakDirection::Held WhoHolds(const VectorXd& v, const MatrixXd& prior, const VectorXd& tolerance) {
+  constexpr double kMostOfIt = 0.5;  // v' W v = 1
+  if (v.dot(prior * v) > kMostOfIt) return WeakDirection::Held::kByPrior;
+  if (v.dot(tolerance.cwiseProduct(v)) > kMostOfIt) return WeakDirection::Held::kByTolerance;
+  return WeakDirection::Held::kByNothing;
+}
+
+VectorXd ToleranceInformation(const MatrixXd& prior, const VectorXd& tolerances) {
+  VectorXd information = tolerances.cwiseAbs2().cwiseInverse();  // 0 where infinite
+  for (Index i = 0; i < information.size(); ++i) {
+    if (prior(i, i) > 0.0) information[i] = 0.0;
+  }
+  return information;
+}
+
+}  // namespace
+
+std::string InWords(const VectorXd& coefficients, const std::vector<std::string>& names) {
+  std::vector<Index> order(static_cast<std::size_t>(coefficients.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  // By the two digits that are printed: equal ones stay in the order of the parameters.
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return std::round(100.0 * std::abs(coefficients[a])) >
+           std::round(100.0 * std::abs(coefficients[b]));
+  });
+  std::string words;
+  std::size_t shown = 0;
+  for (const Index i : order) {
+    const double size = std::abs(coefficients[i]);
+    if (shown == kMostTerms || size < kShownCoefficient) break;
+    const bool minus = coefficients[i] < 0.0;
+    words += shown == 0 ? (minus ? "-" : "") : (minus ? " - " : " + ");
+    words += fmt::format("{:.2f} {}", size, names[static_cast<std::size_t>(i)]);
+    ++shown;
+  }
+  const auto left = std::count_if(order.begin() + static_cast<std::ptrdiff_t>(shown), order.end(),
+                                  [&](Index i) { return std::abs(coefficients[i]) >= 0.01; });
+  if (left > 0) words += fmt::format(" and {} smaller", left);
+  return words;
+}
+
+std::vector<WeakDirection> FindWeakDirections(const MatrixXd& data, const MatrixXd& prior,
+                                              const VectorXd& tolerances,
+                                              const std::vector<std::string>& names) {
+  if (data.rows() == 0) return {};
+  const VectorXd tolerance = ToleranceInformation(prior, tolerances);
+  MatrixXd reference = Reference(data, prior);
+  reference.diagonal() += tolerance;
+  const Spectrum spectrum = SpectrumOf(data, std::move(reference));
+  if (spectrum.weak == 0) return {};
+  const VectorXd scale = spectrum.reference.diagonal().cwiseSqrt();
+  MatrixXd directions = spectrum.Unwhiten(spectrum.whitened.leftCols(spectrum.weak));
+  MatrixXd coefficients = scale.asDiagonal() * directions;
+  MatrixXd turn = MatrixXd::Identity(spectrum.weak, spectrum.weak);
+  TurnToSimple(coefficients, turn);
+  directions = directions * turn;
+  const VectorXd variance = (1.0 + spectrum.lambda.head(spectrum.weak).array()).inverse();
+
+  std::vector<WeakDirection> weak(static_cast<std::size_t>(spectrum.weak));
+  for (Index k = 0; k < spectrum.weak; ++k) {
+    WeakDirection& direction = weak[static_cast<std::size_t>(k)];
+    direction.coefficients = coefficients.col(k).normalized();
+    MakeFirstLargePositive(direction.coefficients);
+    const double left = turn.col(k).cwiseAbs2().dot(variance);
+    direction.ratio = std::sqrt(left);
+    direction.information = 1.0 / left - 1.0;
+    direction.held = WhoHolds(directions.col(k), prior, tolerance);
+    direction.words = InWords(direction.coefficients, names);
+  }
+  std::stable_sort(weak.begin(), weak.end(), [](const auto& a, const auto& b) {
+    return a.held != b.held ? a.held > b.held : a.information < b.information;
+  });
+  return weak;
+}
+
+PosteriorCovariance InvertInformation(const MatrixXd& data, const MatrixXd& prior) {
+  const Index n = data.rows();
+  PosteriorCovariance result;
+  if (n == 0) return result;
+  const Spectrum spectrum = SpectrumOf(data, Reference(data, prior));
+  // Of the weak directions, those that the prior does not hold either.
+  const MatrixXd weak = spectrum.whitened.leftCols(spectrum.weak);
+  MatrixXd undetermined(n, 0);
+  if (spectrum.weak > 0) {
+    const MatrixXd v = spectrum.Unwhiten(weak);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> share(v.transpose() * prior * v);
+    result.undetermined = (share.eigenvalues().array() < 0.5).count();
+    undetermined = weak * share.eigenvectors().leftCols(result.undetermined);
+  }
+  if (result.undetermined == 0) {
+    const MatrixXd total = data + prior;
+    const VectorXd scale = total.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::LLT<MatrixXd> factor(scale.asDiagonal() * total * scale.asDiagonal());
+    result.matrix = scale.asDiagonal() * factor.solve(MatrixXd(scale.asDiagonal()));
+    result.matrix = 0.5 * (result.matrix + result.matrix.transpose()).eval();
+    result.determined = result.matrix;
+    return result;
+  }
+  MatrixXd root = spectrum.whitened * (1.0 + spectrum.lambda.array()).rsqrt().matrix().asDiagonal();
+  root -= undetermined * (undetermined.transpose() * root).eval();
+  root = spectrum.Unwhiten(root);
+  result.determined = root * root.transpose();
+  result.matrix = result.determined;
+  const VectorXd open = spectrum.Unwhiten(undetermined).rowwise().squaredNorm();
+  for (Index i = 0; i < n; ++i) {
+    if (!(open[i] > result.determined(i, i))) continue;
+    result.matrix.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+    result.matrix.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+    result.matrix(i, i) = std::numeric_limits<double>::infinity();
+  }
+  return result;
+}
+
+double ScaledCondition(const MatrixXd& data) {
+  if (data.rows() == 0) return 1.0;
+  if (!(data.diagonal().minCoeff() > 0.0)) return std::numeric_limits<double>::infinity();
+  const VectorXd scale = data.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(
+      scale.asDiagonal() * data * scale.asDiagonal(), Eigen::EigenvaluesOnly);
+  const double smallest = eigen.eigenvalues().minCoeff();
+  const double largest = eigen.eigenvalues().maxCoeff();
+  if (smallest < kRounding * largest) return std::numeric_limits<double>::infinity();
+  return std::sqrt(largest / smallest);
+}
+
+}  // namespace abbe::estimation

@@ -1,0 +1,295 @@
+#include "probes/sweep_dwells.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "estimation/robust_mean.h"
+#include "failure/failure.h"
+#include "settings/unit.h"
+
+namespace abbe::probes {
+namespace {
+
+using settings::kMicrometre;
+using settings::kMillimetre;
+
+constexpr PerProbe<std::string_view> kGapColumns = {"probe_a_um", "probe_b_um", "probe_c_um",
+                                                    "probe_d_um", "probe_e_um"};
+
+// The columns that the reduction reads, in the units of the file.
+struct Rows {
+  std::span<const double> time, position, pass, direction, flags;
+  PerProbe<std::span<const double>> gaps;
+};
+
+char SweptAxis(const recording::Recording& recording) {
+  if (recording.Kind() != "sweep") {
+    throw InputError(fmt::format("{}: kind is \"{}\", not \"sweep\"; only a sweep has five errors",
+                                 recording.name, recording.Kind()));
+  }
+  const std::string axis = recording.HeaderText("axis").value_or("");
+  if (axis != "X" && axis != "Y" && axis != "Z") {
+    throw InputError(fmt::format(
+        "{}: header: axis is \"{}\"; a sweep must name its axis as axis = \"X\", \"Y\" or \"Z\"",
+        recording.name, axis));
+  }
+  return axis.front();
+}
+
+Rows RowsOf(const recording::Recording& recording, char axis) {
+  Rows rows;
+  rows.time = recording.At("time_s");
+  rows.position = recording.At(fmt::format("{:c}_mm", axis - 'X' + 'x'));
+  rows.pass = recording.At("pass");
+  rows.direction = recording.At("direction");
+  rows.flags = recording.At("flags");
+  for (std::size_t probe = 0; probe < kProbes; ++probe)
+    rows.gaps[probe] = recording.At(kGapColumns[probe]);
+  return rows;
+}
+
+double HeaderNumber(const recording::Recording& recording, std::string_view path, double fallback) {
+  const std::optional<std::string> text = recording.HeaderText(path);
+  if (!text) return fallback;
+  char* end = nullptr;
+  const double value = std::strtod(text->c_str(), &end);
+  if (end == text->c_str() || *end != '\0' || !(value >= 0.0)) {
+    throw InputError(fmt::format("{}: header: {} is {}; it must be a number of at least 0",
+                                 recording.name, path, *text));
+  }
+  return value;
+}
+
+// Gathers the rows of the run at hand and turns them into a dwell when it ends.
+class DwellFinder {
+ public:
+  DwellFinder(const Rows& rows, const DwellRule& rule, SweepDwells& found)
+      : rows_(rows), rule_(rule), found_(found) {}
+
+  void Add(std::size_t row) {
+    if (!Continues(row)) {
+      Close();
+      start_ = row;
+      open_ = true;
+    }
+    if (rows_.time[row] < rows_.time[start_] + rule_.settle) {
+      ++found_.counts.moving;
+      return;
+    }
+    if (gaps_[0].empty()) first_time_ = rows_.time[row];
+    last_time_ = rows_.time[row];
+    time_ += rows_.time[row];
+    position_ += rows_.position[row];
+    for (std::size_t probe = 0; probe < kProbes; ++probe)
+      gaps_[probe].push_back(rows_.gaps[probe][row]);
+  }
+
+  void Close() {
+    const std::size_t samples = gaps_[0].size();
+    if (open_ && samples > 0) {
+      const double n = static_cast<double>(samples);
+      Dwell dwell{.time = time_ / n,
+                  .duration = last_time_ - first_time_,
+                  .position = position_ / n * kMillimetre,
+                  .pass = static_cast<int>(rows_.pass[start_]),
+                  .direction = static_cast<int>(rows_.direction[start_]),
+                  .station = 0,
+                  .first_row = start_,
+                  .samples = samples,
+                  .gap = {}};
+      for (std::size_t probe = 0; probe < kProbes; ++probe) dwell.gap[probe] = Mean(probe);
+      found_.dwells.push_back(dwell);
+    }
+    for (std::vector<double>& gap : gaps_) gap.clear();
+    time_ = position_ = 0.0;
+    open_ = false;
+  }
+
+  // The pooled scatter of all dwells closed so far.
+  PerProbe<Scatter> Scatters() const;
+
+ private:
+  struct Sums {
+    double squares = 0.0;   // m^2, of the deviations from the dwell's mean
+    double products = 0.0;  // m^2, of neighbouring deviations
+    double readings = 0.0;
+    double pairs = 0.0;
+    double dwells = 0.0;
+  };
+
+  bool Continues(std::size_t row) const {
+    return open_ && rows_.pass[row] == rows_.pass[start_] &&
+           rows_.direction[row] == rows_.direction[start_] &&
+           std::abs(rows_.position[row] - rows_.position[start_]) * kMillimetre <= rule_.window;
+  }
+
+  double Mean(std::size_t probe);
+
+  const Rows& rows_;
+  const DwellRule& rule_;
+  SweepDwells& found_;
+  std::size_t start_ = 0;
+  bool open_ = false;
+  double time_ = 0.0;  // s, sum
+  double first_time_ = 0.0, last_time_ = 0.0;
+  double position_ = 0.0;
+  PerProbe<std::vector<double>> gaps_;  // um
+  PerProbe<Sums> sums_;
+};
+
+double DwellFinder::Mean(std::size_t probe) {
+  const std::vector<double>& readings = gaps_[probe];
+  const estimation::RobustMean mean = estimation::HuberMean(readings);
+  found_.counts.outliers += mean.outliers;
+  Sums& sums = sums_[probe];
+  sums.dwells += 1.0;
+  const double widest = estimation::RobustMeanOptions{}.outlier_at * mean.scale;
+  double before = std::numeric_limits<double>::quiet_NaN();  // an outlier has no neighbours
+  for (const double reading : readings) {
+    const bool outlier = std::abs(reading - mean.mean) > widest;
+    const double deviation = (reading - mean.mean) * kMicrometre;
+    if (!outlier) {
+      sums.squares += deviation * deviation;
+      sums.readings += 1.0;
+    }
+    if (!outlier && !std::isnan(before)) {
+      sums.products += deviation * before;
+      sums.pairs += 1.0;
+    }
+    before = outlier ? std::numeric_limits<double>::quiet_NaN() : deviation;
+  }
+  return mean.mean * kMicrometre;
+}
+
+PerProbe<Scatter> DwellFinder::Scatters() const {
+  PerProbe<Scatter> scatter;
+  for (std::size_t probe = 0; probe < kProbes; ++probe) {
+    const Sums& sums = sums_[probe];
+    const double dof = sums.readings - sums.dwells;
+    if (dof < 1.0 || sums.squares <= 0.0 || sums.pairs <= 0.0) continue;
+    // Taking off the mean of n white readings leaves a correlation of -1/n between neighbours.
+    const double lag1 = (sums.products / sums.pairs) / (sums.squares / sums.readings);
+    scatter[probe] = {std::sqrt(sums.squares / dof), lag1 + sums.dwells / sums.readings, dof};
+  }
+  return scatter;
+}
+
+void RefuseImpossibleGap(const recording::Recording& recording, const Rows& rows, std::size_t row,
+                         const PerProbe<>& ranges) {
+  for (std::size_t probe = 0; probe < kProbes; ++probe) {
+    const double gap = rows.gaps[probe][row];
+    const double range = ranges[probe] / kMicrometre;
+    if (gap >= 0.0 && gap <= range) continue;
+    throw InputError(
+        fmt::format("{}: row {}: {} is {:.6g} um without a flag, the probe's range is 0 to {:.6g} "
+                    "um; flag the row "
+                    "(flags = 2) or correct range_um in the machine file",
+                    recording.name, row + 1, kGapColumns[probe], gap, range));
+  }
+}
+
+bool IsGood(const Rows& rows, std::size_t row) {
+  double sum = rows.time[row] + rows.position[row] + rows.pass[row] + rows.direction[row];
+  for (const auto& gap : rows.gaps) sum += gap[row];
+  return rows.flags[row] == 0.0 && !std::isnan(sum);
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void DropDwells(SweepDwells& found, const std::function<bool(const Dwell&)>& unwanted) {
+  std::erase_if(found.dwells, [&](const Dwell& dwell) {
+    const bool drop = unwanted(dwell);
+    if (drop) found.counts.moving += dwell.samples;
+    return drop;
+  });
+}
+
+// Standstills outside the passes, turning points and other short stops are no dwells.
+void DropOtherStandstills(SweepDwells& found) {
+  DropDwells(found, [](const Dwell& dwell) { return dwell.pass == 0 || dwell.direction == 0; });
+  if (found.dwells.empty()) return;
+  std::vector<double> samples;
+  for (const Dwell& dwell : found.dwells) samples.push_back(static_cast<double>(dwell.samples));
+  const double least = Median(samples) / 4.0;
+  DropDwells(found, [&](const Dwell& dwell) { return static_cast<double>(dwell.samples) < least; });
+}
+
+// Dwells nearer to their neighbour than the window belong to one station.
+void AssignStations(double window, SweepDwells& found) {
+  std::vector<std::size_t> order(found.dwells.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return found.dwells[a].position < found.dwells[b].position;
+  });
+  std::vector<double> counts;
+  double before = 0.0;
+  for (const std::size_t i : order) {
+    Dwell& dwell = found.dwells[i];
+    if (counts.empty() || dwell.position - before > window) {
+      counts.push_back(0.0);
+      found.stations.push_back(0.0);
+    }
+    dwell.station = counts.size() - 1;
+    counts.back() += 1.0;
+    found.stations.back() += (dwell.position - found.stations.back()) / counts.back();
+    before = dwell.position;
+  }
+}
+
+Eigen::Vector3d PositionAt(const recording::Recording& recording, std::size_t row) {
+  return Eigen::Vector3d(recording.At("x_mm")[row], recording.At("y_mm")[row],
+                         recording.At("z_mm")[row]) *
+         kMillimetre;
+}
+
+}  // namespace
+
+DwellRule DwellRuleOf(const recording::Recording& recording) {
+  return {HeaderNumber(recording, "sweep.window_um", 20.0) * kMicrometre,
+          HeaderNumber(recording, "sweep.settle_s", 0.1)};
+}
+
+SweepDwells FindDwells(const recording::Recording& recording, const DwellRule& rule,
+                       const PerProbe<>& ranges) {
+  SweepDwells found;
+  found.axis = SweptAxis(recording);
+  const Rows rows = RowsOf(recording, found.axis);
+  found.counts.rows = rows.time.size();
+  DwellFinder finder(rows, rule, found);
+  for (std::size_t row = 0; row < rows.time.size(); ++row) {
+    if (!IsGood(rows, row)) {
+      ++found.counts.flagged;
+      continue;
+    }
+    RefuseImpossibleGap(recording, rows, row, ranges);
+    finder.Add(row);
+  }
+  finder.Close();
+  DropOtherStandstills(found);
+  if (found.dwells.empty()) {
+    throw InputError(fmt::format(
+        "{}: no dwell found: the {} axis never stands within {} um for longer than {} s; set "
+        "sweep.window_um and sweep.settle_s in the header",
+        recording.name, found.axis, rule.window / kMicrometre, rule.settle));
+  }
+  AssignStations(rule.window, found);
+  found.start = PositionAt(recording, found.dwells.front().first_row);
+  found.start[found.axis - 'X'] = found.stations[found.dwells.front().station];
+  found.scatter = finder.Scatters();
+  for (const Dwell& dwell : found.dwells) found.counts.used += dwell.samples;
+  return found;
+}
+
+}  // namespace abbe::probes

@@ -1,0 +1,74 @@
+// The standstills of a sweep and what each probe read during each of them: the only part of the
+// reduction that looks at single rows.
+//
+// A dwell is a run of consecutive rows of one pass and direction whose position stays within
+// `window` of its first row; its first `settle` seconds do not count. Pass 0 and direction 0 are
+// outside the sweep, and runs that keep fewer than a quarter of the usual number of rows are no
+// dwells (turning points). The gap of a dwell is a Huber-type robust mean. Dwells nearer to each
+// other than `window` belong to one station.
+//
+// Units: m, s. Rows with a flag or a NaN are left out and counted; a gap in an unflagged row that
+// is negative or above its probe's range is an InputError with file, row, probe, value and range.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "probes/head_layout.h"
+#include "recording/recording.h"
+
+namespace abbe::probes {
+
+struct DwellRule {
+  double window;  // m
+  double settle;  // s
+};
+
+struct Dwell {
+  double time;      // s, mean of its rows
+  double duration;  // s, from the first to the last of them
+  double position;  // m, of the swept axis
+  int pass;
+  int direction;          // +1, -1: of the approach
+  std::size_t station;    // index into SweepDwells::stations
+  std::size_t first_row;  // of the run
+  std::size_t samples;    // rows that count
+  PerProbe<> gap;         // m
+};
+
+struct SampleCounts {
+  std::size_t rows = 0;
+  std::size_t used = 0;      // in dwells, per row
+  std::size_t flagged = 0;   // flag or NaN
+  std::size_t moving = 0;    // between dwells, or settling
+  std::size_t outliers = 0;  // single readings that the robust means gave less than full weight
+};
+
+// The scatter of single readings within the dwells, pooled over all of them.
+struct Scatter {
+  double white = 0.0;  // m, standard deviation; 0 when no dwell has two rows
+  double lag1 =
+      0.0;  // correlation of neighbouring readings, corrected for the dwells' finite length
+  double dof = 0.0;  // degrees of freedom of `white`
+};
+
+struct SweepDwells {
+  char axis = 'X';
+  std::vector<double> stations;  // m, ascending: the mean position of the station's dwells
+  Eigen::Vector3d start = Eigen::Vector3d::Zero();  // m: position [x y z] of the first dwell
+  std::vector<Dwell> dwells;                        // in the order of time
+  PerProbe<Scatter> scatter;
+  SampleCounts counts;
+};
+
+// The rule that the recording's header states (`sweep.window_um`, `sweep.settle_s`), else 20 um,
+// 0.1 s.
+DwellRule DwellRuleOf(const recording::Recording& recording);
+
+// `recording` is of kind sweep; `ranges` are the largest gaps of the probes, m. One pass over the
+// rows.
+SweepDwells FindDwells(const recording::Recording& recording, const DwellRule& rule,
+                       const PerProbe<>& ranges);
+
+}  // namespace abbe::probes

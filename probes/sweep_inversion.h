@@ -1,0 +1,89 @@
+// From mean gaps to the five errors of the swept axis in the names of ISO 230-1, at the target and
+// at the axis reference.
+//
+//   1. reading -> gap: tilt response and stray capacitance of the electrode
+//   2. Delta = (zero_gap - gap) / gain; the zero is the machine file's, else the mean of the first
+//   station
+//   3. exact inversion with full rotations, for the body that the chain lets move -> errors in H
+//   4. turned into the machine frame M: for Y, roll = EBY, pitch = -EAY, yaw = ECY
+//   5. from the target, where a straightness is measured, to the axis reference, where the map
+//   wants it:
+//      t_reference = t_target - w x r, for X: EYX = EYX_target - r_x ECX + r_z EAX
+//
+// r is the head's origin at the start of the sweep, seen from the reference point of the swept
+// axis' carriage, which has moved with the axes between it and the bed. Angles are the same at
+// both.
+//
+// Units: m, rad. Failure: InputError when the head has no frame for the axis, or where the
+// electrode response has no inverse.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "machine/machine.h"
+#include "probes/head_inversion.h"
+#include "probes/head_settings.h"
+#include "probes/sweep_gauge.h"
+
+namespace abbe::probes {
+
+inline constexpr int kComponents = 5;
+
+// What the rows of an error matrix are, e.g. for X: EAX EBX ECX EYX EZX; for Z: EAZ EBZ ECZ EXZ
+// EYZ.
+struct Component {
+  std::string name;
+  std::string kind;  // "roll", "pitch", "yaw" or "straightness"
+  bool angle() const { return kind != "straightness"; }
+  SweepGauge::Kind gauge() const {
+    return angle() ? SweepGauge::Kind::kFirstStation : SweepGauge::Kind::kLine;
+  }
+};
+
+// Rows: the components at the axis reference, then the components at the target. Columns: groups.
+inline constexpr int kErrorRows = 2 * kComponents;
+using GroupErrors = Eigen::Matrix<double, kErrorRows, Eigen::Dynamic>;
+using GroupReadings = Eigen::Matrix<double, kProbes, Eigen::Dynamic>;
+using GroupJacobian = Eigen::Matrix<double, kErrorRows, kProbes>;
+
+class SweepInversion {
+ public:
+  // `start`: m, position [x y z] of all axes at the start of the sweep.
+  SweepInversion(const machine::Machine& machine, const HeadSettings& head, char axis,
+                 const Eigen::Vector3d& start);
+
+  const std::array<Component, kComponents>& components() const { return components_; }
+  MovingBody moving() const { return moving_; }
+
+  // The travel since the start towards +u, m.
+  double Travel(double position) const { return position - start_; }
+
+  // Errors per group, before any gauge. `first` groups, the first ones, belong to the first
+  // station.
+  GroupErrors Errors(const GroupReadings& readings, const Eigen::VectorXd& positions,
+                     Eigen::Index first) const;
+  // The derivative of Errors by Delta, group by group, by central differences.
+  std::vector<GroupJacobian> Jacobians(const GroupReadings& readings,
+                                       const Eigen::VectorXd& positions, Eigen::Index first) const;
+
+ private:
+  using ErrorColumn = Eigen::Matrix<double, kErrorRows, 1>;
+
+  GroupReadings Deltas(const GroupReadings& readings, const Eigen::VectorXd& positions,
+                       Eigen::Index first) const;
+  ErrorColumn ErrorsAt(const PerProbe<>& delta, double travel) const;
+
+  HeadSettings head_;
+  MovingBody moving_;
+  RigidInversion invert_;
+  std::array<Component, kComponents> components_;
+  std::array<int, 2> across_;  // indices in M of the two straightness directions
+  Eigen::Matrix3d R_MH_;
+  Eigen::Vector3d lever_;  // m, in M: r above
+  double start_ = 0.0;
+};
+
+}  // namespace abbe::probes

@@ -1,0 +1,211 @@
+#include "probes/sweep_reduction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "failure/failure.h"
+#include "standards/straightness.h"
+
+namespace abbe::probes {
+namespace {
+
+using Sources = std::array<Eigen::MatrixXd, kSources>;
+
+Eigen::MatrixXd Sum(const Sources& sources) {
+  return std::accumulate(sources.begin() + 1, sources.end(), sources.front());
+}
+
+Eigen::VectorXd Deviations(const Eigen::MatrixXd& covariance) {
+  return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+}
+
+double RootMeanSquare(const Eigen::MatrixXd& covariance) {
+  return std::sqrt(std::max(0.0, covariance.diagonal().mean()));
+}
+
+std::vector<double> ToList(const Eigen::VectorXd& values) {
+  return {values.data(), values.data() + values.size()};
+}
+
+// Turns the errors and covariances of groups into the results of one component.
+class ComponentEvaluation {
+ public:
+  ComponentEvaluation(const StationMeans& means, const SweepGauge& gauge)
+      : means_(means),
+        gauge_(gauge),
+        directions_(static_cast<Eigen::Index>(means.directions.size())) {}
+
+  ComponentResult operator()(const Component& component, const Eigen::VectorXd& at_reference,
+                             const Sources& reference_sources, const Eigen::VectorXd& at_target,
+                             const Sources& target_sources) const {
+    const SweepGauge::Kind kind = component.gauge();
+    const Eigen::VectorXd groups = gauge_.Apply(kind, at_reference);
+    const Eigen::MatrixXd raw_V = Sum(reference_sources);
+    const Eigen::MatrixXd V = gauge_.Covariance(kind, raw_V);
+    const Eigen::MatrixXd station_V = Means(V);
+
+    ComponentResult result;
+    result.component = component;
+    result.value = gauge_.StationMeans(groups);
+    result.u = Deviations(station_V);
+    result.at_target = gauge_.StationMeans(gauge_.Apply(kind, at_target));
+    result.u_at_target = Deviations(Means(gauge_.Covariance(kind, Sum(target_sources))));
+    SplitDirections(groups, V, result);
+    if (component.angle()) {
+      result.range = Range(result.value, station_V);
+    } else {
+      result.straightness = Straightness(at_reference, raw_V, result.value, station_V);
+    }
+    double noise = 0.0;
+    for (std::size_t source = 0; source < kSources; ++source) {
+      result.budget[source] =
+          RootMeanSquare(Means(gauge_.Covariance(kind, reference_sources[source])));
+      if (source == 0) noise = result.budget[source];
+    }
+    result.coverage = Coverage(noise, RootMeanSquare(station_V));
+    return result;
+  }
+
+ private:
+  // Covariance of the station means from that of the groups.
+  Eigen::MatrixXd Means(const Eigen::MatrixXd& V) const {
+    return gauge_.StationMeans(gauge_.StationMeans(V).transpose());
+  }
+
+  void SplitDirections(const Eigen::VectorXd& groups, const Eigen::MatrixXd& V,
+                       ComponentResult& result) const {
+    const Eigen::Index stations = groups.size() / directions_;
+    for (Eigen::Index k = 0; k < directions_; ++k) {
+      Eigen::VectorXd& side =
+          means_.directions[static_cast<std::size_t>(k)] > 0 ? result.forward : result.backward;
+      side.resize(stations);
+      for (Eigen::Index i = 0; i < stations; ++i) side[i] = groups[i * directions_ + k];
+    }
+    if (directions_ != 2) return;
+    // Rows: forward - backward of each station.
+    Eigen::MatrixXd D = Eigen::MatrixXd::Zero(stations, groups.size());
+    for (Eigen::Index i = 0; i < stations; ++i) D.row(i).segment(2 * i, 2) << 1.0, -1.0;
+    const Eigen::MatrixXd reversal_V = D * V * D.transpose();
+    Reversal reversal{};
+    reversal.value = result.forward - result.backward;
+    reversal.u = Deviations(reversal_V);
+    reversal.mean = {reversal.value.mean(), std::sqrt(std::max(0.0, reversal_V.mean()))};
+    Eigen::Index at = 0;
+    reversal.value.cwiseAbs().maxCoeff(&at);
+    reversal.largest = {reversal.value[at], reversal.u[at]};
+    // Sidak: each of n independent stations stays inside with 0.95^(1/n).
+    const double each = std::pow(0.95, 1.0 / static_cast<double>(stations));
+    const double limit = boost::math::quantile(boost::math::normal(), 0.5 + each / 2.0);
+    reversal.seen = (reversal.value.array().abs() > limit * reversal.u.array()).any();
+    result.reversal = reversal;
+  }
+
+  // Largest - smallest of the values, with the uncertainty of that difference.
+  static Uncertain Range(const Eigen::VectorXd& values, const Eigen::MatrixXd& V) {
+    Eigen::Index high = 0, low = 0;
+    const double range = values.maxCoeff(&high) - values.minCoeff(&low);
+    const double variance = V(high, high) + V(low, low) - 2.0 * V(high, low);
+    return {range, std::sqrt(std::max(0.0, variance))};
+  }
+
+  StraightnessFigures Straightness(const Eigen::VectorXd& raw, const Eigen::MatrixXd& raw_V,
+                                   const Eigen::VectorXd& deviations,
+                                   const Eigen::MatrixXd& station_V) const {
+    const std::vector<double> values = ToList(deviations);
+    const auto figure = [&](standards::LineKind kind) {
+      const auto found = standards::EvaluateStraightness(kind, means_.stations, values);
+      return LineFigure{found.line, found.error};
+    };
+    const Eigen::VectorXd& w = gauge_.slope_weights();
+    return {.end_points = figure(standards::LineKind::kEndPoints),
+            .least_squares = figure(standards::LineKind::kLeastSquares),
+            .minimum_zone = figure(standards::LineKind::kMinimumZone),
+            .u = Range(deviations, station_V).u,
+            .slope = {w.dot(raw), std::sqrt(std::max(0.0, w.dot(raw_V * w)))}};
+  }
+
+  // Student's t for 95 % at the degrees of freedom of Welch and Satterthwaite; all sources but the
+  // noise are known as they are stated.
+  double Coverage(double noise, double total) const {
+    constexpr double kNormal = 1.959964;
+    if (noise <= 0.0 || means_.noise.u_dof <= 0.0) return kNormal;
+    const double dof = means_.noise.u_dof * std::pow(total / noise, 4.0);
+    if (dof > 1e6) return kNormal;
+    return boost::math::quantile(boost::math::students_t(dof), 0.975);
+  }
+
+  const StationMeans& means_;
+  const SweepGauge& gauge_;
+  Eigen::Index directions_;
+};
+
+int PassesOf(const std::vector<Dwell>& dwells) {
+  std::set<int> passes;
+  for (const Dwell& dwell : dwells) passes.insert(dwell.pass);
+  return static_cast<int>(passes.size());
+}
+
+}  // namespace
+
+SweepSetup ReadSweepSetup(const settings::Table& root) {
+  return {machine::ReadMachine(root), ReadHeadSettings(root), ReadTargetSettings(root),
+          ReadProbeNoise(root)};
+}
+
+SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup& setup) {
+  const std::string machine = recording.HeaderText("machine").value_or(setup.machine.name);
+  if (machine != setup.machine.name) {
+    throw InputError(
+        fmt::format("{}: was recorded on the machine \"{}\", the machine file describes "
+                    "\"{}\"; give the file of that machine",
+                    recording.name, machine, setup.machine.name));
+  }
+  PerProbe<> ranges;
+  for (std::size_t probe = 0; probe < kProbes; ++probe) {
+    ranges[probe] = setup.head.probes[probe].range;
+  }
+  const SweepDwells sweep = FindDwells(recording, DwellRuleOf(recording), ranges);
+  const StationMeans means = FitStations(recording.name, sweep, setup.noise);
+  const SweepInversion inversion(setup.machine, setup.head, sweep.axis, sweep.start);
+  const auto directions = static_cast<Eigen::Index>(means.directions.size());
+  const GroupErrors errors = inversion.Errors(means.gap, means.position, directions);
+  const SweepUncertainty uncertainty(setup.machine, setup.head, setup.target, sweep.axis,
+                                     sweep.start, means);
+
+  SweepResult result;
+  result.recording = recording.name;
+  result.machine = setup.machine.name;
+  result.chain = setup.machine.chain.Text();
+  result.axis = sweep.axis;
+  result.moving = inversion.moving();
+  result.mounting = recording.HeaderText("mounting").value_or("");
+  result.conditions = ConditionsOf(recording);
+  result.stations = means.stations;
+  result.passes = PassesOf(means.dwells);
+  result.counts = sweep.counts;
+  result.dwells = means.dwells;
+  result.residual = means.residual;
+  result.noise = means.noise;
+  result.notes = means.notes;
+  const SweepGauge gauge(
+      Eigen::Map<const Eigen::VectorXd>(means.stations.data(),
+                                        static_cast<Eigen::Index>(means.stations.size())),
+      directions);
+  const ComponentEvaluation evaluate(means, gauge);
+  for (int i = 0; i < kComponents; ++i) {
+    const int at_target = i + kComponents;
+    result.components[static_cast<std::size_t>(i)] =
+        evaluate(inversion.components()[static_cast<std::size_t>(i)], errors.row(i).transpose(),
+                 uncertainty.Covariance(i), errors.row(at_target).transpose(),
+                 uncertainty.Covariance(at_target));
+  }
+  return result;
+}
+
+}  // namespace abbe::probes

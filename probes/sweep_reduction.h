@@ -1,0 +1,35 @@
+// The reduction of an axis sweep: from a recording of five gaps to five error motions with
+// uncertainty.
+//
+//   const auto document = settings::Document::Read("machine.toml");
+//   const SweepSetup setup = ReadSweepSetup(document.Root());
+//   const SweepResult result = ReduceSweep(recording::Read("sweep_X.csv"), setup);
+//
+// Steps, one header each: sweep_dwells.h (rows -> dwells), sweep_stations.h (dwells -> station
+// means), sweep_inversion.h (means -> errors), sweep_gauge.h, sweep_uncertainty.h. What is in the
+// result: sweep_result.h. The page for users: docs/sweep.md.
+//
+// Failure: InputError for a recording that is no sweep, an impossible gap, fewer than three
+// stations; NumericalError for readings that no small motion gives.
+#pragma once
+
+#include "machine/machine.h"
+#include "probes/head_settings.h"
+#include "probes/sweep_result.h"
+#include "recording/recording.h"
+#include "settings/document.h"
+
+namespace abbe::probes {
+
+struct SweepSetup {
+  machine::Machine machine;
+  HeadSettings head;
+  TargetSettings target;
+  ProbeNoise noise;
+};
+
+SweepSetup ReadSweepSetup(const settings::Table& root);
+
+SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup& setup);
+
+}  // namespace abbe::probes

@@ -1,0 +1,234 @@
+#include "probes/sweep_stations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <span>
+
+#include "estimation/markov_noise.h"
+#include "failure/failure.h"
+#include "settings/unit.h"
+
+namespace abbe::probes {
+namespace {
+
+constexpr double kSignificance = 0.99;
+constexpr double kFewDwells = 10.0;  // degrees of freedom within the dwells that give a scatter
+constexpr double kLeastVariance = 1e-24;  // m^2: a noise-free recording is known to 1 pm
+
+Eigen::Index Row(std::size_t probe) { return static_cast<Eigen::Index>(probe); }
+
+// Keeps the stations that were approached from every direction of the sweep, and their dwells.
+void KeepCompleteStations(const std::string& name, const SweepDwells& sweep, StationMeans& means) {
+  std::set<int, std::greater<>> directions;
+  std::vector<std::set<int>> seen(sweep.stations.size());
+  for (const Dwell& dwell : sweep.dwells) {
+    directions.insert(dwell.direction);
+    seen[dwell.station].insert(dwell.direction);
+  }
+  means.directions.assign(directions.begin(), directions.end());
+  constexpr std::size_t kDropped = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> kept(sweep.stations.size(), kDropped);
+  for (std::size_t station = 0; station < sweep.stations.size(); ++station) {
+    if (seen[station].size() != directions.size()) continue;
+    kept[station] = means.stations.size();
+    means.stations.push_back(sweep.stations[station]);
+  }
+  if (means.stations.size() < 3) {
+    throw InputError(fmt::format(
+        "{}: {} of {} stations were approached from every direction of the sweep, at least 3 are "
+        "needed; record a complete pass or correct sweep.window_um in the header",
+        name, means.stations.size(), sweep.stations.size()));
+  }
+  if (means.stations.size() < sweep.stations.size()) {
+    means.notes.push_back(
+        fmt::format("{} of {} stations are left out: they were not approached from every direction "
+                    "of the sweep",
+                    sweep.stations.size() - means.stations.size(), sweep.stations.size()));
+  }
+  for (Dwell dwell : sweep.dwells) {
+    if (kept[dwell.station] == kDropped) continue;
+    dwell.station = kept[dwell.station];
+    means.dwells.push_back(dwell);
+  }
+}
+
+// The fits of all probes under one noise model.
+class DwellFit {
+ public:
+  DwellFit(const StationMeans& means, const ProbeNoise& noise) : means_(means), noise_(noise) {
+    const auto directions = static_cast<int>(means.directions.size());
+    const auto dwells = static_cast<Eigen::Index>(means.dwells.size());
+    values_.resize(dwells, kProbes);
+    for (Eigen::Index i = 0; i < dwells; ++i) {
+      const Dwell& dwell = means.dwells[static_cast<std::size_t>(i)];
+      const int k = dwell.direction == means.directions.front() ? 0 : 1;
+      groups_.push_back(static_cast<int>(dwell.station) * directions + k);
+      times_.push_back(dwell.time);
+      for (std::size_t probe = 0; probe < kProbes; ++probe)
+        values_(i, Row(probe)) = dwell.gap[probe];
+    }
+    group_count_ = static_cast<int>(means.stations.size()) * directions;
+  }
+
+  const std::vector<int>& groups() const { return groups_; }
+  int group_count() const { return group_count_; }
+  double dof() const {
+    return static_cast<double>(kProbes) * static_cast<double>(values_.rows() - group_count_);
+  }
+
+  // `white`: m^2, dwells x probes. Returns chi2 of all probes.
+  double Run(const Eigen::MatrixXd& white, StationMeans& means) const {
+    double chi2 = 0.0;
+    means.gap.resize(kProbes, group_count_);
+    for (std::size_t probe = 0; probe < kProbes; ++probe) {
+      const Eigen::VectorXd white_of_probe = white.col(Row(probe));
+      const auto fit = estimation::FitGroupsUnderDrift(
+          times_, groups_, values_.col(Row(probe)),
+          std::span(white_of_probe.data(), static_cast<std::size_t>(white_of_probe.size())),
+          noise_.drift, noise_.drift_time, group_count_);
+      means.gap.row(Row(probe)) = fit.values.col(0).transpose();
+      means.covariance[probe] = fit.covariance;
+      chi2 += fit.chi_square[0];
+    }
+    return chi2;
+  }
+
+ private:
+  const StationMeans& means_;
+  const ProbeNoise& noise_;
+  std::vector<double> times_;
+  std::vector<int> groups_;
+  Eigen::MatrixXd values_;
+  int group_count_ = 0;
+};
+
+// The variance of a dwell's mean from the scatter within the dwells. The mean over a dwell of
+// length T has s^2 T / (3 tau) less of the drift's variance than the drift at one time, to first
+// order in T / tau.
+Eigen::MatrixXd WhiteFromWithin(const StationMeans& means, const PerProbe<Scatter>& scatter,
+                                const ProbeNoise& noise) {
+  constexpr double kLeastShare = 0.1;  // of the white variance stays where the drift dominates
+  Eigen::MatrixXd white(means.dwells.size(), kProbes);
+  for (std::size_t probe = 0; probe < kProbes; ++probe) {
+    const double r = std::clamp(scatter[probe].lag1, 0.0, 0.99);
+    const double one = scatter[probe].white * scatter[probe].white * (1.0 + r) / (1.0 - r);
+    for (std::size_t i = 0; i < means.dwells.size(); ++i) {
+      const Dwell& dwell = means.dwells[i];
+      const double variance = one / static_cast<double>(dwell.samples);
+      const double averaged = noise.drift * noise.drift * dwell.duration / (3.0 * noise.drift_time);
+      white(static_cast<Eigen::Index>(i), Row(probe)) =
+          std::max({variance - averaged, kLeastShare * variance, kLeastVariance});
+    }
+  }
+  return white;
+}
+
+Eigen::MatrixXd Constant(const StationMeans& means, double variance) {
+  return Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(means.dwells.size()), kProbes,
+                                   std::max(variance, kLeastVariance));
+}
+
+// The variance of a dwell that makes the scatter between the passes as large as it is: chi2 = dof.
+double WhiteFromPasses(const DwellFit& fit, StationMeans& means) {
+  double low = 1e-12, high = 1e-3;  // m
+  for (int step = 0; step < 50; ++step) {
+    const double middle = std::sqrt(low * high);
+    (fit.Run(Constant(means, middle * middle), means) > fit.dof() ? low : high) = middle;
+  }
+  return low * high;
+}
+
+Eigen::MatrixXd ChooseWhite(const SweepDwells& sweep, const ProbeNoise& noise, const DwellFit& fit,
+                            StationMeans& means) {
+  double within_dof = std::numeric_limits<double>::infinity();
+  double dof = 0.0;
+  for (const Scatter& scatter : sweep.scatter) {
+    within_dof = std::min(within_dof, scatter.dof);
+    dof += scatter.dof;
+  }
+  if (within_dof >= kFewDwells) {
+    means.noise.u_dof = dof;
+    return WhiteFromWithin(means, sweep.scatter, noise);
+  }
+  if (fit.dof() > 0.0) {
+    means.noise.u_dof = fit.dof();
+    means.notes.push_back(
+        fmt::format("the dwells hold too few readings to show their noise: it is taken from the "
+                    "scatter between "
+                    "the passes, with {} degrees of freedom",
+                    fit.dof()));
+    return Constant(means, WhiteFromPasses(fit, means));
+  }
+  means.notes.push_back(
+      "one reading per dwell and one pass show no noise: it is taken from noise.probe_nm of the "
+      "machine file");
+  means.noise.u_dof = std::numeric_limits<double>::infinity();
+  return Constant(means, noise.probe * noise.probe);
+}
+
+// The scatter between the passes checks the model; it may say that the model promises too much.
+void CheckAgainstPasses(double chi2, double dof, StationMeans& means) {
+  means.noise.chi2 = chi2;
+  means.noise.dof = dof;
+  if (dof <= 0.0) {
+    means.notes.push_back(
+        "one pass: nothing checks the noise model; measure at least two passes to see the scatter");
+    return;
+  }
+  if (chi2 <= boost::math::quantile(boost::math::chi_squared(dof), kSignificance)) return;
+  means.noise.scale = std::sqrt(chi2 / dof);
+  means.noise.u_dof = dof;
+  for (Eigen::MatrixXd& covariance : means.covariance) covariance *= chi2 / dof;
+  means.notes.push_back(
+      fmt::format("the passes scatter {:.2f} times more than the noise model says: the noise part "
+                  "of u is scaled "
+                  "up by it; look for drift, vibration or a loose mounting, or correct [noise]",
+                  means.noise.scale));
+}
+
+void FillResidualsAndFigures(const SweepDwells& sweep, const DwellFit& fit,
+                             const Eigen::MatrixXd& white, StationMeans& means) {
+  const auto dwells = static_cast<Eigen::Index>(means.dwells.size());
+  means.position = Eigen::VectorXd::Zero(fit.group_count());
+  means.residual.resize(kProbes, dwells);
+  Eigen::VectorXd counts = Eigen::VectorXd::Zero(fit.group_count());
+  for (Eigen::Index i = 0; i < dwells; ++i) {
+    const Dwell& dwell = means.dwells[static_cast<std::size_t>(i)];
+    const int group = fit.groups()[static_cast<std::size_t>(i)];
+    means.position[group] += dwell.position;
+    counts[group] += 1.0;
+    for (std::size_t probe = 0; probe < kProbes; ++probe) {
+      means.residual(Row(probe), i) = dwell.gap[probe] - means.gap(Row(probe), group);
+    }
+  }
+  means.position.array() /= counts.array();
+  const double dof = static_cast<double>(dwells - fit.group_count());
+  for (std::size_t probe = 0; probe < kProbes; ++probe) {
+    ProbeFigures& figures = means.noise.probes[probe];
+    figures = {sweep.scatter[probe].white, sweep.scatter[probe].lag1, 0.0};
+    if (dof <= 0.0) continue;
+    const double between = means.residual.row(Row(probe)).squaredNorm() / dof;
+    figures.drift = std::sqrt(std::max(0.0, between - white.col(Row(probe)).mean()));
+  }
+}
+
+}  // namespace
+
+StationMeans FitStations(const std::string& name, const SweepDwells& sweep,
+                         const ProbeNoise& noise) {
+  StationMeans means;
+  KeepCompleteStations(name, sweep, means);
+  const DwellFit fit(means, noise);
+  const Eigen::MatrixXd white = ChooseWhite(sweep, noise, fit, means);
+  const double chi2 = fit.Run(white, means);
+  FillResidualsAndFigures(sweep, fit, white, means);
+  CheckAgainstPasses(chi2, fit.dof(), means);
+  return means;
+}
+
+}  // namespace abbe::probes

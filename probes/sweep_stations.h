@@ -1,0 +1,64 @@
+// From the dwells of a sweep to one mean gap per station, direction of approach and probe, with the
+// covariance of these means.
+//
+// Generalised least squares: a dwell is its group's mean + the drift of the probe at that time +
+// white noise. The drift is the Ornstein-Uhlenbeck process of the machine file, independent for
+// each probe; the white variance of a dwell is
+//
+//   s^2 / n * (1 + r) / (1 - r) - S^2 T / (3 tau)
+//
+//   s, r    scatter and lag-1 correlation of the readings within the dwells, pooled over all dwells
+//   n, T    readings and length of the dwell
+//   S, tau  standard deviation and time of the drift, part of which the mean over T takes out
+//
+// Recordings with one reading per dwell have no such scatter: the variance is then taken from the
+// scatter between the passes, or, with one pass, from the machine file.
+//
+// Groups are numbered station * directions + k, k in the order of `directions`. Units: m, s.
+// Failure: InputError when fewer than three stations were approached from every direction of the
+// sweep.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "probes/head_settings.h"
+#include "probes/sweep_dwells.h"
+
+namespace abbe::probes {
+
+struct ProbeFigures {
+  double white;  // m, standard deviation of one reading
+  double lag1;   // correlation of neighbouring readings
+  double drift;  // m, standard deviation of the dwells about their group beyond the white noise
+};
+
+struct NoiseFigures {
+  PerProbe<ProbeFigures> probes;
+  double chi2 = 0.0;   // of the scatter between passes under the noise model, all probes
+  double dof = 0.0;    // its degrees of freedom; 0 with one pass
+  double scale = 1.0;  // the covariance was multiplied by scale^2
+  double u_dof = 0.0;  // degrees of freedom of the noise's standard uncertainty
+};
+
+struct StationMeans {
+  std::vector<int> directions;                         // {+1, -1}, or the only one
+  std::vector<double> stations;                        // m, ascending
+  Eigen::VectorXd position;                            // m, per group
+  Eigen::Matrix<double, kProbes, Eigen::Dynamic> gap;  // m, per group
+  PerProbe<Eigen::MatrixXd> covariance;                // m^2, group x group, per probe
+  std::vector<Dwell> dwells;                           // those of `stations`
+  Eigen::Matrix<double, kProbes, Eigen::Dynamic>
+      residual;  // m, per dwell: dwell - mean of its group
+  NoiseFigures noise;
+  std::vector<std::string> notes;  // what the user must know, one sentence each
+
+  Eigen::Index groups() const { return position.size(); }
+};
+
+// `name` stands for the recording in messages.
+StationMeans FitStations(const std::string& name, const SweepDwells& sweep,
+                         const ProbeNoise& noise);
+
+}  // namespace abbe::probes

@@ -1,0 +1,69 @@
+// The covariance of the five errors of a sweep, by source: GUM first order.
+//
+//   noise         covariance of the station means, through the linearised inversion
+//   gain          of each probe, relative (head.tolerance.gain)
+//   position      of each probe in the fixture (head.tolerance.probe_position)
+//   installation  of the head: three angles, three offsets (head.tolerance)
+//   form          of the target: a Gaussian process over each face with standard deviation
+//   target.form
+//                 and correlation exp(-(distance / form_length)^2 / 2), seen where each measuring
+//                 line meets the face: at u - d where the target moves, at u + d where the head
+//                 moves, so probes that follow each other along one line see the same form one
+//                 after the other
+//
+// The inversion is exactly determined (five readings, five errors), so no source can be told from
+// the errors by the data and all enter as stated. Sources beyond the noise are normal with the
+// standard deviations of the machine file; their columns are central differences of the exact
+// inversion over
+// +-1 standard deviation. Checked by GUM Supplement 1 Monte Carlo through the exact inversion.
+//
+// Units: rad^2 for an angle, m^2 for a straightness. Shapes: groups x groups.
+// Validity: second order in the tolerances is neglected, 1e-3 of each column at 500 urad and 10 um.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string_view>
+
+#include "probes/head_settings.h"
+#include "probes/sweep_gauge.h"
+#include "probes/sweep_inversion.h"
+#include "probes/sweep_stations.h"
+
+namespace abbe::probes {
+
+inline constexpr std::size_t kSources = 5;
+inline constexpr std::array<std::string_view, kSources> kSourceNames = {"noise", "gain", "position",
+                                                                        "installation", "form"};
+
+class SweepUncertainty {
+ public:
+  SweepUncertainty(const machine::Machine& machine, const HeadSettings& head,
+                   const TargetSettings& target, char axis, const Eigen::Vector3d& start,
+                   const StationMeans& means);
+
+  // The covariance by source of one row of GroupErrors, before any gauge.
+  std::array<Eigen::MatrixXd, kSources> Covariance(Eigen::Index row) const;
+
+ private:
+  using Columns = std::vector<GroupErrors>;  // one per parameter, times its standard deviation
+
+  Eigen::MatrixXd NoiseCovariance(Eigen::Index row) const;
+  Eigen::MatrixXd FormCovariance(Eigen::Index row) const;
+  Eigen::MatrixXd ColumnCovariance(const Columns& columns, Eigen::Index row) const;
+  // V of one pair of probes as it reaches Delta: the mean of the first station is taken off where
+  // it serves as the zero.
+  void TakeZero(std::size_t row_probe, std::size_t column_probe, Eigen::MatrixXd& V) const;
+  Eigen::VectorXd Sensitivity(Eigen::Index row, std::size_t probe) const;
+
+  HeadSettings head_;
+  TargetSettings target_;
+  const StationMeans& means_;
+  Eigen::Index first_;  // groups of the first station
+  MovingBody moving_;
+  Eigen::VectorXd travel_;  // m, per group
+  std::vector<GroupJacobian> jacobians_;
+  Columns gain_, position_, installation_;
+};
+
+}  // namespace abbe::probes

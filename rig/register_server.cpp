@@ -1,0 +1,205 @@
+#include "rig/register_server.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "rig/rig_channel.h"
+
+namespace abbe::rig {
+namespace {
+
+using hal::Answer;
+using hal::BlockSettings;
+using hal::ChannelSettings;
+using hal::DeviceSettings;
+using hal::RegisterTable;
+using hal::WordType;
+
+std::function<double()> ComputerClock(double speed) {
+  const auto start = std::chrono::steady_clock::now();
+  return [start, speed] {
+    return speed * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+}
+
+// The raw number that says "no value".
+double SentinelOf(const ChannelSettings& channel) {
+  if (!channel.sentinels.empty()) return channel.sentinels.front();
+  switch (channel.type) {
+    case WordType::kInt16:
+    case WordType::kInt32:
+      return -1.0;
+    case WordType::kUint16:
+      return std::numeric_limits<std::uint16_t>::max();
+    case WordType::kUint32:
+      return std::numeric_limits<std::uint32_t>::max();
+    case WordType::kFloat32:
+      break;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+void CheckChannels(const hal::DevicesSettings& devices) {
+  for (const DeviceSettings& device : devices.devices) {
+    for (const BlockSettings& block : device.blocks) {
+      for (const ChannelSettings& channel : block.channels) {
+        if (ParseChannel(channel.name)) continue;
+        throw InputError(
+            fmt::format("devices.{}: the rig has no channel \"{}\"; it serves x_mm, y_mm, z_mm, "
+                        "probe_a_um to probe_e_um and temp_NAME_c",
+                        device.name, channel.name));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+RegisterServer::RegisterServer(const World& world, const hal::DevicesSettings& devices,
+                               const ServerOptions& options)
+    : devices_(devices),
+      clock_(options.clock ? options.clock : ComputerClock(options.speed)),
+      machine_(world) {
+  CheckChannels(devices_);
+  for (const DeviceSettings& device : devices_.devices) {
+    const auto claim = [&](RegisterTable table, int address, int count) {
+      for (int i = 0; i < count; ++i) {
+        if (registers_.emplace(Place{device.unit, table, address + i}, 0).second) continue;
+        throw InputError(fmt::format(
+            "devices.{}: register {} of unit {} is claimed twice; give each device of the rig a "
+            "unit of its own",
+            device.name, address + i, device.unit));
+      }
+    };
+    for (const BlockSettings& block : device.blocks) claim(block.table, block.address, block.count);
+    if (device.cycle_start) claim(RegisterTable::kHolding, device.cycle_start->address, 2);
+  }
+  tcp_ = hal::ModbusServer::ListenTcp(options.host, options.port, *this);
+}
+
+std::uint64_t RegisterServer::requests() const {
+  std::uint64_t sum = tcp_->requests();
+  for (const auto& server : rtu_) sum += server->requests();
+  return sum;
+}
+
+std::string RegisterServer::OpenRtu(const std::string& device_name) {
+  for (const DeviceSettings& device : devices_.devices) {
+    if (device.name != device_name) continue;
+    rtu_.push_back(hal::ModbusServer::OpenPty(device.unit, *this));
+    return rtu_.back()->device();
+  }
+  throw InputError(
+      fmt::format("the machine file has no device \"{}\"; name one of its "
+                  "[devices.*] tables",
+                  device_name));
+}
+
+Answer RegisterServer::Start(int axis) {
+  const std::lock_guard lock(mutex_);
+  const double time = clock_();
+  if (machine_.StateAt(time) == ProgramState::kRunning) return Answer::kBusy;
+  return machine_.Start(axis, time) ? Answer::kOk : Answer::kIllegalValue;
+}
+
+Answer RegisterServer::Read(int unit, RegisterTable table, int address,
+                            std::span<std::uint16_t> words) {
+  const std::lock_guard lock(mutex_);
+  const auto unit_begin = registers_.lower_bound({unit, RegisterTable::kHolding, 0});
+  if (unit_begin == registers_.end() || std::get<0>(unit_begin->first) != unit)
+    return Answer::kNoSuchUnit;
+  const auto begin = registers_.find({unit, table, address});
+  auto found = begin;
+  for (std::size_t i = 0; i < words.size(); ++i, ++found) {
+    const Place place{unit, table, address + static_cast<int>(i)};
+    if (found == registers_.end() || found->first != place) return Answer::kIllegalAddress;
+  }
+  Refresh(clock_());
+  found = begin;
+  for (std::uint16_t& word : words) word = (found++)->second;
+  return Answer::kOk;
+}
+
+Answer RegisterServer::Write(int unit, int address, std::span<const std::uint16_t> words) {
+  for (const DeviceSettings& device : devices_.devices) {
+    if (device.unit != unit || !device.cycle_start || device.cycle_start->address != address) {
+      continue;
+    }
+    if (words.size() != 1 || words[0] < 1 || words[0] > kAxes) return Answer::kIllegalValue;
+    return Start(words[0] - 1);
+  }
+  return Answer::kIllegalAddress;
+}
+
+void RegisterServer::Refresh(double time) {
+  for (const DeviceSettings& device : devices_.devices) {
+    for (const BlockSettings& block : device.blocks) RefreshBlock(device, block, time);
+    if (!device.cycle_start) continue;
+    const ProgramState state = machine_.StateAt(time);
+    const int address = device.cycle_start->address;
+    registers_[{device.unit, RegisterTable::kHolding, address}] =
+        static_cast<std::uint16_t>(state == ProgramState::kRunning ? machine_.axis() + 1 : 0);
+    registers_[{device.unit, RegisterTable::kHolding, address + 1}] =
+        static_cast<std::uint16_t>(state);
+  }
+  RefreshStatus(time);
+}
+
+void RegisterServer::RefreshBlock(const DeviceSettings& device, const BlockSettings& block,
+                                  double time) {
+  std::vector<std::uint16_t> words(static_cast<std::size_t>(block.count));
+  for (const ChannelSettings& channel : block.channels) {
+    const std::optional<double> value = machine_.ReadingOf(channel.name, time);
+    if (value) {
+      hal::StoreValue(channel, *value, words);
+    } else {
+      hal::StoreNumber(SentinelOf(channel), channel.type, channel.order,
+                       std::span(words).subspan(static_cast<std::size_t>(channel.at)));
+    }
+  }
+  auto found = registers_.find({device.unit, block.table, block.address});
+  for (const std::uint16_t word : words) (found++)->second = word;
+}
+
+// A register that several channels share is bad when one of them is.
+void RegisterServer::RefreshStatus(double time) {
+  for (const bool good : {true, false}) {
+    for (const DeviceSettings& device : devices_.devices) {
+      for (const BlockSettings& block : device.blocks) {
+        for (const ChannelSettings& channel : block.channels) {
+          if (!channel.status || machine_.ReadingOf(channel.name, time).has_value() != good)
+            continue;
+          const auto& [address, table, mask, ok] = *channel.status;
+          const std::uint16_t first_ok = ok.empty() ? 0 : ok.front();
+          std::uint16_t& word = registers_[{device.unit, table, address}];
+          word =
+              static_cast<std::uint16_t>((word & ~mask) | ((good ? first_ok : ~first_ok) & mask));
+        }
+      }
+    }
+  }
+}
+
+std::string RegisterServer::MapText() const {
+  std::string text;
+  for (const DeviceSettings& device : devices_.devices) {
+    for (const BlockSettings& block : device.blocks) {
+      text += fmt::format("  unit {} {} registers {} to {} ({}):", device.unit,
+                          block.table == RegisterTable::kInput ? "input" : "holding", block.address,
+                          block.address + block.count - 1, device.name);
+      for (const ChannelSettings& channel : block.channels) text += " " + channel.name;
+      text += "\n";
+    }
+    if (!device.cycle_start) continue;
+    text += fmt::format(
+        "  unit {} holding register {}: write 1, 2, 3 to sweep X, Y, Z; {}: 0 idle, 1 running, "
+        "2 done\n",
+        device.unit, device.cycle_start->address, device.cycle_start->address + 1);
+  }
+  return text;
+}
+
+}  // namespace abbe::rig

@@ -1,0 +1,141 @@
+// Certified nonlinear regressions: NIST/ITL Statistical Reference Datasets (StRD), nonlinear
+// regression, www.itl.nist.gov/div898/strd. Data and certified values are in the public domain. The
+// data are checked against the certified residual sum of squares at the certified parameters.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimation/autodiff_residual.h"
+#include "estimation/problem.h"
+
+namespace abbe::estimation {
+namespace {
+
+// Certified values have 11 digits.
+constexpr double kCertified = 1e-10;
+
+struct Dataset {
+  std::vector<double> x, y;
+  std::vector<std::vector<double>> starts;
+  std::vector<double> certified, deviation;
+  double residual_sum;  // of squares
+  int freedom;
+};
+
+struct Misra1a {
+  template <class T>
+  static T Predict(const T* b, double x) {
+    return b[0] * (1.0 - exp(-b[1] * x));
+  }
+  static Dataset Data() {
+    return {{77.6, 114.9, 141.1, 190.8, 239.9, 289.0, 332.8, 378.4, 434.8, 477.3, 536.8, 593.1,
+             689.1, 760.0},
+            {10.07, 14.73, 17.94, 23.93, 29.61, 35.18, 40.02, 44.82, 50.76, 55.05, 61.01, 66.40,
+             75.47, 81.78},
+            {{500, 1e-4}, {250, 5e-4}},
+            {2.3894212918E+02, 5.5015643181E-04},
+            {2.7070075241E+00, 7.2668688436E-06},
+            1.2455138894E-01,
+            12};
+  }
+};
+
+struct Thurber {
+  template <class T>
+  static T Predict(const T* b, double x) {
+    return (b[0] + x * (b[1] + x * (b[2] + x * b[3]))) / (1.0 + x * (b[4] + x * (b[5] + x * b[6])));
+  }
+  static Dataset Data() {
+    return {{-3.067, -2.981, -2.921, -2.912, -2.840, -2.797, -2.702, -2.699, -2.633, -2.481,
+             -2.363, -2.322, -1.501, -1.460, -1.274, -1.212, -1.100, -1.046, -0.915, -0.714,
+             -0.566, -0.545, -0.400, -0.309, -0.109, -0.103, 0.010,  0.119,  0.377,  0.790,
+             0.963,  1.006,  1.115,  1.572,  1.841,  2.047,  2.200},
+            {80.574,   84.248,   87.264,   87.195,   89.076,   89.608,   89.868,   90.101,
+             92.405,   95.854,   100.696,  101.060,  401.672,  390.724,  567.534,  635.316,
+             733.054,  759.087,  894.206,  990.785,  1090.109, 1080.914, 1122.643, 1178.351,
+             1260.531, 1273.514, 1288.339, 1327.543, 1353.863, 1414.509, 1425.208, 1421.384,
+             1442.962, 1464.350, 1468.705, 1447.894, 1457.628},
+            {{1000, 1000, 400, 40, 0.7, 0.3, 0.03}, {1300, 1500, 500, 75, 1, 0.4, 0.05}},
+            {1.2881396800E+03, 1.4910792535E+03, 5.8323836877E+02, 7.5416644291E+01,
+             9.6629502864E-01, 3.9797285797E-01, 4.9727297349E-02},
+            {4.6647963344E+00, 3.9571156086E+01, 2.8698696102E+01, 5.5675370270E+00,
+             3.1333340687E-02, 1.4984928198E-02, 6.5842344623E-03},
+            5.6427082397E+03,
+            30};
+  }
+};
+
+struct Mgh09 {
+  template <class T>
+  static T Predict(const T* b, double x) {
+    return b[0] * (x * x + x * b[1]) / (x * x + x * b[2] + b[3]);
+  }
+  static Dataset Data() {
+    return {
+        {4.0, 2.0, 1.0, 0.5, 0.25, 0.167, 0.125, 0.1, 0.0833, 0.0714, 0.0625},
+        {0.1957, 0.1947, 0.1735, 0.1600, 0.0844, 0.0627, 0.0456, 0.0342, 0.0323, 0.0235, 0.0246},
+        {{25, 39, 41.5, 39}, {0.25, 0.39, 0.415, 0.39}},
+        {1.9280693458E-01, 1.9128232873E-01, 1.2305650693E-01, 1.3606233068E-01},
+        {1.1435312227E-02, 1.9633220911E-01, 8.0842031232E-02, 9.0025542308E-02},
+        3.0750560385E-04,
+        7};
+  }
+};
+
+template <class Model>
+struct Deviations {
+  Dataset data;
+  template <class T>
+  void operator()(const T* b, T* values) const {
+    for (std::size_t i = 0; i < data.x.size(); ++i) {
+      values[i] = Model::Predict(b, data.x[i]) - data.y[i];
+    }
+  }
+};
+
+template <class Model>
+class Nist : public testing::Test {};
+using Models = testing::Types<Misra1a, Thurber, Mgh09>;
+TYPED_TEST_SUITE(Nist, Models);
+
+TYPED_TEST(Nist, TheDataAreThoseThatWereCertified) {
+  const Dataset data = TypeParam::Data();
+  std::vector<double> off(data.x.size());
+  Deviations<TypeParam>{data}(data.certified.data(), off.data());
+  double sum = 0.0;
+  for (const double r : off) sum += r * r;
+  EXPECT_NEAR(sum / data.residual_sum, 1.0, kCertified);
+}
+
+TYPED_TEST(Nist, GivesTheCertifiedValuesFromBothStarts) {
+  const Dataset data = TypeParam::Data();
+  const double sigma = std::sqrt(data.residual_sum / data.freedom);
+  for (const std::vector<double>& start : data.starts) {
+    Problem problem;
+    ParameterBlock block{"b", {}, {}};
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      block.entries.push_back({.name = std::to_string(i + 1), .value = start[i]});
+    }
+    const BlockId b = problem.Add(block);
+    problem.Add(problem.AddSource("data"),
+                MakeAutoDiffResidual<4>(Deviations<TypeParam>{data}, data.x.size()), {b}, sigma);
+    const Result result = problem.Solve({.max_iterations = 1000});
+    ASSERT_TRUE(result.Usable());
+    EXPECT_EQ(result.freedom, data.freedom);
+    EXPECT_NEAR(result.chi_square / data.freedom, 1.0, kCertified);
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      const Parameter& entry = result.blocks[0].entries[i];
+      // The solve stops 1e-6 standard uncertainties before the minimum at the latest.
+      EXPECT_NEAR(entry.value, data.certified[i], 1e-6 * data.deviation[i]) << entry.name;
+      // The deviation changes with the parameters: by some 1e-6 within that distance.
+      EXPECT_NEAR(entry.uncertainty / data.deviation[i], 1.0, 1e-6) << entry.name;
+    }
+    EXPECT_TRUE(result.weak_directions.empty());
+  }
+}
+
+}  // namespace
+}  // namespace abbe::estimation

@@ -1,0 +1,129 @@
+// Files that grow, without crashes: what crash_test.cpp does not do to them.
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "recording/recording_file.h"
+#include "scratch.h"
+
+namespace abbe::recording {
+namespace {
+
+constexpr const char* kHeader = "kind = \"dwell\"\nmachine = \"m\"";
+const std::vector<std::string> kColumns{"time_s", "mood"};
+
+class EachForm : public testing::TestWithParam<std::string> {
+ protected:
+  const Scratch scratch_;
+  const std::filesystem::path path_ = scratch_ / ("a" + GetParam());
+};
+
+TEST_P(EachForm, HoldsWhatWasAppended) {
+  constexpr int kRows = 200'000;  // more than may wait in memory
+  {
+    const auto writer = Writer::Create(path_, kHeader, kColumns);
+    for (int i = 0; i < kRows; ++i)
+      writer->Append(std::array{1.0 * i, i % 3 == 0 ? std::nan("7") : 0.5 * i});
+  }  // the destructor closes
+  const Recording recording = Read(path_);
+  EXPECT_TRUE(recording.warnings.empty());
+  EXPECT_EQ(recording.header, std::string(kHeader) + "\n");
+  ASSERT_EQ(recording.rows(), static_cast<std::size_t>(kRows));
+  for (int i = 0; i < kRows; ++i) {
+    ASSERT_EQ(recording.columns[0].values[i], i);
+    if (i % 3 == 0) {
+      ASSERT_TRUE(std::isnan(recording.columns[1].values[i]));
+    } else {
+      ASSERT_EQ(recording.columns[1].values[i], 0.5 * i);
+    }
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch_.folder()), {}), 1);
+}
+
+TEST_P(EachForm, NeverOverwritesWhatWasMeasured) {
+  Put(path_, "precious");
+  const auto message = MessageOf<InputError>([&] { Writer::Create(path_, kHeader, kColumns); });
+  ExpectHas(message, path_.string() + ": exists already");
+  EXPECT_EQ(Bytes(path_), "precious");
+}
+
+TEST_P(EachForm, LeavesNoFileWhereItsHeaderIsRefused) {
+  MessageOf<InputError>([&] { Writer::Create(path_, "kind = 3", kColumns); });
+  MessageOf<InputError>([&] { Writer::Create(path_, kHeader, {"time_s", "a,b"}); });
+  MessageOf<InputError>([&] { Writer::Create(path_, kHeader, {}); });
+  EXPECT_TRUE(std::filesystem::is_empty(scratch_.folder()));
+}
+
+TEST_P(EachForm, SaysThatAFolderCannotBeWritten) {
+  const auto below_a_file = scratch_ / "file";
+  Put(below_a_file, "");
+  for (const auto& folder : {below_a_file, scratch_ / "none", std::filesystem::path("/proc")}) {
+    const auto path = folder / ("a" + GetParam());
+    ExpectHas(MessageOf<InputError>([&] { Writer::Create(path, kHeader, kColumns); }),
+              "cannot be created");
+    ExpectHas(MessageOf<InputError>([&] { Write(Dwell(1), path); }), "cannot be created");
+  }
+  if (geteuid() == 0) return;  // root may write everywhere
+  chmod(scratch_.folder().c_str(), 0500);
+  ExpectHas(MessageOf<InputError>([&] { Writer::Create(path_, kHeader, kColumns); }),
+            "Permission denied");
+  chmod(scratch_.folder().c_str(), 0700);
+}
+
+TEST_P(EachForm, RefusesARowOfAnotherWidth) {
+  const auto writer = Writer::Create(path_, kHeader, kColumns);
+  ExpectHas(MessageOf<InputError>([&] { writer->Append(std::array{1.0}); }), "row of 1 values");
+  writer->Append(std::array{1.0, 2.0});
+  writer->Close();
+  writer->Close();
+  EXPECT_EQ(Read(path_).rows(), 1u);
+  EXPECT_THROW(writer->Append(std::array{1.0, 2.0}), std::logic_error);
+}
+
+TEST_P(EachForm, OverwritesAtOnceOrNotAtAll) {
+  Write(Dwell(5), path_);
+  Write(Dwell(3), path_);
+  EXPECT_EQ(Read(path_).rows(), 3u);
+  Recording bad = Dwell(3);
+  bad.columns[0].values[1] = -1.0;
+  MessageOf<InputError>([&] { Write(bad, path_); });
+  EXPECT_EQ(Read(path_).rows(), 3u);
+}
+
+// Two recorders and a reader at the same time, as in a program with several devices.
+TEST_P(EachForm, WorksFromManyThreads) {
+  std::vector<std::jthread> threads;
+  threads.reserve(4);
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&, t] {
+      const auto path = scratch_ / (std::to_string(t) + GetParam());
+      const auto writer = Writer::Create(path, kHeader, kColumns);
+      for (int i = 0; i < 5000; ++i) {
+        writer->Append(std::array{1.0 * i, 1.0 * t});
+        if (i % 500 == 0) writer->Flush();
+      }
+      writer->Close();
+      const Recording recording = Read(path);
+      ASSERT_EQ(recording.rows(), 5000u);
+      EXPECT_EQ(recording.columns[1].values[4999], t);
+    });
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Forms, EachForm, testing::Values(".csv", ".h5", ".HDF5"),
+                         [](const auto& form) { return form.param.substr(1); });
+
+TEST(WriterTest, SaysThatADeviceIsFull) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "skipped: no /dev/full";
+  const Scratch scratch;
+  // A name of ours for the device that is always full.
+  const auto path = scratch / "a.csv.part";
+  std::filesystem::create_symlink("/dev/full", path);
+  ExpectHas(MessageOf<DeviceError>([&] { Write(Dwell(10), scratch / "a.csv"); }), "disk full");
+}
+
+}  // namespace
+}  // namespace abbe::recording
