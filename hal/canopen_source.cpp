@@ -59,7 +59,7 @@ SampleSet CanopenSource::Read() {
     encoder.too_short = false;
   }
   sync_s_.reset();
-  other_master_ = false;
+  foreign_sync_ = false;
   if (part_ == Part::kMaster) {
     Listen(clock_.Now());
     AwaitLateAnswers();
@@ -70,7 +70,7 @@ SampleSet CanopenSource::Read() {
   SampleSet set;
   set.sequence = ++sequence_;
   const double now = clock_.Now();
-  const bool torn = bus_->lost() != lost_before_ || other_master_;
+  const bool torn = bus_->lost() != lost_before_ || foreign_sync_;
   lost_before_ = bus_->lost();
   for (Encoder& encoder : encoders_) set.samples.push_back(SampleOf(encoder, torn, now));
   FinishSet(set, now);
@@ -87,13 +87,20 @@ void CanopenSource::Listen(double until_s) {
 }
 
 void CanopenSource::AwaitLateAnswers() {
-  const double until = sent_s_ + Span(2.0 * settings_.times.answer);
+  double until = sent_s_ + Span(2.0 * settings_.times.answer);
   const auto owes = [](const Encoder& encoder) { return encoder.owes; };
-  while (std::any_of(encoders_.begin(), encoders_.end(), owes)) {
+  while (sync_due_ || std::any_of(encoders_.begin(), encoders_.end(), owes)) {
+    const bool was_due = sync_due_;
     const auto received = bus_->Receive(until);
     if (!received) break;
     Hear(*received);
+    if (!was_due || sync_due_) continue;
+    // The SYNC itself was late: so are its answers, which nobody wants any more.
+    sync_s_.reset();
+    until += Span(2.0 * settings_.times.answer);
+    for (Encoder& encoder : encoders_) encoder.owes = encoder.node.Answers(clock_.Now());
   }
+  sync_due_ = false;
   for (Encoder& encoder : encoders_) encoder.owes = false;
 }
 
@@ -108,7 +115,7 @@ void CanopenSource::Command() {
   }
   Listen(sent_s_ + settings_.times.sync);
   sent_s_ = clock_.Now();
-  bus_->Send(SyncFrame());
+  sync_due_ = bus_->Send(SyncFrame());
 }
 
 bool CanopenSource::Complete() const {
@@ -159,18 +166,20 @@ CanopenSource::Heard CanopenSource::Hear(const CanReceived& received) {
 }
 
 CanopenSource::Heard CanopenSource::HearSync(const CanReceived& received) {
+  ++counts_.syncs;
   if (produces()) {
-    if (!received.own) {
-      other_master_ = true;
+    if (!sync_due_) {
+      foreign_sync_ = true;
       return Heard::kAll;
     }
+    sync_due_ = false;
   } else if (sync_s_ || std::any_of(encoders_.begin(), encoders_.end(),
                                     [](const Encoder& e) { return e.answer; })) {
+    --counts_.syncs;  // it will be heard again
     return Heard::kNextCycle;
   }
   sync_heard_ = true;
   sync_s_ = received.time_s;
-  ++counts_.syncs;
   return Heard::kAll;
 }
 
@@ -189,8 +198,8 @@ CanopenSource::Heard CanopenSource::HearPdo(Encoder& encoder, const CanReceived&
 Sample CanopenSource::SampleOf(Encoder& encoder, bool torn, double now_s) {
   const bool waited_for = encoder.node.Answers(now_s) && (sync_s_ || !produces());
   encoder.silent = !encoder.answer;
-  encoder.owes = encoder.silent && waited_for;
-  if (encoder.owes) ++counts_.missing;
+  if (encoder.silent && waited_for) ++counts_.missing;
+  encoder.owes = waited_for && (encoder.silent || foreign_sync_);
   const auto missing = [&](Cause cause) {
     return encoder.judge.Missing(cause, sync_s_.value_or(now_s));
   };
@@ -211,7 +220,8 @@ Sample CanopenSource::SampleOf(Encoder& encoder, bool torn, double now_s) {
 
 std::string CanopenSource::FaultNow(double now_s) const {
   if (std::string fault = bus_->Fault(); !fault.empty()) return fault;
-  if (other_master_) return "another device sends SYNC, too; set sync_ms = 0 or stop it";
+  if (foreign_sync_)
+    return "a SYNC came that abbe did not send; stop the other master or set sync_ms = 0";
   for (const Encoder& encoder : encoders_) {
     if (std::string fault = encoder.node.Fault(now_s); !fault.empty()) return fault;
     const auto say = [&](const std::string& what) {

@@ -26,7 +26,7 @@
 namespace abbe::hal {
 
 struct CanopenCounts {
-  std::uint64_t syncs = 0;    // that began a reading
+  std::uint64_t syncs = 0;    // heard on the bus
   std::uint64_t missing = 0;  // answers that did not come in time
   std::uint64_t unasked = 0;  // PDOs that answered no SYNC
   std::uint64_t short_frames = 0;
@@ -94,7 +94,8 @@ class CanopenSource : public SampleSource {
   std::optional<double> sync_s_;      // of the present SYNC
   double sent_s_ = 0.0;               // of the last one sent
   bool sync_heard_ = false;           // ever
-  bool other_master_ = false;         // sends SYNC as well
+  bool sync_due_ = false;             // sent and not yet heard
+  bool foreign_sync_ = false;         // heard one that was not sent
   std::optional<CanReceived> ahead_;  // the frame that began the next cycle (listener)
   std::uint64_t lost_before_ = 0;
   std::uint64_t sequence_ = 0;

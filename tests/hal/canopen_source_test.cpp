@@ -236,7 +236,7 @@ TEST_F(ThreeEncoders, ASecondMasterIsNoticed) {
   clock_.Advance(0.01);
   other->Send(SyncFrame());
   EXPECT_FALSE(source_->Read().AllGood());
-  EXPECT_NE(source_->Fault().find("another device sends SYNC"), std::string::npos);
+  EXPECT_NE(source_->Fault().find("a SYNC came that abbe did not send"), std::string::npos);
   clock_.Advance(0.01);
   EXPECT_TRUE(Next().AllGood());
 }
