@@ -6,6 +6,8 @@
 
 #include "apps/command.h"
 #include "apps/commands.h"
+#include "apps/machine_file.h"
+#include "hal/candump_recording.h"
 #include "recording/import.h"
 #include "recording/recording_file.h"
 
@@ -16,8 +18,49 @@ struct ConvertOptions {
   std::filesystem::path from;
   std::filesystem::path to;
   recording::ImportOptions import;
+  std::string machine;
+  std::string device;
   bool quiet = false;
 };
+
+bool IsCanLog(const std::filesystem::path& path) { return path.extension() == ".log"; }
+
+// The encoders that a log of CAN traffic is about.
+const hal::CanopenSettings& EncodersOf(const MachineFile& file, const std::string& device) {
+  const auto& all = file.devices.canopen;
+  if (device.empty() && all.size() == 1) return all.front();
+  for (const hal::CanopenSettings& one : all) {
+    if (one.name == device) return one;
+  }
+  throw InputError(fmt::format(
+      "{}: {}", file.document.name(),
+      all.empty() ? "has no device with transport = \"canopen\"; describe the encoders of the log"
+      : device.empty() ? "has several devices on CAN; say with --device which the log is about"
+                       : fmt::format("has no device \"{}\" on CAN; correct --device", device)));
+}
+
+MachineFile MachineOf(const ConvertOptions& options) {
+  if (!options.machine.empty()) return ReadMachineFile(options.machine);
+  throw InputError(
+      "a log of CAN traffic does not say what its counts mean; give the machine file with "
+      "--machine");
+}
+
+recording::Recording ReadAny(const ConvertOptions& options) {
+  if (IsCanLog(options.from)) {
+    const MachineFile file = MachineOf(options);
+    return hal::RecordingOf(hal::ReadCandump(options.from), EncodersOf(file, options.device),
+                            file.devices.stale, file.sweep_setup.machine.name);
+  }
+  const auto imported = recording::Import(options.from, options.import);
+  return imported ? *imported : recording::Read(options.from);
+}
+
+void WriteAny(const recording::Recording& recording, const ConvertOptions& options) {
+  if (!IsCanLog(options.to)) return recording::Write(recording, options.to);
+  const MachineFile file = MachineOf(options);
+  hal::WriteCandump(hal::LogOf(recording, EncodersOf(file, options.device)), options.to);
+}
 
 int Convert(const ConvertOptions& options) {
   if (std::filesystem::exists(options.to)) {
@@ -25,9 +68,8 @@ int Convert(const ConvertOptions& options) {
         fmt::format("{}: exists already, and nothing recorded is overwritten; choose another name",
                     options.to.string()));
   }
-  const auto imported = recording::Import(options.from, options.import);
-  const recording::Recording recording = imported ? *imported : recording::Read(options.from);
-  recording::Write(recording, options.to);
+  const recording::Recording recording = ReadAny(options);
+  WriteAny(recording, options);
   for (const std::string& warning : recording.warnings) fmt::print(stderr, "abbe: {}\n", warning);
   if (!options.quiet) {
     fmt::print("{}: {}, {} rows, {} columns\n", options.to.string(), recording.Kind(),
@@ -41,10 +83,16 @@ int Convert(const ConvertOptions& options) {
 void AddConvert(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<ConvertOptions>();
   CLI::App* command = program.add_subcommand(
-      "convert", "A recording from CSV to HDF5 or back, or from a table of another program");
-  command->add_option("from", options->from, "A recording (.csv, .h5, .hdf5) or a table (.dat)")
+      "convert",
+      "A recording from CSV to HDF5 or back, from a table, or from and to a log of candump");
+  command
+      ->add_option("from", options->from,
+                   "A recording (.csv, .h5, .hdf5), a table (.dat), a log of candump (.log)")
       ->required();
-  command->add_option("to", options->to, "The new recording (.csv, .h5, .hdf5)")->required();
+  command->add_option("to", options->to, "The new recording (.csv, .h5, .hdf5), or log (.log)")
+      ->required();
+  command->add_option("--machine", options->machine, "Logs: the machine file with the encoders");
+  command->add_option("--device", options->device, "Logs: the device, where several are on CAN");
   command->add_option("--axis", options->import.axis, "The axis of a table that does not say (X)")
       ->check(CLI::IsMember({"X", "Y", "Z"}));
   command->add_flag("--quiet", options->quiet, "Print nothing but warnings");

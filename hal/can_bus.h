@@ -1,7 +1,7 @@
 // A CAN bus as one participant sees it: the seam between encoders and whatever carries frames.
 //
-// Siblings: CanSocket (a SocketCAN interface), CanInProcess (a bus in memory that fails on demand).
-// One contract holds for both:
+// Siblings: CanSocket (a SocketCAN interface), CanInProcess (a bus in memory that fails on demand),
+// CanReplay (a log; takes no frames). One contract holds for all:
 //
 //   - Receive() hands over the frames of the bus in their order, its own included (`own`), each
 //     stamped in the one clock when it passed the bus, never later than now and never before the
@@ -65,6 +65,8 @@ class CanBus {
   virtual std::string Fault() const = 0;
   virtual std::uint64_t lost() const = 0;    // frames that the receiving queue had no room for
   virtual std::uint64_t errors() const = 0;  // error frames that the controller reported
+  // Nothing more will come (the end of a log).
+  virtual bool Ended() const { return false; }
 };
 
 // Whether frames pass.

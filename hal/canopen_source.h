@@ -53,6 +53,7 @@ class CanopenSource : public SampleSource {
 
   const std::vector<Channel>& channels() const override { return channels_; }
   SampleSet Read() override;
+  bool Ended() const override { return bus_->Ended() && !ahead_; }
   std::string Fault() const override;
 
   const CanopenCounts& counts() const { return counts_; }

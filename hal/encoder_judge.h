@@ -25,7 +25,8 @@ class EncoderJudge {
   // No new count, for this cause.
   Sample Missing(Cause cause, double now_s) const { return Sample::Bad(cause, now_s, sequence_); }
 
-  void LoseReference() { reference_lost_ = true; }
+  // Without effect before the first count that was believed: there is nothing to lose yet.
+  void LoseReference() { reference_lost_ = reference_lost_ || last_; }
   // The next count is a first one again.
   void ConfirmReference();
   bool reference_lost() const { return reference_lost_; }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "hal/sample_flag.h"
+#include "hal/sample_row.h"
 #include "hal/sweep_follower.h"
 #include "settings/unit.h"
 
@@ -16,6 +16,18 @@ namespace {
 using settings::kMillimetre;
 
 constexpr std::size_t kTime = 0, kX = 1, kPass = 4, kDirection = 5, kFeed = 6, kFirstReading = 7;
+
+// The column of each channel.
+std::vector<std::size_t> ColumnsOf(const std::vector<Channel>& channels) {
+  std::vector<std::size_t> columns;
+  std::size_t column = kFirstReading;
+  for (const Channel& channel : channels) {
+    const char axis = channel.name[0];
+    const bool position = channel.name.substr(1) == "_mm" && axis >= 'x' && axis <= 'z';
+    columns.push_back(position ? kX + static_cast<std::size_t>(axis - 'x') : column++);
+  }
+  return columns;
+}
 
 class SweepRecorder {
  public:
@@ -29,17 +41,12 @@ class SweepRecorder {
         visits_(plan.Visits()),
         follower_(plan),
         row_(SweepColumns(source.channels()).size()),
-        bad_(source.channels().size()) {
-    std::size_t column = kFirstReading;
-    for (const Channel& channel : source.channels()) {
-      const char axis = channel.name[0];
-      const bool position = channel.name.substr(1) == "_mm" && axis >= 'x' && axis <= 'z';
-      columns_.push_back(position ? kX + static_cast<std::size_t>(axis - 'x') : column++);
-    }
+        samples_(source.channels(), ColumnsOf(source.channels())) {
     for (std::size_t i = 0; i < 3; ++i) row_[kX + i] = options.rest[i] / kMillimetre;
     row_[kFeed] = plan.feed / settings::UnitOf("feed_mm_min").si;
     swept_ = kX + static_cast<std::size_t>(plan.axis - 'X');
-    has_position_ = std::find(columns_.begin(), columns_.end(), swept_) != columns_.end();
+    const auto columns = ColumnsOf(source.channels());
+    has_position_ = std::find(columns.begin(), columns.end(), swept_) != columns.end();
   }
 
   SweepOutcome Run() {
@@ -53,7 +60,8 @@ class SweepRecorder {
     writer_.Close();
     outcome_.seconds = clock_.Now() - start_s_;
     outcome_.fault = source_.Fault();
-    outcome_.worst_channel = WorstChannel();
+    outcome_.worst_channel = samples_.WorstChannel();
+    outcome_.worst_skew_s = samples_.worst_skew_s();
     return outcome_;
   }
 
@@ -63,19 +71,8 @@ class SweepRecorder {
     clock_.SleepUntil(next_s_);
     next_s_ = std::max(next_s_ + 1.0 / options_.rate, clock_.Now());
     const SampleSet set = source_.Read();
-    std::uint32_t flags = 0;
-    for (std::size_t i = 0; i < set.samples.size(); ++i) {
-      const Sample& sample = set.samples[i];
-      row_[columns_[i]] = sample.value;
-      flags |= FlagOf(sample.cause);
-      if (sample.quality == Quality::kBad) {
-        ++bad_[i].rows;
-        bad_[i].last = sample.cause;
-      }
-    }
-    outcome_.worst_skew_s = std::max(outcome_.worst_skew_s, set.skew_s);
     set_s_ = set.time_s - start_s_;
-    return flags;
+    return samples_.Fill(set, row_);
   }
 
   void Write(int pass, int direction, std::uint32_t flags) {
@@ -87,15 +84,6 @@ class SweepRecorder {
     writer_.Append(row_);
     ++outcome_.rows;
     outcome_.flagged += flags != 0 ? 1 : 0;
-  }
-
-  std::string WorstChannel() const {
-    const auto worst = std::max_element(bad_.begin(), bad_.end(),
-                                        [](const Bad& a, const Bad& b) { return a.rows < b.rows; });
-    if (worst == bad_.end() || worst->rows == 0) return {};
-    const auto channel = static_cast<std::size_t>(worst - bad_.begin());
-    return fmt::format("{} was bad in {} rows, last: {}", source_.channels()[channel].name,
-                       worst->rows, NameOf(worst->last));
   }
 
   // Tells the caller when something has changed.
@@ -182,12 +170,7 @@ class SweepRecorder {
   const std::vector<Visit> visits_;
   SweepFollower follower_;
   std::vector<double> row_;
-  std::vector<std::size_t> columns_;  // of the row, for each channel
-  struct Bad {
-    std::uint64_t rows = 0;
-    Cause last = Cause::kNone;
-  };
-  std::vector<Bad> bad_;  // for each channel
+  SampleRow samples_;
   std::size_t swept_ = kX;
   bool has_position_ = false;
   double start_s_ = 0.0, next_s_ = 0.0, set_s_ = 0.0, row_s_ = -1.0;

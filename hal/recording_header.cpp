@@ -5,6 +5,7 @@
 #include <ctime>
 #include <map>
 
+#include "hal/recorder.h"
 #include "hal/sweep_recorder.h"
 #include "settings/unit.h"
 
@@ -28,6 +29,21 @@ std::string Quoted(const std::string& text) {
   return quoted + "\"";
 }
 
+// The table [sources]: what each device gives, and by which way.
+std::string SourcesText(const std::vector<Channel>& channels,
+                        const std::map<std::string, std::string>& transport) {
+  std::map<std::string, std::string> by_device;
+  for (const Channel& channel : channels) {
+    std::string& names = by_device[channel.device];
+    names += (names.empty() ? "" : ", ") + channel.name;
+  }
+  std::string text = "[sources]\n";
+  for (const auto& [device, names] : by_device) {
+    text += fmt::format("{} = {}\n", Quoted(device), Quoted(transport.at(device) + ": " + names));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string UtcNow() {
@@ -46,17 +62,11 @@ std::vector<std::string> SweepColumns(const std::vector<Channel>& channels) {
 
 std::string SweepHeader(const SweepPlan& plan, const SweepAbout& about,
                         const std::vector<Channel>& channels) {
-  std::map<std::string, std::string> by_device;
-  for (const Channel& channel : channels) {
-    std::string& names = by_device[channel.device];
-    names += (names.empty() ? "" : ", ") + channel.name;
-  }
+  std::map<std::string, std::string> transport;
+  for (const Channel& channel : channels) transport[channel.device] = about.source;
   std::string text = fmt::format("kind = \"sweep\"\nmachine = {}\naxis = \"{:c}\"\nstarted = {}\n",
                                  Quoted(about.machine), plan.axis, about.started);
-  text += "[sources]\n";
-  for (const auto& [device, names] : by_device) {
-    text += fmt::format("{} = {}\n", Quoted(device), Quoted(about.source + ": " + names));
-  }
+  text += SourcesText(channels, transport);
   std::string stations;
   for (const double station : plan.stations) {
     stations += fmt::format("{}{:.9g}", stations.empty() ? "" : ", ", station / kMillimetre);
@@ -67,6 +77,29 @@ std::string SweepHeader(const SweepPlan& plan, const SweepAbout& about,
       stations, plan.passes, plan.dwell, plan.settle, plan.window / kMicrometre,
       plan.feed / settings::UnitOf("feed_mm_min").si, plan.overrun / kMillimetre);
   return text + about.more;
+}
+
+std::string KindOf(const std::vector<Channel>& channels) {
+  const auto has = [&](const char* name) {
+    return std::any_of(channels.begin(), channels.end(),
+                       [name](const Channel& channel) { return channel.name == name; });
+  };
+  if (has("pivot_1_rad") && has("x_mm") && has("y_mm") && has("z_mm")) return "linkage";
+  const bool axis = has("x_mm") || has("y_mm") || has("z_mm");
+  return axis && (has("ref_x_mm") || has("ref_y_mm") || has("ref_z_mm")) ? "reference" : "dwell";
+}
+
+std::vector<std::string> RecordColumns(const std::vector<Channel>& channels) {
+  std::vector<std::string> columns = {"time_s"};
+  for (const Channel& channel : channels) columns.push_back(channel.name);
+  columns.insert(columns.end(), {"skew_ms", "flags"});
+  return columns;
+}
+
+std::string RecordHeader(const RecordAbout& about, const std::vector<Channel>& channels) {
+  return fmt::format("kind = \"{}\"\nmachine = {}\nstarted = {}\n", KindOf(channels),
+                     Quoted(about.machine), about.started) +
+         SourcesText(channels, about.transport);
 }
 
 }  // namespace abbe::hal

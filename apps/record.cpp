@@ -1,0 +1,106 @@
+// `abbe record`: what all devices of the machine file say, for a while, in one recording on one
+// clock.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/interrupt.h"
+#include "apps/machine_file.h"
+#include "apps/progress.h"
+#include "hal/combined_source.h"
+#include "hal/recorder.h"
+#include "hal/sweep_recorder.h"
+
+namespace abbe::apps {
+namespace {
+
+struct RecordCommand {
+  std::string machine;
+  std::filesystem::path out;
+  double seconds = std::numeric_limits<double>::infinity();
+  double clock_speed = 1.0;
+  bool quiet = false;
+};
+
+hal::RecordAbout AboutOf(const MachineFile& file) {
+  hal::RecordAbout about{file.sweep_setup.machine.name, hal::UtcNow(), {}};
+  for (const auto& device : file.devices.devices) about.transport[device.name] = "modbus";
+  for (const auto& device : file.devices.canopen) about.transport[device.name] = "canopen";
+  return about;
+}
+
+hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile& file) {
+  hal::SteadyClock clock(options.clock_speed);
+  bool opened = false;  // what fails before that is thrown
+  const hal::OpenedDevices devices =
+      hal::OpenDevices(file.devices, clock, hal::Presence::kRequired, [&](const std::string& line) {
+        if (opened) fmt::print(stderr, "abbe: {}\n", line);
+      });
+  opened = true;
+  const auto& channels = devices.source->channels();
+  const auto writer = recording::Writer::Create(
+      options.out, hal::RecordHeader(AboutOf(file), channels), hal::RecordColumns(channels));
+  const bool endless = std::isinf(options.seconds);
+  Progress progress("record", options.quiet || endless);
+  hal::RecordOptions record;
+  record.rate = file.devices.rate;
+  record.seconds = options.seconds;
+  record.stopped = [] { return InterruptFlag().load(); };
+  if (!endless) {
+    const auto total = static_cast<std::size_t>(std::ceil(options.seconds));
+    record.progress = [&progress, total](double elapsed_s, const std::string& fault) {
+      progress.Show(static_cast<std::size_t>(elapsed_s), total, fault);
+    };
+  } else if (!options.quiet) {
+    fmt::print(stderr, "recording until Ctrl-C\n");
+  }
+  return hal::Record(*devices.source, clock, *writer, record);
+}
+
+int Record(const RecordCommand& options) {
+  const MachineFile file = ReadMachineFile(options.machine);
+  if (file.devices.devices.empty() && file.devices.canopen.empty()) {
+    throw InputError(fmt::format("{}: has no table [devices.NAME]; describe the devices to record",
+                                 options.machine));
+  }
+  InterruptFlag();
+  const hal::RecordOutcome outcome = RecordDevices(options, file);
+  if (!outcome.worst_channel.empty()) {
+    fmt::print(stderr, "abbe: {}: {} of {} rows are flagged; {}{}{}\n", options.out.string(),
+               outcome.flagged, outcome.rows, outcome.worst_channel,
+               outcome.fault.empty() ? "" : "; at the end: ", outcome.fault);
+  }
+  if (!options.quiet) {
+    fmt::print(
+        "recorded {} rows in {:.1f} s in {} ({} flagged, skew {:.2f} ms on average, {:.2f} "
+        "ms at worst)\n",
+        outcome.rows, outcome.seconds, options.out.string(), outcome.flagged,
+        1e3 * outcome.mean_skew_s, 1e3 * outcome.worst_skew_s);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddRecord(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<RecordCommand>();
+  CLI::App* command = program.add_subcommand(
+      "record", "Record all devices of a machine file: probes, encoders, positions, temperatures");
+  command->add_option("machine", options->machine, "the machine file")->required();
+  command->add_option("-o,--out", options->out, "the new recording (.csv, .h5, .hdf5)")->required();
+  command->add_option("--seconds", options->seconds, "for so long (default: until Ctrl-C)")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--clock-speed", options->clock_speed,
+                   "for a virtual machine that runs this much faster")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--quiet", options->quiet, "print nothing but problems");
+  command->footer("Example: abbe record mill.toml --seconds 60 -o circle.csv");
+  command->callback([options, &exit_code] { exit_code = Record(*options); });
+}
+
+}  // namespace abbe::apps

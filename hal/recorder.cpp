@@ -1,0 +1,56 @@
+#include "hal/recorder.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "hal/sample_row.h"
+
+namespace abbe::hal {
+namespace {
+
+std::vector<std::size_t> ColumnsOf(const SampleSource& source) {
+  std::vector<std::size_t> columns(source.channels().size());
+  std::iota(columns.begin(), columns.end(), std::size_t{1});  // behind time_s
+  return columns;
+}
+
+}  // namespace
+
+RecordOutcome Record(SampleSource& source, Clock& clock, recording::Writer& writer,
+                     const RecordOptions& options) {
+  SampleRow samples(source.channels(), ColumnsOf(source));
+  std::vector<double> row(source.channels().size() + 3);
+  RecordOutcome outcome;
+  const double start_s = clock.Now();
+  double next_s = start_s, row_s = -1.0, skews_s = 0.0;
+  try {
+    while (!(options.stopped && options.stopped()) && !source.Ended()) {
+      clock.SleepUntil(next_s);
+      if (clock.Now() - start_s >= options.seconds) break;
+      next_s = std::max(next_s + 1.0 / options.rate, clock.Now());
+      const SampleSet set = source.Read();
+      const double set_s = set.time_s - start_s;
+      if (!(set_s > row_s)) continue;  // the very same set again is no new row
+      row[0] = row_s = set_s;
+      row.back() = samples.Fill(set, row);
+      row[row.size() - 2] = 1e3 * set.skew_s;
+      skews_s += set.skew_s;
+      writer.Append(row);
+      ++outcome.rows;
+      if (options.progress) options.progress(set_s, source.Fault());
+    }
+  } catch (...) {
+    writer.Close();
+    throw;
+  }
+  writer.Close();
+  outcome.flagged = samples.flagged();
+  outcome.worst_skew_s = samples.worst_skew_s();
+  outcome.mean_skew_s = outcome.rows == 0 ? 0.0 : skews_s / static_cast<double>(outcome.rows);
+  outcome.seconds = clock.Now() - start_s;
+  outcome.fault = source.Fault();
+  outcome.worst_channel = samples.WorstChannel();
+  return outcome;
+}
+
+}  // namespace abbe::hal
