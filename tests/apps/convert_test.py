@@ -52,6 +52,18 @@ class ConvertTest(unittest.TestCase):
         self.assert_refused(self.convert("a.csv", "a.csv"), "a.csv: exists already")
         self.assertEqual((self.folder / "b.csv").read_text(), "precious")
 
+    def test_a_log_of_candump_needs_the_machine_file_and_names_its_wrong_line(self):
+        self.put("bus.log", "(1763716801.000000) vcan0 080#\n(1763716801.000200) vcan0 181#00000400\n")
+        self.assert_refused(self.convert("bus.log", "a.csv"), "--machine")
+        machine = ("--machine", os.environ["ABBE_MACHINE"])
+        done = self.convert("bus.log", "a.csv", *machine)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.put("bus.log", "(1763716801.000000) vcan0 080#\n(1763716801.000200) vcan0 18#00000400\n")
+        self.assert_refused(self.convert("bus.log", "b.csv", *machine), "bus.log:2: ")
+        self.put("bus.log", "(1763716801.000000) can5 080#\n")
+        self.assert_refused(self.convert("bus.log", "b.csv", *machine), "has no frames of vcan0, but of can5")
+        self.assertFalse((self.folder / "b.csv").exists())
+
     def test_a_cut_file_is_converted_with_a_warning(self):
         self.put("a.csv", RECORDING + ROWS + "1.5,0.")
         done = self.convert("a.csv", "b.csv", "--quiet")

@@ -60,7 +60,8 @@ class RecordTest(unittest.TestCase):
         return subprocess.run([ABBE, *map(str, arguments)], capture_output=True, text=True, timeout=120)
 
     def listen(self, path):
-        candump = subprocess.Popen(["candump", "-L", "vcan0"], stdout=open(path, "w"))
+        with open(path, "w") as log:
+            candump = subprocess.Popen(["candump", "-L", "vcan0"], stdout=log)
         time.sleep(1.0)  # it opens its socket
         return candump
 
