@@ -25,6 +25,8 @@ constexpr double kLeastTurn = 0.1;
 // Two runs are one when radius and centre agree to this, m, and the feed to this part.
 constexpr double kSameCircle = 10e-6;
 constexpr double kSameFeed = 0.01;
+// Of a turn: less is no whole turn.
+constexpr double kLeastCovered = 0.95;
 
 CirclePlane NamedPlane(const std::string& name, const std::string& recording) {
   const auto axis = [&](std::size_t i) {
@@ -235,6 +237,20 @@ void FillAngles(CircleRun& run) {
   }
 }
 
+// Figures, harmonics and causes are of whole turns.
+void RefusePart(const CircleRun& run) {
+  for (const int sense : {1, -1}) {
+    const auto points = std::ranges::count(run.points, sense, &CirclePoint::sense);
+    const double covered = run.Covered(sense);
+    if (points == 0 || covered > kLeastCovered * kTurn) continue;
+    throw InputError(fmt::format(
+        "{}: {} points {} are on {:.0f} of 360 degrees, counted in steps of 5; measure whole turns "
+        "with a point every few degrees",
+        run.recordings.front(), points, sense > 0 ? "counter-clockwise" : "clockwise",
+        covered * 360.0 / kTurn));
+  }
+}
+
 }  // namespace
 
 double CircleRun::Covered(int sense) const {
@@ -258,7 +274,10 @@ std::vector<CircleRun> CircleRuns(const std::vector<MeasuredPath>& paths,
       same == runs.end() ? runs.push_back(run) : Join(*same, run);
     }
   }
-  for (CircleRun& run : runs) FillAngles(run);
+  for (CircleRun& run : runs) {
+    FillAngles(run);
+    RefusePart(run);
+  }
   return runs;
 }
 
@@ -306,8 +325,6 @@ CircleFigures EvaluateCircle(const CircleRun& run, const FigureOptions& options)
     for (std::size_t i = 0; i < path.first.size(); ++i) {
       angles.push_back(std::atan2(path.second[i] - circle.y, path.first[i] - circle.x));
     }
-    // An arc tells few orders apart: harmonics are of whole turns.
-    if (run.Covered(sense) < 0.95 * kTurn) continue;
     (sense < 0 ? figures.cw : figures.ccw) = standards::FitHarmonics(
         angles, standards::RadialDeviations(circle, path.first, path.second), options.harmonics);
   }

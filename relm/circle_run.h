@@ -10,8 +10,8 @@
 // do not lie on the commanded circle (run-in and run-out), and rests (direction 0).
 // Frames: `first`, `second` and `third` are coordinates from the commanded centre, along the axes
 // of the plane and its normal. Units: m, rad, m/s. Shapes: one entry a point.
-// Failure: InputError with the recording for a path that is no circle, a plane that is not two
-// axes, or coordinates that the instrument lacks. Source: ISO 230-4.
+// Failure: InputError with the recording for a path that is no circle, a sense with less than whole
+// turns, a plane that is not two axes, or coordinates that the instrument lacks. Source: ISO 230-4.
 // Validity: the nominal radius is that of the commanded positions (least squares), unless the
 // header says circle.radius_mm.
 #pragma once

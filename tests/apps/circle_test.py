@@ -151,6 +151,13 @@ class Circle(unittest.TestCase):
         line = [((x / 10, 0, 0), (x / 10, 0, 0), 1, 1, 100) for x in range(100)]
         self.refuse(linkage_runs.write(self.path / "line.csv", line), "--machine", MACHINE,
                     saying=["line.csv", "no circle"])
+        half = linkage_runs.write(self.path / "half.csv", rows[:360] + rows[720:])
+        self.refuse(half, "--machine", MACHINE,
+                    saying=["half.csv", "360 points counter-clockwise", "180 of 360", "whole turns"])
+        few = linkage_runs.write(self.path / "few.csv", circle(perfect, points=8))
+        self.refuse(few, "--machine", MACHINE, saying=["few.csv", "8 points", "40 of 360"])
+        self.refuse(recording, "--machine", MACHINE, "--plane", "YZ",
+                    saying=["good.csv", "commanded path in YZ", "no circle"])
         other = pathlib.Path(recording).read_text().replace('"demo-mill"', '"another"')
         (self.path / "other.csv").write_text(other)
         self.refuse(self.path / "other.csv", "--machine", MACHINE, saying=['"another"', '"demo-mill"'])
