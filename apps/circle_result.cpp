@@ -149,7 +149,7 @@ struct Shown {
 Shown ShownUnit(const std::string& unit) {
   if (unit == "m") return {"um", 1e-6};
   if (unit == "rad") return {"urad", 1e-6};
-  if (unit == "s") return {"ms", 1e-3};
+  if (unit == "s") return {"us", 1e-6};
   if (unit == "s2") return {"ms2", 1e-6};
   return {"ppm", 1e-6};
 }

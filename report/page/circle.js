@@ -10,7 +10,7 @@ const CIRCLE_FIGURES = [
   ['D_um', 'D', 'Mean radius of both senses less the nominal one'],
 ];
 const SENSES = [['ccw', 'counter-clockwise', 'forward'], ['cw', 'clockwise', 'backward']];
-const CAUSE_NAMES = {
+const SIGNATURE_NAMES = {
   scale: 'Scale',
   squareness: 'Squareness',
   servo_mismatch: 'Servo mismatch',
@@ -21,7 +21,7 @@ const CAUSE_NAMES = {
   cyclic_cos: 'Cyclic, cosine',
   cyclic_sin: 'Cyclic, sine',
 };
-const CAUSE_UNITS = {
+const SIGNATURE_UNITS = {
   m: '\u00b5m',
   rad: '\u00b5rad',
   s: '\u00b5s',
@@ -46,12 +46,12 @@ function circleSummary(result) {
                     .filter(isFound)
                     .sort((one, other) => other.effect_um - one.effect_um)
                     .slice(0, 2)
-                    .map((one) => `${causeName(one)} (${micrometres(one.effect_um)})`);
+                    .map((one) => `${signatureName(one)} (${micrometres(one.effect_um)})`);
   if (found.length) sentences.push(`most of it comes from ${joinWords(found)}`);
   return capital(sentences.join('; ')) + (sentences.length ? '.' : '');
 }
 
-const causeName = ({cause, object}) => `${CAUSE_NAMES[cause] ?? cause} ${object}`;
+const signatureName = ({cause, object}) => `${SIGNATURE_NAMES[cause] ?? cause} ${object}`;
 // Seen by the data, and beyond its U95.
 const isFound = ({seen, value, u}) => seen && Math.abs(value) > COVERAGE * u;
 
@@ -74,7 +74,7 @@ function circleFigureTable(result) {
   });
 }
 
-function causeTable(circle) {
+function signatureTable(circle) {
   if (!circle.causes?.length) return null;
   const scale = 1e6;  // um, urad, us, ppm, and s2 to ms2
   return table({
@@ -85,9 +85,9 @@ function causeTable(circle) {
     ],
     rows: circle.causes.map(
         (one) =>
-            [causeName(one),
+            [signatureName(one),
              one.seen ? quantity(one.value * scale, COVERAGE * one.u * scale) : null,
-             CAUSE_UNITS[one.unit] ?? one.unit, one.seen ? significant(one.effect_um) : null,
+             SIGNATURE_UNITS[one.unit] ?? one.unit, one.seen ? significant(one.effect_um) : null,
              isFound(one) ? 'yes' : one.seen ? 'below its uncertainty' : 'not seen']),
   });
 }
@@ -324,7 +324,7 @@ registerSection({
        ['Recordings', [...new Set(runsOf(result).flatMap(({run}) => run.recordings))].join(', ')]],
   body: (result) =>
       [circleFigureTable(result), polarGroup(result), circleSpaceGroup(result),
-       harmonicGroup(result), ...(result.circles ?? []).map(causeTable),
+       harmonicGroup(result), ...(result.circles ?? []).map(signatureTable),
        notesBlock('Notes', result.notes)]
           .filter(Boolean),
   overview: {
