@@ -1,6 +1,6 @@
 // `abbe path`: what the path tests found, as data and as a table.
 //
-// The keys of the data are listed in docs/path.md. A result holds the figures of one test, for each
+// The keys of the data are listed in docs/circle.md. A result holds the figures of one test, for each
 // recording and instrument.
 #pragma once
 

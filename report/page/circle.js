@@ -36,11 +36,11 @@ const runsOf = (result) =>
     (result.circles ?? []).flatMap((circle) => (circle.runs ?? []).map((run) => ({circle, run})));
 
 function circleSummary(result) {
-  const sentences = runsOf(result).flatMap(({circle, run}) => {
-    const G = run.G_b_um ?? run.G_ccw_um ?? run.G_cw_um;
-    if (!isNumber(G)) return [];
-    const senses = isNumber(run.G_b_um) ? 'both senses together' : 'one sense';
-    return [`${runName(circle, run)}: the path lies in a ring ${micrometres(G)} wide (${senses})`];
+  const sentences = (result.circles ?? []).flatMap((circle) => {
+    const widths = numbers((circle.runs ?? []).map((run) => run.G_b_um ?? run.G_ccw_um ?? run.G_cw_um));
+    if (!widths.length) return [];
+    return [`${circle.instrument} ${circle.plane}: the path lies in a ring ` +
+            `${micrometres(Math.max(...widths))} wide`];
   });
   const found = (result.causes ?? [])
                     .filter(isFound)
@@ -232,8 +232,9 @@ function polarGroup(result) {
 }
 
 // The circle in its own frame: first, second, out of plane; position and deviation in m.
-function circleInSpace(circle, {angle, radial, axial}) {
+function circleInSpace(circle, profile) {
   const radius = circle.radius_mm * 1e-3;
+  const [angle, radial, axial] = [profile.angle, profile.radial, profile.axial].map(closed);
   const [cos, sin] = [angle.map(Math.cos), angle.map(Math.sin)];
   return {
     position: [cos.map((one) => radius * one), sin.map((one) => radius * one), angle.map(() => 0)],

@@ -37,24 +37,29 @@ function pathFigureTable(result) {
   });
 }
 
-// `stops`, `sides` and `displacements` as they stand, one table a test.
+// "length_error_um" -> {head: "Length error", unit: "um"}
+function columnOf(key) {
+  const [, name, unit] = /^(.*?)(?:_(um|mm|n|mm_min))?$/.exec(key);
+  const units = {um: '\u00b5m', mm: 'mm', n: 'N', mm_min: 'mm/min'};
+  return {head: capital(name.replaceAll('_', ' ')), unit: units[unit], numeric: true};
+}
+
+// `stops`, `sides` and `displacements`, one table each.
 function pathLists(test) {
   const lists = [
     ...(test.lines ?? []).map(({axis, stops}) => [`Stops along ${axis}`, stops]),
-    ['Sides', test.sides], ['Displacements', test.displacements]
+    ['Sides', test.sides], ['Displacement in the cap', test.displacements]
   ].filter(([, list]) => list?.length);
+  const text = (key, value) => Array.isArray(value) ? value.map((one) => fixed(one, 2)).join(', ') :
+      !isNumber(value)                              ? value :
+      key.endsWith('_um')                           ? fixed(value, 2) :
+                                                      positionText(value);
   return lists.map(([name, list]) => {
-    const keys = Object.keys(list[0]).filter((key) => {
-      const value = list[0][key];
-      return !Array.isArray(value) || value.length === 3;
-    });
-    const text = (value) => Array.isArray(value) ? value.map((one) => fixed(one, 2)).join(', ') :
-        isNumber(value)                          ? significant(value) :
-                                                   value;
+    const keys = Object.keys(list[0]).filter((key) => !['along', 'across'].includes(key));
     return table({
       caption: `${name}, ${test.instrument}`,
-      columns: keys.map((key) => ({head: capital(key.replaceAll('_', ' ')), numeric: true})),
-      rows: list.map((one) => keys.map((key) => text(one[key]))),
+      columns: keys.map(columnOf),
+      rows: list.map((one) => keys.map((key) => text(key, one[key]))),
     });
   });
 }

@@ -2,8 +2,8 @@
 // graphics card.
 
 const ISOMETRIC = [
-  [Math.sqrt(3) / 2, -0.5], [-Math.sqrt(3) / 2, -0.5], [0, 1]
-];  // where the axes point: right, left, up
+  [Math.sqrt(3) / 2, -0.5], [Math.sqrt(3) / 2, 0.5], [0, 1]
+];  // where the axes point: to the right and near, to the right and far, up
 
 const isometric = (lists) => [0, 1].map(
     (row) => lists[0].map(
@@ -98,7 +98,7 @@ function spaceGroup(seen, items) {
   const most = Math.max(1e-9, ...paths.flatMap(({deviation}) => deviation.map(largest)));
   return figureGroup({
     title: 'The path in space, its deviation magnified',
-    intro: 'Seen along the space diagonal; the thin line is the nominal path.',
+    intro: 'Seen from above, front and right; the thin line is the nominal path.',
     items,
     slider: magnifierFor(size, most),
     panels: seen.map(spacePanel),
