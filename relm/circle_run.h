@@ -13,7 +13,7 @@
 // Failure: InputError with the recording for a path that is no circle, a sense with less than whole
 // turns, a plane that is not two axes, or coordinates that the instrument lacks. Source: ISO 230-4.
 // Validity: the nominal radius is that of the commanded positions (least squares), unless the
-// header says circle.radius_mm.
+// options name one.
 #pragma once
 
 #include <Eigen/Core>
