@@ -1,7 +1,7 @@
 // `abbe path`: what the path tests found, as data and as a table.
 //
-// The keys of the data are listed in docs/circle.md. A result holds the figures of one test, for each
-// recording and instrument.
+// The keys of the data are listed in docs/circle.md. A result holds the figures of one test, for
+// each recording and instrument.
 #pragma once
 
 #include <nlohmann/json.hpp>

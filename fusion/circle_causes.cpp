@@ -119,6 +119,7 @@ Fit Solve(const std::vector<Equations>& equations, const std::vector<Signature>&
           double deviation) {
   Problem problem;
   std::vector<estimation::Parameter> entries;
+  entries.reserve(causes.size());
   for (const Signature& cause : causes) {
     entries.push_back({Name(cause), 0.0, cause.usual, 0.0});
   }
