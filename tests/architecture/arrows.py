@@ -21,9 +21,10 @@ ARROWS = {
     "hal": "failure settings recording",
     "machine": "failure settings geometry estimation",
     "probes": "failure random settings recording geometry estimation standards machine",
+    "relm": "failure settings recording geometry estimation standards machine",
     "report": "failure",
     "rig": "failure random settings recording hal",
-    "apps": "failure random settings recording geometry estimation standards hal machine probes report rig",
+    "apps": "failure random settings recording geometry estimation standards hal machine probes relm report rig",
 }
 
 # header of a library -> the files that may include it; everybody else goes through them.

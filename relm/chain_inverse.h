@@ -1,0 +1,57 @@
+// The angles of a serial chain for a ball position, by damped Newton steps.
+//
+//   const ChainInverse inverse(chain);
+//   const Eigen::VectorXd angles = inverse.Angles(p_BT, near);
+//   const std::vector<Eigen::VectorXd> branches = inverse.Branches(p_BT);
+//
+// A chain has no closed form in general. The search starts at `near` and takes damped Gauss-Newton
+// steps until the ball is met; so a start on the right branch stays on it (follow a path from pose
+// to pose). With more joints than three the solution of least change from the start is one of many.
+// Branches() starts from a fixed set of angles and returns the distinct solutions, for chains of
+// three joints; their order is that of the first angle, then the second, then the third.
+// Units: m, rad; angles in (-pi, pi] from Branches, near the start from Angles.
+// Failure: Angles throws NumericalError with the distance that is left (out of reach) or the pose
+// that is singular: smallest singular value of J_tip_q below `singular` times the reach; Find and
+// Branches return nothing instead. Never NaN. InputError when `near` has the wrong number of
+// angles. Source: Levenberg-Marquardt as in Nocedal, Wright, "Numerical Optimization" (2006),
+// chapter 10. Validity: residual below `tolerance`; a branch whose basin none of the starts meets
+// is missed (none in the tests).
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "relm/serial_chain.h"
+
+namespace abbe::relm {
+
+struct InverseOptions {
+  double tolerance = 1e-12;  // of the reach: when the ball counts as met
+  double singular = 1e-6;    // of the reach
+  int max_steps = 100;
+};
+
+class ChainInverse {
+ public:
+  explicit ChainInverse(SerialChain chain, const InverseOptions& options = {});
+
+  Eigen::VectorXd Angles(const Eigen::Vector3d& p_BT, const Eigen::VectorXd& near) const;
+  std::optional<Eigen::VectorXd> Find(const Eigen::Vector3d& p_BT,
+                                      const Eigen::VectorXd& near) const;
+  std::vector<Eigen::VectorXd> Branches(const Eigen::Vector3d& p_BT) const;
+
+ private:
+  struct Search {
+    Eigen::VectorXd angles;
+    double miss;      // m
+    double singular;  // m: smallest singular value of J_tip_q
+  };
+  Search Run(const Eigen::Vector3d& p_BT, const Eigen::VectorXd& near) const;
+
+  SerialChain chain_;
+  InverseOptions options_;
+  double reach_;  // m
+};
+
+}  // namespace abbe::relm

@@ -1,0 +1,153 @@
+// Every small motion of every axis of any chain, and what the encoders, the bearings, gravity and
+// warmth add.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "relm/error_models.h"
+#include "relm/model_builder.h"
+
+namespace abbe::relm {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+constexpr double kAcross = 1e-9;  // m
+
+// The coordinate direction that stands best across `axis`, made exactly so.
+Vector3d AnyAcross(const Vector3d& axis) {
+  Index smallest = 0;
+  axis.cwiseAbs().minCoeff(&smallest);
+  const Vector3d e = Vector3d::Unit(smallest);
+  return (e - axis * axis.dot(e)).normalized();
+}
+
+Vector3d Across(const Vector3d& axis, const Vector3d& preferred) {
+  const Vector3d across = preferred - axis * axis.dot(preferred);
+  return across.norm() > kAcross ? across.normalized() : AnyAcross(axis);
+}
+
+struct PivotMotions {
+  int tilt_u, tilt_v, shift_u, shift_v, turn;
+  int run_out = -1;  // along the arm after the pivot
+  int growth = -1;   // along the link after the pivot
+  double shift_u_sd;
+};
+
+PivotMotions AddPivot(const LinkageSettings& settings, Index joint, MotionChain& motions) {
+  const auto& [point, axis] = settings.chain.axes()[static_cast<std::size_t>(joint)];
+  const Vector3d arriving = joint > 0 ? settings.chain.Link(joint - 1) : Vector3d::Zero();
+  const Vector3d u = Across(axis, arriving), v = axis.cross(u);
+  PivotMotions pivot{};
+  pivot.tilt_u = motions.Turn(point, u);
+  pivot.tilt_v = motions.Turn(point, v);
+  pivot.shift_u = motions.Shift(u);
+  pivot.shift_v = motions.Shift(v);
+  pivot.turn = motions.Joint(static_cast<int>(joint));
+  const double along_link = arriving.norm() > kAcross ? arriving.normalized().dot(u) : 0.0;
+  pivot.shift_u_sd =
+      std::hypot(settings.tolerance.link * along_link, settings.tolerance.pivot_offset);
+  const Vector3d arm = motions.ArmAfter(static_cast<int>(joint));
+  pivot.run_out = arm == Vector3d::Zero() ? -1 : motions.Shift(arm);
+  const Vector3d link = settings.chain.Link(joint);
+  pivot.growth = link.norm() > kAcross ? motions.Shift(link.normalized()) : -1;
+  return pivot;
+}
+
+struct BallMotions {
+  int along, across, axial;
+};
+
+BallMotions AddBall(const SerialChain& chain, MotionChain& motions) {
+  const Vector3d& axis = chain.axes().back().direction;
+  const Vector3d link = chain.Link(chain.joints() - 1);
+  const Vector3d along = link.norm() > kAcross ? link.normalized() : AnyAcross(axis);
+  const Vector3d across = Across(along, axis.cross(along));
+  return {motions.Shift(along), motions.Shift(across), motions.Shift(along.cross(across))};
+}
+
+void AddGeometry(const LinkageSettings& settings, const std::vector<PivotMotions>& pivots,
+                 const BallMotions& ball, ModelBuilder& model) {
+  const LinkageTolerance& sd = settings.tolerance;
+  model.Block("tilt", kMicroradians);
+  for (std::size_t i = 0; i < pivots.size(); ++i) {
+    const std::string name = PivotName(static_cast<Index>(i));
+    model.Entry(name + "_u", sd.pivot_angle, {.motion = pivots[i].tilt_u, .parameter = 0});
+    model.Entry(name + "_v", sd.pivot_angle, {.motion = pivots[i].tilt_v, .parameter = 0});
+  }
+  model.Block("shift", kMicrometres);
+  for (std::size_t i = 0; i < pivots.size(); ++i) {
+    const std::string name = PivotName(static_cast<Index>(i));
+    model.Entry(name + "_u", pivots[i].shift_u_sd, {.motion = pivots[i].shift_u, .parameter = 0});
+    model.Entry(name + "_v", sd.pivot_offset, {.motion = pivots[i].shift_v, .parameter = 0});
+  }
+  model.Block("ball", kMicrometres);
+  model.Entry("along", sd.link, {.motion = ball.along, .parameter = 0});
+  model.Entry("across", sd.ball, {.motion = ball.across, .parameter = 0});
+  model.Entry("axial", sd.ball, {.motion = ball.axial, .parameter = 0});
+}
+
+void AddEncoders(const LinkageSettings& settings, const std::vector<PivotMotions>& pivots,
+                 ModelBuilder& model) {
+  const LinkageTolerance& sd = settings.tolerance;
+  const auto count = static_cast<int>(pivots.size());
+  model.Block("encoder_offset", kMicroradians);
+  for (int i = 0; i < count; ++i) {
+    model.Entry(PivotName(i), sd.encoder_offset, {.motion = pivots[i].turn, .parameter = 0});
+  }
+  model.Block("eccentricity", kMicroradians);
+  for (int i = 0; i < count; ++i) {
+    model.HarmonicEntries(PivotName(i), sd.eccentricity, pivots[i].turn, i, {1});
+  }
+  model.Block("graduation", kMicroradians);
+  for (int i = 0; i < count; ++i) {
+    model.HarmonicEntries(PivotName(i), sd.graduation, pivots[i].turn, i,
+                          settings.graduation_harmonics);
+  }
+}
+
+void AddPhysics(const LinkageSettings& settings, const std::vector<PivotMotions>& pivots,
+                ModelBuilder& model) {
+  const LinkageTolerance& sd = settings.tolerance;
+  const auto count = static_cast<int>(pivots.size());
+  model.Block("bearing", kMicrometres);
+  for (int i = 0; i < count; ++i) {
+    if (pivots[i].run_out < 0) continue;
+    model.HarmonicEntries(PivotName(i), sd.bearing, pivots[i].run_out, i,
+                          settings.bearing_harmonics);
+  }
+  model.Block("compliance", kMicroradians);
+  for (int i = 0; i < count; ++i) {
+    if (!model.motions.FeelsGravity(i)) continue;
+    model.Entry(PivotName(i), sd.compliance,
+                {.motion = pivots[i].turn, .parameter = 0, .basis = Basis::kGravity, .joint = i});
+  }
+  model.Block("expansion", kPartsPerMillionPerKelvin);
+  for (int i = 0; i < count; ++i) {
+    if (pivots[i].growth < 0) continue;
+    model.Entry(fmt::format("link_{}", i + 1), sd.thermal,
+                {.motion = pivots[i].growth,
+                 .parameter = 0,
+                 .basis = Basis::kWarmth,
+                 .factor = settings.chain.Link(i).norm()},
+                settings.expansion, 0.0);
+  }
+}
+
+}  // namespace
+
+LinkageModel CompleteErrorModel(const LinkageSettings& settings) {
+  ModelBuilder model(settings);
+  std::vector<PivotMotions> pivots;
+  for (Index i = 0; i < settings.chain.joints(); ++i) {
+    pivots.push_back(AddPivot(settings, i, model.motions));
+  }
+  const BallMotions ball = AddBall(settings.chain, model.motions);
+  AddGeometry(settings, pivots, ball, model);
+  AddEncoders(settings, pivots, model);
+  AddPhysics(settings, pivots, model);
+  return model.Build("complete");
+}
+
+}  // namespace abbe::relm

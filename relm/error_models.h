@@ -1,0 +1,40 @@
+// Three error models of the linkage on named parameter blocks.
+//
+// PivotErrorModel (seed 001, its figure 4), two links and three pivots:
+//   Rx(tilt x) Ry(tilt y) Rz(q1 + o1) Rx(twist of pivot 2) T(divergence x, y, 0) Ry(q2 + o2)
+//   Tx(L1) Rx(twist of link 1) Ry(q3 + o3) Tz(L2)
+//   blocks  link: link_1 link_2 | tilt: pivot_1_x pivot_1_y | twist: pivot_2 link_1 |
+//           divergence: pivot_2_x pivot_2_y | encoder_offset: pivot_1 pivot_2 pivot_3
+//
+// PublishedErrorModel (seed 000), the displacement equation of segments 0 ... S-1:
+//   blocks  link: segment_1 ... | tilt: head_x head_y | radial_angle: pivot_1 ... segment_... |
+//           bearing: pivot_1_sin_1 pivot_1_cos_1 pivot_1_sin_2 ... (with bearing only)
+//   With six segments and three encoders these are 5 + 2 + 5 = 12 and 12 more with two harmonics.
+//   The document counts the twelve but does not list them. The five radial angles here are the
+//   angles of the encoders and the turn of each later pivot about the longest segment before it:
+//   with them the twelve are the errors of seed 001.
+//
+// CompleteErrorModel, any chain of n joints, every small motion of every axis:
+//   blocks  tilt: pivot_i_u pivot_i_v | shift: pivot_i_u pivot_i_v | ball: along across axial |
+//           encoder_offset | eccentricity: pivot_i_sin pivot_i_cos | graduation | bearing |
+//           compliance | expansion: link_i
+//   4 per joint and 3 of the ball leave no geometric error out. An encoder offset is a combination
+//   of those, but it has a tolerance of its own, so it has a parameter of its own; the prior
+//   decides what the data cannot tell apart. u is the direction across the axis nearest to the
+//   link that arrives there, v = axis x u.
+//
+// Angles in rad, lengths in m. Link lengths have their nominal length as value, all other
+// parameters are deviations from zero. Failure: InputError when the settings lack what a model
+// needs (closed form, segments). Source: seeds 000 and 001, docs/theory-relm.md.
+#pragma once
+
+#include "relm/linkage_model.h"
+#include "relm/linkage_settings.h"
+
+namespace abbe::relm {
+
+LinkageModel PivotErrorModel(const LinkageSettings& settings);
+LinkageModel PublishedErrorModel(const LinkageSettings& settings, bool with_bearing);
+LinkageModel CompleteErrorModel(const LinkageSettings& settings);
+
+}  // namespace abbe::relm

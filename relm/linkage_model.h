@@ -1,0 +1,80 @@
+// The one seam between the error models of the linkage and those who use them: an estimator, a
+// simulation or a report asks for names, priors, tips and derivatives and does not know which model
+// it holds.
+//
+//   const LinkageModel model = MakeLinkageModel(settings, ErrorModel::kComplete);
+//   problem.Add(block) for each of model.blocks();
+//   model.Tips(readings, x, tips, &J_tip_x);       // x: all entries of all blocks, in order
+//
+// Frames: B, the nominal linkage base; T, the ball centre. The pose X_MB of the base is no part of
+// a model: it belongs to the run.
+// Units: m, rad, K. Shapes: tips 3 x poses; the Jacobian by the parameters has the rows x, y, z of
+// pose 0, then those of pose 1, ... and one column per parameter.
+// Failure: InputError when the number of angles or parameters does not fit. Forward models always
+// succeed; an angle that is not finite gives a tip that is not (recordings are checked before,
+// tip_path.h). Source: docs/theory-relm.md. Validity: exact kinematics; every effect is linear in
+// its parameter before it enters the geometry.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "estimation/parameter.h"
+#include "estimation/residual.h"
+#include "relm/motion_chain.h"
+
+namespace abbe::relm {
+
+using estimation::RowMatrix;
+
+// What the encoders say in some poses, one column each, and how much warmer than the reference
+// temperature the links are (empty: not at all).
+struct LinkageReadings {
+  Eigen::MatrixXd angles;  // joints x poses, rad
+  Eigen::VectorXd warmth;  // K
+  Eigen::Index poses() const { return angles.cols(); }
+};
+
+struct TipDerivatives {
+  Eigen::Vector3d tip;  // p_BT, m
+  RowMatrix J_tip_x;    // 3 x parameters
+  RowMatrix J_tip_q;    // 3 x joints, by the encoder angles
+};
+
+class LinkageModel {
+ public:
+  // The blocks hold the parameters of `motions`, in the same order.
+  LinkageModel(std::string name, MotionChain motions,
+               std::vector<estimation::ParameterBlock> blocks);
+
+  const std::string& name() const { return name_; }  // for reports: "complete"
+  const std::vector<estimation::ParameterBlock>& blocks() const { return blocks_; }
+  const SerialChain& chain() const { return motions_.chain(); }  // without errors
+  Eigen::Index joints() const { return chain().joints(); }
+  Eigen::Index parameters() const { return motions_.parameters(); }
+  Eigen::VectorXd Values() const;          // x as the blocks have it; nominal when just made
+  std::vector<std::string> Names() const;  // "block.entry", in the order of x
+
+  Eigen::Vector3d Tip(const Eigen::VectorXd& angles, double warmth, const Eigen::VectorXd& x) const;
+  TipDerivatives Differentiate(const Eigen::VectorXd& angles, double warmth,
+                               const Eigen::VectorXd& x) const;
+  // For automatic differentiation: pointers to joints() angles and parameters() values.
+  template <typename T>
+  Eigen::Vector3<T> Tip(const T* angles, const T& warmth, const T* x) const {
+    return motions_.Tip(angles, warmth, x);
+  }
+
+  // All poses at once; `jacobian` (3 poses x parameters) may be null. Outputs are resized.
+  void Tips(const LinkageReadings& readings, const Eigen::VectorXd& x, Eigen::Matrix3Xd& tips,
+            RowMatrix* jacobian = nullptr) const;
+
+ private:
+  void Check(Eigen::Index angles, Eigen::Index parameters) const;
+
+  std::string name_;
+  MotionChain motions_;
+  std::vector<estimation::ParameterBlock> blocks_;
+};
+
+}  // namespace abbe::relm

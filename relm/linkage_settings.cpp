@@ -1,0 +1,214 @@
+#include "relm/linkage_settings.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "relm/error_models.h"
+
+namespace abbe::relm {
+namespace {
+
+using Eigen::Vector3d;
+using settings::Table;
+
+constexpr double kRightAngle = std::numbers::pi / 2;
+
+Vector3d Direction(const Table& table, const char* key, const std::string& text) {
+  const bool reversed = text.size() == 2 && text.front() == '-';
+  const char letter = text.empty() ? ' ' : text.back();
+  if (text.size() != (reversed ? 2U : 1U) || letter < 'x' || letter > 'z') {
+    throw table.Error(key, fmt::format("\"{}\" is no machine direction; write \"x\", \"-z\" and "
+                                       "the like",
+                                       text));
+  }
+  return (reversed ? -1.0 : 1.0) * Vector3d::Unit(letter - 'x');
+}
+
+Vector3d Triple(const std::vector<double>& values) { return Vector3d(values.data()); }
+
+geometry::Transform<double> ReadBase(const Table& table) {
+  geometry::Transform<double> X_MB;
+  X_MB.p = Triple(table.Quantities("position_mm", 3));
+  const auto names = table.Texts("rotation", 3, std::vector<std::string>{"x", "y", "z"});
+  for (int i = 0; i < 3; ++i) X_MB.R.col(i) = Direction(table, "rotation", names[i]);
+  if (X_MB.R.determinant() != 1) {
+    throw table.Error("rotation",
+                      "must name three different machine directions that form a right-handed "
+                      "frame, as in [\"y\", \"-x\", \"z\"]");
+  }
+  table.RefuseUnknown();
+  return X_MB;
+}
+
+LinkageTolerance ReadTolerance(const Table& table) {
+  const auto deviation = [&](const char* key, double fallback) {
+    return table.Quantity(key, {.fallback = fallback, .at_least = 0.0});
+  };
+  const LinkageTolerance tolerance{.link = deviation("link_um", 100.0),
+                                   .pivot_angle = deviation("pivot_urad", 500.0),
+                                   .pivot_offset = deviation("pivot_um", 20.0),
+                                   .encoder_offset = deviation("encoder_offset_urad", 1000.0),
+                                   .eccentricity = deviation("eccentricity_urad", 20.0),
+                                   .graduation = deviation("graduation_urad", 3.0),
+                                   .bearing = deviation("bearing_um", 1.0),
+                                   .base_position = deviation("base_um", 500.0),
+                                   .base_angle = deviation("base_urad", 2000.0),
+                                   .ball = deviation("ball_um", 20.0),
+                                   .compliance = deviation("compliance_urad", 20.0),
+                                   .thermal = deviation("thermal_ppm_per_c", 1.0)};
+  table.RefuseUnknown();
+  return tolerance;
+}
+
+LinkageNoise ReadNoise(const Table& table) {
+  const LinkageNoise noise{
+      .encoder = table.Quantity("encoder_urad", {.fallback = 3.0, .at_least = 0.0}),
+      .reference = table.Quantity("reference_um", {.fallback = 0.3, .at_least = 0.0})};
+  table.RefuseUnknown();
+  return noise;
+}
+
+std::vector<int> ReadOrders(const Table& table, const char* key,
+                            const std::vector<double>& by_default) {
+  std::vector<int> orders;
+  for (const double value : table.Quantities(key, 0, by_default)) {
+    const int order = static_cast<int>(value);
+    if (order != value || order < 1 || order > 64) {
+      throw table.Error(key, "must hold whole numbers from 1 to 64: the harmonics per turn");
+    }
+    orders.push_back(order);
+  }
+  return orders;
+}
+
+// Two links and three pivots as six segments with the encoders on theta 0, phi 2 and phi 4; the
+// offsets of pivots 2 and 3 are segments 1 and 3, the stem of the ball is segment 5.
+std::vector<Segment> SegmentsOf(const PivotLinkage& linkage) {
+  return {{.encoder = SegmentEncoder::kTheta},
+          {.phi = kRightAngle},
+          {.length = linkage.link_1(), .encoder = SegmentEncoder::kPhi},
+          {.phi = -kRightAngle},
+          {.length = linkage.link_2(), .encoder = SegmentEncoder::kPhi},
+          {}};
+}
+
+std::vector<Segment> ReadSegments(const Table& linkage) {
+  std::vector<Segment> segments;
+  for (const Table& table : linkage.Children("segment")) {
+    const std::string encoder = table.Choice("encoder", {"none", "theta", "phi"});
+    segments.push_back({.length = table.Quantity("length_mm", {.fallback = 0.0, .at_least = 0.0}),
+                        .theta = table.Quantity("theta_deg", {.fallback = 0.0}),
+                        .phi = table.Quantity("phi_deg", {.fallback = 0.0}),
+                        .encoder = encoder == "theta" ? SegmentEncoder::kTheta
+                                   : encoder == "phi" ? SegmentEncoder::kPhi
+                                                      : SegmentEncoder::kNone});
+    table.RefuseUnknown();
+  }
+  return segments;
+}
+
+SerialChain ReadRows(const Table& linkage) {
+  std::vector<DenavitHartenbergRow> rows;
+  for (const Table& table : linkage.Children("joint")) {
+    rows.push_back({.theta = table.Quantity("theta_deg", {.fallback = 0.0}),
+                    .d = table.Quantity("d_mm", {.fallback = 0.0}),
+                    .a = table.Quantity("a_mm", {.fallback = 0.0}),
+                    .alpha = table.Quantity("alpha_deg", {.fallback = 0.0}),
+                    .fixed = table.Truth("fixed", false)});
+    table.RefuseUnknown();
+  }
+  const auto ball = linkage.Quantities("ball_mm", 3, std::vector{0.0, 0.0, 0.0});
+  return SerialChain::FromDenavitHartenberg(rows, {}, Triple(ball));
+}
+
+SerialChain ReadAxes(const Table& linkage) {
+  std::vector<JointAxis> axes;
+  for (const Table& table : linkage.Children("axis")) {
+    axes.push_back(
+        {Triple(table.Quantities("point_mm", 3)), Triple(table.Quantities("direction", 3))});
+    table.RefuseUnknown();
+  }
+  return SerialChain(std::move(axes), Triple(linkage.Quantities("ball_mm", 3)));
+}
+
+// The chain of one of the forms, with what the form knows besides.
+struct Form {
+  std::optional<PivotLinkage> pivots;
+  std::vector<Segment> segments;
+  SerialChain chain;
+};
+
+Form ReadForm(const Table& table) {
+  const std::string form =
+      table.Choice("form", {"pivots", "segments", "denavit-hartenberg", "axes"});
+  try {
+    if (form == "pivots") {
+      const PivotLinkage pivots(table.Quantity("link_1_mm", {.fallback = 120.0, .above = 0.0}),
+                                table.Quantity("link_2_mm", {.fallback = 120.0, .above = 0.0}));
+      const auto segments = SegmentsOf(pivots);
+      return {pivots, segments, SerialChain::FromSegments(segments)};
+    }
+    if (form == "segments") {
+      const auto segments = ReadSegments(table);
+      return {std::nullopt, segments, SerialChain::FromSegments(segments)};
+    }
+    return {std::nullopt, {}, form == "axes" ? ReadAxes(table) : ReadRows(table)};
+  } catch (const InputError& error) {
+    const std::string_view message = error.what();
+    constexpr std::string_view kOwn = "linkage: ";  // of the chain, which knows no file
+    if (!message.starts_with(kOwn)) throw;
+    throw table.Error("", message.substr(kOwn.size()));
+  }
+}
+
+}  // namespace
+
+LinkageSettings ReadLinkageSettings(const Table& root) {
+  const Table table = root.Child("linkage");
+  Form form = ReadForm(table);
+  LinkageSettings linkage{
+      .chain = std::move(form.chain),
+      .pivots = form.pivots,
+      .branch = {},
+      .segments = std::move(form.segments),
+      .X_MB = ReadBase(table.Child("base")),
+      .down_M = Direction(table, "down", table.Text("down", "-z")),
+      .expansion = table.Quantity("expansion_ppm_per_c", {.fallback = 11.5}),
+      .reference_temperature = table.Quantity("reference_c", {.fallback = 20.0}),
+      .temperature = table.Text("temperature", ""),
+      .bearing_harmonics = ReadOrders(table, "bearing_harmonics", {1, 2}),
+      .graduation_harmonics = ReadOrders(table, "graduation_harmonics", {2, 3}),
+      .tolerance = ReadTolerance(table.Child("tolerance")),
+      .noise = ReadNoise(table.Child("noise"))};
+  if (linkage.pivots) {
+    linkage.branch.elbow =
+        table.Choice("elbow", {"up", "down"}) == "up" ? Elbow::kUp : Elbow::kDown;
+    linkage.branch.reach_over = table.Truth("reach_over", false);
+  }
+  table.RefuseUnknown();
+  return linkage;
+}
+
+Vector3d NominalTip(const machine::Chain& chain, const Vector3d& axis_positions) {
+  Vector3d p_MT;
+  for (int i = 0; i < 3; ++i) {
+    p_MT[i] = chain.CarriesTarget("XYZ"[i]) ? -axis_positions[i] : axis_positions[i];
+  }
+  return p_MT;
+}
+
+LinkageModel MakeLinkageModel(const LinkageSettings& settings, ErrorModel model) {
+  switch (model) {
+    case ErrorModel::kPivots:
+      return PivotErrorModel(settings);
+    case ErrorModel::kPublished:
+      return PublishedErrorModel(settings, false);
+    case ErrorModel::kPublishedWithBearing:
+      return PublishedErrorModel(settings, true);
+    default:
+      return CompleteErrorModel(settings);
+  }
+}
+
+}  // namespace abbe::relm

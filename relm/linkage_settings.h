@@ -1,0 +1,76 @@
+// The linkage as the machine file describes it, and the error models made from that.
+//
+//   const auto document = settings::Document::Read("machine.toml");
+//   const LinkageSettings linkage = ReadLinkageSettings(document.Root());
+//   const LinkageModel model = MakeLinkageModel(linkage, ErrorModel::kPublishedWithBearing);
+//
+// Frames: B, the linkage base; M, the machine frame as the workpiece carries it: the ball of a
+// perfect machine stands at p_MT = (sx x, sy y, sz z) for the axis positions (x, y, z), s = -1 for
+// an axis that carries the workpiece, +1 for one that carries the tool. SI units.
+// Failure: InputError with file, line and key, also for an unknown key in [linkage].
+// Every key stands in docs/machine-file.md.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/transform.h"
+#include "machine/chain.h"
+#include "relm/linkage_model.h"
+#include "relm/pivot_linkage.h"
+#include "relm/serial_chain.h"
+#include "settings/document.h"
+
+namespace abbe::relm {
+
+// Standard deviations that remain after manufacture and mounting: the priors of the parameters.
+struct LinkageTolerance {
+  double link;            // m: length of a link
+  double pivot_angle;     // rad: tilt or twist of a pivot's axis
+  double pivot_offset;    // m: offset of a pivot's axis
+  double encoder_offset;  // rad
+  double eccentricity;    // rad: amplitude once per turn
+  double graduation;      // rad: amplitude of each harmonic
+  double bearing;         // m: amplitude of each harmonic of the run-out
+  double base_position;   // m: of the base in the machine, each direction
+  double base_angle;      // rad: about each axis
+  double ball;            // m: of the ball's centre across the last link
+  double compliance;      // rad: given up by a pivot under a horizontal link
+  double thermal;         // 1/K: of the coefficient of expansion
+};
+
+struct LinkageNoise {
+  double encoder;    // rad: standard deviation of one reading
+  double reference;  // m: of a reference position, each direction
+};
+
+struct LinkageSettings {
+  SerialChain chain;
+  std::optional<PivotLinkage> pivots;  // form "pivots": the closed form of the same chain
+  Branch branch;                       // where the linkage works; form "pivots" only
+  std::vector<Segment> segments;       // forms "pivots" and "segments"
+  geometry::Transform<double> X_MB;    // nominal
+  Eigen::Vector3d down_M;              // the direction of gravity
+  double expansion;                    // 1/K: nominal coefficient of the links
+  double reference_temperature;        // degC
+  std::string temperature;             // column of a recording; empty: none
+  std::vector<int> bearing_harmonics;
+  std::vector<int> graduation_harmonics;
+  LinkageTolerance tolerance;
+  LinkageNoise noise;
+
+  Eigen::Vector3d DownB() const { return X_MB.R.transpose() * down_M; }
+};
+
+LinkageSettings ReadLinkageSettings(const settings::Table& root);
+
+// Where the ball of a perfect machine stands in M.
+Eigen::Vector3d NominalTip(const machine::Chain& chain, const Eigen::Vector3d& axis_positions);
+
+// The error models; see error_models.h for their parameters.
+enum class ErrorModel { kPivots, kPublished, kPublishedWithBearing, kComplete };
+LinkageModel MakeLinkageModel(const LinkageSettings& settings, ErrorModel model);
+
+}  // namespace abbe::relm

@@ -1,0 +1,107 @@
+#include "relm/tip_path.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <string>
+
+#include "failure/failure.h"
+
+namespace abbe::relm {
+namespace {
+
+using Column = std::span<const double>;
+
+std::vector<Column> AngleColumns(const recording::Recording& recording, Eigen::Index joints) {
+  std::vector<Column> columns;
+  for (Eigen::Index i = 0; i < joints; ++i) {
+    columns.push_back(recording.At(fmt::format("pivot_{}_rad", i + 1)));
+  }
+  if (recording.Find(fmt::format("pivot_{}_rad", joints + 1))) {
+    throw InputError(fmt::format(
+        "{}: has a column pivot_{}_rad, but the linkage of the machine file has {} pivots",
+        recording.name, joints + 1, joints));
+  }
+  return columns;
+}
+
+// Empty when the settings name none or the recording lacks it.
+Column TemperatureColumn(const recording::Recording& recording, const LinkageSettings& settings) {
+  if (settings.temperature.empty()) return {};
+  return recording.Find(settings.temperature).value_or(Column{});
+}
+
+std::vector<std::size_t> GoodRows(const recording::Recording& recording) {
+  const Column flags = recording.Find("flags").value_or(Column{});
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    if (flags.empty() || flags[row] == 0) rows.push_back(row);
+  }
+  if (rows.empty()) {
+    throw InputError(fmt::format("{}: none of the {} rows is without a flag; nothing to evaluate",
+                                 recording.name, recording.rows()));
+  }
+  return rows;
+}
+
+double Finite(const recording::Recording& recording, Column column, std::size_t row,
+              const std::string& name) {
+  if (std::isfinite(column[row])) return column[row];
+  throw InputError(
+      fmt::format("{}: row {}: {} is no number and has no flag", recording.name, row + 1, name));
+}
+
+// An encoder turns less than half a turn from row to row, or its counter has wrapped or slipped.
+void RefuseJump(const recording::Recording& recording, const GoodReadings& good,
+                Eigen::Index pose) {
+  if (pose == 0) return;
+  const auto step = good.readings.angles.col(pose) - good.readings.angles.col(pose - 1);
+  Eigen::Index joint = 0;
+  const double largest = step.cwiseAbs().maxCoeff(&joint);
+  if (largest <= std::numbers::pi) return;
+  throw InputError(fmt::format(
+      "{}: row {}: pivot_{}_rad jumps by {:.4f} rad: the encoder's counter has wrapped or slipped; "
+      "check counts_per_turn and the range of the node, and record again",
+      recording.name, good.rows[static_cast<std::size_t>(pose)] + 1, joint + 1, step[joint]));
+}
+
+}  // namespace
+
+GoodReadings ReadAngles(const recording::Recording& recording, const LinkageSettings& settings) {
+  const std::vector<Column> columns = AngleColumns(recording, settings.chain.joints());
+  const Column temperatures = TemperatureColumn(recording, settings);
+  GoodReadings good;
+  good.rows = GoodRows(recording);
+  good.flagged = recording.rows() - good.rows.size();
+  good.readings.angles.resize(settings.chain.joints(), static_cast<Eigen::Index>(good.rows.size()));
+  if (!temperatures.empty()) good.readings.warmth.resize(good.readings.poses());
+  for (Eigen::Index pose = 0; pose < good.readings.poses(); ++pose) {
+    const std::size_t row = good.rows[static_cast<std::size_t>(pose)];
+    for (Eigen::Index i = 0; i < good.readings.angles.rows(); ++i) {
+      good.readings.angles(i, pose) = Finite(recording, columns[static_cast<std::size_t>(i)], row,
+                                             fmt::format("pivot_{}_rad", i + 1));
+    }
+    if (!temperatures.empty()) {
+      good.readings.warmth[pose] = Finite(recording, temperatures, row, settings.temperature) -
+                                   settings.reference_temperature;
+    }
+    RefuseJump(recording, good, pose);
+  }
+  return good;
+}
+
+TipPath EvaluateTipPath(const recording::Recording& recording, const LinkageSettings& settings,
+                        const LinkageModel& model, const Eigen::VectorXd& x) {
+  GoodReadings good = ReadAngles(recording, settings);
+  TipPath path{{}, std::move(good.rows), good.flagged};
+  model.Tips(good.readings, x, path.tips);
+  return path;
+}
+
+Eigen::Matrix3Xd InFrame(const geometry::Transform<double>& X_AB, const Eigen::Matrix3Xd& p_BT) {
+  return (X_AB.R * p_BT).colwise() + X_AB.p;
+}
+
+}  // namespace abbe::relm

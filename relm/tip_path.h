@@ -1,0 +1,47 @@
+// From a recording to the path of the ball: direct evaluation, no fit.
+//
+//   const TipPath path = EvaluateTipPath(recording, settings, model, model.Values());
+//   path.tips            // 3 x poses, in B
+//   InFrame(X_MB, path.tips)
+//
+// Takes the columns pivot_1_rad ... pivot_N_rad, the temperature of the settings where the
+// recording has it, and leaves out rows with a flag other than 0. `rows` tells which rows of the
+// recording are left, so that positions, pass and direction are found again.
+// Frames: B, the linkage base; T the ball. Units: m, rad, s. Shapes: one column per pose.
+// Failure: InputError with the recording's name for a missing column, an angle that is not finite
+// in a row without a flag, or no good row at all; and when a pose of a closed form lies beyond its
+// links. A step of more than half a turn between neighbouring rows is an InputError too: the
+// encoder has wrapped or slipped there. Validity: that of the model.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "geometry/transform.h"
+#include "recording/recording.h"
+#include "relm/linkage_model.h"
+#include "relm/linkage_settings.h"
+
+namespace abbe::relm {
+
+// The encoder readings of the good rows of a recording.
+struct GoodReadings {
+  LinkageReadings readings;
+  std::vector<std::size_t> rows;  // of the recording, in its order
+  std::size_t flagged = 0;        // rows left out
+};
+GoodReadings ReadAngles(const recording::Recording& recording, const LinkageSettings& settings);
+
+struct TipPath {
+  Eigen::Matrix3Xd tips;          // p_BT, m
+  std::vector<std::size_t> rows;  // of the recording
+  std::size_t flagged = 0;
+};
+TipPath EvaluateTipPath(const recording::Recording& recording, const LinkageSettings& settings,
+                        const LinkageModel& model, const Eigen::VectorXd& x);
+
+// p_AT = X_AB p_BT for each column.
+Eigen::Matrix3Xd InFrame(const geometry::Transform<double>& X_AB, const Eigen::Matrix3Xd& p_BT);
+
+}  // namespace abbe::relm
