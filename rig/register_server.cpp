@@ -109,7 +109,8 @@ Answer RegisterServer::Read(int unit, RegisterTable table, int address,
                             std::span<std::uint16_t> words) {
   const std::lock_guard lock(mutex_);
   const auto unit_begin = registers_.lower_bound({unit, RegisterTable::kHolding, 0});
-  if (unit_begin == registers_.end() || unit_begin->first.unit != unit) return Answer::kNoSuchUnit;
+  if (unit_begin == registers_.end() || std::get<0>(unit_begin->first) != unit)
+    return Answer::kNoSuchUnit;
   const auto begin = registers_.find({unit, table, address});
   auto found = begin;
   for (std::size_t i = 0; i < words.size(); ++i, ++found) {
@@ -138,10 +139,11 @@ void RegisterServer::Refresh(double time) {
     for (const BlockSettings& block : device.blocks) RefreshBlock(device, block, time);
     if (!device.cycle_start) continue;
     const ProgramState state = machine_.StateAt(time);
-    const Place start{device.unit, RegisterTable::kHolding, device.cycle_start->address};
-    registers_[start] =
+    const int address = device.cycle_start->address;
+    registers_[{device.unit, RegisterTable::kHolding, address}] =
         static_cast<std::uint16_t>(state == ProgramState::kRunning ? machine_.axis() + 1 : 0);
-    registers_[{start.unit, start.table, start.address + 1}] = static_cast<std::uint16_t>(state);
+    registers_[{device.unit, RegisterTable::kHolding, address + 1}] =
+        static_cast<std::uint16_t>(state);
   }
   RefreshStatus(time);
 }

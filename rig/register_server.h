@@ -57,12 +57,7 @@ class RegisterServer : private hal::RegisterBank {
   std::string MapText() const;
 
  private:
-  struct Place {
-    int unit;
-    hal::RegisterTable table;
-    int address;
-    auto operator<=>(const Place&) const = default;
-  };
+  using Place = std::tuple<int, hal::RegisterTable, int>;  // unit, table, address
 
   hal::Answer Read(int unit, hal::RegisterTable table, int address,
                    std::span<std::uint16_t> words) override;

@@ -23,6 +23,7 @@ std::vector<double> StationsOf(const RigSettings& settings, int axis) {
   if (settings.sweeps[axis]) return settings.sweeps[axis]->stations;
   const auto [first, last] = settings.travels[axis];
   std::vector<double> stations;
+  stations.reserve(kStepsWithoutPlan + 1);
   for (int i = 0; i <= kStepsWithoutPlan; ++i) {
     stations.push_back(first + (last - first) * i / kStepsWithoutPlan);
   }

@@ -10,7 +10,7 @@
 namespace abbe::probes {
 namespace {
 
-constexpr char kMounting[] = "mounting = \"A17\"\n";
+constexpr char kMounting[] = "[mounting]\nid = \"A17\"\n";  // as abbe sweep writes it
 
 // A straight motion whose direction leans by these slopes along s and n of the head frame, seen on
 // a target whose faces are turned with `tilt` (a rotation vector in M).
@@ -97,7 +97,7 @@ TEST(SquarenessOfSweeps, IsRefusedWhenAConditionFails) {
   EXPECT_THAT(RefusalOf(x, x, setup.target), testing::HasSubstr("both sweep the X axis"));
   const SweepResult bare = Lean(setup, 'Y', 0.0, 0.0, level, "");
   EXPECT_THAT(RefusalOf(x, bare, setup.target), testing::HasSubstr("does not say `mounting`"));
-  const SweepResult moved = Lean(setup, 'Y', 0.0, 0.0, level, "mounting = \"A18\"\n");
+  const SweepResult moved = Lean(setup, 'Y', 0.0, 0.0, level, "[mounting]\nid = \"A18\"\n");
   EXPECT_THAT(RefusalOf(x, moved, setup.target), testing::HasSubstr("mounted anew"));
   TargetSettings target = setup.target;
   target.u_squareness = 0.0;

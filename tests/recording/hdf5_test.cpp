@@ -66,20 +66,27 @@ TEST_F(Hdf5, RefusesAFileThatWasCut) {
   }
 }
 
-// A byte that changed on the disk is told by a checksum, or is one number of one row: nothing
-// worse.
-TEST_F(Hdf5, SurvivesChangedBytes) {
-  Write(Dwell(100), path_);
-  const std::string whole = Bytes(path_);
+// Reads the file with every seventh byte changed in turn. 0: each was read or refused.
+int ReadWithChangedBytes(const std::filesystem::path& path) {
+  const std::string whole = Bytes(path);
   for (std::size_t at = 8; at < whole.size(); at += 7) {
     std::string changed = whole;
     changed[at] = static_cast<char>(changed[at] ^ 0x55);
-    Put(path_, changed);
+    Put(path, changed);
     try {
-      EXPECT_LE(Read(path_).rows(), 100u) << at;
+      if (Read(path).rows() > 100) return 1;
     } catch (const InputError&) {
+      // Told by a checksum, a rule or a name.
     }
   }
+  return 0;
+}
+
+// A byte that changed on the disk is told, or is one number: never a crash. In a process of its
+// own, because HDF5 itself loses memory over damaged files.
+TEST_F(Hdf5, SurvivesChangedBytes) {
+  Write(Dwell(100), path_);
+  EXPECT_EXIT(_exit(ReadWithChangedBytes(path_)), testing::ExitedWithCode(0), "");
 }
 
 TEST_F(Hdf5, RefusesOtherFiles) {

@@ -1,0 +1,97 @@
+// docs/machine-file.md against the readers: every key that a reader asks for stands in the page
+// with its unit and its default. Names of the user's choice stand there as AXIS, P and NAME.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+#include "apps/machine_file.h"
+
+namespace abbe::apps {
+namespace {
+
+std::string GeneralName(const std::string& path) {
+  std::string name = std::regex_replace(path, std::regex("\\b(axis|sweep)\\.[XYZ]\\b"), "$1.AXIS");
+  name = std::regex_replace(name, std::regex("axis_[XYZ]"), "axis_AXIS");
+  name = std::regex_replace(name, std::regex("probe_[a-e]\\."), "probe_P.");
+  name = std::regex_replace(name, std::regex("devices\\.\\[\\]"), "devices.NAME");
+  return std::regex_replace(name, std::regex("\\.\\[\\]"), "");
+}
+
+struct Row {
+  std::string unit, fallback;
+};
+
+// The rows "| `key` | unit | default | meaning |" of the page.
+std::map<std::string, Row> RowsOfPage() {
+  std::ifstream page(std::string(ABBE_SOURCE_DIR) + "/docs/machine-file.md");
+  EXPECT_TRUE(page) << "docs/machine-file.md cannot be read";
+  std::map<std::string, Row> rows;
+  const std::regex row(R"(\| `([^`]+)` \| ([^|]*?) *\| ([^|]*?) *\| [^|]+\|)");
+  for (std::string line; std::getline(page, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, row)) rows[match[1]] = {match[2], match[3]};
+  }
+  return rows;
+}
+
+// The demonstration machine with the keys that a file may do without.
+constexpr char kMore[] = R"(
+[devices.more]
+transport = "modbus-rtu"
+serial = { device = "/dev/ttyUSB0" }
+[[devices.more.block]]
+address = 0
+count = 4
+channel = [
+  { name = "temp_more_c", at = 0, type = "int16", minimum = -10, maximum = 50, status = { at = 3 } },
+  { name = "temp_other_c", at = 1, type = "int16", status = { address = 2 } },
+]
+)";
+
+MachineFile ReadFullFile() {
+  std::ifstream demo(std::string(ABBE_SOURCE_DIR) + "/machines/demo_mill.toml");
+  std::string text{std::istreambuf_iterator<char>(demo), {}};
+  const std::string probe = "[head.probe_a]\n";
+  text.insert(text.find(probe) + probe.size(), "zero_gap_um = 100.0\n");
+  const auto path =
+      std::filesystem::temp_directory_path() / fmt::format("abbe_machine_file_{}.toml", ::getpid());
+  std::ofstream(path) << text << kMore;
+  MachineFile file = ReadMachineFile(path);
+  std::filesystem::remove(path);
+  return file;
+}
+
+TEST(MachineFilePage, HasEveryKeyWithUnitAndDefault) {
+  const MachineFile file = ReadFullFile();
+  const auto rows = RowsOfPage();
+  std::set<std::string> asked;
+  for (const auto& [path, key] : file.document.asked()) {
+    if (key.type == "table" || key.type == "tables") continue;
+    const std::string name = GeneralName(path);
+    asked.insert(name);
+    const auto row = rows.find(name);
+    if (row == rows.end()) {
+      ADD_FAILURE() << fmt::format("the page lacks: | `{}` | {} | {} | ... |", name, key.unit,
+                                   key.fallback.empty() ? "required" : key.fallback);
+      continue;
+    }
+    EXPECT_EQ(row->second.unit, key.unit) << name;
+    EXPECT_NE(row->second.fallback.find(key.fallback), std::string::npos)
+        << name << ": the default is " << key.fallback << ", the page says "
+        << row->second.fallback;
+    // A key that must be there unless another or nothing takes its place has no default either.
+    const bool none = row->second.fallback == "none" || name == "head.probe_P.zero_gap_um";
+    EXPECT_EQ(key.fallback.empty(), none || row->second.fallback == "required") << name;
+  }
+  for (const auto& [name, row] : rows) EXPECT_TRUE(asked.contains(name)) << name << " is no key";
+}
+
+}  // namespace
+}  // namespace abbe::apps
