@@ -20,11 +20,12 @@ MachineFile ReadMachineFile(const std::filesystem::path& path) {
   const settings::Document document = settings::Document::Read(path);
   const settings::Table root = document.Root();
   MachineFile file{
-      document, probes::ReadSweepSetup(root), hal::ReadDevices(root.Child("devices")), {}};
+      document, probes::ReadSweepSetup(root), hal::ReadDevices(root.Child("devices")), {}, {}};
   const settings::Table sweep = root.Child("sweep");
   for (const char axis : {'X', 'Y', 'Z'}) {
     if (sweep.Has(std::string(1, axis))) file.sweep_plans[axis] = hal::ReadSweepPlan(sweep, axis);
   }
+  if (root.Has("linkage")) file.linkage = relm::ReadLinkageSettings(root);
   rig::ReadRigSettings(root);
   root.RefuseUnknown();
   return file;

@@ -4,10 +4,12 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "hal/device_settings.h"
 #include "hal/sweep_plan.h"
 #include "probes/sweep_reduction.h"
+#include "relm/linkage_settings.h"
 #include "settings/document.h"
 
 namespace abbe::apps {
@@ -16,7 +18,8 @@ struct MachineFile {
   settings::Document document;
   probes::SweepSetup sweep_setup;
   hal::DevicesSettings devices;
-  std::map<char, hal::SweepPlan> sweep_plans;  // by axis, of the tables [sweep.X] that are there
+  std::map<char, hal::SweepPlan> sweep_plans;    // by axis, of the tables [sweep.X] that are there
+  std::optional<relm::LinkageSettings> linkage;  // of the table [linkage], if it is there
 
   // InputError naming the file when it has no [sweep.AXIS].
   const hal::SweepPlan& SweepPlanOf(char axis) const;

@@ -21,6 +21,13 @@ ordered_json List(const Eigen::VectorXd& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
 }
 
+ordered_json UncertainData(const probes::Uncertain& quantity) {
+  return {{"value", quantity.value}, {"u", quantity.u}};
+}
+
+// A station in mm to its third decimal, without a sign when that is zero.
+double Shown(double station) { return std::round(station * 1e6) / 1e3 + 0.0; }
+
 std::string_view UnitOf(const ComponentResult& c) { return c.component.angle() ? "rad" : "m"; }
 
 std::string ProbeName(std::size_t probe) { return fmt::format("probe_{:c}", 'a' + probe); }
@@ -61,15 +68,14 @@ void AddComponent(const ComponentResult& c, ordered_json& data) {
     data["straightness_lines"][name] = {{"end_points", LineData(s.end_points)},
                                         {"least_squares", LineData(s.least_squares)},
                                         {"minimum_zone", LineData(s.minimum_zone)}};
-    data["slopes"][name] = {{"value", s.slope.value}, {"u", s.slope.u}};
+    data["slopes"][name] = UncertainData(s.slope);
   }
-  if (c.range) data["angular_ranges"][name] = {{"value", c.range->value}, {"u", c.range->u}};
+  if (c.range) data["angular_ranges"][name] = UncertainData(*c.range);
   if (c.reversal) {
     data["reversal"][name] = {{"value", List(c.reversal->value)},
-                              {"mean", c.reversal->mean.value},
-                              {"max", std::abs(c.reversal->largest.value)},
-                              {"u", c.reversal->largest.u},
-                              {"seen", c.reversal->seen}};
+                              {"u", List(c.reversal->u)},
+                              {"mean", UncertainData(c.reversal->mean)},
+                              {"max", UncertainData(c.reversal->largest)}};
   }
   for (std::size_t source = 0; source < probes::kSources; ++source) {
     data["budget"][name][std::string(probes::kSourceNames[source])] = c.budget[source];
@@ -104,16 +110,17 @@ ordered_json NoiseData(const probes::NoiseFigures& noise) {
   return data;
 }
 
-// The largest reversal "0.31 +- 0.12", with a star where it is more than chance.
+// The mean reversal "0.31 +- 0.12", with a star where it exceeds its U95.
 std::string Cell(const std::optional<probes::Reversal>& reversal, double coverage) {
   if (!reversal) return "-";
-  return fmt::format("{:.3f} +- {:.3f}{}", reversal->largest.value * kToMicro,
-                     coverage * reversal->largest.u * kToMicro, reversal->seen ? "*" : " ");
+  const double expanded = coverage * reversal->mean.u;
+  return fmt::format("{:.3f} +- {:.3f}{}", reversal->mean.value * kToMicro, expanded * kToMicro,
+                     std::abs(reversal->mean.value) > expanded ? '*' : ' ');
 }
 
 std::string AngleTable(const SweepResult& result) {
   std::string text =
-      fmt::format("{:<22}{:>10}{:>10}{:>22}\n", "angle, urad", "range", "U95", "largest reversal");
+      fmt::format("{:<22}{:>10}{:>10}{:>22}\n", "angle, urad", "range", "U95", "mean reversal");
   for (const ComponentResult& c : result.components) {
     if (!c.range) continue;
     text += fmt::format("  {} {:<16}{:>10.3f}{:>10.3f}{:>22}\n", c.component.name, c.component.kind,
@@ -126,7 +133,7 @@ std::string AngleTable(const SweepResult& result) {
 std::string StraightnessTable(const SweepResult& result) {
   std::string text =
       fmt::format("{:<22}{:>10}{:>10}{:>22}{:>12}{:>14}{:>14}\n", "straightness, um", "least sq.",
-                  "U95", "largest reversal", "end points", "minimum zone", "slope, urad");
+                  "U95", "mean reversal", "end points", "minimum zone", "slope, urad");
   for (const ComponentResult& c : result.components) {
     if (!c.straightness) continue;
     const probes::StraightnessFigures& s = *c.straightness;
@@ -184,10 +191,9 @@ std::string SweepTable(const SweepResult& result) {
       "{} axis of {} {}, the {} moves: {} stations from {:.3f} to {:.3f} mm, {} passes\n",
       result.axis, result.machine, result.chain,
       result.moving == probes::MovingBody::kTarget ? "target" : "head", result.stations.size(),
-      result.stations.front() * kToMillimetre, result.stations.back() * kToMillimetre,
-      result.passes);
+      Shown(result.stations.front()), Shown(result.stations.back()), result.passes);
   text += AngleTable(result) + StraightnessTable(result);
-  text += "  * a reversal beyond what chance leaves in so many stations (95 %)\n";
+  text += "  reversal: forward - backward, mean over the stations, +- U95; * beyond its U95\n";
   text += NoiseText(result.noise);
   text += fmt::format("rows: {} read, {} used, {} flagged, {} moving; {} outliers\n", counts.rows,
                       counts.used, counts.flagged, counts.moving, counts.outliers);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
@@ -99,10 +98,6 @@ class ComponentEvaluation {
     Eigen::Index at = 0;
     reversal.value.cwiseAbs().maxCoeff(&at);
     reversal.largest = {reversal.value[at], reversal.u[at]};
-    // Sidak: each of n independent stations stays inside with 0.95^(1/n).
-    const double each = std::pow(0.95, 1.0 / static_cast<double>(stations));
-    const double limit = boost::math::quantile(boost::math::normal(), 0.5 + each / 2.0);
-    reversal.seen = (reversal.value.array().abs() > limit * reversal.u.array()).any();
     result.reversal = reversal;
   }
 

@@ -32,7 +32,6 @@ struct Reversal {
   Eigen::VectorXd value, u;
   Uncertain mean;
   Uncertain largest;  // by magnitude, with its sign
-  bool seen;  // 95 %: some station's |value| / u is above what chance leaves in so many stations
 };
 
 // A reference line through ComponentResult::value over the stations, and the error about it.

@@ -60,7 +60,7 @@ void KeepCompleteStations(const std::string& name, const SweepDwells& sweep, Sta
 // The fits of all probes under one noise model.
 class DwellFit {
  public:
-  DwellFit(const StationMeans& means, const ProbeNoise& noise) : means_(means), noise_(noise) {
+  DwellFit(const StationMeans& means, const ProbeNoise& noise) : noise_(noise) {
     const auto directions = static_cast<int>(means.directions.size());
     const auto dwells = static_cast<Eigen::Index>(means.dwells.size());
     values_.resize(dwells, kProbes);
@@ -99,7 +99,6 @@ class DwellFit {
   }
 
  private:
-  const StationMeans& means_;
   const ProbeNoise& noise_;
   std::vector<double> times_;
   std::vector<int> groups_;

@@ -37,6 +37,7 @@ ordered_json AxisTruth(const World& world, int axis) {
   truth["stations_m"] = stations;
   for (int motion = 0; motion < kMotions; ++motion) {
     std::vector<double> values;
+    values.reserve(stations.size());
     for (const double station : stations) values.push_back(world.ErrorsOf(axis, station)[motion]);
     truth[MotionName(axis, motion)] = values;
   }

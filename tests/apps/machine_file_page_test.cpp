@@ -55,24 +55,49 @@ channel = [
 ]
 )";
 
-MachineFile ReadFullFile() {
+std::string Demo() {
   std::ifstream demo(std::string(ABBE_SOURCE_DIR) + "/machines/demo_mill.toml");
   std::string text{std::istreambuf_iterator<char>(demo), {}};
   const std::string probe = "[head.probe_a]\n";
   text.insert(text.find(probe) + probe.size(), "zero_gap_um = 100.0\n");
+  return text + kMore;
+}
+
+// The demonstration machine with the linkage in another of its forms.
+std::string DemoWithForm(const std::string& form, const std::string& links) {
+  const std::string demo = Demo();
+  const std::string text =
+      std::regex_replace(demo, std::regex("form = \"pivots\"\nlink_1_mm.*\nlink_2_mm.*\nelbow.*\n"),
+                         fmt::format("form = \"{}\"\n{}\n", form, links));
+  EXPECT_NE(text, demo) << "machines/demo_mill.toml has no linkage of form \"pivots\"";
+  return text;
+}
+
+void AddKeysOf(const std::string& text, std::map<std::string, settings::AskedKey>& keys) {
   const auto path =
       std::filesystem::temp_directory_path() / fmt::format("abbe_machine_file_{}.toml", ::getpid());
-  std::ofstream(path) << text << kMore;
-  MachineFile file = ReadMachineFile(path);
+  std::ofstream(path) << text;
+  const MachineFile file = ReadMachineFile(path);
   std::filesystem::remove(path);
-  return file;
+  for (const auto& [name, key] : file.document.asked()) keys.emplace(name, key);
+}
+
+std::map<std::string, settings::AskedKey> KeysOfAllReaders() {
+  std::map<std::string, settings::AskedKey> keys;
+  AddKeysOf(Demo(), keys);
+  AddKeysOf(DemoWithForm("segments", "segment = [{ length_mm = 9, encoder = \"theta\" }]"), keys);
+  AddKeysOf(DemoWithForm("denavit-hartenberg", "joint = [{ a_mm = 9 }]"), keys);
+  AddKeysOf(DemoWithForm("axes",
+                         "ball_mm = [9, 0, 0]\n"
+                         "axis = [{ point_mm = [0, 0, 0], direction = [0, 0, 1] }]"),
+            keys);
+  return keys;
 }
 
 TEST(MachineFilePage, HasEveryKeyWithUnitAndDefault) {
-  const MachineFile file = ReadFullFile();
   const auto rows = RowsOfPage();
   std::set<std::string> asked;
-  for (const auto& [path, key] : file.document.asked()) {
+  for (const auto& [path, key] : KeysOfAllReaders()) {
     if (key.type == "table" || key.type == "tables") continue;
     const std::string name = GeneralName(path);
     asked.insert(name);

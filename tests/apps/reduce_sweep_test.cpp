@@ -45,8 +45,8 @@ TEST(ReduceSweep, TheDataHasTheKeysThatOthersRead) {
     }
     EXPECT_EQ(data.at("errors_at_target").at(name).at("value").size(), 13U);
     EXPECT_EQ(data.at("reversal").at(name).at("value").size(), 13U);
-    for (const char* key : {"mean", "max", "u"}) {
-      EXPECT_TRUE(data.at("reversal").at(name).at(key).is_number()) << key;
+    for (const char* key : {"mean", "max"}) {
+      EXPECT_GT(data.at("reversal").at(name).at(key).at("u"), 0.0) << key;
     }
     double variance = 0.0;
     for (const auto& [source, u] : data.at("budget").at(name).items()) {

@@ -111,8 +111,8 @@ TEST(MonteCarlo, AConstantSettlesAtOnce) {
 
 TEST(MonteCarlo, IntervalEndsAreTheRanksOfTheGuide) {
   // JCGM 101, 7.7.2 with M = 100, p = 0.95: q = 95, r = 3, the interval is [y_(3), y_(98)].
-  std::vector<double> draws;
-  for (int i = 0; i < 100; ++i) draws.push_back((i * 37) % 100 + 1);
+  std::vector<double> draws(100);
+  for (int i = 0; i < 100; ++i) draws[i] = (i * 37) % 100 + 1;
   const auto out = SummariseDraws(draws);
   EXPECT_EQ(out.low, 3.0);
   EXPECT_EQ(out.high, 98.0);

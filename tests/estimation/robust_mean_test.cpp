@@ -119,9 +119,8 @@ TEST(RobustMean, NamesTheOneWrongValueAmongEqualOnes) {
 
 TEST(RobustMean, CoarseReadingsStillHaveAScale) {
   // 60 % of the readings on one step, the rest on its neighbours, one lost.
-  std::vector<double> values;
-  for (int i = 0; i < 100; ++i) values.push_back(i < 60 ? 0.0 : i < 80 ? 1.0 : -1.0);
-  values.push_back(1e9);
+  std::vector<double> values(101, 1e9);
+  for (int i = 0; i < 100; ++i) values[i] = i < 60 ? 0.0 : i < 80 ? 1.0 : -1.0;
   const auto fit = HuberMean(values);
   EXPECT_GT(fit.scale, 0.3);
   EXPECT_LT(fit.scale, 1.5);

@@ -87,7 +87,13 @@ function component(unit, kind, values, u, backlash) {
 
 const reversalOf = ({forward, backward, u}) => {
   const value = forward.map((one, index) => one - backward[index]);
-  return {value, mean: mean(value), max: Math.max(...value.map(Math.abs)), u: Math.SQRT2 * u[0]};
+  const each = Math.SQRT2 * u[0];
+  return {
+    value,
+    u: value.map(() => each),
+    mean: {value: mean(value), u: each},
+    max: {value: Math.max(...value.map(Math.abs)), u: each}
+  };
 };
 
 export const BOW = 1.5e-6;

@@ -15,7 +15,6 @@ namespace abbe::rig {
 namespace {
 
 using hal::ModbusClient;
-using hal::ModbusFault;
 using hal::RegisterTable;
 
 constexpr double kCount = 200e-6 / 65536.0;  // m, of the demonstration machine's amplifier
