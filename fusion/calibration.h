@@ -71,13 +71,12 @@ class CalibratedLinkage {
                                          const std::string& mounting = "") const;
 
  private:
-  std::size_t MountingIndex(const std::string& mounting, bool strict) const;
+  std::size_t IndexOf(const std::string& mounting, bool strict) const;
 
   Calibration calibration_;
   relm::LinkageModel model_;
   geometry::Transform<double> nominal_X_MB_;
-  Eigen::VectorXd values_;                    // of the model
-  std::vector<std::array<double, 6>> bases_;  // of each mounting
+  std::vector<Eigen::VectorXd> x_;  // of LinkageSimulation, for each mounting
 };
 
 }  // namespace abbe::fusion

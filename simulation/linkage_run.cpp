@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -18,6 +19,7 @@ using Column = std::span<const double>;
 
 constexpr std::array<const char*, 3> kCommanded{"x_mm", "y_mm", "z_mm"};
 constexpr std::array<const char*, 3> kReference{"ref_x_mm", "ref_y_mm", "ref_z_mm"};
+constexpr const char* kStated = "ref_u_um";
 
 void RefuseOtherKinds(const recording::Recording& recording) {
   const std::string kind = recording.Kind();
@@ -28,8 +30,8 @@ void RefuseOtherKinds(const recording::Recording& recording) {
       recording.name, kind));
 }
 
-Eigen::VectorXd Take(const recording::Recording& recording, const std::string& name,
-                     Column column, const std::vector<std::size_t>& rows) {
+Eigen::VectorXd Take(const recording::Recording& recording, const std::string& name, Column column,
+                     const std::vector<std::size_t>& rows) {
   const double si = settings::UnitOf(name).si;
   Eigen::VectorXd values(static_cast<Index>(rows.size()));
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -59,6 +61,7 @@ void Resize(LinkageRun& run, Index joints, Index poses, bool warmth) {
   run.time.resize(poses);
   run.commanded.resize(3, poses);
   run.reference.resize(3, poses);
+  run.reference_sd.resize(3, poses);
   run.samples.resize(poses);
   run.readings.angles.resize(joints, poses);
   run.readings.warmth.resize(warmth ? poses : 0);
@@ -90,6 +93,7 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
   run.time = time ? Take(recording, "time_s", *time, run.rows)
                   : Eigen::VectorXd::LinSpaced(run.poses(), 0.0, run.poses() - 1.0);
   run.samples.setOnes();
+  const auto stated = recording.Find(kStated);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto row = static_cast<Index>(axis);
     const auto commanded = recording.Find(kCommanded[axis]);
@@ -101,11 +105,14 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
           recording.name, kCommanded[axis], kReference[axis]));
     }
     run.referenced[axis] = reference.has_value();
-    run.commanded.row(row) =
-        Take(recording, commanded ? kCommanded[axis] : kReference[axis],
-             commanded ? *commanded : *reference, run.rows);
+    run.commanded.row(row) = Take(recording, commanded ? kCommanded[axis] : kReference[axis],
+                                  commanded ? *commanded : *reference, run.rows);
     run.reference.row(row) = reference ? Take(recording, kReference[axis], *reference, run.rows)
                                        : Eigen::VectorXd(run.commanded.row(row));
+    run.reference_sd.row(row).setConstant(reference ? settings.noise.reference
+                                                    : settings.noise.machine);
+    if (stated && reference)
+      run.reference_sd.row(row) = Take(recording, kStated, *stated, run.rows);
   }
   return run;
 }
@@ -123,13 +130,30 @@ LinkageRun MeansOfStays(const LinkageRun& run, double window) {
     means.time[stay] = run.time.segment(first, count).dot(weights) / total;
     means.commanded.col(stay) = run.commanded.middleCols(first, count) * weights / total;
     means.reference.col(stay) = run.reference.middleCols(first, count) * weights / total;
-    means.readings.angles.col(stay) = run.readings.angles.middleCols(first, count) * weights / total;
+    means.reference_sd.col(stay) = run.reference_sd.middleCols(first, count) * weights / total;
+    means.readings.angles.col(stay) =
+        run.readings.angles.middleCols(first, count) * weights / total;
     if (run.readings.warmth.size() > 0) {
       means.readings.warmth[stay] = run.readings.warmth.segment(first, count).dot(weights) / total;
     }
     means.samples[stay] = total;
   }
   return means;
+}
+
+LinkageRun RunAt(const Eigen::Matrix3Xd& positions, const relm::LinkageSettings& settings) {
+  LinkageRun run;
+  run.name = "planned";
+  Resize(run, settings.chain.joints(), positions.cols(), false);
+  run.time = Eigen::VectorXd::LinSpaced(run.poses(), 0.0, static_cast<double>(run.poses()) - 1.0);
+  run.commanded = positions;
+  run.reference = positions;
+  run.reference_sd.setConstant(settings.noise.reference);
+  run.referenced.fill(true);
+  run.readings.angles.setZero();
+  run.samples.setOnes();
+  for (std::size_t pose = 0; pose < run.rows.size(); ++pose) run.rows[pose] = pose;
+  return run;
 }
 
 LinkageRun Selection(const LinkageRun& run, const std::vector<Index>& poses) {
@@ -140,6 +164,7 @@ LinkageRun Selection(const LinkageRun& run, const std::vector<Index>& poses) {
     chosen.time[i] = run.time[pose];
     chosen.commanded.col(i) = run.commanded.col(pose);
     chosen.reference.col(i) = run.reference.col(pose);
+    chosen.reference_sd.col(i) = run.reference_sd.col(pose);
     chosen.readings.angles.col(i) = run.readings.angles.col(pose);
     if (run.readings.warmth.size() > 0) chosen.readings.warmth[i] = run.readings.warmth[pose];
     chosen.samples[i] = run.samples[pose];
