@@ -159,16 +159,20 @@ class CalibrationJob {
     return gaps;
   }
 
-  // Only the base is free.
+  // Displacements of the nominal linkage: only the base position is free.
   PerRun BeforeCalibration() const {
-    estimation::Problem problem = MakeLinkageProblem(simulation_, runs_, options_.problem);
-    const std::size_t bases = 2 * MountingsOf(runs_).size();
-    for (std::size_t b = bases; b < problem.blocks().size(); ++b) {
+    estimation::Problem problem =
+        MakeLinkageProblem(simulation_, runs_, {.displacement = true, .loss = {}});
+    for (std::size_t b = 0; b < problem.blocks().size(); ++b) {
       problem.Block({static_cast<int>(b)}).Hold();
+    }
+    for (const std::string& mounting : MountingsOf(runs_)) {
+      problem.Block(problem.Find(BaseBlock(mounting))).Free();
     }
     Calibration nominal;
     nominal.model = options_.model;
     nominal.mountings = MountingsOf(runs_);
+    nominal.displacement = true;
     nominal.blocks = problem.Solve().blocks;
     return Gaps(nominal, runs_);
   }

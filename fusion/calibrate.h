@@ -28,7 +28,7 @@ namespace abbe::fusion {
 
 struct CalibrateOptions {
   relm::ErrorModel model = relm::ErrorModel::kComplete;
-  LinkageProblemOptions problem;
+  LinkageProblemOptions problem = {};
   int folds = 5;        // below 2: nothing is held out
   bool mapped = false;  // also local parameter sets, fusion/mapping.h
 };

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
-#include <numbers>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "estimation/problem.h"
 #include "failure/failure.h"
@@ -74,8 +77,10 @@ ParameterBlock PerEncoder(const std::string& name, Index joints, double sd) {
   return block;
 }
 
-constexpr double kAnyAngle = 1.0;  // rad, and of gains: priors that hold nothing
-constexpr double kSpread = 1e-4;   // m: what the tolerances of a linkage leave
+constexpr double kAnyAngle = 1.0;   // rad, and of gains: priors that hold nothing
+constexpr double kSpread = 1e-4;    // m: what the tolerances of a linkage leave
+constexpr double kLeftOver = 5e-3;  // of the reach: a gap beyond it is no explanation
+constexpr double kReversed = -2.0;  // gain of an encoder of the other sense
 
 std::optional<Assumption> Fit(const LinkageSimulation& simulation, const Matrix3Xd& p_MT,
                               const MatrixXd& angles, bool with_gains, double start_gain = 0.0,
@@ -101,10 +106,40 @@ std::optional<Assumption> Fit(const LinkageSimulation& simulation, const Matrix3
   }
 }
 
-InputError Finding(const std::string& run, const std::string& what, const std::string& todo,
-                   double stated, double explained) {
-  return InputError(fmt::format("{}: {} (gap {:.3g} mm instead of {:.3g} mm); {}", run, what,
-                                1e3 * explained, 1e3 * stated, todo));
+struct Finding {
+  double rms;  // m
+  std::string what, todo;
+};
+
+std::vector<Finding> Swaps(const LinkageSimulation& simulation, const Matrix3Xd& p_MT,
+                           const MatrixXd& angles) {
+  std::vector<Finding> findings;
+  for (Index i = 0; i < angles.rows(); ++i) {
+    for (Index j = i + 1; j < angles.rows(); ++j) {
+      MatrixXd swapped = angles;
+      swapped.row(i).swap(swapped.row(j));
+      const auto fit = Fit(simulation, p_MT, swapped, false);
+      if (!fit) continue;
+      findings.push_back(
+          {fit->rms, fmt::format("the encoders of pivot_{} and pivot_{} are swapped", i + 1, j + 1),
+           "exchange their node ids in [devices.linkage]"});
+    }
+  }
+  return findings;
+}
+
+Finding FromGains(const Assumption& fit) {
+  Index worst = 0;
+  fit.gains.cwiseAbs().maxCoeff(&worst);
+  const double scale = 1.0 + fit.gains[worst];
+  if (scale < 0.0) {
+    return {fit.rms, fmt::format("the encoder of pivot_{} counts in the other sense", worst + 1),
+            "change the sign of its node in [devices.linkage]"};
+  }
+  return {
+      fit.rms,
+      fmt::format("the encoder of pivot_{} turns {:.4f} times as far as it says", worst + 1, scale),
+      "correct counts_per_turn of its node in [devices.linkage]"};
 }
 
 }  // namespace
@@ -114,37 +149,21 @@ void CheckEncoders(const LinkageSimulation& simulation, const simulation::Linkag
   const MatrixXd& angles = run.readings.angles;
   const auto stated = Fit(simulation, p_MT, angles, false);
   const double gap = stated ? stated->rms : std::numeric_limits<double>::infinity();
-  const Index n = angles.rows();
-  for (Index i = 0; i < n; ++i) {
-    for (Index j = i + 1; j < n; ++j) {
-      MatrixXd swapped = angles;
-      swapped.row(i).swap(swapped.row(j));
-      const auto fit = Fit(simulation, p_MT, swapped, false);
-      if (fit && fit->rms * kExplains < gap) {
-        throw Finding(
-            run.name,
-            fmt::format("the encoders of pivot_{} and pivot_{} are swapped", i + 1, j + 1),
-            "exchange their node ids in [devices.linkage]", gap, fit->rms);
+  std::vector<Finding> findings = Swaps(simulation, p_MT, angles);
+  for (Index i = 0; i < angles.rows(); ++i) {
+    for (const double start : {0.0, kReversed}) {
+      if (const auto fit = Fit(simulation, p_MT, angles, true, start, i)) {
+        findings.push_back(FromGains(*fit));
       }
     }
   }
-  for (Index i = 0; i < n; ++i) {
-    for (const double start : {0.0, -2.0}) {
-      const auto fit = Fit(simulation, p_MT, angles, true, start, i);
-      if (!fit || !(fit->rms * kExplains < gap)) continue;
-      Index worst = 0;
-      fit->gains.cwiseAbs().maxCoeff(&worst);
-      const double scale = 1.0 + fit->gains[worst];
-      throw Finding(
-          run.name,
-          scale < 0.0 ? fmt::format("the encoder of pivot_{} counts in the other sense", worst + 1)
-                      : fmt::format("the encoder of pivot_{} turns {:.4f} times as far as it says",
-                                    worst + 1, scale),
-          scale < 0.0 ? "change the sign of its node in [devices.linkage]"
-                      : "correct counts_per_turn of its node in [devices.linkage]",
-          gap, fit->rms);
-    }
-  }
+  const auto best = std::min_element(findings.begin(), findings.end(),
+                                     [](const auto& a, const auto& b) { return a.rms < b.rms; });
+  if (best == findings.end() || !(best->rms * kExplains < gap)) return;
+  if (best->rms > kLeftOver * simulation.model().chain().Reach()) return;
+  throw InputError(
+      fmt::format("{}: {} (this leaves a gap of {:.3g} mm, as stated it is {:.3g} mm); {}",
+                  run.name, best->what, 1e3 * best->rms, 1e3 * gap, best->todo));
 }
 
 }  // namespace abbe::fusion

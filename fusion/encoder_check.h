@@ -4,8 +4,8 @@
 //
 // Called when a calibration fits badly. It asks the estimator for the pose of the base and the
 // offset of each encoder on the nominal chain, under one assumption after the other: as stated; two
-// encoders swapped; each encoder with a gain of its own. An assumption that leaves less than a
-// kExplains-th of the gap of the stated one is told as the cause.
+// encoders swapped; each encoder with a gain of its own. The one with the smallest gap is told as
+// the cause if that is less than a kExplains-th of the stated one's.
 // Units: m. Failure: InputError is the finding; returns when no assumption explains the gap.
 // Validity: the run must turn the encoder in question by some hundredths of a radian, more than the
 // tolerances of the linkage could do.

@@ -132,9 +132,13 @@ estimation::Problem MakeLinkageProblem(const LinkageSimulation& simulation,
     const BlockId id = problem.Add(blocks[b]);
     for (auto& list : inputs) list.emplace_back(id);
   }
-  for (const LinkageRun& run : runs) {
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const LinkageRun& run = runs[r];
     if (run.poses() == 0) throw InputError(fmt::format("{}: has no poses", run.name));
-    const auto source = problem.AddSource(run.name, {.loss = options.loss});
+    const auto same = [&](const LinkageRun& other) { return other.name == run.name; };
+    const bool unique = std::count_if(runs.begin(), runs.end(), same) == 1;
+    const auto source = problem.AddSource(
+        unique ? run.name : fmt::format("{} ({})", run.name, r + 1), {.loss = options.loss});
     const auto m = static_cast<std::size_t>(
         std::find(mountings.begin(), mountings.end(), run.mounting) - mountings.begin());
     problem.Add(source, std::make_shared<GapResidual>(simulation, run), inputs[m], 1.0);
