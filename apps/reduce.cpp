@@ -38,7 +38,7 @@ class Reduction {
     for (const fs::path& path : options_.recordings) {
       const recording::Recording recording = recording::Read(path);
       for (const std::string& warning : recording.warnings) {
-        fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
+        fmt::print(stderr, "abbe: {}\n", warning);
       }
       Reduce(recording, path);
     }

@@ -43,8 +43,11 @@ ordered_json ConditionsData(const probes::SweepConditions& conditions) {
 }
 
 ordered_json ErrorData(const ComponentResult& c) {
-  ordered_json data{
-      {"unit", UnitOf(c)}, {"kind", c.component.kind}, {"value", List(c.value)}, {"u", List(c.u)}};
+  ordered_json data{{"unit", UnitOf(c)},
+                    {"kind", c.component.kind},
+                    {"coverage", c.coverage},
+                    {"value", List(c.value)},
+                    {"u", List(c.u)}};
   if (c.forward.size() > 0) data["forward"] = List(c.forward);
   if (c.backward.size() > 0) data["backward"] = List(c.backward);
   return data;
@@ -80,7 +83,6 @@ void AddComponent(const ComponentResult& c, ordered_json& data) {
   for (std::size_t source = 0; source < probes::kSources; ++source) {
     data["budget"][name][std::string(probes::kSourceNames[source])] = c.budget[source];
   }
-  data["coverage"][name] = c.coverage;
 }
 
 void AddDwells(const SweepResult& result, ordered_json& data) {

@@ -90,7 +90,9 @@ void AddSensitivity(CLI::App& program, int& exit_code) {
                    "I: the inversion alone; II: also a head out of place")
       ->required()
       ->check(CLI::IsMember({"I", "II"}));
-  command->add_option("--draws", options->run.draws, "Number of draws")->capture_default_str();
+  command->add_option("--draws", options->run.draws, "Number of draws")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_option("--threads", options->run.threads, "Threads, 0 for all")
       ->capture_default_str();
   command->add_option("--seed", options->run.seed, "Seed of the random numbers")

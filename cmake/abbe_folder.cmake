@@ -40,7 +40,7 @@ function(abbe_tests name)
   target_link_libraries(${program} PRIVATE ${arg_LINKS} GTest::gtest_main abbe_warnings)
   target_compile_definitions(${program} PRIVATE ABBE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              ABBE_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(${program} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+  gtest_discover_tests(${program} TEST_PREFIX "${name}." NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} SKIP_REGULAR_EXPRESSION "SKIPPED"
                ENVIRONMENT "${arg_ENVIRONMENT}")
 endfunction()

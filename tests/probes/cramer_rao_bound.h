@@ -1,5 +1,5 @@
 // The Cramer-Rao bound of an axis sweep, by dense linear algebra from what the rig states about
-// itself: its own first-order model of the head (models of seed 004, equations 8 to 12), its noise
+// itself: its own first-order model of the head (Kweon, Liu and Yang, equations 8 to 12), its noise
 // and its tolerances. Shares no code with the reduction.
 //
 // Unknown: five errors per station at the axis reference, the same from both directions, and the
