@@ -10,11 +10,12 @@ namespace abbe::apps {
 void AddRig(CLI::App& program, int& exit_code);
 void AddSweep(CLI::App& program, int& exit_code);
 void AddReduce(CLI::App& program, int& exit_code);
+void AddCalibrate(CLI::App& program, int& exit_code);
 void AddConvert(CLI::App& program, int& exit_code);
 void AddSensitivity(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 
-inline constexpr std::array<AddCommand, 6> kCommands{AddRig,     AddSweep,       AddReduce,
-                                                     AddConvert, AddSensitivity, AddReport};
+inline constexpr std::array<AddCommand, 7> kCommands{
+    AddRig, AddSweep, AddReduce, AddCalibrate, AddConvert, AddSensitivity, AddReport};
 
 }  // namespace abbe::apps
