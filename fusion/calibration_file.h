@@ -23,7 +23,7 @@
 //   [[mapped.cell]]               # z runs fastest, then y, then x
 //   values = [...]                # SI, parameters of the model
 //
-// Numbers are written so that they read back to the last bit in SI.
+// Numbers are written in full: read back they differ by the rounding of the unit, 2e-16.
 // Failure: InputError with file, line and key; for a parameter that is missing, unknown or out of
 // order, the message names it.
 #pragma once

@@ -2,7 +2,7 @@
 //
 //   Problem problem = MakeLinkageProblem(simulation, runs, {});
 //   problem.Block(problem.Find("graduation")).Hold();        // which blocks are free
-//   const Result result = problem.Solve();
+//   const Result result = problem.Solve(kLinkageSolve);
 //   const VectorXd x = ParametersOf(result.blocks, runs[0].mounting);   // for the simulation
 //
 // Each run is a source; its rows are the gaps of LinkageSimulation, x, y, z of pose 0, then of pose
@@ -28,6 +28,9 @@ struct LinkageProblemOptions {
   // Beyond 3 standard deviations a row pulls no more than there; costs normal data 0.1 %.
   estimation::RobustLoss loss = estimation::RobustLoss::Huber(3.0);
 };
+
+// A ten-thousandth of a standard uncertainty is settled: a robust loss gets no nearer on few poses.
+inline constexpr estimation::SolveOptions kLinkageSolve{.settled = 1e-4};
 
 estimation::Problem MakeLinkageProblem(const simulation::LinkageSimulation& simulation,
                                        const std::vector<simulation::LinkageRun>& runs,

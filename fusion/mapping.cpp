@@ -83,14 +83,15 @@ std::vector<Index> PosesAround(const PoseGrid& grid, const GridPoint& centre) {
 // The global blocks with the estimates as nominal values and the base held.
 VectorXd CellParameters(const LinkageSimulation& simulation, const LinkageRun& cell,
                         const VectorXd& x) {
-  estimation::Problem problem = MakeLinkageProblem(simulation, {cell}, {});
+  estimation::Problem problem = MakeLinkageProblem(
+      simulation, {cell}, {.loss = estimation::RobustLoss::None()});  // too few rows to judge one
   Index at = 0;
   for (std::size_t b = 0; b < problem.blocks().size(); ++b) {
     auto& block = problem.Block({static_cast<int>(b)});
     for (auto& entry : block.entries) entry.nominal = entry.value = x[at++];
     if (b < 2) block.Hold();
   }
-  const auto result = problem.Solve({.threads = 1});
+  const auto result = problem.Solve({.threads = 1, .settled = kLinkageSolve.settled});
   return ParametersOf(result.blocks, cell.mounting).tail(simulation.model().parameters());
 }
 
