@@ -16,53 +16,52 @@ using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using Factor = Eigen::LLT<MatrixXd>;
 
 constexpr int kMostSweeps = 20;
 constexpr double kGain = 1e-9;     // of the log determinant
 constexpr double kEnough = 0.458;  // sqrt(1.1^2 - 1): calibration over noise of a reading
 
-MatrixXd Covariance(const PoseInformation& candidates, const std::vector<Index>& poses) {
-  const Index n = candidates.white.cols();
-  MatrixXd information = MatrixXd::Identity(n, n);
-  for (const Index pose : poses) {
-    const auto J = candidates.white.middleRows<3>(3 * pose);
-    information.noalias() += J.transpose() * J;
-  }
-  return information.llt().solve(MatrixXd::Identity(n, n));
+void Add(const PoseInformation& candidates, Index pose, MatrixXd& information) {
+  const auto J = candidates.white.middleRows<3>(3 * pose);
+  information.noalias() += J.transpose() * J;
 }
 
-// What the logarithm of the determinant gains by a pose, or loses without it (sign -1).
-double Gain(const MatrixXd& J, const MatrixXd& covariance, double sign) {
-  const Matrix3d m = Matrix3d::Identity() + sign * J * covariance * J.transpose();
-  return std::log(m.determinant());
+// P^-1 + sum J' J, in units of the priors.
+MatrixXd Information(const PoseInformation& candidates, const std::vector<Index>& poses) {
+  MatrixXd information = MatrixXd::Identity(candidates.white.cols(), candidates.white.cols());
+  for (const Index pose : poses) Add(candidates, pose, information);
+  return information;
 }
 
-void Update(const MatrixXd& J, double sign, MatrixXd& covariance) {
-  const MatrixXd JC = J * covariance;
-  const Matrix3d m = Matrix3d::Identity() + sign * JC * J.transpose();
-  covariance -= sign * JC.transpose() * m.inverse() * JC;
+double LogDeterminant(const Factor& factor) {
+  return 2.0 * MatrixXd(factor.matrixL()).diagonal().array().log().sum();
 }
 
-// The best pose that is not chosen yet, and its gain.
-std::pair<Index, double> Best(const PoseInformation& candidates, const MatrixXd& covariance,
+// The best pose that is not chosen yet, and what the logarithm of the determinant gains by it.
+std::pair<Index, double> Best(const PoseInformation& candidates, const Factor& factor,
                               const std::vector<bool>& chosen) {
-  // All J C J' at once: the rows of J C, times the same rows of J.
-  const MatrixXd JC = candidates.white * covariance;
+  // J C J' = W' W with W = L^-1 J': as a square it stays positive however weak the prior.
+  const MatrixXd W = factor.matrixL().solve(candidates.white.transpose());
   std::pair<Index, double> best{-1, -1.0};
   for (Index pose = 0; pose < candidates.poses(); ++pose) {
     if (chosen[static_cast<std::size_t>(pose)]) continue;
-    const Matrix3d m =
-        Matrix3d::Identity() +
-        JC.middleRows<3>(3 * pose) * candidates.white.middleRows<3>(3 * pose).transpose();
+    const auto w = W.middleCols<3>(3 * pose);
+    const Matrix3d m = Matrix3d::Identity() + w.transpose() * w;
     const double gain = std::log(m.determinant());
     if (gain > best.second) best = {pose, gain};
   }
   return best;
 }
 
-double TipRms(const PoseInformation& candidates, const MatrixXd& covariance) {
-  const MatrixXd JC = candidates.tip * covariance;
-  return std::sqrt(JC.cwiseProduct(candidates.tip).sum() / static_cast<double>(candidates.poses()));
+std::vector<Index> Without(std::vector<Index> poses, Index pose) {
+  std::erase(poses, pose);
+  return poses;
+}
+
+double TipRms(const PoseInformation& candidates, const Factor& factor) {
+  const MatrixXd W = factor.matrixL().solve(candidates.tip.transpose());
+  return std::sqrt(W.squaredNorm() / static_cast<double>(candidates.poses()));
 }
 
 }  // namespace
@@ -98,7 +97,7 @@ PoseInformation::PoseInformation(const simulation::LinkageSimulation& simulation
 }
 
 double TipUncertainty(const PoseInformation& candidates, const std::vector<Index>& poses) {
-  return TipRms(candidates, Covariance(candidates, poses));
+  return TipRms(candidates, Factor(Information(candidates, poses)));
 }
 
 PoseChoice ChoosePoses(const PoseInformation& candidates, Index count) {
@@ -107,38 +106,34 @@ PoseChoice ChoosePoses(const PoseInformation& candidates, Index count) {
                                  count, candidates.poses(), candidates.poses()));
   }
   PoseChoice choice{};
-  const auto J = [&](Index pose) { return candidates.white.middleRows<3>(3 * pose); };
   std::vector<bool> chosen(static_cast<std::size_t>(candidates.poses()), false);
   const auto mark = [&](Index pose, bool in) { chosen[static_cast<std::size_t>(pose)] = in; };
-  MatrixXd covariance = Covariance(candidates, {});
+  MatrixXd information = Information(candidates, {});
   for (Index i = 0; i < count; ++i) {
-    const auto [pose, gain] = Best(candidates, covariance, chosen);
-    Update(J(pose), 1.0, covariance);
+    const Index pose = Best(candidates, Factor(information), chosen).first;
+    Add(candidates, pose, information);
     choice.poses.push_back(pose);
-    choice.log_determinant += gain;
     mark(pose, true);
   }
+  choice.log_determinant = LogDeterminant(Factor(information));
   bool exchanged = count < candidates.poses();
   for (int sweep = 0; exchanged && sweep < kMostSweeps; ++sweep) {
     exchanged = false;
     for (Index& pose : choice.poses) {
-      const double loss = Gain(J(pose), covariance, -1.0);
-      MatrixXd without = covariance;
-      Update(J(pose), -1.0, without);
+      const auto others = Without(choice.poses, pose);
+      const Factor without(Information(candidates, others));
       const auto [other, gain] = Best(candidates, without, chosen);
-      if (loss + gain < kGain) continue;
-      Update(J(other), 1.0, without);
-      covariance = without;
+      const double reached = LogDeterminant(without) + gain;
+      if (reached < choice.log_determinant + kGain) continue;
       mark(pose, false);
       mark(other, true);
       pose = other;
-      choice.log_determinant += loss + gain;
+      choice.log_determinant = reached;
       ++choice.exchanges;
       exchanged = true;
     }
-    covariance = Covariance(candidates, choice.poses);  // free of what the updates have lost
   }
-  choice.tip_rms = TipRms(candidates, covariance);
+  choice.tip_rms = TipUncertainty(candidates, choice.poses);
   return choice;
 }
 

@@ -21,7 +21,7 @@ ARROWS = {
     "hal": "failure settings recording",
     "machine": "failure settings geometry estimation",
     "probes": "failure random settings recording geometry estimation standards machine",
-    "relm": "failure settings recording geometry estimation standards machine",
+    "relm": "failure random settings recording geometry estimation standards machine",
     "simulation": "failure settings recording geometry estimation machine relm",
     "fusion": "failure settings geometry estimation machine relm simulation",
     "report": "failure",
