@@ -193,10 +193,10 @@ ordered_json ComparisonJson(const std::vector<fusion::ComparedModel>& rows) {
 }
 
 std::string ComparisonTable(const std::vector<fusion::ComparedModel>& rows) {
-  std::string text = fmt::format("\n{:<34}{:>6}{:>12}{:>12}{:>12}  {}\n", "model, 3D in um", "free",
+  std::string text = fmt::format("\n{:<34}{:>6}{:>12}{:>12}{:>14}  {}\n", "model, 3D in um", "free",
                                  "rms", "held out", "held out max", "Boelens 2006, largest");
   for (const auto& row : rows) {
-    text += fmt::format("{:<34}{:>6}{:>12.3f}{:>12.3f}{:>12.3f}  {}\n", row.name, row.parameters,
+    text += fmt::format("{:<34}{:>6}{:>12.3f}{:>12.3f}{:>14.3f}  {}\n", row.name, row.parameters,
                         row.after.rms / kMicro, row.held_out.rms / kMicro,
                         row.held_out.max / kMicro, Published(row.name));
   }

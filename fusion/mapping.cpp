@@ -122,13 +122,8 @@ MappedParameters MapParameters(const LinkageSimulation& simulation, const Linkag
   mapped.values.resize(centres.size());
   tbb::parallel_for(std::size_t{0}, centres.size(), [&](std::size_t c) {
     const auto poses = PosesAround(grid, centres[c]);
-    if (static_cast<Index>(poses.size()) < kFewestPoses) {
-      throw InputError(fmt::format(
-          "{}: the mapping cell at ({:.2f}, {:.2f}, {:.2f}) mm has {} of its 13 poses; measure "
-          "the grid fully",
-          run.name, 1e3 * grid.levels[0][centres[c][0]], 1e3 * grid.levels[1][centres[c][1]],
-          1e3 * grid.levels[2][centres[c][2]], poses.size()));
-    }
+    mapped.values[c] = x.tail(simulation.model().parameters());
+    if (poses.empty()) return;
     mapped.values[c] = CellParameters(simulation, simulation::Selection(run, poses), x);
   });
   return mapped;

@@ -8,7 +8,8 @@
 // and the 12 points around it at (+-1, +-1, 0), (+-1, 0, +-1), (0, +-1, +-1) steps, the corners of
 // a cuboctahedron of volume (20/3) hx hy hz. A cell has parameters of its own, estimated from its
 // 13 poses with the base held where the global calibration found it; the priors have the width of
-// the manufacturing tolerance around the global values, so what 13 poses cannot see stays global.
+// the manufacturing tolerance around the global values, so what 13 poses cannot see stays global,
+// and so does a cell whose poses were left out.
 // Between centres the corrected position is the trilinear blend of the cells at the corners, beyond
 // the outer centres that of the nearest ones: continuous everywhere.
 //
@@ -29,7 +30,6 @@
 
 namespace abbe::fusion {
 
-inline constexpr Eigen::Index kFewestPoses = 7;
 inline constexpr double kSameLevel = 50e-6;  // m: positions closer than this are one level
 
 // `x` is that of the simulation for the mounting of the run.
