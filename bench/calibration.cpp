@@ -102,7 +102,7 @@ void WritePoses(const std::string& path) {
     line.back() = '\n';
     out.print("{}", line);
   }
-  const auto result = c.Problem().Solve(fusion::kLinkageSolve);
+  const auto result = fusion::SolveLinkage(c.Problem());
   for (const auto& block : result.blocks) {
     if (block.name.starts_with("base")) continue;
     for (std::size_t i = 0; i < block.entries.size(); ++i) {
@@ -116,14 +116,13 @@ void WritePoses(const std::string& path) {
 void Calibrate588x24(benchmark::State& state) {
   const Case& c = TheCase();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(c.Problem().Solve(fusion::kLinkageSolve).chi_square);
+    benchmark::DoNotOptimize(fusion::SolveLinkage(c.Problem()).chi_square);
   }
 }
 
 void MapTheCube(benchmark::State& state) {
   const Case& c = TheCase();
-  const Eigen::VectorXd x =
-      fusion::ParametersOf(c.Problem().Solve(fusion::kLinkageSolve).blocks, "");
+  const Eigen::VectorXd x = fusion::ParametersOf(fusion::SolveLinkage(c.Problem()).blocks, "");
   for (auto _ : state) {
     benchmark::DoNotOptimize(fusion::MapParameters(c.simulation, c.run, x).values.size());
   }

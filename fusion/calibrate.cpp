@@ -124,7 +124,7 @@ class CalibrationJob {
 
   Result Solve(const estimation::Problem& problem) const {
     try {
-      return problem.Solve(kLinkageSolve);
+      return SolveLinkage(problem);
     } catch (const NumericalError&) {
       CheckAllEncoders();
       throw;
@@ -173,7 +173,7 @@ class CalibrationJob {
     nominal.model = options_.model;
     nominal.mountings = MountingsOf(runs_);
     nominal.displacement = true;
-    nominal.blocks = problem.Solve(kLinkageSolve).blocks;
+    nominal.blocks = SolveLinkage(problem).blocks;
     return Gaps(nominal, runs_);
   }
 
@@ -194,7 +194,7 @@ class CalibrationJob {
         left_out.push_back(Selection(run, out));
         chosen.push_back(out);
       }
-      const auto fit = MakeLinkageProblem(simulation_, rest, options_.problem).Solve(kLinkageSolve);
+      const auto fit = SolveLinkage(MakeLinkageProblem(simulation_, rest, options_.problem));
       const PerRun fold_gaps = Gaps(From(fit, rest), left_out);
       for (std::size_t r = 0; r < runs_.size(); ++r) gaps[r](Eigen::all, chosen[r]) = fold_gaps[r];
     }

@@ -110,6 +110,19 @@ std::vector<int> ColumnsOf(const std::vector<ParameterBlock>& blocks, const std:
   return columns;
 }
 
+estimation::Result SolveLinkage(const estimation::Problem& problem, int threads) {
+  constexpr double kSettled = 1e-4;
+  constexpr int kFewPasses = 20;
+  try {
+    return problem.Solve({.max_iterations = kFewPasses,
+                          .threads = threads,
+                          .settled = kSettled,
+                          .jacobian_bytes = 0});
+  } catch (const NumericalError&) {
+    return problem.Solve({.threads = threads, .settled = kSettled});
+  }
+}
+
 estimation::Problem MakeLinkageProblem(const LinkageSimulation& simulation,
                                        const std::vector<LinkageRun>& runs,
                                        const LinkageProblemOptions& options) {

@@ -2,7 +2,7 @@
 //
 //   Problem problem = MakeLinkageProblem(simulation, runs, {});
 //   problem.Block(problem.Find("graduation")).Hold();        // which blocks are free
-//   const Result result = problem.Solve(kLinkageSolve);
+//   const Result result = SolveLinkage(problem);
 //   const VectorXd x = ParametersOf(result.blocks, runs[0].mounting);   // for the simulation
 //
 // Each run is a source; its rows are the gaps of LinkageSimulation, x, y, z of pose 0, then of pose
@@ -30,7 +30,10 @@ struct LinkageProblemOptions {
 };
 
 // A ten-thousandth of a standard uncertainty is settled: a robust loss gets no nearer on few poses.
-inline constexpr estimation::SolveOptions kLinkageSolve{.settled = 1e-4};
+// Nearly always a few passes from the nominal linkage do; where they do not, as with a base that is
+// known to some decimetres only, the trust region goes before them. Failure: that of
+// Problem::Solve.
+estimation::Result SolveLinkage(const estimation::Problem& problem, int threads = 0);
 
 estimation::Problem MakeLinkageProblem(const simulation::LinkageSimulation& simulation,
                                        const std::vector<simulation::LinkageRun>& runs,

@@ -91,7 +91,7 @@ VectorXd CellParameters(const LinkageSimulation& simulation, const LinkageRun& c
     for (auto& entry : block.entries) entry.nominal = entry.value = x[at++];
     if (b < 2) block.Hold();
   }
-  const auto result = problem.Solve({.threads = 1, .settled = kLinkageSolve.settled});
+  const auto result = SolveLinkage(problem, 1);
   return ParametersOf(result.blocks, cell.mounting).tail(simulation.model().parameters());
 }
 
