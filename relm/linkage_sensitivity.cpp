@@ -92,8 +92,8 @@ LinkageReadings PosesInVolume(const LinkageSettings& settings, const Sensitivity
   const VectorXd centre = NominalAngles(settings, X_BM * volume.centre);
   readings.angles.col(0) = centre;
   for (int i = 0; i < n * n * n; ++i) {
-    const Vector3d step =
-        Vector3d(i % n, i / n % n, i / (n * n)) / (n - 1) - Vector3d::Constant(0.5);
+    const Vector3d step = Eigen::Vector3i(i % n, i / n % n, i / (n * n)).cast<double>() / (n - 1) -
+                          Vector3d::Constant(0.5);
     const Vector3d p_MT = volume.centre + volume.size.cwiseProduct(step);
     readings.angles.col(1 + i) = NominalAngles(settings, X_BM * p_MT, centre);
   }

@@ -126,8 +126,8 @@ TEST_P(EveryErrorModel, HasTheDerivativesOfTheMatrices) {
   ASSERT_LE(parameters + 3, Jet::DIMENSION);
   for (std::uint64_t draw = 0; draw < 20; ++draw) {
     const VectorXd q = AnyAngles(draw), x = AnyErrors(model_, draw, 10);
-    std::vector<Jet> jet_q;
-    for (int k = 0; k < 3; ++k) jet_q.emplace_back(q[k], static_cast<int>(parameters) + k);
+    std::array<Jet, 3> jet_q;
+    for (int k = 0; k < 3; ++k) jet_q[k] = Jet(q[k], static_cast<int>(parameters) + k);
     Named<Jet> named;
     for (Index i = 0; i < parameters; ++i) named[names[i]] = Jet(x[i], static_cast<int>(i));
     const Eigen::Matrix<Jet, 3, 1> expected = GetParam().jet(jet_q.data(), Jet(4.0), named);
@@ -212,12 +212,12 @@ TEST(PublishedErrorModel, HasTwelveAndTwentyFourParameters) {
 }
 
 SerialChain AnyChain(int joints, std::uint64_t draw) {
-  std::vector<JointAxis> axes;
+  std::vector<JointAxis> axes(joints);
   const auto vector = [&](std::uint64_t stream) {
     const random::CounterRandom r(draw, stream);
     return Vector3d(r.Uniform(0, -1, 1), r.Uniform(1, -1, 1), r.Uniform(2, -1, 1));
   };
-  for (int i = 0; i < joints; ++i) axes.push_back({vector(2 * i), vector(2 * i + 1)});
+  for (int i = 0; i < joints; ++i) axes[i] = {vector(2 * i), vector(2 * i + 1)};
   return SerialChain(axes, vector(99));
 }
 

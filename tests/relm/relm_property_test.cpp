@@ -107,10 +107,8 @@ RC_GTEST_PROP(PivotLinkageProperty, JunkGivesAnglesOrAnErrorNeverNaN, ()) {
 }
 
 SerialChain AnyChain(int joints) {
-  std::vector<JointAxis> axes;
-  for (int i = 0; i < joints; ++i) {
-    axes.push_back({VectorIn(0.3), VectorIn(1) + 1.5 * Vector3d::UnitZ()});
-  }
+  std::vector<JointAxis> axes(joints);
+  for (JointAxis& axis : axes) axis = {VectorIn(0.3), VectorIn(1) + 1.5 * Vector3d::UnitZ()};
   return SerialChain(axes, VectorIn(0.3));
 }
 
