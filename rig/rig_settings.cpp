@@ -142,6 +142,10 @@ void ReadOwn(const Table& own, RigSettings& rig) {
   rig.electrode = own.Quantity("electrode_mm", {.fallback = 0.0, .at_least = 0.0});
   rig.temperature = own.Quantity("temperature_c", {.fallback = 20.0});
   rig.temperature_drift = own.Quantity("temperature_drift_c", {.fallback = 0.1, .at_least = 0.0});
+  rig.cap = own.Quantity("cap_um", {.fallback = 1.0, .at_least = 0.0});
+  rig.cap_feed = own.Quantity("cap_feed_mm_min", {.fallback = 10.0, .above = 0.0});
+  rig.cap_force = own.Quantity("cap_force_n", {.fallback = 8.5, .above = 0.0});
+  rig.encoder_counts = own.Quantity("encoder_counts", {.fallback = 4194304.0, .above = 0.0});
   own.RefuseUnknown();
 }
 
