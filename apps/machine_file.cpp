@@ -16,6 +16,13 @@ const hal::SweepPlan& MachineFile::SweepPlanOf(char axis) const {
   return plan->second;
 }
 
+const relm::LinkageSettings& MachineFile::Linkage() const {
+  if (linkage) return *linkage;
+  throw InputError(fmt::format(
+      "{}: has no table [linkage]; add one with the form and the lengths of the linkage",
+      document.name()));
+}
+
 MachineFile ReadMachineFile(const std::filesystem::path& path) {
   const settings::Document document = settings::Document::Read(path);
   const settings::Table root = document.Root();

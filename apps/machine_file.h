@@ -23,6 +23,8 @@ struct MachineFile {
 
   // InputError naming the file when it has no [sweep.AXIS].
   const hal::SweepPlan& SweepPlanOf(char axis) const;
+  // InputError naming the file when it has no [linkage].
+  const relm::LinkageSettings& Linkage() const;
 };
 
 // InputError with file, line and key.

@@ -1,15 +1,19 @@
-// abbe sensitivity: Monte Carlo simulations of an instrument, the published ones by name.
+// abbe sensitivity: Monte Carlo of an instrument: the head's published simulations by name, the
+// linkage by its machine file.
 #include <fmt/format.h>
 
 #include <array>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "apps/command.h"
 #include "apps/commands.h"
+#include "apps/error_model_option.h"
 #include "apps/result_file.h"
+#include "apps/sensitivity_linkage.h"
 #include "probes/published_simulations.h"
 
 namespace abbe::apps {
@@ -21,6 +25,8 @@ using probes::SimulationErrors;
 struct SensitivityOptions {
   std::string simulation;
   probes::SimulationOptions run;
+  LinkageSensitivityOptions linkage;
+  std::optional<std::uint64_t> draws;  // each instrument has its own default
   std::filesystem::path json;
 };
 
@@ -79,27 +85,66 @@ int RunSensitivity(SensitivityOptions options) {
   return kDone;
 }
 
+void AddLinkageOptions(CLI::App& command, CLI::Option* linkage,
+                       LinkageSensitivityOptions& options) {
+  AddErrorModelOption(command, options.model)->needs(linkage);
+  command.add_option("--volume", options.size_mm, "Edges of the volume, mm")
+      ->expected(3)
+      ->capture_default_str()
+      ->needs(linkage);
+  command.add_option("--centre", options.centre_mm, "Its centre in the machine, mm")
+      ->expected(3)
+      ->capture_default_str()
+      ->needs(linkage);
+  command.add_option("--points", options.points, "Poses along each edge")
+      ->capture_default_str()
+      ->needs(linkage);
+  command.add_option("--warmth", options.warmth_c, "Links warmer than their reference by, degC")
+      ->capture_default_str()
+      ->needs(linkage);
+  command
+      .add_flag("--displacement", options.run.displacement, "Errors relative to that of the centre")
+      ->needs(linkage);
+}
+
+int Run(SensitivityOptions options) {
+  if (options.linkage.machine.empty()) {
+    if (options.draws) options.run.draws = *options.draws;
+    return RunSensitivity(options);
+  }
+  if (options.draws) options.linkage.run.draws = *options.draws;
+  options.linkage.run.seed = options.run.seed;
+  options.linkage.run.threads = options.run.threads;
+  options.linkage.json = options.json;
+  return RunLinkageSensitivity(options.linkage);
+}
+
 }  // namespace
 
 void AddSensitivity(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<SensitivityOptions>();
   CLI::App* command = program.add_subcommand(
-      "sensitivity", "Monte Carlo of the probe head: the published simulations I and II");
-  command
+      "sensitivity", "Monte Carlo of the probe head (simulations I and II) or of the linkage");
+  auto* instrument = command->add_option_group("instrument")->require_option(1);
+  instrument
       ->add_option("--simulation", options->simulation,
-                   "I: the inversion alone; II: also a head out of place")
-      ->required()
+                   "Of the head. I: the inversion alone; II: also a head out of place")
       ->check(CLI::IsMember({"I", "II"}));
-  command->add_option("--draws", options->run.draws, "Number of draws")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  auto* linkage = instrument->add_option("--linkage", options->linkage.machine,
+                                         "Of the linkage in this machine file: tolerances to tip");
+  AddLinkageOptions(*command, linkage, options->linkage);
+  command->add_option("--draws", options->draws, "Number of draws (head 20000, linkage 2048)")
+      ->check(CLI::PositiveNumber);
   command->add_option("--threads", options->run.threads, "Threads, 0 for all")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--seed", options->run.seed, "Seed of the random numbers")
       ->capture_default_str();
   command->add_option("--json", options->json, "Write the result as data (SI units)");
-  command->footer("Example: abbe sensitivity --simulation II --draws 1000000 --json out/II.json");
-  command->callback([options, &exit_code] { exit_code = RunSensitivity(*options); });
+  command->footer(
+      "Example: abbe sensitivity --simulation II --draws 1000000 --json out/II.json\n"
+      "         abbe sensitivity --linkage machines/demo_mill.toml --displacement");
+  command->callback([options, &exit_code] { exit_code = Run(*options); });
 }
 
 }  // namespace abbe::apps

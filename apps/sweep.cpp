@@ -134,8 +134,8 @@ int Sweep(const SweepCommand& options) {
   }
   const std::filesystem::path path = FreeName(options);
   const hal::SweepOutcome outcome = Record(options, file, plan, path);
-  WarnOfLackingVisits(outcome, plan);
   RefuseUnfinished(outcome, path);
+  WarnOfLackingVisits(outcome, plan);
 
   const probes::SweepResult result = probes::ReduceSweep(recording::Read(path), file.sweep_setup);
   const auto json = SweepJson(result);

@@ -29,7 +29,8 @@ endfunction()
 
 # abbe_tests(NAME LABEL label SOURCES file... LINKS target... [ENVIRONMENT VAR=value...])
 #
-# One GoogleTest program NAME_LABEL_test; every TEST in it is one ctest entry with that label.
+# One GoogleTest program NAME_LABEL_test; every TEST in it is the ctest entry NAME.LABEL.SUITE.TEST with
+# that label.
 function(abbe_tests name)
   cmake_parse_arguments(arg "" "LABEL;TIMEOUT" "SOURCES;LINKS;ENVIRONMENT" ${ARGN})
   if(NOT arg_TIMEOUT)
@@ -40,7 +41,7 @@ function(abbe_tests name)
   target_link_libraries(${program} PRIVATE ${arg_LINKS} GTest::gtest_main abbe_warnings)
   target_compile_definitions(${program} PRIVATE ABBE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              ABBE_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(${program} TEST_PREFIX "${name}." NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
+  gtest_discover_tests(${program} TEST_PREFIX "${name}.${arg_LABEL}." NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} SKIP_REGULAR_EXPRESSION "SKIPPED"
                ENVIRONMENT "${arg_ENVIRONMENT}")
 endfunction()

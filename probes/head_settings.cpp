@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "machine/direction.h"
+
 namespace abbe::probes {
 namespace {
 
@@ -69,30 +71,15 @@ Installation<> ReadInstallation(const Table& table) {
   return installation;
 }
 
-Vector3d Direction(const Table& table, const std::string& text) {
-  const bool reversed = text.size() == 2 && text.front() == '-';
-  const char letter = text.empty() ? ' ' : text.back();
-  if (text.size() != (reversed ? 2U : 1U) || letter < 'x' || letter > 'z') {
-    throw table.Error("rotation",
-                      "must name three machine directions, as in [\"y\", \"-x\", \"z\"]");
-  }
-  return (reversed ? -1.0 : 1.0) * Vector3d::Unit(letter - 'x');
-}
-
 AxisFrame ReadFrame(const Table& table, int axis) {
   static const std::array<std::vector<std::string>, 3> kDefault{
       {{"x", "y", "z"}, {"y", "-x", "z"}, {"z", "y", "-x"}}};
-  const auto names = table.Texts("rotation", 3, kDefault[axis]);
   AxisFrame frame;
-  for (int i = 0; i < 3; ++i) frame.R_MH.col(i) = Direction(table, names[i]);
+  frame.R_MH = machine::ReadRotation(table, kDefault[axis]);
   if (frame.R_MH.col(0) != Vector3d::Unit(axis)) {
     throw table.Error(
         "rotation",
         fmt::format("must begin with \"{}\": u points along the swept axis", kDefault[axis][0]));
-  }
-  if (frame.R_MH.determinant() != 1) {
-    throw table.Error("rotation", fmt::format("must be right-handed, as [\"{}\"]",
-                                              fmt::join(kDefault[axis], "\", \"")));
   }
   const auto at = table.Quantities("position_mm", 3, std::vector{0.0, 0.0, 0.0});
   frame.p_MH = Vector3d(at[0], at[1], at[2]);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace abbe::probes {
 namespace {
@@ -27,6 +28,7 @@ SweepUncertainty::SweepUncertainty(const machine::Machine& machine, const HeadSe
   moving_ = nominal.moving();
   travel_ = means.position.unaryExpr([&](double position) { return nominal.Travel(position); });
   jacobians_ = nominal.Jacobians(means.gap, means.position, first_);
+  AddForm();
 
   const auto errors = [&](const HeadSettings& changed) {
     return SweepInversion(machine, changed, axis, start).Errors(means.gap, means.position, first_);
@@ -96,11 +98,11 @@ Eigen::MatrixXd SweepUncertainty::NoiseCovariance(Eigen::Index row) const {
   return sum;
 }
 
-Eigen::MatrixXd SweepUncertainty::FormCovariance(Eigen::Index row) const {
+void SweepUncertainty::AddForm() {
   const Eigen::Index groups = means_.groups();
   const double sense = moving_ == MovingBody::kTarget ? -1.0 : 1.0;
   const double variance = target_.form * target_.form;
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(groups, groups);
+  const double scale = -0.5 / (target_.form_length * target_.form_length);
   for (std::size_t p = 0; p < kProbes; ++p) {
     for (std::size_t q = 0; q < kProbes; ++q) {
       if (OnTop(p) != OnTop(q)) continue;
@@ -109,14 +111,19 @@ Eigen::MatrixXd SweepUncertainty::FormCovariance(Eigen::Index row) const {
       for (Eigen::Index h = 0; h < groups; ++h) {
         for (Eigen::Index g = 0; g < groups; ++g) {
           const double along = apart[0] + sense * (travel_[g] - travel_[h]);
-          const double square = along * along + apart[1] * apart[1];
-          V(g, h) =
-              variance * std::exp(-0.5 * square / (target_.form_length * target_.form_length));
+          V(g, h) = variance * std::exp(scale * (along * along + apart[1] * apart[1]));
         }
       }
       TakeZero(p, q, V);
-      sum += Sensitivity(row, p).asDiagonal() * V * Sensitivity(row, q).asDiagonal();
+      form_.push_back({p, q, std::move(V)});
     }
+  }
+}
+
+Eigen::MatrixXd SweepUncertainty::FormCovariance(Eigen::Index row) const {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(means_.groups(), means_.groups());
+  for (const auto& [p, q, V] : form_) {
+    sum += Sensitivity(row, p).asDiagonal() * V * Sensitivity(row, q).asDiagonal();
   }
   return sum;
 }

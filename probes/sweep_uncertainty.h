@@ -24,6 +24,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <string_view>
+#include <vector>
 
 #include "probes/head_settings.h"
 #include "probes/sweep_gauge.h"
@@ -48,6 +49,13 @@ class SweepUncertainty {
  private:
   using Columns = std::vector<GroupErrors>;  // one per parameter, times its standard deviation
 
+  // The covariance of Delta by the form of the face that two probes look at.
+  struct FormOfPair {
+    std::size_t p, q;
+    Eigen::MatrixXd V;
+  };
+
+  void AddForm();
   Eigen::MatrixXd NoiseCovariance(Eigen::Index row) const;
   Eigen::MatrixXd FormCovariance(Eigen::Index row) const;
   Eigen::MatrixXd ColumnCovariance(const Columns& columns, Eigen::Index row) const;
@@ -64,6 +72,7 @@ class SweepUncertainty {
   Eigen::VectorXd travel_;  // m, per group
   std::vector<GroupJacobian> jacobians_;
   Columns gain_, position_, installation_;
+  std::vector<FormOfPair> form_;
 };
 
 }  // namespace abbe::probes

@@ -1,6 +1,5 @@
 // Every small motion of every axis of any chain, and what the encoders, the bearings, gravity and
 // warmth add.
-#include <fmt/format.h>
 
 #include <cmath>
 
@@ -73,19 +72,19 @@ void AddGeometry(const LinkageSettings& settings, const std::vector<PivotMotions
   model.Block("tilt", kMicroradians);
   for (std::size_t i = 0; i < pivots.size(); ++i) {
     const std::string name = PivotName(static_cast<Index>(i));
-    model.Entry(name + "_u", sd.pivot_angle, {.motion = pivots[i].tilt_u, .parameter = 0});
-    model.Entry(name + "_v", sd.pivot_angle, {.motion = pivots[i].tilt_v, .parameter = 0});
+    model.Entry(name + "_u", sd.pivot_angle, {.motion = pivots[i].tilt_u});
+    model.Entry(name + "_v", sd.pivot_angle, {.motion = pivots[i].tilt_v});
   }
   model.Block("shift", kMicrometres);
   for (std::size_t i = 0; i < pivots.size(); ++i) {
     const std::string name = PivotName(static_cast<Index>(i));
-    model.Entry(name + "_u", pivots[i].shift_u_sd, {.motion = pivots[i].shift_u, .parameter = 0});
-    model.Entry(name + "_v", sd.pivot_offset, {.motion = pivots[i].shift_v, .parameter = 0});
+    model.Entry(name + "_u", pivots[i].shift_u_sd, {.motion = pivots[i].shift_u});
+    model.Entry(name + "_v", sd.pivot_offset, {.motion = pivots[i].shift_v});
   }
   model.Block("ball", kMicrometres);
-  model.Entry("along", sd.link, {.motion = ball.along, .parameter = 0});
-  model.Entry("across", sd.ball, {.motion = ball.across, .parameter = 0});
-  model.Entry("axial", sd.ball, {.motion = ball.axial, .parameter = 0});
+  model.Entry("along", sd.link, {.motion = ball.along});
+  model.Entry("across", sd.ball, {.motion = ball.across});
+  model.Entry("axial", sd.ball, {.motion = ball.axial});
 }
 
 void AddEncoders(const LinkageSettings& settings, const std::vector<PivotMotions>& pivots,
@@ -94,7 +93,7 @@ void AddEncoders(const LinkageSettings& settings, const std::vector<PivotMotions
   const auto count = static_cast<int>(pivots.size());
   model.Block("encoder_offset", kMicroradians);
   for (int i = 0; i < count; ++i) {
-    model.Entry(PivotName(i), sd.encoder_offset, {.motion = pivots[i].turn, .parameter = 0});
+    model.Entry(PivotName(i), sd.encoder_offset, {.motion = pivots[i].turn});
   }
   model.Block("eccentricity", kMicroradians);
   for (int i = 0; i < count; ++i) {
@@ -121,14 +120,13 @@ void AddPhysics(const LinkageSettings& settings, const std::vector<PivotMotions>
   for (int i = 0; i < count; ++i) {
     if (!model.motions.FeelsGravity(i)) continue;
     model.Entry(PivotName(i), sd.compliance,
-                {.motion = pivots[i].turn, .parameter = 0, .basis = Basis::kGravity, .joint = i});
+                {.motion = pivots[i].turn, .basis = Basis::kGravity, .joint = i});
   }
   model.Block("expansion", kPartsPerMillionPerKelvin);
   for (int i = 0; i < count; ++i) {
     if (pivots[i].growth < 0) continue;
-    model.Entry(fmt::format("link_{}", i + 1), sd.thermal,
+    model.Entry("after_" + PivotName(i), sd.thermal,
                 {.motion = pivots[i].growth,
-                 .parameter = 0,
                  .basis = Basis::kWarmth,
                  .factor = settings.chain.Link(i).norm()},
                 settings.expansion, 0.0);

@@ -1,23 +1,23 @@
 // Three error models of the linkage on named parameter blocks.
 //
-// PivotErrorModel (seed 001, its figure 4), two links and three pivots:
+// PivotErrorModel (the RELM paper, figure 4), two links and three pivots:
 //   Rx(tilt x) Ry(tilt y) Rz(q1 + o1) Rx(twist of pivot 2) T(divergence x, y, 0) Ry(q2 + o2)
 //   Tx(L1) Rx(twist of link 1) Ry(q3 + o3) Tz(L2)
 //   blocks  link: link_1 link_2 | tilt: pivot_1_x pivot_1_y | twist: pivot_2 link_1 |
 //           divergence: pivot_2_x pivot_2_y | encoder_offset: pivot_1 pivot_2 pivot_3
 //
-// PublishedErrorModel (seed 000), the displacement equation of segments 0 ... S-1:
+// PublishedErrorModel (Boelens (2006)), the displacement equation of segments 0 ... S-1:
 //   blocks  link: segment_1 ... | tilt: head_x head_y | radial_angle: pivot_1 ... segment_... |
 //           bearing: pivot_1_sin_1 pivot_1_cos_1 pivot_1_sin_2 ... (with bearing only)
 //   With six segments and three encoders these are 5 + 2 + 5 = 12 and 12 more with two harmonics.
 //   The document counts the twelve but does not list them. The five radial angles here are the
 //   angles of the encoders and the turn of each later pivot about the longest segment before it:
-//   with them the twelve are the errors of seed 001.
+//   with them the twelve are the eleven of the RELM paper and the offset of pivot 3.
 //
 // CompleteErrorModel, any chain of n joints, every small motion of every axis:
 //   blocks  tilt: pivot_i_u pivot_i_v | shift: pivot_i_u pivot_i_v | ball: along across axial |
 //           encoder_offset | eccentricity: pivot_i_sin pivot_i_cos | graduation | bearing |
-//           compliance | expansion: link_i
+//           compliance | expansion: after_pivot_i
 //   4 per joint and 3 of the ball leave no geometric error out. An encoder offset is a combination
 //   of those, but it has a tolerance of its own, so it has a parameter of its own; the prior
 //   decides what the data cannot tell apart. u is the direction across the axis nearest to the
@@ -25,7 +25,7 @@
 //
 // Angles in rad, lengths in m. Link lengths have their nominal length as value, all other
 // parameters are deviations from zero. Failure: InputError when the settings lack what a model
-// needs (closed form, segments). Source: seeds 000 and 001, docs/theory-relm.md.
+// needs (closed form, segments). Source: Boelens (2006), the RELM paper, docs/theory-linkage.md.
 #pragma once
 
 #include "relm/linkage_model.h"

@@ -12,8 +12,8 @@
 // pose 0, then those of pose 1, ... and one column per parameter.
 // Failure: InputError when the number of angles or parameters does not fit. Forward models always
 // succeed; an angle that is not finite gives a tip that is not (recordings are checked before,
-// tip_path.h). Source: docs/theory-relm.md. Validity: exact kinematics; every effect is linear in
-// its parameter before it enters the geometry.
+// tip_path.h). Source: docs/theory-linkage.md. Validity: exact kinematics; every effect is linear
+// in its parameter before it enters the geometry.
 #pragma once
 
 #include <Eigen/Core>

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
+#include "machine/direction.h"
 #include "relm/error_models.h"
 
 namespace abbe::relm {
@@ -14,29 +16,12 @@ using settings::Table;
 
 constexpr double kRightAngle = std::numbers::pi / 2;
 
-Vector3d Direction(const Table& table, const char* key, const std::string& text) {
-  const bool reversed = text.size() == 2 && text.front() == '-';
-  const char letter = text.empty() ? ' ' : text.back();
-  if (text.size() != (reversed ? 2U : 1U) || letter < 'x' || letter > 'z') {
-    throw table.Error(key, fmt::format("\"{}\" is no machine direction; write \"x\", \"-z\" and "
-                                       "the like",
-                                       text));
-  }
-  return (reversed ? -1.0 : 1.0) * Vector3d::Unit(letter - 'x');
-}
-
 Vector3d Triple(const std::vector<double>& values) { return Vector3d(values.data()); }
 
 geometry::Transform<double> ReadBase(const Table& table) {
   geometry::Transform<double> X_MB;
   X_MB.p = Triple(table.Quantities("position_mm", 3));
-  const auto names = table.Texts("rotation", 3, std::vector<std::string>{"x", "y", "z"});
-  for (int i = 0; i < 3; ++i) X_MB.R.col(i) = Direction(table, "rotation", names[i]);
-  if (X_MB.R.determinant() != 1) {
-    throw table.Error("rotation",
-                      "must name three different machine directions that form a right-handed "
-                      "frame, as in [\"y\", \"-x\", \"z\"]");
-  }
+  X_MB.R = machine::ReadRotation(table, {"x", "y", "z"});
   table.RefuseUnknown();
   return X_MB;
 }
@@ -73,24 +58,24 @@ std::vector<int> ReadOrders(const Table& table, const char* key,
                             const std::vector<double>& by_default) {
   std::vector<int> orders;
   for (const double value : table.Quantities(key, 0, by_default)) {
-    const int order = static_cast<int>(value);
-    if (order != value || order < 1 || order > 64) {
+    if (!(value >= 1 && value <= 64 && value == std::floor(value))) {
       throw table.Error(key, "must hold whole numbers from 1 to 64: the harmonics per turn");
     }
-    orders.push_back(order);
+    orders.push_back(static_cast<int>(value));
   }
   return orders;
 }
 
-// Two links and three pivots as six segments with the encoders on theta 0, phi 2 and phi 4; the
-// offsets of pivots 2 and 3 are segments 1 and 3, the stem of the ball is segment 5.
+// Two links and three pivots as six segments with the encoders on theta 0, phi 2 and phi 4. The
+// segments 1, 3 and 5 have no length: pivot 2 beside pivot 1, pivot 3 above the end of link 1, and
+// the ball beside link 2, along the axis of pivot 3.
 std::vector<Segment> SegmentsOf(const PivotLinkage& linkage) {
   return {{.encoder = SegmentEncoder::kTheta},
           {.phi = kRightAngle},
           {.length = linkage.link_1(), .encoder = SegmentEncoder::kPhi},
           {.phi = -kRightAngle},
           {.length = linkage.link_2(), .encoder = SegmentEncoder::kPhi},
-          {}};
+          {.theta = kRightAngle, .phi = kRightAngle}};
 }
 
 std::vector<Segment> ReadSegments(const Table& linkage) {
@@ -173,7 +158,7 @@ LinkageSettings ReadLinkageSettings(const Table& root) {
       .branch = {},
       .segments = std::move(form.segments),
       .X_MB = ReadBase(table.Child("base")),
-      .down_M = Direction(table, "down", table.Text("down", "-z")),
+      .down_M = machine::ReadDirection(table, "down", "-z"),
       .expansion = table.Quantity("expansion_ppm_per_c", {.fallback = 11.5}),
       .reference_temperature = table.Quantity("reference_c", {.fallback = 20.0}),
       .temperature = table.Text("temperature", ""),

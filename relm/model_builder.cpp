@@ -31,7 +31,7 @@ void ModelBuilder::Entry(const std::string& name, double sd, Effect effect, doub
 void ModelBuilder::HarmonicEntries(const std::string& prefix, double sd, int motion, int joint,
                                    const std::vector<int>& orders) {
   for (const int order : orders) {
-    Effect effect{.motion = motion, .parameter = 0, .joint = joint, .order = order};
+    Effect effect{.motion = motion, .joint = joint, .order = order};
     effect.basis = Basis::kSine;
     Entry(fmt::format("{}_sin_{}", prefix, order), sd, effect);
     effect.basis = Basis::kCosine;

@@ -15,8 +15,8 @@
 //
 // Frames: B, the linkage base; T, the ball. Units: m, rad, K. Shapes: `angles` one per joint, `x`
 // one per parameter; T is any scalar, also ceres::Jet. Failure: none; a wrong index is a
-// programming error. Source: docs/theory-relm.md. Validity: the lean under gravity is taken on the
-// nominal chain at the encoder angles: what an error of 1 mrad changes in it is 0.1 % of the
+// programming error. Source: docs/theory-linkage.md. Validity: the lean under gravity is taken on
+// the nominal chain at the encoder angles: what an error of 1 mrad changes in it is 0.1 % of the
 // compliance.
 #pragma once
 
@@ -46,7 +46,7 @@ enum class Basis {
 
 struct Effect {
   int motion;
-  int parameter;
+  int parameter = 0;  // filled in by ModelBuilder
   Basis basis = Basis::kOne;
   int joint = 0;      // of the angle, or of the arm
   int order = 0;      // of a harmonic, from 1

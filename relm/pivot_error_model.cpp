@@ -1,4 +1,4 @@
-// The errors of seed 001, figure 4.
+// The errors of the RELM paper, figure 4.
 #include "failure/failure.h"
 #include "relm/error_models.h"
 #include "relm/model_builder.h"
@@ -32,21 +32,21 @@ LinkageModel PivotErrorModel(const LinkageSettings& settings) {
   const LinkageTolerance& sd = settings.tolerance;
   const double length_1 = settings.pivots->link_1(), length_2 = settings.pivots->link_2();
   model.Block("link", kMillimetres);
-  model.Entry("link_1", sd.link, {.motion = link_1, .parameter = 0}, length_1, length_1);
-  model.Entry("link_2", sd.link, {.motion = link_2, .parameter = 0}, length_2, length_2);
+  model.Entry("link_1", sd.link, {.motion = link_1}, length_1, length_1);
+  model.Entry("link_2", sd.link, {.motion = link_2}, length_2, length_2);
   model.Block("tilt", kMicroradians);
-  model.Entry("pivot_1_x", sd.pivot_angle, {.motion = tilt_x, .parameter = 0});
-  model.Entry("pivot_1_y", sd.pivot_angle, {.motion = tilt_y, .parameter = 0});
+  model.Entry("pivot_1_x", sd.pivot_angle, {.motion = tilt_x});
+  model.Entry("pivot_1_y", sd.pivot_angle, {.motion = tilt_y});
   model.Block("twist", kMicroradians);
-  model.Entry("pivot_2", sd.pivot_angle, {.motion = twist_2, .parameter = 0});
-  model.Entry("link_1", sd.pivot_angle, {.motion = twist_link, .parameter = 0});
+  model.Entry("pivot_2", sd.pivot_angle, {.motion = twist_2});
+  model.Entry("link_1", sd.pivot_angle, {.motion = twist_link});
   model.Block("divergence", kMicrometres);
-  model.Entry("pivot_2_x", sd.pivot_offset, {.motion = divergence_x, .parameter = 0});
-  model.Entry("pivot_2_y", sd.pivot_offset, {.motion = divergence_y, .parameter = 0});
+  model.Entry("pivot_2_x", sd.pivot_offset, {.motion = divergence_x});
+  model.Entry("pivot_2_y", sd.pivot_offset, {.motion = divergence_y});
   model.Block("encoder_offset", kMicroradians);
-  model.Entry("pivot_1", sd.encoder_offset, {.motion = pivot_1, .parameter = 0});
-  model.Entry("pivot_2", sd.encoder_offset, {.motion = pivot_2, .parameter = 0});
-  model.Entry("pivot_3", sd.encoder_offset, {.motion = pivot_3, .parameter = 0});
+  model.Entry("pivot_1", sd.encoder_offset, {.motion = pivot_1});
+  model.Entry("pivot_2", sd.encoder_offset, {.motion = pivot_2});
+  model.Entry("pivot_3", sd.encoder_offset, {.motion = pivot_3});
   return model.Build("pivots");
 }
 

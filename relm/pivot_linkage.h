@@ -15,9 +15,9 @@
 // Failure: the constructor throws InputError for a length that is not positive and finite; Angles
 // throws NumericalError that says how far off the ball is. The batch functions throw nothing: a
 // pose without solution has its Reach and zeros, never NaN. The forward function always succeeds.
-// Source: seed 001, equations 1 to 3; its printed inverse is lost, docs/theory-relm.md derives
-// this one. Validity: exact. Tip of single poses is correct to rounding; the batch functions may
-// use the C library's vector functions (4 units in the last place).
+// Source: the RELM paper, equations 1 to 3; its printed inverse is lost, docs/theory-linkage.md
+// derives this one. Validity: exact. Tip of single poses is correct to rounding; the batch
+// functions may use the C library's vector functions (4 units in the last place).
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// The twelve geometric errors of seed 000, and its bearing roundness.
+// The twelve geometric errors of Boelens (2006), and its bearing roundness.
 #include <fmt/format.h>
 
 #include "failure/failure.h"
@@ -92,18 +92,17 @@ void AddGeometry(const LinkageSettings& settings, const Motions& motions, ModelB
   for (std::size_t q = 1; q < settings.segments.size(); ++q) {
     const double length = settings.segments[q].length;
     model.Entry(fmt::format("segment_{}", q), length > 0 ? sd.link : sd.pivot_offset,
-                {.motion = motions.links[q], .parameter = 0}, length, length);
+                {.motion = motions.links[q]}, length, length);
   }
   model.Block("tilt", kMicroradians);
-  model.Entry("head_x", sd.pivot_angle, {.motion = motions.tilt_x, .parameter = 0});
-  model.Entry("head_y", sd.pivot_angle, {.motion = motions.tilt_y, .parameter = 0});
+  model.Entry("head_x", sd.pivot_angle, {.motion = motions.tilt_x});
+  model.Entry("head_y", sd.pivot_angle, {.motion = motions.tilt_y});
   model.Block("radial_angle", kMicroradians);
   for (std::size_t i = 0; i < motions.pivots.size(); ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
-    model.Entry(PivotName(joint), sd.encoder_offset, {.motion = motions.pivots[i], .parameter = 0});
+    model.Entry(PivotName(joint), sd.encoder_offset, {.motion = motions.pivots[i]});
     if (motions.twists[i] < 0) continue;
-    model.Entry(PivotName(joint + 1) + "_twist", sd.pivot_angle,
-                {.motion = motions.twists[i], .parameter = 0});
+    model.Entry(PivotName(joint + 1) + "_twist", sd.pivot_angle, {.motion = motions.twists[i]});
   }
 }
 

@@ -14,8 +14,8 @@
 // ceres::Jet. Failure: InputError for no joints, a direction of no length, a number that is not
 // finite, or segments without an encoder; the forward functions always succeed. Source: Murray, Li,
 // Sastry, "A Mathematical Introduction to Robotic Manipulation" (1994), section 3.2; segments: the
-// displacement equation of seed 000; Denavit-Hartenberg rows in the standard (distal) convention:
-// Rz(q + theta) Tz(d) Tx(a) Rx(alpha). Validity: exact.
+// displacement equation of Boelens (2006); Denavit-Hartenberg rows in the standard (distal)
+// convention: Rz(q + theta) Tz(d) Tx(a) Rx(alpha). Validity: exact.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,8 +32,8 @@ struct JointAxis {
   Eigen::Vector3d direction;  // in B, a unit vector
 };
 
-// One segment of seed 000: S = Rz(theta) Ry(phi), then L along the new z. Where an angle carries an
-// encoder, the number is what the angle is at encoder zero.
+// One segment of Boelens (2006): S = Rz(theta) Ry(phi), then L along the new z. Where an angle
+// carries an encoder, the number is what the angle is at encoder zero.
 enum class SegmentEncoder { kNone, kTheta, kPhi };
 struct Segment {
   double length = 0;  // m
@@ -95,8 +95,8 @@ class SerialChain {
   Eigen::Vector3d tip_;
 };
 
-// The displacement equation of seed 000 as written, P = S0 (R0 + S1 (R1 + ... )), encoder angles
-// included in theta and phi.
+// The displacement equation of Boelens (2006) as written, P = S0 (R0 + S1 (R1 + ... )), encoder
+// angles included in theta and phi.
 template <typename T>
 struct SegmentConstants {
   T length, theta, phi;

@@ -9,9 +9,9 @@
 // recording are left, so that positions, pass and direction are found again.
 // Frames: B, the linkage base; T the ball. Units: m, rad, s. Shapes: one column per pose.
 // Failure: InputError with the recording's name for a missing column, an angle that is not finite
-// in a row without a flag, or no good row at all; and when a pose of a closed form lies beyond its
-// links. A step of more than half a turn between neighbouring rows is an InputError too: the
-// encoder has wrapped or slipped there. Validity: that of the model.
+// in a row without a flag, or no good row at all. A step of more than half a turn between
+// neighbouring rows is an InputError too: the encoder has wrapped or slipped there. Validity: that
+// of the model.
 #pragma once
 
 #include <Eigen/Core>

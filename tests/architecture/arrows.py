@@ -21,7 +21,7 @@ ARROWS = {
     "hal": "failure settings recording",
     "machine": "failure settings geometry estimation",
     "probes": "failure random settings recording geometry estimation standards machine",
-    "relm": "failure settings recording geometry estimation standards machine",
+    "relm": "failure random settings recording geometry estimation standards machine",
     "report": "failure",
     "rig": "failure random settings recording hal",
     "apps": "failure random settings recording geometry estimation standards hal machine probes relm report rig",

@@ -94,10 +94,11 @@ TEST(HeadSettings, RefuseWithLineAndKey) {
   names(Refusal("[head]\nelectrode_mm = 3"), "head.electrode_mm: is not a known key");
   names(Refusal("[head.axis_X]\nrotation = [\"y\", \"-x\", \"z\"]"), "must begin with \"x\"");
   names(Refusal("[head.axis_X]\nrotation = [\"-x\", \"-y\", \"z\"]"), "must begin with \"x\"");
-  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"y\", \"-z\"]"), "must be right-handed");
-  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"x\", \"z\"]"), "must be right-handed");
-  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"+y\", \"z\"]"), "three machine directions");
-  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"\", \"z\"]"), "three machine directions");
+  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"y\", \"-z\"]"),
+        "must be a right-handed frame");
+  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"x\", \"z\"]"), "must be a right-handed frame");
+  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"+y\", \"z\"]"), "is no machine direction");
+  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"\", \"z\"]"), "is no machine direction");
   names(Refusal("[head.probe_d]\nunit = \"top\""), "head.probe_d.unit: must be \"side\"");
   names(Refusal("[head.probe_d]\nzero_gap_um = 300.0"), "above range_um");
   names(Refusal("[head.tolerance]\ngain_ppm = -1.0"), "at least");

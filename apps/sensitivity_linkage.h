@@ -1,0 +1,24 @@
+// The linkage's half of abbe sensitivity.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "relm/linkage_sensitivity.h"
+
+namespace abbe::apps {
+
+struct LinkageSensitivityOptions {
+  std::filesystem::path machine;
+  relm::ErrorModel model = relm::ErrorModel::kComplete;
+  std::vector<double> size_mm{25, 25, 50};
+  std::vector<double> centre_mm{0, 0, 0};
+  int points = 3;
+  double warmth_c = 0;
+  relm::SensitivityOptions run;
+  std::filesystem::path json;
+};
+
+int RunLinkageSensitivity(const LinkageSensitivityOptions& options);
+
+}  // namespace abbe::apps

@@ -1,0 +1,22 @@
+// What the encoders of a perfect linkage say with the ball in a given place.
+//
+//   const Eigen::VectorXd angles = NominalAngles(settings, settings.X_MB.Inverse() * p_MT);
+//
+// Form "pivots" takes the closed form on the branch of the machine file. Any other chain is
+// searched from `near`, or from half a radian at each joint: give the angles of a neighbouring pose
+// to stay on a branch.
+// Frames: B, the linkage base; T, the ball. Units: m, rad. Failure: NumericalError when the ball is
+// out of reach or the pose singular, with what to do. Validity: pivot_linkage.h, chain_inverse.h.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "relm/linkage_settings.h"
+
+namespace abbe::relm {
+
+Eigen::VectorXd NominalAngles(const LinkageSettings& settings, const Eigen::Vector3d& p_BT,
+                              const std::optional<Eigen::VectorXd>& near = {});
+
+}  // namespace abbe::relm
