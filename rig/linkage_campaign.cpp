@@ -46,6 +46,7 @@ class CourseMaker {
       : rig_(rig),
         options_(options),
         linkage_(options.kind == "linkage"),
+        with_reference_(options.reference || !linkage_),
         sensors_(rig.world().settings(), rig.world().seed(), options.run),
         encoders_(rig.world().seed(), kEncoderNoiseStream + kRunStreams * options.run,
                   rig.linkage().settings().encoder_noise),
@@ -59,10 +60,8 @@ class CourseMaker {
     }
     std::vector<std::string> names{"time_s", "x_mm",      "y_mm",       "z_mm",
                                    "pass",   "direction", "feed_mm_min"};
-    for (const char* name : linkage_ ? std::array{"pivot_1_rad", "pivot_2_rad", "pivot_3_rad"}
-                                     : std::array{"ref_x_mm", "ref_y_mm", "ref_z_mm"}) {
-      names.emplace_back(name);
-    }
+    if (linkage_) names.insert(names.end(), {"pivot_1_rad", "pivot_2_rad", "pivot_3_rad"});
+    if (with_reference_) names.insert(names.end(), {"ref_x_mm", "ref_y_mm", "ref_z_mm"});
     const std::string& temperature = rig.linkage().settings().temperature;
     if (!temperature.empty()) names.push_back(temperature);
     if (linkage_) names.emplace_back("cap_force_n");
@@ -86,10 +85,9 @@ class CourseMaker {
     Put(state.feed * kMetrePerSecond);
     const double temperature =
         rig_.world().settings().temperature + sensors_.OfTemperature(0, state.time);
-    if (linkage_) {
-      AddAngles(state, temperature, row);
-    } else {
-      const Vector3d place = rig_.ToolAt(state.position) + reference_.At(row);
+    if (linkage_) AddAngles(state, temperature, row);
+    if (with_reference_) {
+      const Vector3d place = rig_.ReferenceAt(state.position) + reference_.At(row);
       for (const double each : place) Put(each / kMillimetre);
     }
     if (!rig_.linkage().settings().temperature.empty()) Put(temperature);
@@ -114,7 +112,7 @@ class CourseMaker {
 
   const LinkageRig& rig_;
   const CourseOptions options_;
-  const bool linkage_;
+  const bool linkage_, with_reference_;
   SensorNoise sensors_;
   WhiteNoise encoders_, reference_;
   recording::Recording course_;
@@ -142,6 +140,14 @@ Vector3d LinkageRig::ToolAt(const Vector3d& position) const {
   const Displacement table = world_.PoseOfTarget(position);
   const Vector3d tool = world_.PoseOfHead(position) * Vector3d::Zero();
   return table.rotation.transpose() * (tool - table.translation);
+}
+
+Vector3d LinkageRig::ReferenceAt(const Vector3d& position) const {
+  Vector3d place = ToolAt(position);
+  for (int axis = 0; axis < kAxes; ++axis) {
+    if (world_.settings().CarriesTarget(axis)) place[axis] = -place[axis];
+  }
+  return place;
 }
 
 Vector3d LinkageRig::TrailingAt(const Vector3d& velocity, double cap_force) const {

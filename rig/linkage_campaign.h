@@ -6,8 +6,9 @@
 //   const recording::Recording circle = rig.Record(course, {.kind = "linkage"});
 //
 // Kind "linkage": the angles of the encoders; kind "reference": the place of the tool in the
-// workpiece by a grid encoder of [linkage.noise] reference_um. x_mm, y_mm, z_mm are the scales of
-// the axes. The same (machine file, seed, course, run) gives the same recording.
+// workpiece by a grid encoder of [linkage.noise] reference_um, in axis coordinates: what the axes
+// would show there on a perfect machine. x_mm, y_mm, z_mm are the scales of the axes. The same
+// (machine file, seed, course, run) gives the same recording.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +24,7 @@ namespace abbe::rig {
 
 struct CourseOptions {
   std::string kind = "linkage";  // or "reference"
+  bool reference = false;        // the grid encoder beside the linkage, in one recording
   double rate = 100.0;           // rows in a second, at most the update rate
   double cap_force = 0.0;        // N, of the magnet in the tool cap; 0: that of the machine file
   std::uint64_t run = 1;         // runs of one world differ in their noise only
@@ -39,6 +41,8 @@ class LinkageRig {
   // Where the tool stands in the workpiece, as the table carries it: with all axes at zero and
   // without error in the machine's origin.
   Eigen::Vector3d ToolAt(const Eigen::Vector3d& position) const;
+  // The same place in axis coordinates.
+  Eigen::Vector3d ReferenceAt(const Eigen::Vector3d& position) const;
   // How far the ball trails behind the cap while the axes move.
   Eigen::Vector3d TrailingAt(const Eigen::Vector3d& velocity, double cap_force) const;
   // Angles without noise, not cut into counts.
