@@ -1,6 +1,7 @@
 #include "rig/course.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -53,6 +54,36 @@ Course CircleCourse(const CircleProgram& program) {
     }
   }
   return course;
+}
+
+Course SquareCourse(const SquareProgram& program) {
+  const int first = (program.normal - 'X' + 1) % 3, second = (first + 1) % 3;
+  std::array<Vector3d, 4> corners;
+  for (std::size_t i = 0; i < 4; ++i) {
+    corners[i] = program.centre;
+    corners[i][first] += (i == 1 || i == 2 ? 0.5 : -0.5) * program.side;
+    corners[i][second] += (i >= 2 ? 0.5 : -0.5) * program.side;
+  }
+  Course course{corners[0], {}};
+  for (const int sense : {1, -1}) {
+    for (int pass = 1; pass <= program.passes; ++pass) {
+      for (const std::size_t i : {1, 2, 3, 4}) {
+        const Vector3d& corner = corners[(sense > 0 ? i : 4 - i) % 4];
+        course.moves.push_back({{corner}, program.feed, 0.0, pass, sense, 0.0, program.side});
+      }
+    }
+  }
+  return course;
+}
+
+std::vector<Vector3d> SteppingPlaces(const Vector3d& start, double step, int count) {
+  std::vector<Vector3d> places{start};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 1; i <= 2 * count; ++i) {
+      places.push_back(start + step * std::min(i, 2 * count - i) * Vector3d::Unit(axis));
+    }
+  }
+  return places;
 }
 
 Course DwellCourse(const std::vector<Vector3d>& places, double feed, double dwell, int pass) {

@@ -44,6 +44,18 @@ Course CircleCourse(const CircleProgram& program);
 // sign of the first coordinate that the way there changed.
 Course DwellCourse(const std::vector<Eigen::Vector3d>& places, double feed, double dwell, int pass);
 
+// A square of two axes, counter-clockwise (+1) and clockwise (-1) from its lower left corner.
+struct SquareProgram {
+  char normal = 'Z';
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double side, feed;
+  int passes = 1;  // of each sense
+};
+Course SquareCourse(const SquareProgram& program);
+
+// From the start `count` steps along x and back, then along y, then along z.
+std::vector<Eigen::Vector3d> SteppingPlaces(const Eigen::Vector3d& start, double step, int count);
+
 // The points of a grid of counts[i] points over a box about `centre`, line by line, back and forth.
 std::vector<Eigen::Vector3d> GridPlaces(const Eigen::Vector3d& centre, const Eigen::Vector3d& size,
                                         const Eigen::Vector3i& counts);

@@ -1,21 +1,11 @@
 #include "rig/linkage_settings.h"
 
-#include <fmt/format.h>
+#include "rig/rig_settings.h"
 
 namespace abbe::rig {
 namespace {
 
 using settings::Table;
-
-Eigen::Vector3d DirectionOf(const Table& table, const char* key, const std::string& name) {
-  const bool negative = !name.empty() && name.front() == '-';
-  const std::string letter = negative ? name.substr(1) : name;
-  if (letter != "x" && letter != "y" && letter != "z") {
-    throw table.Error(key,
-                      fmt::format("\"{}\" is no direction; write \"x\", \"-z\" or alike", name));
-  }
-  return (negative ? -1.0 : 1.0) * Eigen::Vector3d::Unit(letter[0] - 'x');
-}
 
 std::vector<int> OrdersOf(const Table& table, const char* key, const std::vector<double>& usual) {
   std::vector<int> orders;
@@ -63,6 +53,9 @@ LinkageSettings ReadLinkage(const Table& root) {
   for (int i = 0; i < 3; ++i) {
     linkage.base_rotation.col(i) =
         DirectionOf(base, "rotation", names[static_cast<std::size_t>(i)]);
+  }
+  if (linkage.base_rotation.determinant() < 0.5) {
+    throw base.Error("rotation", "must be right-handed: x, y and then z = x cross y");
   }
   linkage.down = DirectionOf(table, "down", table.Text("down", "-z"));
   linkage.expansion = table.Quantity("expansion_ppm_per_c", {.fallback = 11.5});

@@ -88,6 +88,9 @@ struct RigSettings {
 
 RigSettings ReadRigSettings(const settings::Table& root);
 
+// "x", "-y": a direction of M; InputError that names the key of the table for any other text.
+Eigen::Vector3d DirectionOf(const settings::Table& table, const char* key, const std::string& text);
+
 // 0, 1, 2 of 'X', 'Y', 'Z'; InputError for any other letter.
 int AxisNumber(char letter);
 
