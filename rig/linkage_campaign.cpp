@@ -104,8 +104,13 @@ class CourseMaker {
 
   void AddAngles(const CourseState& state, double temperature, std::uint64_t row) {
     const double count = 2.0 * std::numbers::pi / rig_.world().settings().encoder_counts;
-    const Vector3d angles = rig_.EncodersAt(state, temperature, Force()) + encoders_.At(row);
-    for (const double angle : angles) Put(count * std::round(angle / count));
+    Vector3d angles = rig_.EncodersAt(state, temperature, Force()) + encoders_.At(row);
+    // A turn on, not a jump by a turn, where an angle passes pi.
+    for (Eigen::Index i = 0; i < kPivots; ++i) {
+      angles[i] = before_[i] + std::remainder(angles[i] - before_[i], 2.0 * std::numbers::pi);
+      Put(count * std::round(angles[i] / count));
+    }
+    before_ = angles;
   }
 
   void Put(double value) { course_.columns[column_++].values.push_back(value); }
@@ -117,6 +122,7 @@ class CourseMaker {
   WhiteNoise encoders_, reference_;
   recording::Recording course_;
   std::size_t column_ = 0;
+  Vector3d before_ = Vector3d::Zero();  // angles of the last row
 };
 
 ordered_json Listed(const Vector3d& vector) {
