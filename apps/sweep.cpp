@@ -70,8 +70,10 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
   hal::SteadyClock clock(options.clock_speed);
   const bool operator_asks = options.prompt;
   bool opened = false;  // what fails before that is thrown
+  hal::DevicesSettings wanted = file.devices;
+  wanted.canopen.clear();  // the linkage does not hang on the machine while the head does
   const hal::OpenedDevices devices =
-      hal::OpenDevices(file.devices, clock, hal::Presence::kRequired, [&](const std::string& line) {
+      hal::OpenDevices(wanted, clock, hal::Presence::kRequired, [&](const std::string& line) {
         if (opened) fmt::print(stderr, "abbe: {}\n", line);
       });
   opened = true;
