@@ -3,42 +3,53 @@
 #include <fmt/format.h>
 
 #include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include "failure/failure.h"
 
 namespace abbe::machine {
-ErrorFunction::ErrorFunction(int axis, int motion, SharedForm form, const Travel& travel)
-    : axis_(axis), motion_(motion), form_(std::move(form)), travel_(travel) {
-  if (!(travel.first < travel.last)) {
-    throw InputError(
-        fmt::format("the travel {} ... {} m is empty: the first end stands below the "
-                    "last",
-                    travel.first, travel.last));
-  }
-  coefficients_ = Eigen::VectorXd::Zero(form_->size());
-  if (IsStraightness(axis, motion)) {
-    // slope = 12 / length^3 * integral of (x - middle) f(x)
-    using Gauss = boost::math::quadrature::gauss<double, 16>;
-    const auto& abscissa = Gauss::abscissa();
-    const auto& weight = Gauss::weights();
-    const std::vector<double> pieces = form_->Pieces(travel.first, travel.last);
-    const double length = travel.last - travel.first, middle = (travel.last + travel.first) / 2;
-    const auto count = static_cast<Eigen::Index>(2 * abscissa.size() * (pieces.size() - 1));
-    points_.resize(count);
-    weights_.resize(count);
-    Eigen::Index point = 0;
-    for (std::size_t piece = 1; piece < pieces.size(); ++piece) {
-      const double half = (pieces[piece] - pieces[piece - 1]) / 2;
-      const double center = (pieces[piece] + pieces[piece - 1]) / 2;
-      for (std::size_t i = 0; i < abscissa.size(); ++i) {
-        for (const double side : {-1.0, 1.0}) {
-          const double x = center + side * half * abscissa[i];
-          points_[point] = x;
-          weights_[point++] = half * weight[i] * (x - middle) * 12 / (length * length * length);
-        }
+namespace {
+
+// The slope of the least-squares line of f over the travel is the sum of weights times f at points:
+// 12 / length^3 * integral of (x - middle) f(x).
+struct LineRule {
+  std::vector<double> points, weights;
+};
+
+LineRule RuleFor(const FunctionForm& form, const Travel& travel) {
+  using Gauss = boost::math::quadrature::gauss<double, 16>;
+  const double middle = (travel.last + travel.first) / 2;
+  const double factor = 12 / std::pow(travel.last - travel.first, 3);
+  const std::vector<double> pieces = form.Pieces(travel.first, travel.last);
+  LineRule rule;
+  for (std::size_t piece = 1; piece < pieces.size(); ++piece) {
+    const double half = (pieces[piece] - pieces[piece - 1]) / 2;
+    const double center = (pieces[piece] + pieces[piece - 1]) / 2;
+    for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
+      for (const double side : {-1.0, 1.0}) {
+        const double x = center + side * half * Gauss::abscissa()[i];
+        rule.points.push_back(x);
+        rule.weights.push_back(factor * half * Gauss::weights()[i] * (x - middle));
       }
     }
+  }
+  return rule;
+}
+
+}  // namespace
+
+ErrorFunction::ErrorFunction(int axis, int motion, SharedForm form, const Travel& travel)
+    : axis_(axis),
+      motion_(motion),
+      form_(std::move(form)),
+      travel_(travel),
+      coefficients_(Eigen::VectorXd::Zero(form_->size())) {
+  if (!(travel.first < travel.last)) {
+    throw InputError(
+        fmt::format("the travel of {}, {} to {} mm, is empty: its first end must be below the last",
+                    "XYZ"[axis], 1e3 * travel.first, 1e3 * travel.last));
   }
   UpdateGauge();
 }
@@ -66,9 +77,11 @@ void ErrorFunction::UpdateGauge() {
   offset_gradient_ = row;
   slope_ = 0.0;
   slope_gradient_ = Eigen::VectorXd::Zero(size());
-  for (Eigen::Index i = 0; i < points_.size(); ++i) {
-    slope_ += weights_[i] * form_->Evaluate(points_[i], c, nullptr, row.data());
-    slope_gradient_ += weights_[i] * row;
+  if (!IsStraightness(axis_, motion_)) return;
+  const LineRule rule = RuleFor(*form_, travel_);
+  for (std::size_t i = 0; i < rule.points.size(); ++i) {
+    slope_ += rule.weights[i] * form_->Evaluate(rule.points[i], c, nullptr, row.data());
+    slope_gradient_ += rule.weights[i] * row;
   }
 }
 

@@ -45,8 +45,6 @@ class ErrorFunction {
   SharedForm form_;
   Travel travel_{0.0, 0.0};
   Eigen::VectorXd coefficients_;
-  // The slope of the line is the sum of weights times the form at points.
-  Eigen::VectorXd points_, weights_;
   double offset_ = 0.0, slope_ = 0.0;
   Eigen::VectorXd offset_gradient_, slope_gradient_;
 };
