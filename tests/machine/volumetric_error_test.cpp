@@ -91,7 +91,7 @@ TEST(VolumetricError, IsWhatTheRigsPosesShow) {
   const auto document = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
   const Vector3d p_MQ(0.02, 0.03, 0.1), reference(0.01, -0.02, 0.05);
   for (const Chain& chain : AllChains()) {
-    rig::RigSettings settings = rig::RigSettings::Read(document.Root());
+    rig::RigSettings settings = rig::ReadRigSettings(document.Root());
     settings.workpiece_axes = chain.workpiece_axes();
     settings.tool_axes = chain.tool_axes();
     settings.reference = reference;
