@@ -5,6 +5,8 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <thread>
 
 namespace abbe::hal {
@@ -15,6 +17,12 @@ class Clock {
   virtual double Now() = 0;
   // Returns when Now() >= time_s.
   virtual void SleepUntil(double time_s) = 0;
+  // Returns when Now() >= time_s, or before that when `wake` is notified. `lock` is held before and
+  // after.
+  virtual void WaitUntil(double time_s, std::unique_lock<std::mutex>& lock,
+                         std::condition_variable& wake) = 0;
+  // Seconds of this clock in one second of the computer's.
+  virtual double speed() const { return 1.0; }
 };
 
 // The computer's monotonic clock, `speed` seconds a second: 1 for real devices, more for a virtual
@@ -26,11 +34,19 @@ class SteadyClock : public Clock {
     return speed_ *
            std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
-  void SleepUntil(double time_s) override {
-    std::this_thread::sleep_until(start_ + std::chrono::duration<double>(time_s / speed_));
+  void SleepUntil(double time_s) override { std::this_thread::sleep_until(RealTime(time_s)); }
+  void WaitUntil(double time_s, std::unique_lock<std::mutex>& lock,
+                 std::condition_variable& wake) override {
+    wake.wait_until(lock, RealTime(time_s));
   }
+  double speed() const override { return speed_; }
 
  private:
+  std::chrono::time_point<std::chrono::steady_clock, std::chrono::duration<double>> RealTime(
+      double time_s) const {
+    return start_ + std::chrono::duration<double>(time_s / speed_);
+  }
+
   double speed_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
@@ -40,6 +56,9 @@ class HandClock : public Clock {
  public:
   double Now() override { return now_s_; }
   void SleepUntil(double time_s) override { now_s_ = time_s > now_s_ ? time_s : now_s_; }
+  void WaitUntil(double time_s, std::unique_lock<std::mutex>&, std::condition_variable&) override {
+    SleepUntil(time_s);
+  }
   void Advance(double by_s) { now_s_ += by_s; }
 
  private:

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hal/can_socket.h"
+#include "hal/canopen_source.h"
 #include "hal/modbus_source.h"
 
 namespace abbe::hal {
@@ -46,7 +48,7 @@ std::string CombinedSource::Fault() const {
 }
 
 OpenedDevices OpenDevices(const DevicesSettings& devices, Clock& clock, Presence presence,
-                          const Log& log) {
+                          const Log& log, const BusOf& bus_of) {
   OpenedDevices opened;
   std::vector<std::unique_ptr<SampleSource>> parts;
   for (const DeviceSettings& device : devices.devices) {
@@ -58,6 +60,21 @@ OpenedDevices OpenDevices(const DevicesSettings& devices, Clock& clock, Presence
       };
     }
     parts.push_back(std::move(source));
+  }
+  std::vector<CanopenSource*> encoders;
+  for (const CanopenSettings& device : devices.canopen) {
+    auto bus = bus_of ? bus_of(device.interface, clock)
+                      : std::make_unique<CanSocket>(device.interface, clock);
+    auto source =
+        std::make_unique<CanopenSource>(device, devices.stale, std::move(bus), clock, log);
+    if (presence == Presence::kRequired) source->Require();
+    encoders.push_back(source.get());
+    parts.push_back(std::move(source));
+  }
+  if (!encoders.empty()) {
+    opened.confirm_reference = [encoders] {
+      for (CanopenSource* source : encoders) source->ConfirmReference();
+    };
   }
   opened.source = std::make_unique<CombinedSource>(std::move(parts), devices.max_skew, clock);
   return opened;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "hal/can_bus.h"
 #include "hal/clock.h"
 #include "hal/device_settings.h"
 #include "hal/sample_source.h"
@@ -42,14 +43,22 @@ struct OpenedDevices {
   // Starts the machine's program for an axis by its cycle_start register; empty when no device has
   // one. DeviceError when the device does not take it.
   std::function<void(char axis)> start_cycle;
+  // Believes encoders again that have lost their reference (CanopenSource::ConfirmReference);
+  // empty when there are none.
+  std::function<void()> confirm_reference;
 };
+
+// The bus behind an interface's name.
+using BusOf = std::function<std::unique_ptr<CanBus>(const std::string& interface, Clock& clock)>;
 
 enum class Presence { kRequired, kAwaited };
 
 // With kRequired every device must answer now, else DeviceError; with kAwaited those that do not
 // answer yet give bad samples until they do. DeviceError in any case for a host name that does not
 // resolve.
+//
+// CAN interfaces are those of the computer unless `bus_of` gives other ones (a bus in memory).
 OpenedDevices OpenDevices(const DevicesSettings& devices, Clock& clock, Presence presence,
-                          const Log& log = {});
+                          const Log& log = {}, const BusOf& bus_of = {});
 
 }  // namespace abbe::hal

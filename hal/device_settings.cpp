@@ -153,10 +153,10 @@ void RequireStatusBlocks(const Table& table, const DeviceSettings& device) {
   }
 }
 
-DeviceSettings ReadDevice(const Table& table) {
+DeviceSettings ReadModbus(const Table& table, const std::string& transport) {
   DeviceSettings device;
   device.name = table.key();
-  device.transport = ReadChoice<Transport>(table, "transport", {"modbus-tcp", "modbus-rtu"});
+  device.transport = transport == "modbus-rtu" ? Transport::kModbusRtu : Transport::kModbusTcp;
   const bool serial = device.transport == Transport::kModbusRtu;
   if (serial) {
     device.serial = ReadSerial(table.Child("serial"));
@@ -191,14 +191,23 @@ DevicesSettings ReadDevices(const settings::Table& devices) {
   all.max_skew = devices.Quantity("max_skew_ms", {.fallback = 20.0, .above = 0.0});
   all.stale = devices.Quantity("stale_ms", {.fallback = 1000.0, .above = 0.0});
   std::set<std::string> names;
+  const auto take = [&](const Table& table, const char* key, const std::string& name) {
+    if (names.insert(name).second) return;
+    throw table.Error(key, fmt::format("the channel name \"{}\" is used twice", name));
+  };
   for (const Table& table : devices.Named()) {
-    all.devices.push_back(ReadDevice(table));
-    for (const BlockSettings& block : all.devices.back().blocks) {
-      for (const ChannelSettings& channel : block.channels) {
-        if (names.insert(channel.name).second) continue;
-        throw table.Error("block",
-                          fmt::format("the channel name \"{}\" is used twice", channel.name));
+    const std::string transport =
+        table.Choice("transport", {"modbus-tcp", "modbus-rtu", "canopen"});
+    if (transport == "canopen") {
+      all.canopen.push_back(ReadCanopen(table));
+      for (const EncoderSettings& encoder : all.canopen.back().encoders) {
+        take(table, "node", encoder.name);
       }
+      continue;
+    }
+    all.devices.push_back(ReadModbus(table, transport));
+    for (const BlockSettings& block : all.devices.back().blocks) {
+      for (const ChannelSettings& channel : block.channels) take(table, "block", channel.name);
     }
   }
   devices.RefuseUnknown();

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/canopen_settings.h"
 #include "hal/register_table.h"
 #include "hal/serial_line.h"
 #include "hal/word_codec.h"
@@ -79,10 +80,11 @@ struct DeviceSettings {
 };
 
 struct DevicesSettings {
-  double rate = 200.0;     // Hz, readings of all devices wanted
-  double max_skew = 0.02;  // s, within one set of samples
-  double stale = 1.0;      // s, older or unchanged for longer is not good
-  std::vector<DeviceSettings> devices;
+  double rate = 200.0;                   // Hz, readings of all devices wanted
+  double max_skew = 0.02;                // s, within one set of samples
+  double stale = 1.0;                    // s, older or unchanged for longer is not good
+  std::vector<DeviceSettings> devices;   // over Modbus
+  std::vector<CanopenSettings> canopen;  // over CAN
 };
 
 // Reads the table [devices]. InputError with file, line and key.

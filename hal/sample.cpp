@@ -38,6 +38,12 @@ std::string_view NameOf(Cause cause) {
       return "no reply";
     case Cause::kRefused:
       return "refused";
+    case Cause::kJump:
+      return "jump";
+    case Cause::kReferenceLost:
+      return "reference lost";
+    case Cause::kMismatch:
+      return "not as in the machine file";
     case Cause::kIncoherent:
       return "incoherent";
     case Cause::kInterpolated:

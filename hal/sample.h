@@ -15,19 +15,22 @@ namespace abbe::hal {
 enum class Quality { kGood, kUncertain, kBad };
 
 enum class Cause {
-  kNone,          // good
-  kWaiting,       // no reading yet
-  kStale,         // the reading is older than allowed
-  kFrozen,        // the register has not changed for longer than allowed
-  kOutOfRange,    // saturated, or outside minimum..maximum
-  kSentinel,      // the device's own sign for "no value"
-  kSensorFault,   // the status register says so
-  kNotANumber,    // NaN or infinite in the register
-  kNoReply,       // link down, time-out, or a reply that is not to be trusted
-  kRefused,       // an exception code
-  kIncoherent,    // too far in time from the other samples of its set
-  kInterpolated,  // uncertain: made from neighbours, by whoever wrote the recording
-  kClockJump,     // uncertain: the clock of the recording jumped here
+  kNone,           // good
+  kWaiting,        // no reading yet
+  kStale,          // the reading is older than allowed
+  kFrozen,         // the register has not changed for longer than allowed
+  kOutOfRange,     // saturated, or outside minimum..maximum
+  kSentinel,       // the device's own sign for "no value"
+  kSensorFault,    // the status register says so
+  kNotANumber,     // NaN or infinite in the register
+  kNoReply,        // link down, time-out, or a reply that is not to be trusted
+  kRefused,        // an exception code
+  kJump,           // further from the reading before than anything can have moved
+  kReferenceLost,  // the encoder has started anew or has another zero: its angle means nothing yet
+  kMismatch,       // the device is not the one that the machine file describes
+  kIncoherent,     // too far in time from the other samples of its set
+  kInterpolated,   // uncertain: made from neighbours, by whoever wrote the recording
+  kClockJump,      // uncertain: the clock of the recording jumped here
 };
 
 // As printed: "good", "out of range".

@@ -14,11 +14,14 @@ std::uint32_t FlagOf(Cause cause) {
       return recording::kStale;
     case Cause::kOutOfRange:
     case Cause::kSentinel:
+    case Cause::kJump:
       return recording::kOutOfRange;
     case Cause::kSensorFault:
     case Cause::kNotANumber:
     case Cause::kNoReply:
     case Cause::kRefused:
+    case Cause::kReferenceLost:
+    case Cause::kMismatch:
     case Cause::kIncoherent:
       return recording::kDeviceError;
     case Cause::kInterpolated:

@@ -10,7 +10,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 // Longer endings first.
-constexpr std::array<std::pair<std::string_view, Unit>, 23> kEndings{{
+constexpr std::array<std::pair<std::string_view, Unit>, 24> kEndings{{
     {"_ppm_per_c", {"ppm/degC", 1e-6}},
     {"_nm_per_mm2", {"nm/mm^2", 1e-3}},
     {"_um_per_c", {"um/degC", 1e-6}},
@@ -18,6 +18,7 @@ constexpr std::array<std::pair<std::string_view, Unit>, 23> kEndings{{
     {"_mm_min", {"mm/min", 1e-3 / 60.0}},
     {"_mm_s2", {"mm/s^2", 1e-3}},
     {"_mm_s", {"mm/s", 1e-3}},
+    {"_rad_s", {"rad/s", 1.0}},
     {"_urad", {"urad", 1e-6}},
     {"_mrad", {"mrad", 1e-3}},
     {"_rad", {"rad", 1.0}},

@@ -53,6 +53,10 @@ channel = [
   { name = "temp_more_c", at = 0, type = "int16", minimum = -10, maximum = 50, status = { at = 3 } },
   { name = "temp_other_c", at = 1, type = "int16", status = { address = 2 } },
 ]
+[devices.encoder]
+transport = "canopen"
+interface = "can0"
+node = [{ id = 1, name = "pivot_9_rad", counts_per_turn = 4096, serial = 7 }]
 )";
 
 std::string Demo() {

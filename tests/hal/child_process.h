@@ -52,6 +52,7 @@ class ChildProcess {
     for (int c = fgetc(output_); c != EOF; c = fgetc(output_)) text += static_cast<char>(c);
     return text;
   }
+  void Signal(int number) const { kill(pid_, number); }
   void Kill() {
     if (pid_ <= 0) return;
     kill(pid_, SIGKILL);

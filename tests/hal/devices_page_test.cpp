@@ -2,7 +2,10 @@
 // say; every key that the readers ask for is on the page.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <numbers>
 #include <sstream>
 #include <vector>
 
@@ -20,16 +23,18 @@ std::string Page() {
   return text.str();
 }
 
-std::vector<DeviceSettings> Examples() {
+DevicesSettings Examples() {
   const std::string page = Page(), open = "```toml\n";
-  std::vector<DeviceSettings> devices;
+  DevicesSettings examples;
   for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at)) {
     at += open.size();
     const std::string text = page.substr(at, page.find("```", at) - at);
     const auto document = settings::Document::Parse(text, "docs/devices.md");
-    devices.push_back(ReadDevices(document.Root().Child("devices")).devices.at(0));
+    const DevicesSettings read = ReadDevices(document.Root().Child("devices"));
+    std::copy(read.devices.begin(), read.devices.end(), std::back_inserter(examples.devices));
+    std::copy(read.canopen.begin(), read.canopen.end(), std::back_inserter(examples.canopen));
   }
-  return devices;
+  return examples;
 }
 
 // What the first channel of an example makes of the registers of its block.
@@ -50,7 +55,7 @@ Sample Judged(const DeviceSettings& device,
 }
 
 TEST(DevicesPage, TheGenericModuleReadsItsWholeRange) {
-  const DeviceSettings module = Examples().at(0);
+  const DeviceSettings module = Examples().devices.at(0);
   EXPECT_NEAR(Judged(module, {{0, 65534}}).value, 200.0 * 65534 / 65535, 1e-4);
   EXPECT_NEAR(Judged(module, {{0, 32768}}).value, 100.0, 2e-3);
   EXPECT_EQ(Judged(module, {{0, 65535}}).cause, Cause::kSentinel);
@@ -58,18 +63,27 @@ TEST(DevicesPage, TheGenericModuleReadsItsWholeRange) {
 }
 
 TEST(DevicesPage, TheMoxaReadsVoltsAndItsStatus) {
-  const DeviceSettings moxa = Examples().at(1);
+  const DeviceSettings moxa = Examples().devices.at(1);
   EXPECT_EQ(Judged(moxa, {{8, 0x40A0}, {9, 0x0000}}).value, 100.0);  // 40A00000h = 5.0 V
   EXPECT_EQ(Judged(moxa, {{8, 0x40A0}, {60, 1}}).cause, Cause::kSensorFault);
   EXPECT_EQ(moxa.blocks[0].channels[4].status->address, 64);
 }
 
 TEST(DevicesPage, TheWagoReadsItsModuleAndTheStatusBits) {
-  const DeviceSettings wago = Examples().at(2);
+  const DeviceSettings wago = Examples().devices.at(2);
   EXPECT_EQ(Judged(wago, {{0, 0x4000}}).value, 100.0);  // 5 V
   EXPECT_EQ(Judged(wago, {{0, 0x8000}}).value, -200.0);
   EXPECT_EQ(Judged(wago, {{0, 0x7FF9}}).cause, Cause::kSensorFault);
   EXPECT_EQ(Judged(wago, {{0, 0x8001}}).cause, Cause::kSensorFault);
+}
+
+TEST(DevicesPage, TheEncodersGoTheirWay) {
+  const CanopenSettings linkage = Examples().canopen.at(0);
+  ASSERT_EQ(linkage.encoders.size(), 3u);
+  EXPECT_EQ(linkage.encoders[0].range, std::int64_t{1} << 30);  // 4096 turns
+  EXPECT_EQ(CountOf(linkage.encoders[0], std::numbers::pi), 131072);
+  EXPECT_EQ(CountOf(linkage.encoders[1], std::numbers::pi), (1 << 30) - 131072);
+  EXPECT_EQ(linkage.encoders[2].range, 65536);
 }
 
 TEST(DevicesPage, NamesEveryKey) {
@@ -88,6 +102,10 @@ serial = {device = "d"}
 [[devices.b.block]]
 address = 0
 count = 1
+[devices.c]
+transport = "canopen"
+interface = "can0"
+node = [{id = 1, name = "pivot_1_rad", counts_per_turn = 16, serial = 1}]
 [sweep.X]
 first_mm = 0
 last_mm = 1
@@ -97,7 +115,7 @@ step_mm = 1
   ReadDevices(document.Root().Child("devices"));
   ReadSweepPlan(document.Root().Child("sweep"), 'X');
   const std::string page = Page();
-  EXPECT_GT(document.asked().size(), 45u);
+  EXPECT_GT(document.asked().size(), 60u);
   for (const auto& [path, asked] : document.asked()) {
     const std::string key = path.substr(path.rfind('.') + 1);
     const bool table = path == "devices" || path == "sweep" || key.size() == 1;  // [sweep.X]

@@ -1,0 +1,58 @@
+// A SocketCAN interface as a bus.
+//
+// Frames are stamped by the kernel when they pass the interface; the stamp comes with the frame, in
+// the same system call, and is turned into the measurement's clock by its age. Error frames set
+// state() and are not handed over. An interface that is switched off or removed is awaited: each
+// call of Receive() looks whether it is back, at most every 50 ms.
+#pragma once
+
+#include <string>
+
+#include "hal/can_bus.h"
+#include "hal/clock.h"
+
+namespace abbe::hal {
+
+class CanSocket : public CanBus {
+ public:
+  // Never throws for an interface that is not there: state() and Fault() say so. `clock` must
+  // outlive the bus. `buffer` in bytes; the kernel may grant less without the right to force it.
+  CanSocket(std::string interface, Clock& clock, int buffer = 4 << 20);
+  ~CanSocket() override;
+  CanSocket(const CanSocket&) = delete;
+  CanSocket& operator=(const CanSocket&) = delete;
+
+  bool Send(const CanFrame& frame) override;
+  std::optional<CanReceived> Receive(double until_s) override;
+  CanState state() const override { return state_; }
+  std::string Fault() const override;
+  std::uint64_t lost() const override { return lost_; }
+  std::uint64_t errors() const override { return errors_; }
+
+ private:
+  enum class Got { kFrame, kNothing, kError };
+
+  void Open();
+  void Close();
+  void Recover();        // looks whether the interface is back
+  void Fail(int error);  // of a system call
+  bool InterfaceUp() const;
+  Got Fetch(CanReceived& received);
+  void HearErrorFrame(std::uint32_t id, const std::uint8_t* data);
+  double TimeOf(double age_s);
+  bool Wait(double until_s);  // false: the time has come
+
+  const std::string interface_;
+  Clock& clock_;
+  const int buffer_;
+  int socket_ = -1;
+  CanState state_ = CanState::kGone;
+  std::string reason_;          // why it is gone, where the kernel said more
+  double looked_s_ = 0.0;       // last look for the interface
+  double last_s_ = 0.0;         // stamp of the last frame
+  std::uint32_t overflow_ = 0;  // of the kernel's counter
+  std::uint64_t lost_ = 0;
+  std::uint64_t errors_ = 0;
+};
+
+}  // namespace abbe::hal

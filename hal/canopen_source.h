@@ -1,0 +1,106 @@
+// The encoders of one CAN bus as a source of samples: abbe is the master of the network.
+//
+// One Read() is one SYNC: it is sent, the PDOs that answer it are collected, and every sample bears
+// the time at which the SYNC passed the bus, the moment at which the encoders look. A PDO that
+// answers no SYNC (late, doubled) is thrown away and counted; after a missing one the next SYNC
+// waits until twice the answer's time has passed, so that a late one is not taken for the next.
+// With `sync_ms = 0` abbe sends nothing and takes the SYNCs of another, or, where there are none,
+// the PDOs as they come.
+//
+// A node that starts anew has lost its reference: its samples are bad until ConfirmReference().
+// This is the one fault that does not heal by itself.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "failure/failure.h"
+#include "hal/can_bus.h"
+#include "hal/canopen_node.h"
+#include "hal/clock.h"
+#include "hal/encoder_judge.h"
+#include "hal/sample_source.h"
+
+namespace abbe::hal {
+
+struct CanopenCounts {
+  std::uint64_t syncs = 0;    // heard on the bus
+  std::uint64_t missing = 0;  // answers that did not come in time
+  std::uint64_t unasked = 0;  // PDOs that answered no SYNC
+  std::uint64_t short_frames = 0;
+  std::uint64_t restarts = 0;  // of nodes, by themselves
+};
+
+class CanopenSource : public SampleSource {
+ public:
+  enum class Part {
+    kMaster,    // asks, starts and SYNCs the nodes
+    kListener,  // sends nothing; for a bus that another commands, and for replays
+  };
+
+  // `bus` gives the stamps of `clock`, which must outlive the source; `stale_s` as in
+  // DevicesSettings. Sends nothing yet.
+  CanopenSource(const CanopenSettings& settings, double stale_s, std::unique_ptr<CanBus> bus,
+                Clock& clock, Log log = {}, Part part = Part::kMaster);
+
+  // DeviceError, naming the bus or the node and what to do, unless every node now answers.
+  void Require();
+  // What the encoders show from now on is their angle nearest to zero; to be called when a person
+  // has seen that the linkage stands where its angles are known to be so.
+  void ConfirmReference();
+
+  const std::vector<Channel>& channels() const override { return channels_; }
+  SampleSet Read() override;
+  std::string Fault() const override;
+
+  const CanopenCounts& counts() const { return counts_; }
+  const CanBus& bus() const { return *bus_; }
+
+ private:
+  struct Encoder {
+    EncoderSettings settings;
+    CanopenNode node;
+    EncoderJudge judge;
+    std::optional<CanReceived> answer;  // to the present SYNC
+    bool silent = false;                // has not answered the SYNC before
+    bool owes = false;                  // and that answer may still come
+    bool too_short = false;
+  };
+  enum class Heard { kAll, kNextCycle };
+  bool produces() const { return part_ == Part::kMaster && settings_.times.sync > 0.0; }
+  double Span(double seconds) const { return seconds * clock_.speed(); }  // of real time
+  Heard Hear(const CanReceived& received);
+  Heard HearSync(const CanReceived& received);
+  Heard HearPdo(Encoder& encoder, const CanReceived& received);
+  void Listen(double until_s);  // hears whatever comes
+  void AwaitLateAnswers();
+  void Command();  // sends what nodes are owed, then the SYNC
+  void Collect();
+  bool Complete() const;
+  Sample SampleOf(Encoder& encoder, bool torn, double now_s);
+  std::string FaultNow(double now_s) const;
+  DeviceError Error(const std::string& fault) const;
+  void Note(const std::string& fault);
+
+  CanopenSettings settings_;
+  std::unique_ptr<CanBus> bus_;
+  Clock& clock_;
+  Log log_;
+  Part part_;
+  std::vector<Encoder> encoders_;
+  std::vector<Channel> channels_;
+  std::optional<double> sync_s_;      // of the present SYNC
+  double sent_s_ = 0.0;               // of the last one sent
+  bool sync_heard_ = false;           // ever
+  bool sync_due_ = false;             // sent and not yet heard
+  bool foreign_sync_ = false;         // heard one that was not sent
+  std::optional<CanReceived> ahead_;  // the frame that began the next cycle (listener)
+  std::uint64_t lost_before_ = 0;
+  std::uint64_t sequence_ = 0;
+  std::string fault_;
+  CanopenCounts counts_;
+};
+
+}  // namespace abbe::hal
