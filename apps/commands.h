@@ -11,11 +11,15 @@ void AddRig(CLI::App& program, int& exit_code);
 void AddSweep(CLI::App& program, int& exit_code);
 void AddRecord(CLI::App& program, int& exit_code);
 void AddReduce(CLI::App& program, int& exit_code);
+void AddCircle(CLI::App& program, int& exit_code);
+void AddPath(CLI::App& program, int& exit_code);
+void AddCalibrate(CLI::App& program, int& exit_code);
 void AddConvert(CLI::App& program, int& exit_code);
 void AddSensitivity(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 
-inline constexpr std::array<AddCommand, 7> kCommands{
-    AddRig, AddSweep, AddRecord, AddReduce, AddConvert, AddSensitivity, AddReport};
+inline constexpr auto kCommands =
+    std::to_array<AddCommand>({AddRig, AddSweep, AddRecord, AddReduce, AddCalibrate, AddCircle,
+                               AddPath, AddConvert, AddSensitivity, AddReport});
 
 }  // namespace abbe::apps

@@ -10,12 +10,12 @@
 
 namespace abbe::apps {
 
-void WriteResult(const nlohmann::ordered_json& result, const std::filesystem::path& path) {
+void WriteText(const std::string& text, const std::filesystem::path& path) {
   std::error_code error;
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
   const std::filesystem::path unfinished = path.string() + ".part";
   std::ofstream file(unfinished);
-  file << result.dump(1) << '\n';
+  file << text;
   file.close();
   if (!file) {
     throw InputError(
@@ -23,6 +23,10 @@ void WriteResult(const nlohmann::ordered_json& result, const std::filesystem::pa
                     path.string(), std::strerror(errno)));
   }
   std::filesystem::rename(unfinished, path);
+}
+
+void WriteResult(const nlohmann::ordered_json& result, const std::filesystem::path& path) {
+  WriteText(result.dump(1) + '\n', path);
 }
 
 nlohmann::ordered_json ReadResult(const std::filesystem::path& path) {

@@ -3,11 +3,15 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace abbe::apps {
 
-// Writes `result` (indented, numbers in shortest round-trip form) under a temporary name and
-// renames it. Missing folders are made. InputError when the path cannot be written.
+// Writes a text under a temporary name and renames it. Missing folders are made. InputError when
+// the path cannot be written.
+void WriteText(const std::string& text, const std::filesystem::path& path);
+
+// The same with `result` (indented, numbers in shortest round-trip form).
 void WriteResult(const nlohmann::ordered_json& result, const std::filesystem::path& path);
 
 // InputError when the file cannot be read or is not JSON.

@@ -1,5 +1,5 @@
-// abbe rig: serves the virtual rig; records a sweep of it directly; compares results with its
-// truth.
+// abbe rig: serves the virtual rig; records a sweep or a course of it directly; compares results
+// with its truth.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -16,10 +16,12 @@
 #include "apps/commands.h"
 #include "apps/interrupt.h"
 #include "apps/result_file.h"
+#include "apps/rig_course.h"
 #include "hal/device_settings.h"
 #include "hal/sweep_recorder.h"
 #include "recording/recording_file.h"
 #include "rig/campaign.h"
+#include "rig/linkage_campaign.h"
 #include "rig/register_server.h"
 #include "rig/truth.h"
 
@@ -34,6 +36,7 @@ struct RigOptions {
   std::vector<std::string> rtu;  // DEVICE=LINK
   std::filesystem::path truth, ready_file, out;
   std::string start, axis;
+  CourseRequest course;
   double rate = 200.0;
   std::filesystem::path truth_to_compare;
   std::vector<std::filesystem::path> results;
@@ -45,12 +48,19 @@ struct Rig {
       : document(settings::Document::Read(options.machine)),
         world(rig::ReadRigSettings(document.Root()), options.seed),
         devices(hal::ReadDevices(document.Root().Child("devices"))) {
-    if (!options.truth.empty()) WriteResult(rig::TruthOf(world), options.truth);
+    if (document.Root().Has("linkage")) {
+      linkage.emplace(world, rig::Linkage(rig::ReadLinkage(document.Root()), options.seed));
+    }
+    if (options.truth.empty()) return;
+    nlohmann::ordered_json truth = rig::TruthOf(world);
+    if (linkage) truth["linkage"] = linkage->Truth();
+    WriteResult(truth, options.truth);
   }
 
   settings::Document document;
   rig::World world;
   hal::DevicesSettings devices;
+  std::optional<rig::LinkageRig> linkage;
 };
 
 rig::ServerOptions PlaceToListen(const Rig& rig, const RigOptions& options) {
@@ -124,11 +134,25 @@ int Serve(const RigOptions& options) {
   return kDone;
 }
 
+recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
+  if (options.course.course.empty()) {
+    return rig::RecordSweep(rig.world, options.axis.front(), rig::ChannelsOf(rig.devices),
+                            {.rate = options.rate, .started = hal::UtcNow()});
+  }
+  if (!rig.linkage) {
+    throw InputError(fmt::format("--course {}: {} has no linkage to record; add a table [linkage]",
+                                 options.course.course, options.machine));
+  }
+  return RecordCourse(*rig.linkage, options.course, options.rate, hal::UtcNow());
+}
+
 int Record(const RigOptions& options) {
-  const Rig rig(options);
-  recording::Write(rig::RecordSweep(rig.world, options.axis.front(), rig::ChannelsOf(rig.devices),
-                                    {.rate = options.rate, .started = hal::UtcNow()}),
-                   options.out);
+  if (options.axis.empty() == options.course.course.empty()) {
+    throw InputError(
+        "rig record: say what to record: a sweep by --axis X or a path of the linkage "
+        "by --course circle");
+  }
+  recording::Write(Recorded(Rig(options), options), options.out);
   fmt::print("{}\n", options.out.string());
   return kDone;
 }
@@ -182,13 +206,18 @@ void AddRig(CLI::App& program, int& exit_code) {
     if (rig->get_subcommands().empty()) exit_code = Serve(*options);
   });
 
-  CLI::App* record = rig->add_subcommand("record", "Write the recording of a sweep directly");
+  CLI::App* record =
+      rig->add_subcommand("record", "Write the recording of a sweep or a course directly");
   AddWorldOptions(record, *options);
   record->get_option("--machine")->required();
-  record->add_option("--axis", options->axis, "X, Y or Z")->required()->check(axis);
+  record->add_option("--axis", options->axis, "Of the probe head: sweep X, Y or Z")->check(axis);
+  AddCourseOptions(*record, options->course);
   record->add_option("--out", options->out, "Recording (.csv, .h5)")->required();
   record->add_option("--rate", options->rate, "Rows in a second")->capture_default_str();
-  record->footer("Example: abbe rig record --machine machines/demo_mill.toml --axis X --out x.csv");
+  record->footer(
+      "Example: abbe rig record --machine machines/demo_mill.toml --axis X --out x.csv\n"
+      "Example: abbe rig record --machine machines/demo_mill.toml --course circle --reference "
+      "--out circle.csv");
   record->callback([options, &exit_code] { exit_code = Record(*options); });
 
   CLI::App* compare = rig->add_subcommand("compare", "How near results came to the truth");

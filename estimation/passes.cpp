@@ -17,7 +17,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kRounding = 1e-12;  // of the normal equations, as in weak_directions.h
-constexpr double kFirstDamping = 1e-4;
+// Far below 1: what the data hardly see may be the bottom of a curved valley, where the undamped
+// step leaves the valley and a strong damping creeps.
+constexpr double kFirstDamping = 1e-10;
 constexpr double kMostDamping = 1e8;
 // A cost is a sum of many squares; two of them are equal when they agree to this.
 constexpr double kCostRounding = 1e-11;

@@ -5,7 +5,7 @@
 // Units: rad. Shapes: vectors 3x1, matrices 3x3.
 // Failure: none; a value that is not finite passes through.
 // Source: Rodrigues' formula and its inverse by the unit quaternion, as in Sola, Deray, Atchuthan,
-// "A micro Lie theory" (2018), equations 143, 146 and 105.
+// "A micro Lie theory" (2018), equations 143, 145, 146 and 105.
 // Validity: any angle for the exact functions; SmallRotation neglects |angles|^2 / 2, that is
 // 0.5e-6 at 1 mrad, and is not orthogonal.
 //
@@ -83,6 +83,26 @@ Eigen::Matrix3<T> ExpRotation(const Eigen::Vector3<T>& rotation_vector) {
   }
   const Eigen::Matrix3<T> S = Skew<T>(rotation_vector);
   return Eigen::Matrix3<T>::Identity() + sine * S + versine * S * S;
+}
+
+// The left Jacobian of ExpRotation, "A micro Lie theory" equation 145: to first order in d,
+// ExpRotation(v + d) = ExpRotation(Jacobian(v) d) ExpRotation(v).
+template <typename T>
+Eigen::Matrix3<T> ExpRotationJacobian(const Eigen::Vector3<T>& rotation_vector) {
+  using std::cos, std::sin, std::sqrt;
+  const T square = rotation_vector.squaredNorm();
+  T versine, rest;         // (1 - cos(a))/a^2 and (a - sin(a))/a^3
+  if (square < T(1e-4)) {  // the series neglects a^8/10! < 3e-23
+    versine = T(0.5) - square / T(24) * (T(1) - square / T(30) * (T(1) - square / T(56)));
+    rest = T(1) / T(6) - square / T(120) * (T(1) - square / T(42) * (T(1) - square / T(72)));
+  } else {
+    const T angle = sqrt(square);
+    const T half = sin(angle / T(2));
+    versine = T(2) * half * half / square;
+    rest = (angle - sin(angle)) / (square * angle);
+  }
+  const Eigen::Matrix3<T> S = Skew<T>(rotation_vector);
+  return Eigen::Matrix3<T>::Identity() + versine * S + rest * S * S;
 }
 
 // The rotation vector of R, of length at most pi. At exactly pi either sign is right.

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "failure/failure.h"
 
 namespace abbe::machine {
@@ -50,6 +54,19 @@ int AxisIndex(char axis) {
     throw InputError(fmt::format("'{}' is no linear axis; name X, Y or Z", axis));
   }
   return axis - 'X';
+}
+
+double InTravel(const Travel& travel, int axis, double position) {
+  const double rounding = 16 * std::numeric_limits<double>::epsilon() *
+                          std::max(std::abs(travel.first), std::abs(travel.last));
+  if (!(position >= travel.first - rounding && position <= travel.last + rounding)) {
+    throw InputError(
+        fmt::format("{} = {:.9g} mm lies outside its travel, {:.9g} to {:.9g} mm: the errors of "
+                    "the machine are "
+                    "not known there",
+                    "XYZ"[axis], 1e3 * position, 1e3 * travel.first, 1e3 * travel.last));
+  }
+  return std::clamp(position, travel.first, travel.last);
 }
 
 Machine ReadMachine(const settings::Table& root) {

@@ -26,6 +26,10 @@ struct Travel {
   double last;   // m, above first
 };
 
+// The position itself, or the end of the travel where only rounding puts it beyond (16 eps).
+// InputError names the axis 0, 1, 2 and its travel: nothing is known outside it.
+double InTravel(const Travel& travel, int axis, double position);
+
 // Standard deviations of the errors of machines of this kind. An error function over an axis is a
 // stationary Gaussian process with this standard deviation and correlation length `smoothness`.
 struct Population {

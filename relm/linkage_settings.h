@@ -43,7 +43,8 @@ struct LinkageTolerance {
 
 struct LinkageNoise {
   double encoder;    // rad: standard deviation of one reading
-  double reference;  // m: of a reference position, each direction
+  double reference;  // m: of a position that a reference instrument gives, each direction
+  double machine;    // m: of a commanded position where it is the reference, each direction
 };
 
 struct LinkageSettings {

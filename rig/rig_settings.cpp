@@ -63,22 +63,12 @@ void ReadMachine(const Table& root, RigSettings& rig) {
       sd("scale_ppm", 20.0),     table.Quantity("smoothness_mm", {.fallback = 15.0, .above = 0.0})};
 }
 
-// "x", "-y": a direction of M.
-Eigen::Vector3d Direction(const Table& table, const std::string& text) {
-  const bool turned = text.size() == 2 && text.front() == '-';
-  const char letter = text.empty() ? ' ' : text.back();
-  if (letter < 'x' || letter > 'z' || text.size() != (turned ? 2U : 1U)) {
-    throw table.Error("rotation", "must name three directions of the machine, like \"-x\"");
-  }
-  return (turned ? -1.0 : 1.0) * Eigen::Vector3d::Unit(letter - 'x');
-}
-
 HeadPlace ReadHeadPlace(const Table& table, int axis) {
   static const std::array<std::vector<std::string>, kAxes> frames = {
       {{"x", "y", "z"}, {"y", "-x", "z"}, {"z", "y", "-x"}}};
   HeadPlace place;
   const auto names = table.Texts("rotation", 3, frames[axis]);
-  for (int i = 0; i < 3; ++i) place.rotation.col(i) = Direction(table, names[i]);
+  for (int i = 0; i < 3; ++i) place.rotation.col(i) = DirectionOf(table, "rotation", names[i]);
   const Eigen::Vector3d u = place.rotation.col(0), s = place.rotation.col(1);
   if (u != Eigen::Vector3d::Unit(axis) || u.cross(s) != place.rotation.col(2)) {
     throw table.Error("rotation", "must be right-handed and begin with the swept axis");
@@ -142,6 +132,10 @@ void ReadOwn(const Table& own, RigSettings& rig) {
   rig.electrode = own.Quantity("electrode_mm", {.fallback = 0.0, .at_least = 0.0});
   rig.temperature = own.Quantity("temperature_c", {.fallback = 20.0});
   rig.temperature_drift = own.Quantity("temperature_drift_c", {.fallback = 0.1, .at_least = 0.0});
+  rig.cap = own.Quantity("cap_um", {.fallback = 1.0, .at_least = 0.0});
+  rig.cap_feed = own.Quantity("cap_feed_mm_min", {.fallback = 10.0, .above = 0.0});
+  rig.cap_force = own.Quantity("cap_force_n", {.fallback = 8.5, .above = 0.0});
+  rig.encoder_counts = own.Quantity("encoder_counts", {.fallback = 4194304.0, .above = 0.0});
   own.RefuseUnknown();
 }
 
@@ -165,6 +159,15 @@ RigSettings ReadRigSettings(const Table& root) {
   ReadNoise(root.Child("target"), root.Child("noise"), rig);
   ReadOwn(root.Child("rig"), rig);
   return rig;
+}
+
+Eigen::Vector3d DirectionOf(const Table& table, const char* key, const std::string& text) {
+  const bool turned = text.size() == 2 && text.front() == '-';
+  const char letter = text.empty() ? ' ' : text.back();
+  if (letter < 'x' || letter > 'z' || text.size() != (turned ? 2U : 1U)) {
+    throw table.Error(key, fmt::format("\"{}\" is no direction of the machine, like \"-x\"", text));
+  }
+  return (turned ? -1.0 : 1.0) * Eigen::Vector3d::Unit(letter - 'x');
 }
 
 bool RigSettings::CarriesTarget(int axis) const {

@@ -6,8 +6,10 @@
 //
 // [rig] (all optional): acceleration_mm_s2 (200), lag_ms (15), update_hz (1000), target_tilt_urad
 // (100), gap_setting_um (10), electrode_mm (0: no tilt response), temperature_c (20),
-// temperature_drift_c (0.1). InputError with file, line and key; keys of shared tables that the rig
-// does not need are left to their owners.
+// temperature_drift_c (0.1), cap_um (1: how far the ball trails in its cap at high feed),
+// cap_feed_mm_min (10: the feed of half of that), cap_force_n (8.5: the force for which cap_um
+// holds), encoder_counts (4194304 a turn). InputError with file, line and key; keys of shared
+// tables that the rig does not need are left to their owners.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -72,6 +74,9 @@ struct RigSettings {
   double electrode;                       // radius; 0: none
   double temperature, temperature_drift;  // degC; standard deviation of the slow drift
 
+  double cap, cap_feed, cap_force;  // m, m/s, N
+  double encoder_counts;            // a turn
+
   bool CarriesTarget(int axis) const;
   // The command at which the sweep of an axis begins to count: its first station, the other axes at
   // the first ends of their travels.
@@ -82,6 +87,9 @@ struct RigSettings {
 };
 
 RigSettings ReadRigSettings(const settings::Table& root);
+
+// "x", "-y": a direction of M; InputError that names the key of the table for any other text.
+Eigen::Vector3d DirectionOf(const settings::Table& table, const char* key, const std::string& text);
 
 // 0, 1, 2 of 'X', 'Y', 'Z'; InputError for any other letter.
 int AxisNumber(char letter);

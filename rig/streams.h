@@ -7,16 +7,19 @@
 namespace abbe::rig {
 
 enum Stream : std::uint64_t {
-  kErrorStream = 0x100,          // + 6 * axis + component
-  kScaleStream = 0x120,          // index: axis
-  kSquarenessStream = 0x121,     // index: A0Z, B0Z, C0Y
-  kProbeStream = 0x200,          // index: 4 * probe + along, across, depth, gain
-  kInstallationStream = 0x201,   // index: 8 * axis + three angles, three offsets, two gap settings
-  kTargetStream = 0x300,         // index: three angles, three squarenesses
-  kFaceStream = 0x310,           // + face: -x +x -y +y -z +z
-  kNoiseStream = 0x10000,        // + kRunStreams * run + probe
-  kDriftStream = 0x10008,        // + kRunStreams * run + probe
-  kTemperatureStream = 0x10010,  // + kRunStreams * run + sensor, up to the next run
+  kErrorStream = 0x100,           // + 6 * axis + component
+  kScaleStream = 0x120,           // index: axis
+  kSquarenessStream = 0x121,      // index: A0Z, B0Z, C0Y
+  kProbeStream = 0x200,           // index: 4 * probe + along, across, depth, gain
+  kInstallationStream = 0x201,    // index: 8 * axis + three angles, three offsets, two gap settings
+  kTargetStream = 0x300,          // index: three angles, three squarenesses
+  kFaceStream = 0x310,            // + face: -x +x -y +y -z +z
+  kLinkageStream = 0x400,         // + pivot, and one for the links, the ball and the base
+  kNoiseStream = 0x10000,         // + kRunStreams * run + probe
+  kDriftStream = 0x10008,         // + kRunStreams * run + probe
+  kTemperatureStream = 0x10010,   // + kRunStreams * run + sensor, up to 16
+  kEncoderNoiseStream = 0x10080,  // + kRunStreams * run + pivot
+  kReferenceNoiseStream = 0x10090,  // + kRunStreams * run + axis
 };
 
 inline constexpr std::uint64_t kRunStreams = 0x100;

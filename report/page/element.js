@@ -98,3 +98,19 @@ function toggles(label, items, changed) {
       element('div', {class: 'toggles', role: 'group', 'aria-label': label}, items.map(button));
   return {row, on};
 }
+
+// A slider over a list of values, with the value of the moment beside it.
+function sliderRow({label, values, at, text}, changed) {
+  const shown = element('output', {}, text(values[at]));
+  const input = element('input', {
+    type: 'range', min: 0, max: values.length - 1, step: 1, value: at, 'aria-label': label,
+    'aria-valuetext': text(values[at])
+  });
+  input.addEventListener('input', () => {
+    const value = values[Number(input.value)];
+    shown.textContent = text(value);
+    input.setAttribute('aria-valuetext', text(value));
+    changed(value);
+  });
+  return element('label', {class: 'slider'}, element('span', {}, label), input, shown);
+}

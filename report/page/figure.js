@@ -143,19 +143,25 @@ function connectPrinting() {
   });
 }
 
-// Panels side by side under one heading, with toggles that say what all of them show.
-// panels: functions of a `shown` (set of keys) that return makeFigure's argument.
-function figureGroup({title, intro, items = [], panels}) {
+// Panels side by side under one heading, with toggles that say what all of them show, and a slider
+// whose value all of them take. panels: makeFigure's argument, with draw(colours, shown, amount).
+function figureGroup({title, intro, items = [], slider = null, panels}) {
+  const redraw = () => made.forEach((figure) => figure.redraw());
   let shown = new Set();
+  let amount = slider?.values[slider.at];
   const bar = items.length ? toggles(`Shown in ${title}`, items, (on) => {
     shown = on;
-    made.forEach((figure) => figure.redraw());
+    redraw();
   }) : null;
   if (bar) shown = bar.on;
-  const made =
-      panels.map((panel) => makeFigure({...panel, draw: (colours) => panel.draw(colours, shown)}));
+  const row = slider ? sliderRow(slider, (value) => {
+    amount = value;
+    redraw();
+  }) : null;
+  const made = panels.map(
+      (panel) => makeFigure({...panel, draw: (colours) => panel.draw(colours, shown, amount)}));
   return element(
       'section', {class: 'group'}, element('h3', {}, title),
-      intro ? element('p', {class: 'intro'}, intro) : null, bar?.row,
+      intro ? element('p', {class: 'intro'}, intro) : null, bar?.row, row,
       element('div', {class: 'panels'}, made.map((figure) => figure.node)));
 }

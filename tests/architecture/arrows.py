@@ -22,9 +22,11 @@ ARROWS = {
     "machine": "failure settings geometry estimation",
     "probes": "failure random settings recording geometry estimation standards machine",
     "relm": "failure random settings recording geometry estimation standards machine",
+    "simulation": "failure settings recording geometry estimation machine relm",
+    "fusion": "failure settings geometry estimation standards machine relm simulation",
     "report": "failure",
     "rig": "failure random settings recording hal",
-    "apps": "failure random settings recording geometry estimation standards hal machine probes relm report rig",
+    "apps": "failure random settings recording geometry estimation standards hal machine probes relm simulation fusion report rig",
 }
 
 # header of a library -> the files that may include it; everybody else goes through them.

@@ -130,5 +130,22 @@ TEST(Rotation, DerivativesOfLogInvertThoseOfExp) {
   }
 }
 
+// d R R' is the cross product with J d: by dual numbers through ExpRotation. The closed form loses
+// three digits just above its switch to the series.
+TEST(Rotation, TheLeftJacobianIsThatOfDualNumbers) {
+  using Jet = ceres::Jet<double, 3>;
+  for (const Vector3d& v : RotationVectors()) {
+    Eigen::Vector3<Jet> dual;
+    for (int i = 0; i < 3; ++i) dual[i] = Jet(v[i], i);
+    const Eigen::Matrix3<Jet> R = ExpRotation<Jet>(dual);
+    const Matrix3d J = ExpRotationJacobian<double>(v);
+    for (int i = 0; i < 3; ++i) {
+      const Matrix3d dR = R.unaryExpr([i](const Jet& jet) { return jet.v[i]; });
+      const Matrix3d cross = dR * ExpRotation<double>(v).transpose();
+      EXPECT_LT((cross - Skew<double>(J.col(i))).norm(), 1e3 * kRounding) << v.transpose();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace abbe::geometry

@@ -8,7 +8,7 @@ import {after, before, test} from 'node:test';
 import {pathToFileURL} from 'node:url';
 
 import {openBrowser} from './browser.mjs';
-import {BOW, writeSamples} from './sample_results.mjs';
+import {BACKLASH, BOW, writeSamples} from './sample_results.mjs';
 
 const program = resolve(process.argv[2]);
 const work = resolve(process.argv[3]);
@@ -79,7 +79,10 @@ test(
       assert.equal(titles.length, sample_names.length);
       assert.deepEqual(
           titles,
-          ['X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning', 'rig-compare \u00b7 X']);
+          [
+            'X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning',
+            'Circular test, XY plane', 'Square path', 'rig-compare \u00b7 X'
+          ]);
       assert.equal(await page.title(), 'Geometric errors of demo-mill');
       assert.equal(await page.locator('nav a').count(), sample_names.length + 1);
       await page.screenshot({path: join(screenshots, 'desktop_light.png'), fullPage: true});
@@ -111,8 +114,8 @@ test(
                 height: plot.getBoundingClientRect().height,
               })));
       // Three whole sweeps of 5 + 2 + 2 + 1 + 2 panels, one early one with its roll, one
-      // positioning test.
-      assert.equal(figures.length, 3 * 12 + 1 + 1);
+      // positioning test, polar plot, space and harmonics of two circles, one square.
+      assert.equal(figures.length, 3 * 12 + 1 + 1 + 2 * 3 + 1);
       for (const {about, traces, drawn, height} of figures) {
         assert.ok(about.length > 20, about);
         assert.ok(traces > 0 && drawn >= traces, about);
@@ -157,6 +160,63 @@ test(
         assert.ok(
             Math.abs(ends.at(at) - measured.at(at)) < 1e-9, `${ends.at(at)} ${measured.at(at)}`);
       }
+    }));
+
+// The radius of a trace, least and most, in mm.
+const radii = (plot, name) => plot.evaluate((div, name) => {
+  const {x, y} = div.data.find((trace) => trace.name === name);
+  const r = x.map((at, index) => Math.hypot(at, y[index]));
+  return [Math.min(...r), Math.max(...r)];
+}, name);
+
+test(
+    'the slider of a circle magnifies its deviation',
+    () => withPage({}, async (page) => {
+      const group = page.locator('section.group', {hasText: 'The circle, its deviation'});
+      const plot = group.locator('.plot').first();
+      const slider = group.getByRole('slider', {name: 'Magnification'});
+      const first = await slider.inputValue();
+      for (const [at, magnification] of [[0, 10], [6, 1000]]) {
+        await slider.fill(String(at));
+        assert.equal(
+            Number((await group.locator('output').textContent()).replace(/[^0-9]/g, '')),
+            magnification);
+        const [least, most] = await radii(plot, 'counter-clockwise');
+        // Half the backlash beside t = 0, where the shear is 0.02 um.
+        assert.ok(
+            Math.abs(most - 10 - magnification * BACKLASH / 2 * 1e3) <
+                0.2 * magnification * BACKLASH * 1e3,
+            `${most} at ${magnification}`);
+        assert.ok(least < 10 - magnification * BACKLASH / 2 * 1e3 * 0.9, `${least}`);
+      }
+      await slider.focus();
+      await page.keyboard.press('ArrowLeft');
+      assert.match(await slider.getAttribute('aria-valuetext'), /500/);
+      await slider.fill(first);
+    }));
+
+test(
+    'a path in space keeps its handedness',
+    () => withPage({}, async (page) => {
+      const group = page.locator('section.group', {hasText: 'The path in space'}).last();
+      const nominal = await group.locator('.plot').first().evaluate((div) => {
+        const {x, y} = div.data.find((trace) => trace.name === 'nominal');
+        return [0, 50, 100].map((index) => [x[index], y[index]]);
+      });
+      // Seen from above, a square that turns X towards Y goes round counter-clockwise.
+      const [a, b, c] = nominal;
+      assert.ok((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) > 0, `${nominal}`);
+    }));
+
+test(
+    'what the data could not tell of a circle is no number',
+    () => withPage({}, async (page) => {
+      const section = page.locator('section.result', {hasText: 'Circular test'});
+      const unseen = section.locator('tr', {hasText: 'Servo lag'}).first();
+      assert.match(await unseen.textContent(), /not seen/);
+      assert.equal(await unseen.locator('.quantity').count(), 0);
+      assert.match(
+          await section.locator('tr', {hasText: 'Backlash'}).first().textContent(), /4\.000.*0\.060/);
     }));
 
 test(

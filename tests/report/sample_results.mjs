@@ -234,6 +234,88 @@ export function referenceResult(axis) {
   };
 }
 
+// X moves by half the backlash against its motion, the squareness shears the circle, and the plane is
+// warped twice a turn: the radial deviation in closed form.
+export const BACKLASH = 4e-6;
+const SHEAR = 2e-6;
+const WARP = 1.5e-6;
+
+export function circleResult() {
+  const angle = Array.from({length: 360}, (unused, index) => (index + 0.5) * Math.PI / 180);
+  const profile = (sense) => {
+    const radial = angle.map(
+        (t) => sense * BACKLASH / 2 * Math.cos(t) * Math.sign(Math.sin(t)) -
+            SHEAR / 2 * Math.sin(2 * t));
+    return {angle, radial, explained: radial, axial: angle.map((t) => WARP * Math.cos(2 * t))};
+  };
+  const harmonics = Array.from(
+      {length: 10},
+      (unused, index) =>
+          ({order: index + 1, amplitude_um: 2 / (index + 1) ** 2, phase_deg: 10 * index}));
+  const run = {
+    feed_mm_min: 100,
+    points: 1440,
+    left_out_rows: 12,
+    recordings: ['circle.csv'],
+    G_ccw_um: 4.41,
+    G_cw_um: 5.62,
+    G_b_um: 5.62,
+    F_max_um: 2.9,
+    F_min_um: -2.9,
+    D_um: 0.02,
+    harmonics: {cw: harmonics, ccw: harmonics},
+    profile: {ccw: profile(1), cw: profile(-1)},
+  };
+  const causes = [
+    {cause: 'backlash', object: 'X', value: BACKLASH, unit: 'm', u: 3e-8, effect_um: 2, seen: true},
+    {cause: 'squareness', object: 'XY', value: 2e-4, unit: 'rad', u: 2e-6, effect_um: 1, seen: true},
+    {cause: 'servo_lag_squared', object: 'XY', value: 0, unit: 's2', u: 1, effect_um: 0, seen: false},
+  ];
+  const circle = {plane: 'XY', radius_mm: 10, filter_undulations: 0, runs: [run], causes};
+  return {
+    abbe: '0.1.0',
+    command: 'circle',
+    machine: 'demo-mill',
+    started: '2026-11-21T09:00:00Z',
+    plane: 'XY',
+    radius_mm: 10,
+    G_b_um: 5.62,
+    causes,
+    circles: [{instrument: 'linkage', ...circle}, {instrument: 'reference', ...circle}],
+  };
+}
+
+// A square of 50 mm that sags by 2 um in its middle.
+export function squareResult() {
+  const ends = [[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]].map((at) => at.map((one) => one * 0.05));
+  const place = (index, axis) => {
+    const [side, part] = [Math.floor(index / 50), index % 50 / 50];
+    return ends[side][axis] * (1 - part) + ends[side + 1][axis] * part;
+  };
+  const list = (value) => Array.from({length: 200}, (unused, index) => value(index));
+  const dz = list((index) => -2e-6 * Math.sin(Math.PI * place(index, 0) / 0.05));
+  return {
+    command: 'path',
+    kind: 'square',
+    machine: 'demo-mill',
+    tests: [{
+      recording: 'square.csv',
+      instrument: 'linkage',
+      largest_um: 2,
+      rms_um: 1.4,
+      sides: [{axis: 'X', nominal_mm: 50, length_error_um: 0.5, along: [], across: []}],
+      path: {
+        x: list((index) => place(index, 0)),
+        y: list((index) => place(index, 1)),
+        z: dz,
+        dx: list(() => 0),
+        dy: list(() => 0),
+        dz
+      }
+    }],
+  };
+}
+
 export function writeSamples(folder) {
   mkdirSync(folder, {recursive: true});
   const write = (name, content) => writeFileSync(join(folder, name), content);
@@ -242,6 +324,8 @@ export function writeSamples(folder) {
     'sweep_Y.json': sweepResult('Y', 'target', 42),
     'sweep_Z.json': sweepResult('Z', 'head', 73),
     'positioning_X.json': referenceResult('X'),
+    'circle.json': circleResult(),
+    'square.json': squareResult(),
     // A result of a later version: no section of its own, and text that tries to leave its element.
     'compare_X.json': {
       abbe: '0.1.0',

@@ -1,0 +1,187 @@
+// abbe calibrate: from recordings of the linkage to its parameters; or the plan of one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/calibration_tables.h"
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/machine_file.h"
+#include "apps/result_file.h"
+#include "fusion/calibration_file.h"
+#include "recording/recording_file.h"
+
+namespace abbe::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Index;
+
+struct CalibrateArguments {
+  std::vector<fs::path> recordings;
+  fs::path machine, out, json;
+  std::string model;
+  bool displacement = false, mapped = false, study = false, quiet = false;
+  int poses = 0;
+  int folds = 5;
+};
+
+constexpr std::array<Index, 10> kCounts{6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
+constexpr int kPlanPoints = 9;  // along each side of the travel, to choose from
+
+class Calibration {
+ public:
+  explicit Calibration(const CalibrateArguments& arguments)
+      : arguments_(arguments), file_(ReadMachineFile(arguments.machine)) {
+    if (!file_.linkage) {
+      throw InputError(fmt::format("{}: has no table [linkage]; describe the linkage there",
+                                   arguments.machine.string()));
+    }
+    options_.model = !arguments.model.empty() ? fusion::ErrorModelNamed(arguments.model)
+                     : arguments.mapped       ? relm::ErrorModel::kPublishedWithBearing
+                                              : relm::ErrorModel::kComplete;
+    options_.problem.displacement = arguments.displacement;
+    options_.mapped = arguments.mapped;
+    options_.folds = arguments.folds;
+  }
+
+  int Run() {
+    if (arguments_.study) {
+      Show(VolumeTable(fusion::StudyVolumes(Simulation(), Travel())));
+    } else if (!arguments_.recordings.empty()) {
+      FromRecordings();
+    } else if (arguments_.poses > 0) {
+      Plan();
+    } else {
+      throw InputError(
+          "nothing to calibrate with; name recordings of kind linkage, or ask for a plan with "
+          "--poses N or --study");
+    }
+    return kDone;
+  }
+
+ private:
+  void FromRecordings() {
+    std::vector<simulation::LinkageRun> runs;
+    for (const fs::path& path : arguments_.recordings) {
+      const recording::Recording recording = recording::Read(path);
+      for (const std::string& warning : recording.warnings) {
+        fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
+      }
+      runs.push_back(
+          simulation::MeansOfStays(simulation::ReadLinkageRun(recording, *file_.linkage)));
+    }
+    if (arguments_.poses > 0) KeepBest(runs);
+    fusion::CalibrationReport report =
+        fusion::Calibrate(file_.sweep_setup.machine.chain, *file_.linkage, runs, options_);
+    report.calibration.machine = file_.sweep_setup.machine.name;
+    Show(CalibrationTable(report, runs));
+    nlohmann::ordered_json result = CalibrationJson(report, runs);
+    if (arguments_.mapped) {
+      const auto rows = fusion::CompareModels(file_.sweep_setup.machine.chain, *file_.linkage,
+                                              runs.front(), options_);
+      Show(ComparisonTable(rows));
+      result["models"] = ComparisonJson(rows);
+    }
+    if (!arguments_.out.empty()) fusion::WriteCalibration(report.calibration, arguments_.out);
+    if (!arguments_.json.empty()) WriteResult(result, arguments_.json);
+  }
+
+  // The poses of one recording that make the best calibration.
+  void KeepBest(std::vector<simulation::LinkageRun>& runs) {
+    if (runs.size() != 1) {
+      throw InputError(fmt::format("--poses chooses from one recording, {} given", runs.size()));
+    }
+    const auto simulation = Simulation();
+    auto chosen = Choose(fusion::PoseInformation(simulation, runs[0], simulation.Values()));
+    std::sort(chosen.begin(), chosen.end());  // in order of time again, for the held-out blocks
+    runs[0] = simulation::Selection(runs[0], chosen);
+  }
+
+  void Plan() {
+    const auto simulation = Simulation();
+    const auto travel = Travel();
+    auto run = simulation::RunAt(
+        fusion::GridIn(travel, travel.last - travel.first, Eigen::Vector3i::Constant(kPlanPoints)),
+        *file_.linkage);
+    run.readings.angles = simulation.Readings(run, simulation.Values());
+    const auto chosen = Choose(fusion::PoseInformation(simulation, run, simulation.Values()));
+    std::string csv = "x_mm,y_mm,z_mm\n";
+    for (const Index pose : chosen) {
+      const Eigen::Vector3d mm = 1e3 * run.commanded.col(pose);
+      csv += fmt::format("{:.4f},{:.4f},{:.4f}\n", mm.x(), mm.y(), mm.z());
+    }
+    if (arguments_.out.empty()) {
+      Show(csv);
+    } else {
+      WriteText(csv, arguments_.out);
+    }
+  }
+
+  std::vector<Index> Choose(const fusion::PoseInformation& candidates) {
+    const auto choice = fusion::ChoosePoses(candidates, arguments_.poses);
+    Show(EnoughTable(fusion::HowManyPoses(candidates, {kCounts.begin(), kCounts.end()}),
+                     candidates.reading_noise));
+    Show(fmt::format("The {} chosen poses leave {:.3f} um.\n\n", arguments_.poses,
+                     1e6 * choice.tip_rms));
+    return choice.poses;
+  }
+
+  simulation::LinkageSimulation Simulation() const {
+    return {file_.sweep_setup.machine.chain, *file_.linkage,
+            relm::MakeLinkageModel(*file_.linkage, options_.model)};
+  }
+
+  fusion::Travel Travel() const {
+    fusion::Travel travel;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      travel.first[static_cast<Index>(axis)] = file_.sweep_setup.machine.travels[axis].first;
+      travel.last[static_cast<Index>(axis)] = file_.sweep_setup.machine.travels[axis].last;
+    }
+    return travel;
+  }
+
+  void Show(const std::string& text) const {
+    if (!arguments_.quiet) fmt::print("{}", text);
+  }
+
+  const CalibrateArguments& arguments_;
+  MachineFile file_;
+  fusion::CalibrateOptions options_;
+};
+
+}  // namespace
+
+void AddCalibrate(CLI::App& program, int& exit_code) {
+  auto arguments = std::make_shared<CalibrateArguments>();
+  CLI::App* command =
+      program.add_subcommand("calibrate", "The linkage's parameters, and what the data cannot see");
+  command->add_option("recordings", arguments->recordings,
+                      "Recordings of kind linkage or reference");
+  command->add_option("--machine", arguments->machine, "Machine file")->required();
+  command->add_option("--model", arguments->model,
+                      "pivots, published, \"published with bearing\" or complete (the default)");
+  command->add_flag("--displacement", arguments->displacement,
+                    "Nothing is known of the base position");
+  command->add_flag("--mapped", arguments->mapped,
+                    "Local parameters on the grid of the poses; compares all models");
+  command
+      ->add_option("--poses", arguments->poses,
+                   "Use the best N poses; without recordings: plan them")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--study", arguments->study, "Which calibration volume and spacing");
+  command->add_option("--folds", arguments->folds, "Blocks held out in turn; 1: none")
+      ->check(CLI::Range(1, 100));
+  command->add_option("-o,--out", arguments->out, "Calibration file (TOML); for a plan: CSV");
+  command->add_option("--json", arguments->json, "File for the result as data");
+  command->add_flag("--quiet", arguments->quiet, "No tables");
+  command->footer("Example: abbe calibrate cube.csv --machine mill.toml -o linkage.toml");
+  command->callback([arguments, &exit_code] { exit_code = Calibration(*arguments).Run(); });
+}
+
+}  // namespace abbe::apps

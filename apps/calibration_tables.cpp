@@ -1,0 +1,238 @@
+#include "apps/calibration_tables.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "fusion/calibration_file.h"
+
+namespace abbe::apps {
+namespace {
+
+using estimation::SeenBy;
+using nlohmann::ordered_json;
+
+constexpr double kMicro = 1e-6;
+constexpr double kMilli = 1e-3;
+constexpr std::size_t kMostOutliers = 10;
+constexpr double kNoticed = 1.5;  // residuals over noise that a person should hear of
+
+ordered_json Json(const fusion::Distances& distances) {
+  return {{"rms_um", distances.rms / kMicro}, {"max_um", distances.max / kMicro}};
+}
+
+ordered_json InMicrometres(const Eigen::Vector3d& v) {
+  return {v.x() / kMicro, v.y() / kMicro, v.z() / kMicro};
+}
+
+ordered_json Json(const fusion::PoseResidual& residual,
+                  const std::vector<simulation::LinkageRun>& runs) {
+  const auto at = runs[residual.run].reference.col(residual.pose);
+  return {{"recording", runs[residual.run].name},
+          {"row", residual.row + 1},
+          {"position_mm", {at.x() / kMilli, at.y() / kMilli, at.z() / kMilli}},
+          {"gap_um", InMicrometres(residual.gap)},
+          {"held_out_um", InMicrometres(residual.held_out)},
+          {"normalised", residual.normalised}};
+}
+
+ordered_json Parameters(const estimation::Result& fit) {
+  ordered_json parameters = ordered_json::array();
+  for (const auto& block : fit.blocks) {
+    for (std::size_t i = 0; i < block.entries.size(); ++i) {
+      const auto& entry = block.entries[i];
+      const std::string name = block.FullName(i);
+      parameters.push_back({{"name", name},
+                            {"unit", block.unit.name},
+                            {"value", entry.value / block.unit.si},
+                            {"uncertainty", entry.uncertainty / block.unit.si},
+                            {"nominal", entry.nominal / block.unit.si},
+                            {"prior", entry.prior_sd / block.unit.si},
+                            {"seen_by", estimation::Name(fit.Seen(name))}});
+    }
+  }
+  return parameters;
+}
+
+std::string Spread(const char* what, const fusion::Distances& distances) {
+  return fmt::format("  {:<34}{:>10.3f}{:>10.3f}\n", what, distances.rms / kMicro,
+                     distances.max / kMicro);
+}
+
+std::string ParameterTable(const estimation::Result& fit) {
+  std::string text = fmt::format("\n{:<30}{:>12}{:>12}{:>12}{:>10}  {:<9}{}\n", "parameter",
+                                 "value", "uncertainty", "nominal", "prior", "unit", "seen by");
+  for (const auto& block : fit.blocks) {
+    for (std::size_t i = 0; i < block.entries.size(); ++i) {
+      const auto& entry = block.entries[i];
+      const auto printed = [&](double value) { return value / block.unit.si; };
+      text += fmt::format("{:<30}{:>12.4f}{:>12.4f}{:>12.4f}{:>10.3g}  {:<9}{}\n",
+                          block.FullName(i), printed(entry.value), printed(entry.uncertainty),
+                          printed(entry.nominal), printed(entry.prior_sd), block.unit.name,
+                          estimation::Name(fit.Seen(block.FullName(i))));
+    }
+  }
+  return text;
+}
+
+std::string UnseenList(const fusion::Observability& seen) {
+  std::string text = fmt::format(
+      "\nThe data see {} of {} combinations of parameters; scaled condition {:.3g}, noise "
+      "amplification index {:.3g}.\n",
+      seen.rank, seen.parameters, seen.condition, seen.noise_amplification);
+  if (seen.unseen.empty()) return text;
+  text += "Not seen (in units of the priors; the share of the prior's deviation that is left):\n";
+  for (const auto& weak : seen.unseen) {
+    text += fmt::format("  {:4.0f} %  {}\n", 100.0 * weak.ratio, weak.words);
+  }
+  return text;
+}
+
+std::string Outliers(const fusion::CalibrationReport& report,
+                     const std::vector<simulation::LinkageRun>& runs) {
+  if (report.outliers.empty()) return "";
+  std::string text =
+      fmt::format("\n{} poses lie far off and hardly count:\n", report.outliers.size());
+  for (std::size_t i = 0; i < std::min(kMostOutliers, report.outliers.size()); ++i) {
+    const auto& outlier = report.outliers[i];
+    text +=
+        fmt::format("  {} row {}: {:.2f} um, {:.1f} standard deviations\n", runs[outlier.run].name,
+                    outlier.row + 1, outlier.gap.norm() / kMicro, outlier.normalised);
+  }
+  return text;
+}
+
+// Largest 2D or 3D deviations in um that Boelens (2006) reports for the step.
+std::string Published(const std::string& name) {
+  if (name == "nominal") return "349 (3D)";
+  if (name == "published") return "5.10 (3D), circle 5.29 (2D)";
+  if (name == "published with bearing") return "circle 4.19 (2D)";
+  if (name == "published, mapped") return "circle 5.22 (2D), one cell 5.96";
+  if (name == "published with bearing, mapped") return "circle 5.02 (2D) = 6.15 (3D)";
+  return "";
+}
+
+}  // namespace
+
+ordered_json CalibrationJson(const fusion::CalibrationReport& report,
+                             const std::vector<simulation::LinkageRun>& runs) {
+  ordered_json unseen = ordered_json::array();
+  for (const auto& weak : report.seen.unseen) {
+    unseen.push_back({{"words", weak.words}, {"share_of_prior", weak.ratio}});
+  }
+  ordered_json residuals = ordered_json::array(), outliers = ordered_json::array();
+  for (const auto& residual : report.residuals) residuals.push_back(Json(residual, runs));
+  for (const auto& outlier : report.outliers) outliers.push_back(Json(outlier, runs));
+  ordered_json result{{"kind", "calibration"},
+                      {"machine", report.calibration.machine},
+                      {"model", fusion::ErrorModelName(report.calibration.model)},
+                      {"displacement", report.calibration.displacement},
+                      {"poses", report.residuals.size()},
+                      {"before", Json(report.before)},
+                      {"after", Json(report.after)},
+                      {"held_out", Json(report.held_out)},
+                      {"residuals_over_noise", report.excess},
+                      {"combinations", report.seen.parameters},
+                      {"combinations_seen", report.seen.rank},
+                      {"scaled_condition", report.seen.condition},
+                      {"noise_amplification_index", report.seen.noise_amplification},
+                      {"parameters", Parameters(report.fit)},
+                      {"unseen", unseen},
+                      {"residuals", residuals},
+                      {"outliers", outliers}};
+  if (report.calibration.mapped) {
+    const auto& centres = report.calibration.mapped->centres;
+    result["mapped"] = {{"cells", report.calibration.mapped->values.size()},
+                        {"centres_m", {centres[0], centres[1], centres[2]}}};
+  }
+  return result;
+}
+
+std::string CalibrationTable(const fusion::CalibrationReport& report,
+                             const std::vector<simulation::LinkageRun>& runs) {
+  std::string text = fmt::format(
+      "Linkage calibrated with {} poses of {} recordings, model \"{}\"{}, {} parameters free.\n\n"
+      "  ball position, 3D, um                    rms       max\n",
+      report.residuals.size(), runs.size(), fusion::ErrorModelName(report.calibration.model),
+      report.calibration.displacement ? ", displacement form" : "", report.seen.parameters);
+  text += Spread("nominal linkage, displacements", report.before);
+  text += Spread("calibrated", report.after);
+  if (std::isfinite(report.held_out.rms))
+    text += Spread("calibrated, poses held out", report.held_out);
+  if (report.calibration.mapped) {
+    text += fmt::format("  mapped with {} cells\n", report.calibration.mapped->values.size());
+  }
+  text += ParameterTable(report.fit) + UnseenList(report.seen) + Outliers(report, runs);
+  if (report.excess > kNoticed) {
+    text += fmt::format(
+        "\nThe residuals are {:.1f} times the stated noise: the reference or the model is worse "
+        "than [linkage.noise] says, and the uncertainties are too small by about that.\n",
+        report.excess);
+  }
+  for (const auto& run : runs) {
+    if (run.referenced[0] && run.referenced[1] && run.referenced[2]) continue;
+    text += fmt::format(
+        "\n{}: no reference instrument in every direction: errors of the machine itself went into "
+        "the parameters.\n",
+        run.name);
+  }
+  return text;
+}
+
+ordered_json ComparisonJson(const std::vector<fusion::ComparedModel>& rows) {
+  ordered_json models = ordered_json::array();
+  for (const auto& row : rows) {
+    models.push_back({{"name", row.name},
+                      {"parameters", row.parameters},
+                      {"after", Json(row.after)},
+                      {"held_out", Json(row.held_out)},
+                      {"published", Published(row.name)}});
+  }
+  return models;
+}
+
+std::string ComparisonTable(const std::vector<fusion::ComparedModel>& rows) {
+  std::string text = fmt::format("\n{:<34}{:>6}{:>12}{:>12}{:>14}  {}\n", "model, 3D in um", "free",
+                                 "rms", "held out", "held out max", "Boelens 2006, largest");
+  for (const auto& row : rows) {
+    text += fmt::format("{:<34}{:>6}{:>12.3f}{:>12.3f}{:>14.3f}  {}\n", row.name, row.parameters,
+                        row.after.rms / kMicro, row.held_out.rms / kMicro,
+                        row.held_out.max / kMicro, Published(row.name));
+  }
+  return text;
+}
+
+std::string EnoughTable(const std::vector<fusion::EnoughRow>& rows, double reading_noise) {
+  std::string text = fmt::format(
+      "Uncertainty that the calibration leaves in ball positions (3D rms, um); a reading alone has "
+      "{:.3f}.\n{:>8}{:>12}{:>12}\n",
+      reading_noise / kMicro, "poses", "chosen", "evenly");
+  bool told = false;
+  for (const auto& row : rows) {
+    text += fmt::format("{:>8}{:>12.3f}{:>12.3f}{}\n", row.poses, row.tip_rms / kMicro,
+                        row.even_rms / kMicro,
+                        row.enough && !told ? "  enough: adds less than 10 % to a reading" : "");
+    told = told || row.enough;
+  }
+  if (!told) text += "None of these is enough; use more poses or a better reference.\n";
+  return text;
+}
+
+std::string VolumeTable(const std::vector<fusion::VolumeRow>& rows) {
+  std::string text = fmt::format(
+      "Uncertainty that a calibration leaves in ball positions (3D rms, um)\n{:>22}{:>12}{:>14}"
+      "{:>8}{:>8}{:>12}{:>12}\n",
+      "volume mm", "grid", "spacing mm", "poses", "seen", "inside", "travel");
+  for (const auto& row : rows) {
+    const Eigen::Vector3d mm = row.size / kMilli;
+    text += fmt::format("{:>22}{:>12}{:>14.2f}{:>8}{:>8}{:>12.3f}{:>12.3f}\n",
+                        fmt::format("{:g} x {:g} x {:g}", mm.x(), mm.y(), mm.z()),
+                        fmt::format("{}x{}x{}", row.points.x(), row.points.y(), row.points.z()),
+                        mm.x() / (row.points.x() - 1), row.poses, row.rank, row.inside_rms / kMicro,
+                        row.travel_rms / kMicro);
+  }
+  return text;
+}
+
+}  // namespace abbe::apps

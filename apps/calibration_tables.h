@@ -1,0 +1,28 @@
+// `abbe calibrate`: what it found, as data and as tables for people. SI in the data unless the name
+// says otherwise; tables end in a newline.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "fusion/calibrate.h"
+#include "fusion/model_comparison.h"
+#include "fusion/pose_choice.h"
+#include "fusion/volume_study.h"
+
+namespace abbe::apps {
+
+nlohmann::ordered_json CalibrationJson(const fusion::CalibrationReport& report,
+                                       const std::vector<simulation::LinkageRun>& runs);
+std::string CalibrationTable(const fusion::CalibrationReport& report,
+                             const std::vector<simulation::LinkageRun>& runs);
+
+nlohmann::ordered_json ComparisonJson(const std::vector<fusion::ComparedModel>& rows);
+// With the figures that Boelens (2006) gives, where he has the row.
+std::string ComparisonTable(const std::vector<fusion::ComparedModel>& rows);
+
+std::string EnoughTable(const std::vector<fusion::EnoughRow>& rows, double reading_noise);
+std::string VolumeTable(const std::vector<fusion::VolumeRow>& rows);
+
+}  // namespace abbe::apps

@@ -1,0 +1,160 @@
+// abbe circle: the circular test, by the linkage, a reference instrument, or both side by side.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/circle_result.h"
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/measured_paths.h"
+#include "apps/result_file.h"
+#include "settings/unit.h"
+
+namespace abbe::apps {
+namespace {
+
+struct CircleCommand {
+  PathSources sources;
+  std::string plane;
+  double radius_mm = 0.0, filter = 0.0, spike_deg = 4.0, limit_um = 0.0;
+  std::vector<std::string> pitches;  // "X=5", mm
+  std::filesystem::path json, out;
+  bool quiet = false;
+};
+
+constexpr double kSameRadius = 10e-6;  // m
+
+fusion::CauseOptions CausesOf(const CircleCommand& command) {
+  fusion::CauseOptions options;
+  options.spike_width = command.spike_deg * 0.017453292519943295;
+  for (const std::string& text : command.pitches) {
+    double pitch = 0.0;
+    const bool named = text.size() > 2 && text[1] == '=' && text[0] >= 'X' && text[0] <= 'Z';
+    const char* const end = text.data() + text.size();
+    if (!named || std::from_chars(text.data() + 2, end, pitch).ptr != end || !(pitch > 0.0)) {
+      throw InputError(fmt::format(
+          "--pitch {}: give an axis and its pitch in mm above 0, for example --pitch X=5", text));
+    }
+    options.pitch[text[0]] = pitch * settings::kMillimetre;
+  }
+  return options;
+}
+
+// Runs of one instrument, plane and radius together; the linkage first.
+std::vector<Circle> Circles(const MeasuredPaths& paths, const CircleCommand& command) {
+  std::vector<Circle> circles;
+  for (relm::CircleRun& run :
+       relm::CircleRuns(paths.All(), {command.plane, command.radius_mm * settings::kMillimetre})) {
+    const auto same = std::ranges::find_if(circles, [&run](const Circle& circle) {
+      const relm::CircleRun& one = circle.runs.front();
+      return one.instrument == run.instrument && one.plane.name == run.plane.name &&
+             std::abs(one.radius - run.radius) < kSameRadius && !run.plane.Inclined();
+    });
+    if (same == circles.end()) {
+      circles.push_back({{std::move(run)}, {}, {}, command.filter});
+    } else {
+      same->runs.push_back(std::move(run));
+    }
+  }
+  for (Circle& circle : circles) {
+    std::vector<const relm::CircleRun*> runs;
+    for (const relm::CircleRun& run : circle.runs) {
+      circle.figures.push_back(relm::EvaluateCircle(run, {.cutoff = command.filter}));
+      runs.push_back(&run);
+    }
+    if (!runs.front()->plane.Inclined()) {
+      circle.causes = fusion::FitCircleCauses(runs, CausesOf(command));
+    }
+  }
+  return circles;
+}
+
+// The figures of the first run stand at the top too, for scripts.
+nlohmann::ordered_json Result(const MeasuredPaths& paths, const std::vector<Circle>& circles) {
+  nlohmann::ordered_json result = ResultHead("circle", paths);
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Circle& circle : circles) list.push_back(CircleJson(circle));
+  const nlohmann::ordered_json& first = list.front();
+  for (const char* key : {"plane", "radius_mm"}) result[key] = first[key];
+  for (const auto& [key, value] : first["runs"].front().items()) {
+    if (value.is_number_float()) result[key] = value;
+  }
+  if (first.contains("causes")) result["causes"] = first["causes"];
+  result["circles"] = std::move(list);
+  result["notes"] = paths.notes;
+  return result;
+}
+
+// Whether a circle is worse than --limit: G(b), or G where one sense was measured.
+bool BeyondLimit(const std::vector<Circle>& circles, double limit) {
+  return std::ranges::any_of(circles, [limit](const Circle& circle) {
+    return std::ranges::any_of(circle.figures, [limit](const relm::CircleFigures& figures) {
+      const auto& iso = figures.iso;
+      return (iso.both ? iso.both->G : iso.ccw ? iso.ccw->G : iso.cw->G) > limit;
+    });
+  });
+}
+
+int RunCircle(const CircleCommand& command) {
+  const MeasuredPaths paths = ReadMeasuredPaths(command.sources);
+  const std::vector<Circle> circles = Circles(paths, command);
+  if (!command.quiet) {
+    fmt::print("{}", CircleTable(circles));
+    for (const std::string& note : paths.notes) fmt::print("note: {}\n", note);
+  }
+  const nlohmann::ordered_json result = Result(paths, circles);
+  if (!command.json.empty()) WriteResult(result, command.json);
+  if (!command.out.empty()) {
+    const std::string stem = command.sources.recordings.front().stem().string();
+    WriteResult(result, command.out / (stem + "_circle.json"));
+  }
+  if (command.limit_um > 0.0 && BeyondLimit(circles, command.limit_um * settings::kMicrometre)) {
+    fmt::print(stderr, "abbe: the circular deviation is beyond the limit of {} um\n",
+               command.limit_um);
+    return kRequirementNotMet;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddCircle(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<CircleCommand>();
+  CLI::App* command = program.add_subcommand(
+      "circle", "Circular test: ISO 230-4 figures and their causes, by linkage and reference");
+  AddPathSources(*command, options->sources);
+  command->add_option("--plane", options->plane,
+                      "Two axes, the first turning towards the second: XY, YZ, ZX (default: where "
+                      "the commanded path lies)");
+  command
+      ->add_option("--radius", options->radius_mm,
+                   "Nominal radius, mm (default: that of the commanded path)")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--filter", options->filter,
+                   "Cutoff of the Gaussian filter of the figures, undulations a turn")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--pitch", options->pitches,
+                      "Axis and pitch in mm of cyclic errors to look for: --pitch X=5");
+  command->add_option("--spike", options->spike_deg, "Width of reversal spikes, degrees")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--limit", options->limit_um,
+                   "Exit code 1 when the circular deviation is larger, um")
+      ->check(CLI::PositiveNumber);
+  command->add_option("-o,--out", options->out, "Folder for the result (RECORDING_circle.json)");
+  command->add_option("--json", options->json, "File for the result");
+  command->add_flag("--quiet", options->quiet, "No table");
+  command->footer(
+      "Example: abbe circle relm_cw.csv relm_ccw.csv grid.csv --machine mill.toml --out measured");
+  command->callback([options, &exit_code] { exit_code = RunCircle(*options); });
+}
+
+}  // namespace abbe::apps

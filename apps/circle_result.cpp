@@ -1,0 +1,244 @@
+#include "apps/circle_result.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <numbers>
+#include <optional>
+
+#include "settings/unit.h"
+#include "standards/circle.h"
+
+namespace abbe::apps {
+namespace {
+
+using nlohmann::ordered_json;
+using relm::CircleFigures;
+using relm::CirclePoint;
+using relm::CircleRun;
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr int kProfilePoints = 360;  // of the profile in the result, one a degree
+
+double Um(double metres) { return metres / settings::kMicrometre; }
+double Mm(double metres) { return metres / settings::kMillimetre; }
+double MmPerMin(double speed) { return Mm(speed) * 60.0; }
+double Degrees(double angle) { return angle * 360.0 / kTurn; }
+
+using Figure = std::optional<double>;  // m
+
+struct FigureName {
+  const char* key;  // in the data, in um
+  const char* text;
+  Figure (*of)(const CircleFigures&);
+};
+
+const std::array<FigureName, 14> kFigures{{
+    {"G_ccw_um", "G(ccw) circular deviation",
+     [](const CircleFigures& f) { return f.iso.ccw ? Figure(f.iso.ccw->G) : Figure(); }},
+    {"G_cw_um", "G(cw) circular deviation",
+     [](const CircleFigures& f) { return f.iso.cw ? Figure(f.iso.cw->G) : Figure(); }},
+    {"G_b_um", "G(b) both senses",
+     [](const CircleFigures& f) { return f.iso.both ? Figure(f.iso.both->G) : Figure(); }},
+    {"G_ccw_ls_um", "G(ccw) about the least-squares centre",
+     [](const CircleFigures& f) { return f.iso.ccw ? Figure(f.iso.ccw->G_ls) : Figure(); }},
+    {"G_cw_ls_um", "G(cw) about the least-squares centre",
+     [](const CircleFigures& f) { return f.iso.cw ? Figure(f.iso.cw->G_ls) : Figure(); }},
+    {"G_b_ls_um", "G(b) about the least-squares centre",
+     [](const CircleFigures& f) { return f.iso.both ? Figure(f.iso.both->G_ls) : Figure(); }},
+    {"F_max_um", "F max, set-up centre",
+     [](const CircleFigures& f) { return Figure(f.iso.F_max); }},
+    {"F_min_um", "F min, set-up centre",
+     [](const CircleFigures& f) { return Figure(f.iso.F_min); }},
+    {"F_max_ls_um", "F max, least-squares centre",
+     [](const CircleFigures& f) { return Figure(f.iso.F_max_ls); }},
+    {"F_min_ls_um", "F min, least-squares centre",
+     [](const CircleFigures& f) { return Figure(f.iso.F_min_ls); }},
+    {"D_um", "D mean bidirectional radial deviation",
+     [](const CircleFigures& f) { return f.iso.D; }},
+    {"rms_ccw_um", "harmonics left out (ccw), rms",
+     [](const CircleFigures& f) { return f.ccw ? Figure(f.ccw->rms) : Figure(); }},
+    {"rms_cw_um", "harmonics left out (cw), rms",
+     [](const CircleFigures& f) { return f.cw ? Figure(f.cw->rms) : Figure(); }},
+    {"out_of_plane_um", "out of plane, range",
+     [](const CircleFigures& f) {
+       return f.out_of_plane > 0.0 ? Figure(f.out_of_plane) : Figure();
+     }},
+}};
+
+ordered_json HarmonicData(const std::optional<standards::HarmonicFit>& fit) {
+  ordered_json list = ordered_json::array();
+  if (!fit) return list;
+  for (const standards::Harmonic& wave : fit->harmonics) {
+    list.push_back({{"order", wave.order},
+                    {"amplitude_um", Um(wave.Amplitude())},
+                    {"phase_deg", Degrees(wave.Phase())}});
+  }
+  return list;
+}
+
+// Means over a degree each, about `centre`: radius minus nominal, what the causes explain of it,
+// and the third coordinate.
+ordered_json Profile(const CircleRun& run, int sense, const standards::Circle& centre,
+                     const std::vector<double>* residuals) {
+  std::vector<double> radial(kProfilePoints), explained(kProfilePoints), axial(kProfilePoints),
+      count(kProfilePoints);
+  for (std::size_t i = 0; i < run.points.size(); ++i) {
+    const CirclePoint& point = run.points[i];
+    if (point.sense != sense) continue;
+    const double x = point.first - centre.x, y = point.second - centre.y;
+    const double part = std::atan2(y, x) / kTurn;
+    const auto bin = std::min<std::size_t>(
+        kProfilePoints - 1, static_cast<std::size_t>((part - std::floor(part)) * kProfilePoints));
+    const double deviation = std::hypot(x, y) - run.radius;
+    radial[bin] += deviation;
+    if (residuals != nullptr) explained[bin] += deviation - (*residuals)[i];
+    axial[bin] += point.third;
+    count[bin] += 1.0;
+  }
+  ordered_json profile;
+  for (std::size_t bin = 0; bin < kProfilePoints; ++bin) {
+    if (count[bin] == 0.0) continue;
+    profile["angle"].push_back((static_cast<double>(bin) + 0.5) * kTurn / kProfilePoints);
+    profile["radial"].push_back(radial[bin] / count[bin]);
+    if (residuals != nullptr) profile["explained"].push_back(explained[bin] / count[bin]);
+    if (run.third_seen) profile["axial"].push_back(axial[bin] / count[bin]);
+  }
+  return profile;
+}
+
+// The least-squares centre of both senses.
+standards::Circle Centre(const CircleFigures& figures) {
+  const auto& iso = figures.iso;
+  return iso.both  ? iso.both->least_squares
+         : iso.ccw ? iso.ccw->least_squares
+                   : iso.cw->least_squares;
+}
+
+ordered_json RunData(const CircleRun& run, const CircleFigures& figures,
+                     const std::vector<double>* residuals) {
+  ordered_json data{{"feed_mm_min", MmPerMin(run.feed)},
+                    {"points", run.points.size()},
+                    {"left_out_rows", run.left_out}};
+  for (const std::string& recording : run.recordings) {
+    data["recordings"].push_back(std::filesystem::path(recording).filename().string());
+  }
+  for (const FigureName& figure : kFigures) {
+    if (const Figure value = figure.of(figures)) data[figure.key] = Um(*value);
+  }
+  const standards::Circle centre = Centre(figures);
+  data["setup_offset_um"] = {Um(centre.x), Um(centre.y)};
+  data["covered_deg"] = {{"cw", Degrees(run.Covered(-1))}, {"ccw", Degrees(run.Covered(1))}};
+  data["harmonics"] = {{"cw", HarmonicData(figures.cw)}, {"ccw", HarmonicData(figures.ccw)}};
+  for (const auto& [name, sense] : {std::pair{"ccw", 1}, std::pair{"cw", -1}}) {
+    const ordered_json profile = Profile(run, sense, centre, residuals);
+    if (!profile.empty()) data["profile"][name] = profile;
+  }
+  return data;
+}
+
+struct Shown {
+  const char* unit;
+  double si;
+};
+
+Shown ShownUnit(const std::string& unit) {
+  if (unit == "m") return {"um", 1e-6};
+  if (unit == "rad") return {"urad", 1e-6};
+  if (unit == "s") return {"us", 1e-6};
+  if (unit == "s2") return {"ms2", 1e-6};
+  return {"ppm", 1e-6};
+}
+
+std::string CauseTable(const fusion::CircleCauses& causes) {
+  std::string text = fmt::format("  {:<28}{:>12}{:>10}{:>7}{:>16}\n", "cause", "value", "U95",
+                                 "unit", "on the radius");
+  for (const fusion::CauseEstimate& one : causes.causes) {
+    const Shown shown = ShownUnit(one.unit);
+    const std::string name = one.cause + " " + one.object;
+    if (!one.seen) {
+      text += fmt::format("  {:<28}{:>12}{:>10.2f}{:>7}{:>16}\n", name, "not seen",
+                          1.96 * one.u / shown.si, shown.unit, "-");
+      continue;
+    }
+    text += fmt::format("  {:<28}{:>12.2f}{:>10.2f}{:>7}{:>13.2f} um{}\n", name,
+                        one.value / shown.si, 1.96 * one.u / shown.si, shown.unit, Um(one.effect),
+                        std::abs(one.value) > 1.96 * one.u ? " *" : "");
+  }
+  text += fmt::format("  rms of the radius {:.2f} um, unexplained {:.2f} um; * beyond its U95\n",
+                      Um(causes.rms_before), Um(causes.rms_after));
+  return text;
+}
+
+}  // namespace
+
+ordered_json CircleJson(const Circle& circle) {
+  const CircleRun& first = circle.runs.front();
+  ordered_json data{
+      {"instrument", first.instrument},
+      {"plane", first.plane.name},
+      {"radius_mm", Mm(first.radius)},
+      {"centre_mm", {Mm(first.centre.x()), Mm(first.centre.y()), Mm(first.centre.z())}},
+      {"filter_undulations", circle.cutoff}};
+  if (first.plane.Inclined()) {
+    data["normal"] = {first.plane.third.x(), first.plane.third.y(), first.plane.third.z()};
+  }
+  for (std::size_t i = 0; i < circle.runs.size(); ++i) {
+    data["runs"].push_back(RunData(circle.runs[i], circle.figures[i],
+                                   circle.causes ? &circle.causes->residuals[i] : nullptr));
+  }
+  if (!circle.causes) return data;
+  for (const fusion::CauseEstimate& one : circle.causes->causes) {
+    data["causes"].push_back({{"cause", one.cause},
+                              {"object", one.object},
+                              {"value", one.value},
+                              {"unit", one.unit},
+                              {"u", one.u},
+                              {"effect_um", Um(one.effect)},
+                              {"seen", one.seen}});
+  }
+  data["rms_before_um"] = Um(circle.causes->rms_before);
+  data["rms_after_um"] = Um(circle.causes->rms_after);
+  data["weak_directions"] = circle.causes->weak_directions;
+  return data;
+}
+
+std::string CircleTable(const std::vector<Circle>& circles) {
+  std::string instruments, feeds;
+  for (const Circle& circle : circles) {
+    for (const CircleRun& run : circle.runs) {
+      instruments += fmt::format("{:>16}", run.instrument + " " + run.plane.name);
+      feeds +=
+          fmt::format("{:>16}", fmt::format("R{:.4g} F{:.4g}", Mm(run.radius), MmPerMin(run.feed)));
+    }
+  }
+  std::string text = fmt::format("{:<40}{}\n{:<40}{}\n", "ISO 230-4, um", instruments,
+                                 "radius mm, feed mm/min", feeds);
+  for (const FigureName& figure : kFigures) {
+    std::string line;
+    bool any = false;
+    for (const Circle& circle : circles) {
+      for (const CircleFigures& figures : circle.figures) {
+        const Figure value = figure.of(figures);
+        any = any || value.has_value();
+        line += value ? fmt::format("{:>16.2f}", Um(*value)) : fmt::format("{:>16}", "-");
+      }
+    }
+    if (any) text += fmt::format("{:<40}{}\n", figure.text, line);
+  }
+  for (const Circle& circle : circles) {
+    if (!circle.causes) continue;
+    const CircleRun& run = circle.runs.front();
+    text += fmt::format("\nCauses by one joint fit, {} {}, R {:.4g} mm, {} feed{}\n",
+                        run.instrument, run.plane.name, Mm(run.radius), circle.runs.size(),
+                        circle.runs.size() == 1 ? "" : "s");
+    text += CauseTable(*circle.causes);
+  }
+  return text;
+}
+
+}  // namespace abbe::apps

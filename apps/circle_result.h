@@ -1,0 +1,28 @@
+// `abbe circle`: what the evaluation of circles found, as data and as a table.
+//
+// The keys of the data are listed in docs/circle.md.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "fusion/circle_causes.h"
+#include "relm/circle_run.h"
+
+namespace abbe::apps {
+
+// All runs of one instrument, plane and radius: one feed each, and the causes of all together.
+struct Circle {
+  std::vector<relm::CircleRun> runs;
+  std::vector<relm::CircleFigures> figures;  // of each run
+  std::optional<fusion::CircleCauses> causes;
+  double cutoff = 0.0;  // of the filter of the figures; 0: none
+};
+
+nlohmann::ordered_json CircleJson(const Circle& circle);
+
+// The figures of all runs side by side, then the causes of each circle; ends in a newline.
+std::string CircleTable(const std::vector<Circle>& circles);
+
+}  // namespace abbe::apps

@@ -1,0 +1,162 @@
+// abbe path: tests along other paths than circles, by the linkage or a reference.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/measured_paths.h"
+#include "apps/path_result.h"
+#include "apps/result_file.h"
+#include "recording/recording_file.h"
+#include "relm/nominal_path.h"
+
+namespace abbe::apps {
+namespace {
+
+struct PathCommand {
+  PathSources sources;
+  std::string test;
+  std::vector<std::string> gauges;  // "X=probe_d_um", "Y=-probe_e_um"
+  std::filesystem::path json, out;
+  bool quiet = false;
+};
+
+std::vector<relm::CapGauge> Gauges(const PathCommand& command) {
+  std::vector<relm::CapGauge> gauges;
+  for (const std::string& text : command.gauges) {
+    if (text.size() < 3 || text[1] != '=' || text[0] < 'X' || text[0] > 'Z') {
+      throw InputError(
+          fmt::format("--gauge {}: give the axis and the column that grows along it, for example "
+                      "--gauge X=probe_d_um, or --gauge X=-probe_d_um for one that falls",
+                      text));
+    }
+    const bool falls = text[2] == '-';
+    gauges.push_back({text[0], falls ? -1.0 : 1.0, text.substr(falls ? 3 : 2)});
+  }
+  return gauges;
+}
+
+// One pose each: the mean of the rows of a pass, or each row where all passes are one.
+Eigen::Matrix3Xd Poses(const relm::MeasuredPath& path) {
+  std::map<int, std::vector<Eigen::Index>> passes;
+  for (Eigen::Index i = 0; i < path.poses(); ++i) passes[path.pass[i]].push_back(i);
+  if (passes.size() < 2) return path.measured;
+  Eigen::Matrix3Xd poses(3, static_cast<Eigen::Index>(passes.size()));
+  Eigen::Index pose = 0;
+  for (const auto& [pass, rows] : passes) {
+    poses.col(pose++) = relm::Selection(path, rows).measured.rowwise().mean();
+  }
+  return poses;
+}
+
+TestResult Deviation(const relm::MeasuredPath& path, const Eigen::Matrix3Xd& nominal) {
+  return DeviationResult(relm::DeviationFrom(path, {nominal, false}),
+                         relm::DeviationFrom(path, {nominal, true}));
+}
+
+// The figures of a test with, for a path that is followed, its deviation in space.
+TestResult Evaluate(const PathCommand& command, const relm::MeasuredPath& path) {
+  if (command.test == "articulation") {
+    return ArticulationResult(standards::EvaluateArticulation(Poses(path)));
+  }
+  if (command.test == "stepping") return SteppingResult(relm::EvaluateStepping(path));
+  if (command.test != "square") return Deviation(path, relm::ReadNominalPath(command.test));
+  TestResult square = SquareResult(relm::EvaluateSquare(path));
+  const TestResult deviation = Deviation(path, {});
+  square.table += deviation.table;
+  square.data.update(deviation.data);
+  return square;
+}
+
+bool IsNamed(const std::string& test) {
+  return test == "stepping" || test == "square" || test == "cap" || test == "articulation";
+}
+
+class PathTests {
+ public:
+  explicit PathTests(const PathCommand& command) : command_(command) {}
+
+  int Run() {
+    if (command_.test == "cap") {
+      Cap();
+    } else {
+      const MeasuredPaths paths = ReadMeasuredPaths(command_.sources);
+      result_ = ResultHead("path", paths);
+      result_["kind"] = IsNamed(command_.test) ? command_.test : "path";
+      if (!IsNamed(command_.test)) {
+        result_["nominal"] = std::filesystem::path(command_.test).filename().string();
+      }
+      for (const relm::MeasuredPath& path : paths.All()) {
+        Keep(path.recording, path.instrument, Evaluate(command_, path));
+      }
+      Note(paths.notes);
+    }
+    if (!command_.json.empty()) WriteResult(result_, command_.json);
+    if (!command_.out.empty()) {
+      const std::string stem = command_.sources.recordings.front().stem().string();
+      WriteResult(result_, command_.out /
+                               fmt::format("{}_{}.json", stem, result_["kind"].get<std::string>()));
+    }
+    return kDone;
+  }
+
+ private:
+  void Cap() {
+    result_ = {{"abbe", ABBE_VERSION}, {"command", "path"}, {"kind", "cap"}};
+    const std::vector<relm::CapGauge> gauges = Gauges(command_);
+    for (const std::filesystem::path& file : command_.sources.recordings) {
+      const recording::Recording recording = recording::Read(file);
+      if (!result_.contains("machine")) {
+        result_["machine"] = recording.HeaderText("machine").value_or("");
+      }
+      Keep(recording.name, gauges.empty() ? "reference" : "gauges",
+           CapResult(relm::EvaluateCap(recording, gauges)));
+    }
+  }
+
+  void Keep(const std::string& recording, const std::string& instrument, const TestResult& test) {
+    const std::string name = std::filesystem::path(recording).filename().string();
+    if (!command_.quiet) fmt::print("{}, {}\n{}", name, instrument, test.table);
+    nlohmann::ordered_json entry{{"recording", name}, {"instrument", instrument}};
+    entry.update(test.data);
+    result_["tests"].push_back(std::move(entry));
+  }
+
+  void Note(const std::vector<std::string>& notes) {
+    result_["notes"] = notes;
+    if (command_.quiet) return;
+    for (const std::string& note : notes) fmt::print("note: {}\n", note);
+  }
+
+  const PathCommand& command_;
+  nlohmann::ordered_json result_;
+};
+
+}  // namespace
+
+void AddPath(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<PathCommand>();
+  CLI::App* command = program.add_subcommand(
+      "path", "Stepping test, square path, tool cap, articulation, or any path");
+  AddPathSources(*command, options->sources);
+  command
+      ->add_option("--test", options->test,
+                   "stepping, square, cap, articulation, or a CSV file with the nominal path "
+                   "(x_mm,y_mm,z_mm)")
+      ->required();
+  command->add_option("--gauge", options->gauges,
+                      "cap: axis and column of a gauge on the cap, X=probe_d_um (default: the "
+                      "reference columns)");
+  command->add_option("-o,--out", options->out, "Folder for the result (RECORDING_TEST.json)");
+  command->add_option("--json", options->json, "File for the result");
+  command->add_flag("--quiet", options->quiet, "No table");
+  command->footer("Example: abbe path square.csv --test square --machine mill.toml --out measured");
+  command->callback([options, &exit_code] { exit_code = PathTests(*options).Run(); });
+}
+
+}  // namespace abbe::apps

@@ -1,0 +1,169 @@
+#include "apps/rig_course.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <numeric>
+
+#include "failure/failure.h"
+#include "relm/nominal_path.h"
+#include "settings/unit.h"
+
+namespace abbe::apps {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kMillimetreAMinute = 1e-3 / 60.0;
+
+// The size of a course in m: its own, or `usual` in mm. One number stands for all.
+std::vector<double> SizeOf(const CourseRequest& request, const std::vector<double>& usual) {
+  std::vector<double> size = request.size_mm.empty() ? usual : request.size_mm;
+  if (size.size() == 1) size.assign(usual.size(), size.front());
+  if (size.size() != usual.size()) {
+    throw InputError(fmt::format("--size: {} numbers, but the course {} has {}", size.size(),
+                                 request.course, usual.size()));
+  }
+  for (double& each : size) each *= settings::kMillimetre;
+  return size;
+}
+
+std::vector<int> PointsOf(const CourseRequest& request, const std::vector<int>& usual) {
+  if (request.points.empty()) return usual;
+  if (request.points.size() != usual.size()) {
+    throw InputError(fmt::format("--points: {} numbers, but the course {} has {}",
+                                 request.points.size(), request.course, usual.size()));
+  }
+  return request.points;
+}
+
+Vector3d CentreOf(const CourseRequest& request, const rig::RigSettings& machine) {
+  Vector3d centre;
+  for (int axis = 0; axis < rig::kAxes; ++axis) {
+    const auto [first, last] = machine.travels[static_cast<std::size_t>(axis)];
+    centre[axis] = request.centre_mm.empty()
+                       ? std::midpoint(first, last)
+                       : request.centre_mm[static_cast<std::size_t>(axis)] * settings::kMillimetre;
+  }
+  return centre;
+}
+
+// "ZX" is the plane across Y.
+char NormalOf(const std::string& plane) { return plane == "XY" ? 'Z' : plane == "YZ" ? 'X' : 'Y'; }
+
+rig::Course FromFile(const CourseRequest& request, double feed) {
+  if (!std::filesystem::exists(request.course)) {
+    throw InputError(
+        fmt::format("--course {}: no course of this name and no such file; give cube, circle, "
+                    "stepping, square or a CSV file with x_mm,y_mm,z_mm",
+                    request.course));
+  }
+  const Eigen::Matrix3Xd path = relm::ReadNominalPath(request.course);
+  std::vector<Vector3d> points;
+  for (Eigen::Index i = 0; i < path.cols(); ++i) points.emplace_back(path.col(i));
+  return rig::LineCourse(points, feed, 0.0, 1);
+}
+
+rig::Course CourseOf(const CourseRequest& request, const rig::RigSettings& machine) {
+  const Vector3d centre = CentreOf(request, machine);
+  const double feed = request.feed_mm_min * kMillimetreAMinute;
+  const char normal = NormalOf(request.plane);
+  if (request.course == "cube") {
+    const std::vector<double> size = SizeOf(request, {25.0, 25.0, 50.0});
+    const std::vector<int> points = PointsOf(request, {7, 7, 12});
+    return rig::DwellCourse(
+        rig::GridPlaces(centre, {size[0], size[1], size[2]}, {points[0], points[1], points[2]}),
+        feed, request.dwell_s, 1);
+  }
+  if (request.course == "circle") {
+    const double radius = 0.5 * SizeOf(request, {40.0}).front();
+    return rig::CircleCourse({normal, centre, radius, feed, request.passes});
+  }
+  if (request.course == "stepping") {
+    const double length = SizeOf(request, {25.0}).front();
+    const int steps = PointsOf(request, {6}).front() - 1;
+    const Vector3d start = centre - Vector3d::Constant(0.5 * length);
+    return rig::DwellCourse(rig::SteppingPlaces(start, length / steps, steps), feed,
+                            request.dwell_s, 1);
+  }
+  if (request.course == "square") {
+    return rig::SquareCourse(
+        {normal, centre, SizeOf(request, {40.0}).front(), feed, request.passes});
+  }
+  return FromFile(request, feed);
+}
+
+void RefuseBeyondTravels(const rig::Course& course, const rig::RigSettings& machine,
+                         const std::string& name) {
+  constexpr double kRounding = 1e-9;  // m
+  const auto check = [&](const Vector3d& point) {
+    for (int axis = 0; axis < rig::kAxes; ++axis) {
+      const auto [first, last] = machine.travels[static_cast<std::size_t>(axis)];
+      if (point[axis] >= first - kRounding && point[axis] <= last + kRounding) continue;
+      throw InputError(fmt::format(
+          "--course {}: goes to {} {:g} mm, beyond the travel of {:g} to {:g} mm in {}; choose "
+          "another --size or --centre",
+          name, static_cast<char>('X' + axis), 1e3 * point[axis], 1e3 * first, 1e3 * last,
+          machine.name));
+    }
+  };
+  check(course.start);
+  for (const rig::Move& move : course.moves) {
+    for (const Vector3d& point : move.points) check(point);
+  }
+}
+
+}  // namespace
+
+void AddCourseOptions(CLI::App& command, CourseRequest& request) {
+  command.add_option("--course", request.course,
+                     "Of the linkage: cube, circle, stepping, square, or a CSV file of points");
+  command.add_option("--centre", request.centre_mm, "X,Y,Z in mm (default: middle of the travels)")
+      ->delimiter(',')
+      ->expected(3);
+  command
+      .add_option("--size", request.size_mm,
+                  "mm: edges of the cube (25,25,50), diameter (40), length of the stepping line "
+                  "(25), side of the square (40)")
+      ->delimiter(',')
+      ->expected(1, 3)
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--points", request.points,
+                  "Of the cube along each axis (7,7,12), or of a stepping line (6)")
+      ->delimiter(',')
+      ->expected(1, 3)
+      ->check(CLI::Range(2, 1000));
+  command.add_option("--plane", request.plane, "Of the circle or the square")
+      ->check(CLI::IsMember({"XY", "YZ", "ZX"}))
+      ->capture_default_str();
+  command.add_option("--feed", request.feed_mm_min, "mm/min")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--dwell", request.dwell_s, "At each place of cube or stepping, s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--passes", request.passes, "Of circle or square, in each sense")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command.add_option("--kind", request.kind, "Linkage or grid encoder")
+      ->check(CLI::IsMember({"linkage", "reference"}))
+      ->capture_default_str();
+  command.add_flag("--reference", request.reference,
+                   "The grid encoder beside the linkage, in one recording");
+  command.add_option("--cap-force", request.cap_force_n, "Of the magnet in the tool cap, N")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--run", request.run, "Another number gives other noise")
+      ->capture_default_str();
+}
+
+recording::Recording RecordCourse(const rig::LinkageRig& rig, const CourseRequest& request,
+                                  double rate, const std::string& started) {
+  const rig::RigSettings& machine = rig.world().settings();
+  const rig::Course course = CourseOf(request, machine);
+  RefuseBeyondTravels(course, machine, request.course);
+  return rig.Record(
+      course, {request.kind, request.reference, rate, request.cap_force_n, request.run, started});
+}
+
+}  // namespace abbe::apps

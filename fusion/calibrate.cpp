@@ -1,0 +1,255 @@
+#include "fusion/calibrate.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimation/linearization.h"
+#include "failure/failure.h"
+#include "fusion/encoder_check.h"
+#include "fusion/mapping.h"
+
+namespace abbe::fusion {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using estimation::Result;
+using simulation::LinkageRun;
+using simulation::LinkageSimulation;
+using Runs = std::vector<LinkageRun>;
+
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kBadFit = 5.0;         // residuals over noise from which the encoders are suspect
+constexpr double kContradiction = 6.0;  // prior standard deviations
+constexpr double kOnePlace = 1e-4;      // m
+constexpr double kOneLine = 1e-3;       // second over first extent
+
+// Too few poses, or poses that say nothing about a volume.
+void RefusePoorPoses(const Runs& runs, Index free) {
+  Index poses = 0;
+  for (const LinkageRun& run : runs) poses += run.poses();
+  if (3 * poses < free) {
+    throw InputError(fmt::format(
+        "{}: {} poses give {} numbers for {} parameters; record at least {} poses, well spread",
+        runs.front().name, poses, 3 * poses, free, free));
+  }
+  Matrix3Xd all(3, poses);
+  Index at = 0;
+  for (const LinkageRun& run : runs) {
+    all.middleCols(at, run.poses()) = run.reference;
+    at += run.poses();
+  }
+  const Matrix3Xd off = all.colwise() - all.rowwise().mean();
+  const Vector3d extent = off.jacobiSvd().singularValues() / std::sqrt(static_cast<double>(poses));
+  if (extent[0] < kOnePlace) {
+    throw InputError(fmt::format(
+        "{}: all {} poses stand within {:.3g} mm of one place; spread them over the volume to be "
+        "measured",
+        runs.front().name, poses, 1e3 * extent[0]));
+  }
+  if (extent[1] < kOneLine * extent[0]) {
+    throw InputError(fmt::format("{}: all {} poses stand on one line; move the other axes too",
+                                 runs.front().name, poses));
+  }
+}
+
+// The estimate that lies farthest from its nominal value, in prior standard deviations.
+void RefuseContradiction(const Result& fit, double excess) {
+  for (const auto& block : fit.blocks) {
+    for (std::size_t i = 0; i < block.entries.size(); ++i) {
+      const auto& entry = block.entries[i];
+      const double pull = (entry.value - entry.nominal) / entry.prior_sd;
+      if (!(std::abs(pull) > kContradiction * excess)) continue;
+      throw InputError(fmt::format(
+          "calibration: {} comes out at {:.4g} {}, {:.1f} standard deviations from its nominal "
+          "{:.4g}: the data contradict the prior; correct the nominal value or the tolerance in "
+          "[linkage]",
+          block.FullName(i), entry.value / block.unit.si, block.unit.name, pull,
+          entry.nominal / block.unit.si));
+    }
+  }
+}
+
+double Excess(const Result& fit) {
+  double chi_square = 0.0, redundancy = 0.0;
+  for (const auto& source : fit.sources) {
+    if (source.is_prior) continue;
+    chi_square += source.chi_square;
+    redundancy += source.redundancy;
+  }
+  return redundancy > 0.0 ? std::sqrt(std::max(1.0, chi_square / redundancy)) : 1.0;
+}
+
+class CalibrationJob {
+ public:
+  CalibrationJob(const machine::Chain& chain, const relm::LinkageSettings& settings,
+                 const Runs& runs, const CalibrateOptions& options)
+      : settings_(settings),
+        simulation_(chain, settings, relm::MakeLinkageModel(settings, options.model)),
+        runs_(runs),
+        options_(options) {
+    if (options.mapped && (runs.size() != 1)) {
+      throw InputError(fmt::format("mapping takes one recording of a grid, {} given", runs.size()));
+    }
+  }
+
+  CalibrationReport Run() {
+    estimation::Problem problem = MakeLinkageProblem(simulation_, runs_, options_.problem);
+    RefusePoorPoses(runs_, estimation::Layout(problem).columns());
+    CalibrationReport report;
+    report.fit = Solve(problem);
+    report.excess = Excess(report.fit);
+    if (report.excess > kBadFit) CheckAllEncoders();
+    RefuseContradiction(report.fit, report.excess);
+    report.seen = Observe(problem, report.fit);
+    report.calibration = From(report.fit, runs_);
+    report.before = DistancesOf(All(BeforeCalibration()));
+    const auto gaps = Gaps(report.calibration, runs_);
+    report.after = DistancesOf(All(gaps));
+    const auto held_out = HeldOut();
+    report.held_out = DistancesOf(All(held_out));
+    report.calibration.held_out_rms = report.held_out.rms;
+    ListResiduals(gaps, held_out, report);
+    return report;
+  }
+
+ private:
+  using PerRun = std::vector<Matrix3Xd>;
+
+  Result Solve(const estimation::Problem& problem) const {
+    try {
+      return SolveLinkage(problem);
+    } catch (const NumericalError&) {
+      CheckAllEncoders();
+      throw;
+    }
+  }
+
+  void CheckAllEncoders() const {
+    for (const LinkageRun& run : runs_) CheckEncoders(simulation_, run);
+  }
+
+  Calibration From(const Result& fit, const Runs& runs) const {
+    Calibration calibration;
+    calibration.model = options_.model;
+    calibration.displacement = options_.problem.displacement;
+    calibration.mountings = MountingsOf(runs);
+    calibration.blocks = fit.blocks;
+    calibration.names = fit.names;
+    calibration.covariance = fit.covariance;
+    if (options_.mapped) {
+      calibration.mapped =
+          MapParameters(simulation_, runs[0], ParametersOf(fit.blocks, runs[0].mounting));
+    }
+    return calibration;
+  }
+
+  PerRun Gaps(const Calibration& calibration, const Runs& runs) const {
+    const CalibratedLinkage linkage(settings_, calibration);
+    PerRun gaps;
+    for (const LinkageRun& run : runs) {
+      gaps.push_back(linkage.Tips(run.readings, run.mounting) - simulation_.Ball(run));
+    }
+    return gaps;
+  }
+
+  // Displacements of the nominal linkage: only the base position is free.
+  PerRun BeforeCalibration() const {
+    estimation::Problem problem =
+        MakeLinkageProblem(simulation_, runs_, {.displacement = true, .loss = {}});
+    for (std::size_t b = 0; b < problem.blocks().size(); ++b) {
+      problem.Block({static_cast<int>(b)}).Hold();
+    }
+    for (const std::string& mounting : MountingsOf(runs_)) {
+      problem.Block(problem.Find(BaseBlock(mounting))).Free();
+    }
+    Calibration nominal;
+    nominal.model = options_.model;
+    nominal.mountings = MountingsOf(runs_);
+    nominal.displacement = true;
+    nominal.blocks = SolveLinkage(problem).blocks;
+    return Gaps(nominal, runs_);
+  }
+
+  PerRun HeldOut() const {
+    PerRun gaps;
+    for (const LinkageRun& run : runs_) {
+      gaps.emplace_back(Matrix3Xd::Constant(3, run.poses(), kNotANumber));
+    }
+    for (int fold = 0; options_.folds > 1 && fold < options_.folds; ++fold) {
+      Runs rest, left_out;
+      std::vector<std::vector<Index>> chosen;
+      for (const LinkageRun& run : runs_) {
+        std::vector<Index> in, out;
+        for (Index pose = 0; pose < run.poses(); ++pose) {
+          (pose * options_.folds / run.poses() == fold ? out : in).push_back(pose);
+        }
+        rest.push_back(Selection(run, in));
+        left_out.push_back(Selection(run, out));
+        chosen.push_back(out);
+      }
+      const auto fit = SolveLinkage(MakeLinkageProblem(simulation_, rest, options_.problem));
+      const PerRun fold_gaps = Gaps(From(fit, rest), left_out);
+      for (std::size_t r = 0; r < runs_.size(); ++r) gaps[r](Eigen::all, chosen[r]) = fold_gaps[r];
+    }
+    return gaps;
+  }
+
+  static Matrix3Xd All(const PerRun& gaps) {
+    Index poses = 0;
+    for (const auto& run : gaps) poses += run.cols();
+    Matrix3Xd all(3, poses);
+    Index at = 0;
+    for (const auto& run : gaps) {
+      all.middleCols(at, run.cols()) = run;
+      at += run.cols();
+    }
+    return all;
+  }
+
+  void ListResiduals(const PerRun& gaps, const PerRun& held_out, CalibrationReport& report) const {
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      const Matrix3Xd noise = simulation_.GapNoise(runs_[r]);
+      for (Index pose = 0; pose < runs_[r].poses(); ++pose) {
+        const Eigen::Matrix3d factor = noise.middleCols<3>(3 * pose);
+        const Vector3d white = factor.triangularView<Eigen::Lower>().solve(gaps[r].col(pose));
+        report.residuals.push_back({r, pose, runs_[r].rows[static_cast<std::size_t>(pose)],
+                                    gaps[r].col(pose), held_out[r].col(pose),
+                                    white.cwiseAbs().maxCoeff()});
+      }
+    }
+    for (const PoseResidual& residual : report.residuals) {
+      if (residual.normalised > estimation::kOutlierAt * report.excess) {
+        report.outliers.push_back(residual);
+      }
+    }
+    std::sort(report.outliers.begin(), report.outliers.end(),
+              [](const auto& a, const auto& b) { return a.normalised > b.normalised; });
+  }
+
+  const relm::LinkageSettings& settings_;
+  LinkageSimulation simulation_;
+  const Runs& runs_;
+  CalibrateOptions options_;
+};
+
+}  // namespace
+
+Distances DistancesOf(const Matrix3Xd& gaps) {
+  if (gaps.cols() == 0) return {kNotANumber, kNotANumber};
+  const VectorXd squares = gaps.colwise().squaredNorm();
+  return {std::sqrt(squares.mean()), std::sqrt(squares.maxCoeff())};
+}
+
+CalibrationReport Calibrate(const machine::Chain& chain, const relm::LinkageSettings& settings,
+                            const Runs& runs, const CalibrateOptions& options) {
+  return CalibrationJob(chain, settings, runs, options).Run();
+}
+
+}  // namespace abbe::fusion

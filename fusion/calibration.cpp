@@ -1,0 +1,84 @@
+#include "fusion/calibration.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "failure/failure.h"
+#include "fusion/linkage_problem.h"
+#include "fusion/mapping.h"
+#include "relm/tip_path.h"
+#include "simulation/linkage_run.h"
+#include "simulation/linkage_simulation.h"
+
+namespace abbe::fusion {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+CalibratedLinkage::CalibratedLinkage(const relm::LinkageSettings& settings, Calibration calibration)
+    : calibration_(std::move(calibration)),
+      model_(relm::MakeLinkageModel(settings, calibration_.model)),
+      nominal_X_MB_(settings.X_MB) {
+  if (calibration_.mountings.empty()) throw InputError("calibration: has no mounting of the base");
+  for (const std::string& mounting : calibration_.mountings) {
+    x_.push_back(ParametersOf(calibration_.blocks, mounting));
+    if (x_.back().size() != simulation::LinkageSimulation::kBase + model_.parameters()) {
+      throw InputError(fmt::format(
+          "calibration: {} parameters, but model \"{}\" of this machine file has {}; calibrate "
+          "again with this machine file",
+          x_.back().size() - simulation::LinkageSimulation::kBase, model_.name(),
+          model_.parameters()));
+    }
+  }
+}
+
+std::size_t CalibratedLinkage::IndexOf(const std::string& mounting, bool strict) const {
+  const auto& names = calibration_.mountings;
+  const auto at = std::find(names.begin(), names.end(), mounting);
+  if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
+  if (!strict) return 0;
+  throw InputError(fmt::format(
+      "calibration: knows no mounting \"{}\" of the base, only \"{}\"; calibrate with a recording "
+      "of that mounting",
+      mounting, fmt::join(names, "\", \"")));
+}
+
+geometry::Transform<double> CalibratedLinkage::X_MB(const std::string& mounting,
+                                                    bool strict) const {
+  return simulation::BaseAt(nominal_X_MB_, x_[IndexOf(mounting, strict)].head<6>());
+}
+
+Matrix3Xd CalibratedLinkage::Tips(const relm::LinkageReadings& readings,
+                                  const std::string& mounting, bool strict) const {
+  const VectorXd values = x_[IndexOf(mounting, strict)].tail(model_.parameters());
+  const auto X_MB = this->X_MB(mounting, strict);
+  if (calibration_.mapped) {
+    return BlendedTips(model_, X_MB, values, *calibration_.mapped, readings);
+  }
+  Matrix3Xd p_BT;
+  model_.Tips(readings, values, p_BT);
+  return relm::InFrame(X_MB, p_BT);
+}
+
+Matrix3Xd CalibratedLinkage::StandardUncertainties(const relm::LinkageReadings& readings,
+                                                   const std::string& mounting) const {
+  const VectorXd& x = x_[IndexOf(mounting, true)];
+  const auto columns = ColumnsOf(calibration_.blocks, mounting, calibration_.names);
+  Matrix3Xd p_BT;
+  estimation::RowMatrix J_tip_x, J;
+  model_.Tips(readings, x.tail(model_.parameters()), p_BT, &J_tip_x);
+  simulation::JacobianInMachine(nominal_X_MB_, x, p_BT, J_tip_x, J);
+  MatrixXd J_free = MatrixXd::Zero(J.rows(), calibration_.covariance.cols());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i] >= 0) J_free.col(columns[i]) = J.col(static_cast<Index>(i));
+  }
+  const VectorXd variance = (J_free * calibration_.covariance).cwiseProduct(J_free).rowwise().sum();
+  return variance.cwiseSqrt().reshaped(3, readings.poses());
+}
+
+}  // namespace abbe::fusion

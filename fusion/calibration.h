@@ -1,0 +1,82 @@
+// A calibrated linkage: the estimates that turn encoder readings into ball positions.
+//
+//   const Calibration calibration = ReadCalibration("linkage.toml", settings);
+//   const CalibratedLinkage linkage(settings, calibration);
+//   const Eigen::Matrix3Xd p_MT = linkage.Tips(readings);       // readings: relm/tip_path.h
+//
+// Where the calibration is mapped, the ball position of a pose is blended from the parameter sets
+// of the cells around it: p = sum of w_c(p_global) p(readings; x_c), where the weights w_c are the
+// trilinear ones of the grid of cell centres, clamped at its border. They are continuous and sum
+// to 1, so the corrected path is continuous.
+//
+// Frames: M, the machine frame as the workpiece carries it (relm/linkage_settings.h); B, the base;
+// T, the ball. Units: m, rad. Shapes: one column per pose.
+// Failure: InputError when the calibration is of another model than it says, lacks the mounting, or
+// does not fit the linkage of the machine file. Validity: inside the calibrated volume; outside it
+// the uncertainty grows without a warning other than StandardUncertainties.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimation/parameter.h"
+#include "relm/linkage_settings.h"
+
+namespace abbe::fusion {
+
+// Local parameter sets on a grid of cell centres, in M; the index runs over z fastest, then y, x.
+struct MappedParameters {
+  std::array<std::vector<double>, 3> centres;  // m, ascending
+  std::vector<Eigen::VectorXd> values;         // of the model's parameters, one set per centre
+};
+
+struct Calibration {
+  std::string machine;  // name of the machine
+  relm::ErrorModel model = relm::ErrorModel::kComplete;
+  bool displacement = false;  // base position known from the data only
+  // Of each mounting "base" and "base_turn" (for a mounting with a name "base NAME"), then those of
+  // the model; with values and uncertainties.
+  std::vector<std::string> mountings;
+  std::vector<estimation::ParameterBlock> blocks;
+  std::vector<std::string> names;  // of the free parameters
+  Eigen::MatrixXd covariance;      // of the free parameters
+  std::optional<MappedParameters> mapped;
+  double held_out_rms = std::numeric_limits<double>::quiet_NaN();  // m, 3D
+};
+
+// Names of the blocks of the base: position [x y z] in M, turn [a b c] in B.
+std::string BaseBlock(const std::string& mounting);
+std::string BaseTurnBlock(const std::string& mounting);
+
+class CalibratedLinkage {
+ public:
+  CalibratedLinkage(const relm::LinkageSettings& settings, Calibration calibration);
+
+  const Calibration& calibration() const { return calibration_; }
+  const relm::LinkageModel& model() const { return model_; }
+  // The base of a mounting. The first one stands in for a name that the calibration does not have
+  // when `strict` is false: displacements then still hold.
+  geometry::Transform<double> X_MB(const std::string& mounting, bool strict = true) const;
+
+  // p_MT of each pose.
+  Eigen::Matrix3Xd Tips(const relm::LinkageReadings& readings, const std::string& mounting = "",
+                        bool strict = true) const;
+  // Of each coordinate of Tips from the calibration alone (global parameters), without the noise of
+  // the readings.
+  Eigen::Matrix3Xd StandardUncertainties(const relm::LinkageReadings& readings,
+                                         const std::string& mounting = "") const;
+
+ private:
+  std::size_t IndexOf(const std::string& mounting, bool strict) const;
+
+  Calibration calibration_;
+  relm::LinkageModel model_;
+  geometry::Transform<double> nominal_X_MB_;
+  std::vector<Eigen::VectorXd> x_;  // of LinkageSimulation, for each mounting
+};
+
+}  // namespace abbe::fusion

@@ -1,0 +1,228 @@
+#include "fusion/calibration_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "failure/failure.h"
+#include "settings/document.h"
+#include "simulation/linkage_simulation.h"
+
+namespace abbe::fusion {
+namespace {
+
+using Eigen::Index;
+using estimation::Parameter;
+using estimation::ParameterBlock;
+using relm::ErrorModel;
+using settings::Table;
+
+constexpr std::int64_t kFormat = 1;
+constexpr std::array kAxes{"x_mm", "y_mm", "z_mm"};
+constexpr std::array<std::pair<const char*, ErrorModel>, 4> kModels{{
+    {"pivots", ErrorModel::kPivots},
+    {"published", ErrorModel::kPublished},
+    {"published with bearing", ErrorModel::kPublishedWithBearing},
+    {"complete", ErrorModel::kComplete},
+}};
+
+std::string Quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char letter : text) {
+    if (letter == '"' || letter == '\\') quoted += '\\';
+    quoted += letter;
+  }
+  return quoted + '"';
+}
+
+std::string QuotedList(const std::vector<std::string>& texts) {
+  std::vector<std::string> quoted;
+  for (const std::string& text : texts) quoted.push_back(Quoted(text));
+  return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+// As TOML writes it: a float, in the shortest form that reads back the same.
+std::string Float(double value) {
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  if (std::isnan(value)) return "nan";
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+template <typename Values>
+std::string Floats(const Values& values, double si) {
+  std::vector<std::string> texts;
+  for (const double value : values) texts.push_back(Float(value / si));
+  return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+std::string ParameterText(const ParameterBlock& block, std::size_t i) {
+  const Parameter& entry = block.entries[i];
+  const auto printed = [&](double value) { return Float(value / block.unit.si); };
+  return fmt::format(
+      "\n[[parameter]]\nname = {}\nunit = {}\nvalue = {}\nuncertainty = {}\nnominal = {}\n"
+      "prior = {}\nheld = {}\n",
+      Quoted(block.FullName(i)), Quoted(block.unit.name), printed(entry.value),
+      printed(entry.uncertainty), printed(entry.nominal), printed(entry.prior_sd), entry.held);
+}
+
+std::string MappedText(const MappedParameters& mapped) {
+  std::string text = "\n[mapped]\n";
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    text += fmt::format("{} = {}\n", kAxes[axis], Floats(mapped.centres[axis], 1e-3));
+  }
+  for (const auto& values : mapped.values) {
+    text += fmt::format("[[mapped.cell]]\nvalues = {}\n", Floats(values, 1.0));
+  }
+  return text;
+}
+
+void ReadParameter(const Table& table, ParameterBlock& block, std::size_t i) {
+  const std::string name = table.Text("name");
+  if (name != block.FullName(i)) {
+    throw table.Error("name", fmt::format("is \"{}\" where this machine file has \"{}\"; calibrate "
+                                          "again with this machine file",
+                                          name, block.FullName(i)));
+  }
+  const std::string unit = table.Text("unit");
+  if (unit != block.unit.name) {
+    throw table.Error("unit", fmt::format("must be \"{}\"", block.unit.name));
+  }
+  Parameter& entry = block.entries[i];
+  const auto number = [&](const char* key) { return table.Number(key) * block.unit.si; };
+  entry.value = number("value");
+  if (!std::isfinite(entry.value)) throw table.Error("value", "must be a number");
+  entry.uncertainty = number("uncertainty");
+  entry.nominal = number("nominal");
+  entry.prior_sd = number("prior");
+  entry.held = table.Truth("held", false);
+  table.RefuseUnknown();
+}
+
+void ReadCovariance(const Table& table, Calibration& calibration) {
+  calibration.names = table.Texts("names", 0);
+  const auto n = static_cast<Index>(calibration.names.size());
+  const auto rows = table.Quantities("rows", calibration.names.size() * calibration.names.size());
+  calibration.covariance = Eigen::Map<const Eigen::MatrixXd>(rows.data(), n, n);
+  table.RefuseUnknown();
+}
+
+MappedParameters ReadMapped(const Table& table, Index parameters) {
+  MappedParameters mapped;
+  std::size_t cells = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    mapped.centres[axis] = table.Quantities(kAxes[axis], 0);
+    cells *= mapped.centres[axis].size();
+  }
+  for (const Table& cell : table.Children("cell")) {
+    const auto values = cell.Quantities("values", static_cast<std::size_t>(parameters));
+    mapped.values.emplace_back(Eigen::Map<const Eigen::VectorXd>(values.data(), parameters));
+    cell.RefuseUnknown();
+  }
+  if (mapped.values.size() != cells || cells == 0) {
+    throw table.Error("cell",
+                      fmt::format("has {} cells for {} centres", mapped.values.size(), cells));
+  }
+  table.RefuseUnknown();
+  return mapped;
+}
+
+}  // namespace
+
+std::string ErrorModelName(ErrorModel model) {
+  for (const auto& [name, value] : kModels) {
+    if (value == model) return name;
+  }
+  throw InputError("calibration: unknown error model");
+}
+
+ErrorModel ErrorModelNamed(const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& [known, value] : kModels) {
+    if (name == known) return value;
+    names.push_back(Quoted(known));
+  }
+  throw InputError(fmt::format("\"{}\" is no error model of the linkage; write {}", name,
+                               fmt::join(names, ", ")));
+}
+
+void WriteCalibration(const Calibration& calibration, const std::filesystem::path& path) {
+  std::string text = fmt::format(
+      "# A calibration of the linkage, written by abbe calibrate.\nformat = {}\nmachine = {}\n"
+      "model = {}\ndisplacement = {}\nmountings = {}\nheld_out_rms_um = {}\n",
+      kFormat, Quoted(calibration.machine), Quoted(ErrorModelName(calibration.model)),
+      calibration.displacement, QuotedList(calibration.mountings),
+      Float(calibration.held_out_rms / 1e-6));
+  for (const ParameterBlock& block : calibration.blocks) {
+    for (std::size_t i = 0; i < block.entries.size(); ++i) text += ParameterText(block, i);
+  }
+  text += fmt::format("\n[covariance]\nnames = {}\nrows = {}\n", QuotedList(calibration.names),
+                      Floats(calibration.covariance.reshaped(), 1.0));
+  if (calibration.mapped) text += MappedText(*calibration.mapped);
+
+  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
+  const std::filesystem::path temporary = path.string() + ".part";
+  std::ofstream out(temporary, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) {
+    throw InputError(
+        fmt::format("{}: cannot be written; name a file in a folder that can", path.string()));
+  }
+  std::filesystem::rename(temporary, path);
+}
+
+Calibration ReadCalibration(const std::filesystem::path& path,
+                            const relm::LinkageSettings& settings) {
+  const auto document = settings::Document::Read(path);
+  const Table root = document.Root();
+  if (root.Integer("format") != kFormat) {
+    throw root.Error("format", "is of another version of abbe; calibrate again");
+  }
+  Calibration calibration;
+  calibration.machine = root.Text("machine");
+  calibration.model = ErrorModelNamed(root.Text("model"));
+  calibration.displacement = root.Truth("displacement", false);
+  calibration.mountings = root.Texts("mountings", 0);
+  calibration.held_out_rms = root.Quantity("held_out_rms_um");
+  for (const std::string& mounting : calibration.mountings) {
+    auto base = simulation::BaseBlocks(settings);
+    base[0].name = BaseBlock(mounting);
+    base[1].name = BaseTurnBlock(mounting);
+    calibration.blocks.insert(calibration.blocks.end(), base.begin(), base.end());
+  }
+  const auto model = relm::MakeLinkageModel(settings, calibration.model);
+  calibration.blocks.insert(calibration.blocks.end(), model.blocks().begin(), model.blocks().end());
+  const auto tables = root.Children("parameter");
+  std::size_t at = 0;
+  for (ParameterBlock& block : calibration.blocks) {
+    for (std::size_t i = 0; i < block.entries.size(); ++i, ++at) {
+      if (at == tables.size()) {
+        throw root.Error("parameter", fmt::format("lacks {} of this machine file; calibrate again "
+                                                  "with it",
+                                                  block.FullName(i)));
+      }
+      ReadParameter(tables[at], block, i);
+    }
+  }
+  if (at != tables.size()) {
+    throw root.Error("parameter", fmt::format("holds {} parameters, this machine file has {}; "
+                                              "calibrate again with it",
+                                              tables.size(), at));
+  }
+  ReadCovariance(root.Child("covariance"), calibration);
+  if (root.Has("mapped")) {
+    calibration.mapped = ReadMapped(root.Child("mapped"), model.parameters());
+  }
+  root.RefuseUnknown();
+  return calibration;
+}
+
+}  // namespace abbe::fusion

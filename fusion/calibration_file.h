@@ -1,0 +1,49 @@
+// The file of a calibration: TOML, written by `abbe calibrate`, read by whatever measures with the
+// linkage.
+//
+//   format = 1
+//   machine = "demo-mill"
+//   model = "complete"            # "pivots", "published", "published with bearing", "complete"
+//   displacement = false
+//   mountings = [""]
+//   held_out_rms_um = 0.74
+//   [[parameter]]                 # every parameter in the order of the model, the bases first
+//   name = "tilt.pivot_1_u"
+//   value = 312.4                 # in `unit`, so is all of this table
+//   uncertainty = 4.1             # inf: not determined
+//   nominal = 0.0
+//   prior = 500.0
+//   held = false
+//   unit = "urad"
+//   [covariance]
+//   names = [...]                 # free parameters
+//   rows = [...]                  # row after row, SI
+//   [mapped]                      # with --mapped only
+//   x_mm = [...]  y_mm = [...]  z_mm = [...]      # cell centres
+//   [[mapped.cell]]               # z runs fastest, then y, then x
+//   values = [...]                # SI, parameters of the model
+//
+// Numbers are written in full: read back they differ by the rounding of the unit, 2e-16.
+// Failure: InputError with file, line and key; for a parameter that is missing, unknown or out of
+// order, the message names it.
+#pragma once
+
+#include <filesystem>
+
+#include "fusion/calibration.h"
+
+namespace abbe::fusion {
+
+// Under a temporary name first, then renamed. Missing folders are made.
+void WriteCalibration(const Calibration& calibration, const std::filesystem::path& path);
+
+// `settings` gives the model its blocks, with units and names; values come from the file.
+Calibration ReadCalibration(const std::filesystem::path& path,
+                            const relm::LinkageSettings& settings);
+
+// "complete" <-> ErrorModel::kComplete and so on: LinkageModel::name().
+std::string ErrorModelName(relm::ErrorModel model);
+// InputError that lists the names.
+relm::ErrorModel ErrorModelNamed(const std::string& name);
+
+}  // namespace abbe::fusion

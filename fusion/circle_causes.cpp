@@ -1,0 +1,231 @@
+#include "fusion/circle_causes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "estimation/problem.h"
+#include "failure/failure.h"
+#include "standards/circle.h"
+#include "standards/circle_signatures.h"
+
+namespace abbe::fusion {
+namespace {
+
+using estimation::Problem;
+using relm::CirclePoint;
+using relm::CircleRun;
+using Runs = std::vector<const CircleRun*>;
+using standards::Signature;
+
+constexpr std::size_t kSectors = 36;  // whose means tell what neighbouring rows share
+// m: the first guess of the noise, so small that the priors do not pull; no instrument of a
+// machine shop has less.
+constexpr double kLeastNoise = 10e-9;
+constexpr double kSameRadius = 10e-6;
+constexpr double kLargePart = 0.3;  // of a weak direction of length 1
+
+bool IsCentre(const Signature& signature) { return signature.cause == "centre"; }
+
+std::string Name(const Signature& signature) { return signature.cause + "." + signature.object; }
+
+void CheckRuns(const Runs& runs) {
+  if (runs.empty()) throw InputError("no circle to find the causes of");
+  for (const CircleRun* run : runs) {
+    if (run->plane.Inclined()) {
+      throw InputError(fmt::format(
+          "{}: the circle lies in no plane of two axes: its causes cannot be told by axis",
+          run->recordings.front()));
+    }
+    if (run->plane.name != runs.front()->plane.name ||
+        run->instrument != runs.front()->instrument ||
+        std::abs(run->radius - runs.front()->radius) > kSameRadius) {
+      throw InputError(
+          fmt::format("{} and {}: circles of another plane, radius or instrument: fit each alone",
+                      runs.front()->recordings.front(), run->recordings.front()));
+    }
+  }
+}
+
+std::vector<Signature> SignaturesOf(const CircleRun& run, const CauseOptions& options) {
+  return standards::CircleSignatures({.first = run.plane.name[0],
+                                      .second = run.plane.name[1],
+                                      .first_centre = run.plane.first.dot(run.centre),
+                                      .second_centre = run.plane.second.dot(run.centre),
+                                      .pitch = options.pitch,
+                                      .spike_width = options.spike_width});
+}
+
+double Radial(const CirclePoint& point, double radius) {
+  return std::hypot(point.first, point.second) - radius;
+}
+
+// Radial deviations of a run, and the derivatives by the centre and by each cause.
+struct Equations {
+  Eigen::MatrixXd centre, causes;
+  Eigen::VectorXd radial;
+};
+
+Equations EquationsOf(const CircleRun& run, const CauseOptions& options) {
+  const std::vector<Signature> table = SignaturesOf(run, options);
+  const auto n = static_cast<Eigen::Index>(run.points.size());
+  const auto centres = std::ranges::count_if(table, IsCentre);
+  Equations equations{Eigen::MatrixXd(n, centres),
+                      Eigen::MatrixXd(n, static_cast<Eigen::Index>(table.size()) - centres),
+                      Eigen::VectorXd(n)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const CirclePoint& point = run.points[static_cast<std::size_t>(i)];
+    const standards::CirclePoint at{point.angle, static_cast<double>(point.sense), run.radius,
+                                    run.feed};
+    Eigen::Index centre = 0, cause = 0;
+    for (const Signature& signature : table) {
+      (IsCentre(signature) ? equations.centre(i, centre++) : equations.causes(i, cause++)) =
+          signature.radial(at);
+    }
+    // The distance to the set-up centre; what the square of the centre's offset adds to it is no
+    // deviation of the path.
+    equations.radial[i] = Radial(point, run.radius);
+  }
+  return equations;
+}
+
+// About the least-squares centre instead of the set-up centre, so that the centre's offset stays
+// small and its square does not matter.
+CircleRun Centred(const CircleRun& run) {
+  std::vector<double> x, y;
+  for (const CirclePoint& point : run.points) {
+    x.push_back(point.first);
+    y.push_back(point.second);
+  }
+  const auto circle = standards::ReferenceCircle(standards::CircleKind::kLeastSquares, x, y);
+  CircleRun centred = run;
+  for (CirclePoint& point : centred.points) {
+    point.first -= circle.x;
+    point.second -= circle.y;
+  }
+  return centred;
+}
+
+struct Fit {
+  estimation::Result result;
+  std::vector<Eigen::VectorXd> residuals;  // of each run
+};
+
+Fit Solve(const std::vector<Equations>& equations, const std::vector<Signature>& causes,
+          double deviation) {
+  Problem problem;
+  std::vector<estimation::Parameter> entries;
+  entries.reserve(causes.size());
+  for (const Signature& cause : causes) {
+    entries.push_back({Name(cause), 0.0, cause.usual, 0.0});
+  }
+  const auto block = problem.Add({"cause", {"", 1.0}, entries});
+  for (std::size_t run = 0; run < equations.size(); ++run) {
+    const Equations& one = equations[run];
+    const auto centre =
+        problem.Add({fmt::format("centre_{}", run), {"um", 1e-6}, {{"first"}, {"second"}}});
+    Eigen::MatrixXd A(one.radial.size(), one.causes.cols() + one.centre.cols());
+    A << one.causes, one.centre;
+    problem.Add(problem.AddSource(fmt::format("run {}", run + 1)),
+                std::make_shared<estimation::LinearResidual>(std::move(A), one.radial),
+                {block, centre}, deviation);
+  }
+  Fit fit{problem.Solve(), {}};
+  if (!fit.result.Usable()) throw NumericalError(fit.result.WhyNotUsable());
+  const Eigen::VectorXd x = fit.result.Block("cause").Values();
+  for (std::size_t run = 0; run < equations.size(); ++run) {
+    const Equations& one = equations[run];
+    const Eigen::VectorXd c = fit.result.Block(fmt::format("centre_{}", run)).Values();
+    fit.residuals.emplace_back(one.radial - one.causes * x - one.centre * c);
+  }
+  return fit;
+}
+
+double Rms(const std::vector<Eigen::VectorXd>& residuals) {
+  double squares = 0.0, n = 0.0;
+  for (const Eigen::VectorXd& one : residuals) {
+    squares += one.squaredNorm();
+    n += static_cast<double>(one.size());
+  }
+  return std::sqrt(squares / n);
+}
+
+// By how much the means of sectors scatter more than those of independent rows would: at least 1.
+double Correlated(const Runs& runs, const std::vector<Eigen::VectorXd>& residuals, double rms) {
+  double excess = 0.0, sectors = 0.0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    std::array<std::array<double, kSectors>, 2> sums{}, counts{};
+    for (std::size_t i = 0; i < runs[r]->points.size(); ++i) {
+      const CirclePoint& point = runs[r]->points[i];
+      const double part = point.angle / (2 * std::numbers::pi) + 0.5;
+      const std::size_t sector =
+          std::min(kSectors - 1, static_cast<std::size_t>(std::max(0.0, part) * kSectors));
+      const std::size_t sense = point.sense > 0 ? 1 : 0;
+      sums[sense][sector] += residuals[r][static_cast<Eigen::Index>(i)];
+      counts[sense][sector] += 1.0;
+    }
+    for (std::size_t sense = 0; sense < 2; ++sense) {
+      for (std::size_t k = 0; k < kSectors; ++k) {
+        if (counts[sense][k] == 0.0) continue;
+        excess += sums[sense][k] * sums[sense][k] / counts[sense][k];
+        sectors += 1.0;
+      }
+    }
+  }
+  return rms > 0.0 ? std::sqrt(std::max(1.0, excess / sectors / (rms * rms))) : 1.0;
+}
+
+// The data tell the parameter, and not only a sum with another that they cannot take apart.
+bool SeenByData(const estimation::Result& result, const std::string& name) {
+  if (result.Seen(name) != estimation::SeenBy::kData) return false;
+  const auto at = std::ranges::find(result.names, name) - result.names.begin();
+  return std::ranges::none_of(result.weak_directions, [&](const estimation::WeakDirection& weak) {
+    return std::abs(weak.coefficients[at]) > kLargePart;
+  });
+}
+
+}  // namespace
+
+CircleCauses FitCircleCauses(const Runs& runs, const CauseOptions& options) {
+  CheckRuns(runs);
+  std::vector<Signature> table = SignaturesOf(*runs.front(), options);
+  std::erase_if(table, IsCentre);
+  std::vector<Equations> equations;
+  CircleCauses found;
+  std::vector<Eigen::VectorXd> before;
+  for (const CircleRun* run : runs) {
+    equations.push_back(EquationsOf(Centred(*run), options));
+    const Eigen::VectorXd& radial = equations.back().radial;
+    before.emplace_back(radial.array() - radial.mean());
+  }
+  found.rms_before = Rms(before);
+  const Fit first = Solve(equations, table, kLeastNoise);
+  const double rms = std::max(Rms(first.residuals), kLeastNoise);
+  found.correlated = Correlated(runs, first.residuals, rms);
+  const Fit fit = Solve(equations, table, rms * found.correlated);
+  found.rms_after = Rms(fit.residuals);
+  found.covariance = fit.result.Covariance("cause", "cause");
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const std::string name = "cause." + Name(table[i]);
+    CauseEstimate estimate{table[i].cause, table[i].object, table[i].unit, fit.result.Value(name),
+                           fit.result.Uncertainty(name)};
+    for (const Equations& one : equations) {
+      estimate.effect = std::max(
+          estimate.effect, std::abs(estimate.value) *
+                               one.causes.col(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff());
+    }
+    estimate.seen = SeenByData(fit.result, name);
+    found.causes.push_back(std::move(estimate));
+  }
+  for (const auto& weak : fit.result.weak_directions) found.weak_directions.push_back(weak.words);
+  for (const Eigen::VectorXd& one : fit.residuals) {
+    found.residuals.emplace_back(one.begin(), one.end());
+  }
+  return found;
+}
+
+}  // namespace abbe::fusion

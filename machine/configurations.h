@@ -1,0 +1,34 @@
+// The machine configurations of the volumetric error lecture, by name.
+//
+// The lecture names and draws seven; its text gives a kinematic chain for the column type only. The
+// chains of the others are the project's reading of the names: the bridge types move the bridge
+// along Y over a table that stands still, the fixed bridge moves the table, the arm types move the
+// arm or the table along X. A column takes the table along X on Y.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "machine/chain.h"
+
+namespace abbe::machine {
+
+struct Configuration {
+  std::string_view name;
+  std::string_view chain;
+};
+
+inline constexpr std::array<Configuration, 7> kConfigurations = {{
+    {"column", "[w X Y b Z t]"},
+    {"moving-bridge", "[w b Y X Z t]"},
+    {"gantry", "[w b Y X Z t]"},
+    {"l-shaped-bridge", "[w b Y X Z t]"},
+    {"fixed-bridge", "[w Y b X Z t]"},
+    {"moving-horizontal-arm", "[w b X Z Y t]"},
+    {"fixed-horizontal-arm", "[w X b Z Y t]"},
+}};
+
+// The chain of a configuration. InputError lists the names.
+Chain ChainOf(std::string_view configuration);
+
+}  // namespace abbe::machine

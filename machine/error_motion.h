@@ -1,0 +1,20 @@
+// The 18 error motions of three linear axes and their names after ISO 230-1.
+//
+// Order everywhere: axis 0, 1, 2 is X, Y, Z; motion 0 to 5 of every axis is the translation along
+// x, y, z and the turn about x, y, z, right-handed, in the machine frame. Of Y: [EXY EYY EZY EAY
+// EBY ECY]. Units: m and rad. Error = actual - nominal.
+#pragma once
+
+#include <string>
+
+namespace abbe::machine {
+
+inline constexpr int kAxes = 3;
+inline constexpr int kMotions = 6;
+
+// "EBX" of axis 0, motion 4.
+inline std::string MotionName(int axis, int motion) { return {'E', "XYZABC"[motion], "XYZ"[axis]}; }
+
+inline bool IsStraightness(int axis, int motion) { return motion < 3 && motion != axis; }
+
+}  // namespace abbe::machine

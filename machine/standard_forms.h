@@ -1,0 +1,31 @@
+// The linear forms of an error function: B-spline, table, polynomial, Fourier series.
+//
+// Coefficients have the unit of the function (m or rad).
+//   b-spline     c_i B_i(x) on the basis
+//   table        c_i is the value at positions[i], straight lines between: the B-spline of degree 1
+//   polynomial   c_k T_k(u), Chebyshev, u = -1 ... 1 over [a, b], k = 0 ... degree
+//   fourier      [s_1 c_1 s_2 c_2 ...]: s_k sin(2 pi k x / period) + c_k cos(2 pi k x / period)
+// Failure: InputError for fewer than two positions or positions that do not increase, an empty
+// interval, a degree outside 0 ... kMaxPolynomialDegree, a period not above 0, fewer than one
+// harmonic. The makers hand the form on as shared: many functions may use one.
+// Source: Abramowitz and Stegun, 22.3.15 for T_k(cos t) = cos(k t), evaluated by recurrence.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "geometry/b_spline.h"
+#include "machine/function_form.h"
+
+namespace abbe::machine {
+
+inline constexpr int kMaxPolynomialDegree = 30;
+
+using SharedForm = std::shared_ptr<const FunctionForm>;
+
+SharedForm MakeBSplineForm(geometry::BSplineBasis basis);
+SharedForm MakeTableForm(const std::vector<double>& positions);
+SharedForm MakePolynomialForm(int degree, double a, double b);
+SharedForm MakeFourierForm(int harmonics, double period);
+
+}  // namespace abbe::machine

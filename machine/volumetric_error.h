@@ -1,0 +1,100 @@
+// The volumetric error: where the tool is, seen from the workpiece, minus where it should be. Exact
+// for any chain of three linear axes; the whole model stands on this page.
+//
+// Frames, all in one place and parallel to M when the axes are at zero: W the workpiece, T the tool
+// body, and one carriage for each axis, all with their origin in the machine's reference point. The
+// bed is M. The tool vector p_TQ is the tool point Q seen from that origin.
+// Position: [X Y Z] as commanded, m. An axis between b and t takes the tool towards +, one between
+// w and b takes the workpiece towards +, so the tool then moves the other way in W.
+// Units: m, rad. T: double, or dual numbers for derivatives.
+// Failure: none; a value that is not finite passes through.
+//
+//   carriage       X_ab = { R = exp([EA EB EC]),  p = q l + [EX EY EZ] }      b on a, a first the
+//   bed lines          l_X = x,  l_Y = exp(C0Y z) y,  l_Z = exp(A0Z x + B0Z y) z workpiece X_MW =
+//   product of the carriages from b to w tool body      X_MT = product of the carriages from b to t
+//   error          p_WQ - nominal = X_MW^-1 X_MT p_TQ - (p_TQ +- positions)
+//
+// The X line is the primary and the XY plane the secondary: C0Y turns the Y line about +z, A0Z and
+// B0Z turn the Z line about +x and +y (signs of standards/squareness.h).
+// Source: own product of full rotations; to first order it is the column machine of the volumetric
+// error lecture and equations 20 and 21 of Ha and Khanh (2011), docs/theory-volumetric.md.
+// Validity: rigid bodies whose errors depend on their own axis only.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+
+#include "geometry/transform.h"
+#include "machine/chain.h"
+#include "machine/error_motion.h"
+
+namespace abbe::machine {
+
+template <typename T>
+struct MotionErrors {
+  std::array<geometry::ErrorVector<T>, kAxes> axes;          // of X, Y, Z at their positions
+  Eigen::Vector3<T> squareness = Eigen::Vector3<T>::Zero();  // [A0Z B0Z C0Y]
+
+  MotionErrors() { axes.fill(geometry::ErrorVector<T>::Zero()); }
+};
+
+// The turn of the line of an axis away from its nominal direction: a rotation vector.
+template <typename T>
+Eigen::Vector3<T> LineTurn(int axis, const Eigen::Vector3<T>& squareness) {
+  if (axis == 0) return {T(0), T(0), T(0)};
+  if (axis == 1) return {T(0), T(0), squareness.z()};
+  return {squareness.x(), squareness.y(), T(0)};
+}
+
+template <typename T>
+Eigen::Vector3<T> LineOf(int axis, const Eigen::Vector3<T>& squareness) {
+  return geometry::ExpRotation<T>(LineTurn<T>(axis, squareness)).col(axis);
+}
+
+template <typename T>
+geometry::Transform<T> CarriagePose(int axis, const T& position, const MotionErrors<T>& errors) {
+  geometry::Transform<T> X = geometry::ErrorTransform<T>(errors.axes[axis]);
+  X.p += position * LineOf<T>(axis, errors.squareness);
+  return X;
+}
+
+// Of the body at the end of these axes, which stand in the order from the bed.
+template <typename T>
+geometry::Transform<T> BodyPose(const std::string& axes_from_bed, const Eigen::Vector3<T>& position,
+                                const MotionErrors<T>& errors) {
+  geometry::Transform<T> X;
+  for (const char letter : axes_from_bed) {
+    const int axis = letter - 'X';
+    X = X * CarriagePose<T>(axis, position[axis], errors);
+  }
+  return X;
+}
+
+// p_WQ of a perfect machine.
+template <typename T>
+Eigen::Vector3<T> NominalToolInWork(const Chain& chain, const Eigen::Vector3<T>& position,
+                                    const Eigen::Vector3<T>& p_TQ) {
+  Eigen::Vector3<T> p_WQ = p_TQ;
+  for (const char axis : chain.workpiece_axes()) p_WQ[axis - 'X'] -= position[axis - 'X'];
+  for (const char axis : chain.tool_axes()) p_WQ[axis - 'X'] += position[axis - 'X'];
+  return p_WQ;
+}
+
+// p_WQ of the machine with these errors.
+template <typename T>
+Eigen::Vector3<T> ToolInWork(const Chain& chain, const Eigen::Vector3<T>& position,
+                             const Eigen::Vector3<T>& p_TQ, const MotionErrors<T>& errors) {
+  const std::string& from_workpiece = chain.workpiece_axes();
+  const auto X_MW = BodyPose<T>({from_workpiece.rbegin(), from_workpiece.rend()}, position, errors);
+  const auto X_MT = BodyPose<T>(chain.tool_axes(), position, errors);
+  return X_MW.Inverse() * (X_MT * p_TQ);
+}
+
+template <typename T>
+Eigen::Vector3<T> VolumetricError(const Chain& chain, const Eigen::Vector3<T>& position,
+                                  const Eigen::Vector3<T>& p_TQ, const MotionErrors<T>& errors) {
+  return ToolInWork<T>(chain, position, p_TQ, errors) - NominalToolInWork<T>(chain, position, p_TQ);
+}
+
+}  // namespace abbe::machine

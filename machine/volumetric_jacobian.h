@@ -1,0 +1,31 @@
+// The volumetric error with its derivatives in closed form.
+//
+// Background: with a the frame before a carriage (on its bed side), R_Wa its attitude in the
+// workpiece and arm = p_aQ - p_ab the arm from the carriage to the tool point, small changes of the
+// carriage move the tool point in W by
+//
+//   + R_Wa { d[EX EY EZ] + l dq + q dl - arm x (J d[EA EB EC]) }     + on the tool side, else -
+//
+// J is the left Jacobian of the rotation, ExpRotationJacobian.
+// Frames, units, signs: volumetric_error.h. Failure: none. Source: own.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "machine/volumetric_error.h"
+
+namespace abbe::machine {
+
+struct VolumetricJacobian {
+  Eigen::Vector3d error;
+  Eigen::Matrix<double, 3, kAxes * kMotions> J_error_motions;  // axis by axis, error_motion.h
+  Eigen::Matrix3d J_error_squareness;                          // by [A0Z B0Z C0Y]
+  Eigen::Matrix3d J_error_position;                            // by [X Y Z], the motions held
+  Eigen::Matrix3d J_error_tool;                                // by p_TQ
+};
+
+VolumetricJacobian VolumetricErrorAndJacobian(const Chain& chain, const Eigen::Vector3d& position,
+                                              const Eigen::Vector3d& p_TQ,
+                                              const MotionErrors<double>& errors);
+
+}  // namespace abbe::machine

@@ -1,0 +1,68 @@
+// The machine error model: a chain, 18 error functions, three squarenesses.
+//
+//   VolumetricModel model(mill.chain, mill.travels);               // a perfect machine
+//   const auto form = MakeBSplineForm(BSplineBasis::Uniform(3, 0.0, 0.06, 8));
+//   model.SetForm(0, 4, form);                                     // EBX
+//   model.SetParameters(p);
+//   const Eigen::Vector3d error = model.Error({0.03, 0.02, 0.05}, p_TQ);
+//
+// Parameters: the coefficients of the functions, axis by axis in the order of error_motion.h, then
+// A0Z, B0Z, C0Y. Blocks() names them as an estimation wants them: block "EBX", entries "c0", "c1"
+// ...; block "squareness".
+// Frames, signs, tool vector: volumetric_error.h. Gauge: error_function.h.
+// Units: SI. Shapes: positions in columns, 3 x N.
+// Failure: InputError for a position outside a travel, naming axis and travel, for an axis or
+// motion that does not exist, and for parameters of the wrong number or not finite.
+// Not safe to change while other threads evaluate; evaluation is.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "estimation/parameter.h"
+#include "machine/error_function.h"
+#include "machine/volumetric_error.h"
+
+namespace abbe::machine {
+
+class VolumetricModel {
+ public:
+  VolumetricModel(Chain chain, const std::array<Travel, kAxes>& travels);
+
+  const Chain& chain() const { return chain_; }
+  const ErrorFunction& Function(int axis, int motion) const;
+  const Eigen::Vector3d& squareness() const { return squareness_; }  // [A0Z B0Z C0Y], rad
+
+  // The form of one function, with the gauge that belongs to it and all coefficients 0.
+  void SetForm(int axis, int motion, SharedForm form);
+  void SetCoefficients(int axis, int motion, const Eigen::VectorXd& coefficients);
+  void SetSquareness(const Eigen::Vector3d& squareness) { squareness_ = squareness; }
+
+  Eigen::Index ParameterCount() const;
+  Eigen::VectorXd Parameters() const;
+  void SetParameters(const Eigen::Ref<const Eigen::VectorXd>& parameters);
+  std::vector<estimation::ParameterBlock> Blocks() const;
+
+  MotionErrors<double> Motions(const Eigen::Vector3d& position) const;
+  Eigen::Vector3d Error(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const;
+  Eigen::Matrix3Xd Errors(const Eigen::Matrix3Xd& positions, const Eigen::Vector3d& p_TQ) const;
+
+  struct Linearized {
+    Eigen::Vector3d error;
+    Eigen::Matrix3Xd J_error_parameters;
+    Eigen::Matrix3d J_error_position;  // the motions change with the position
+    Eigen::Matrix3d J_error_tool;
+  };
+  Linearized Linearize(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const;
+
+ private:
+  void RefuseOutside(const Eigen::Vector3d& position) const;
+
+  Chain chain_;
+  std::array<Travel, kAxes> travels_;
+  std::array<std::array<ErrorFunction, kMotions>, kAxes> functions_;
+  Eigen::Vector3d squareness_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace abbe::machine

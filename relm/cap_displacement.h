@@ -1,0 +1,47 @@
+// The tool-cap test: by how much friction drags the ball in its magnetic cap against the motion, as
+// a function of feed and magnetic force.
+//
+// While the cap moves with velocity v, friction holds the ball back: it is displaced from its place
+// in the cap by e against the motion. Gauges on the cap, or a reference that sees the ball beside
+// the commanded position of the cap, read a displacement d along their axes; all moving rows of one
+// force and feed give, by least squares,
+//
+//   d_axis = offset_axis - e v_axis / |v|
+//
+// so form and set-up of the gauges (offsets) fall out as soon as there is motion in both
+// directions. Units: m, N, m/s. Shapes: one result for each force and feed. Failure: InputError
+// with the recording for a gauge whose column is missing, no moving row, or motion in one direction
+// alone. Source: the study of the magnetic tool cap in the linkage's second paper (8.5 N, 100
+// mm/min: below 2 um). Validity: with a reference instead of gauges, backlash and servo lag of the
+// machine are part of e; rows slower than half the usual speed (starts, stops) are left out.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "recording/recording.h"
+
+namespace abbe::relm {
+
+// A gauge on the cap: a column, and the axis and sense in which its reading grows with the ball's
+// displacement. No gauges: the reference columns of the recording.
+struct CapGauge {
+  char axis;           // 'X', 'Y' or 'Z'
+  double sign;         // +1 or -1
+  std::string column;  // "probe_d_um"
+};
+
+struct CapDisplacement {
+  double force = 0.0;         // N; NaN where the recording has no cap_force_n
+  double feed = 0.0;          // m/s
+  double displacement = 0.0;  // e, m; > 0: against the motion
+  double u = 0.0;             // standard uncertainty, from the scatter of the strokes
+  double scatter = 0.0;       // m: rms of the residuals
+  std::size_t rows = 0;
+};
+
+std::vector<CapDisplacement> EvaluateCap(const recording::Recording& recording,
+                                         const std::vector<CapGauge>& gauges);
+
+}  // namespace abbe::relm

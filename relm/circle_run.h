@@ -1,0 +1,81 @@
+// A circular test as an instrument saw it: points in the plane of the circle, both senses.
+//
+//   std::vector<CircleRun> runs = CircleRuns({path_cw, path_ccw}, {.plane = "XY"});
+//   const CircleFigures figures = EvaluateCircle(runs.front(), {.cutoff = 50.0});
+//
+// Paths of one instrument, plane, radius, centre and feed are one run, in whatever recordings they
+// stand. The plane is that of the options, else of the header, else that in which the commanded
+// path lies: XY, YZ, ZX, or "inclined". Counter-clockwise turns the first axis towards the second,
+// as the commanded path itself turns; the column `direction` is not needed. Left out are rows that
+// do not lie on the commanded circle (run-in and run-out), and rests (direction 0).
+// Frames: `first`, `second` and `third` are coordinates from the commanded centre, along the axes
+// of the plane and its normal. Units: m, rad, m/s. Shapes: one entry a point.
+// Failure: InputError with the recording for a path that is no circle, a sense with less than whole
+// turns, a plane that is not two axes, or coordinates that the instrument lacks. Source: ISO 230-4.
+// Validity: the nominal radius is that of the commanded positions (least squares), unless the
+// options name one.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "relm/measured_path.h"
+#include "standards/circularity.h"
+#include "standards/harmonics.h"
+
+namespace abbe::relm {
+
+struct CirclePlane {
+  std::string name;                      // "XY", ..., "inclined"
+  Eigen::Vector3d first, second, third;  // unit vectors in axis coordinates
+  bool Inclined() const { return name == "inclined"; }
+};
+
+struct CirclePoint {
+  double first, second, third;  // m, from the commanded centre
+  double angle;                 // rad, about the least-squares centre of the measured run
+  int sense;                    // +1 counter-clockwise
+  int pass;
+};
+
+struct CircleRun {
+  std::vector<std::string> recordings;
+  std::string instrument;
+  CirclePlane plane;
+  double radius = 0.0;     // m, nominal
+  Eigen::Vector3d centre;  // m, axis coordinates
+  double feed = 0.0;       // m/s
+  bool third_seen = false;
+  std::vector<CirclePoint> points;  // in the order of time, recording after recording
+  std::size_t left_out = 0;         // rows off the circle, at rest, or with a flag
+
+  double Covered(int sense) const;  // rad of the circle that has points
+};
+
+struct CircleOptions {
+  std::string plane;    // empty: see above
+  double radius = 0.0;  // m; 0: see above
+};
+
+std::vector<CircleRun> CircleRuns(const std::vector<MeasuredPath>& paths,
+                                  const CircleOptions& options = {});
+
+struct CircleFigures {
+  standards::Circularity iso;
+  std::optional<standards::HarmonicFit> cw, ccw;  // of the radius about the centre of each sense
+  double out_of_plane = 0.0;                      // m: range of the third coordinate
+};
+
+struct FigureOptions {
+  double cutoff = 0.0;  // undulations a turn of the Gaussian filter; 0: as measured
+  int harmonics = 10;
+};
+
+// The run with its radius filtered; as it is for a cutoff of 0.
+CircleRun Filtered(const CircleRun& run, double cutoff);
+
+CircleFigures EvaluateCircle(const CircleRun& run, const FigureOptions& options = {});
+
+}  // namespace abbe::relm

@@ -1,0 +1,341 @@
+// The section of a circular test: figures of ISO 230-4, the circle with its deviation magnified, the
+// path in space, harmonics, and what made the circle as it is.
+
+const CIRCLE_FIGURES = [
+  ['G_ccw_um', 'G(ccw)', 'Circular deviation, counter-clockwise: the narrowest ring around the path'],
+  ['G_cw_um', 'G(cw)', 'Circular deviation, clockwise'],
+  ['G_b_um', 'G(b)', 'The ring around both senses together'],
+  ['F_max_um', 'F max', 'Largest radius less the nominal one, about the set-up centre'],
+  ['F_min_um', 'F min', 'Smallest radius less the nominal one, about the set-up centre'],
+  ['D_um', 'D', 'Mean radius of both senses less the nominal one'],
+];
+const SENSES = [['ccw', 'counter-clockwise', 'forward'], ['cw', 'clockwise', 'backward']];
+const SIGNATURE_NAMES = {
+  scale: 'Scale',
+  squareness: 'Squareness',
+  servo_mismatch: 'Servo mismatch',
+  servo_lag_squared: 'Servo lag, squared',
+  backlash: 'Backlash',
+  straightness: 'Bow',
+  reversal_spike: 'Reversal spike',
+  cyclic_cos: 'Cyclic, cosine',
+  cyclic_sin: 'Cyclic, sine',
+};
+const SIGNATURE_UNITS = {
+  m: '\u00b5m',
+  rad: '\u00b5rad',
+  s: '\u00b5s',
+  s2: 'ms\u00b2',
+  1: 'ppm'
+};
+const CIRCLE_SPAN = 1.45;  // half the width of the figure, radii
+
+const runName = (circle, run) =>
+    `${capital(circle.instrument)} ${circle.plane}, ${significant(run.feed_mm_min)}\u00a0mm/min`;
+const runsOf = (result) =>
+    (result.circles ?? []).flatMap((circle) => (circle.runs ?? []).map((run) => ({circle, run})));
+
+function circleSummary(result) {
+  const sentences = (result.circles ?? []).flatMap((circle) => {
+    const widths = numbers((circle.runs ?? []).map((run) => run.G_b_um ?? run.G_ccw_um ?? run.G_cw_um));
+    if (!widths.length) return [];
+    return [`${circle.instrument} ${circle.plane}: the path lies in a ring ` +
+            `${micrometres(Math.max(...widths))} wide`];
+  });
+  const found = (result.causes ?? [])
+                    .filter(isFound)
+                    .sort((one, other) => other.effect_um - one.effect_um)
+                    .slice(0, 2)
+                    .map((one) => `${signatureName(one)} (${micrometres(one.effect_um)})`);
+  if (found.length) sentences.push(`most of it comes from ${joinWords(found)}`);
+  return capital(sentences.join('; ')) + (sentences.length ? '.' : '');
+}
+
+const signatureName = ({cause, object}) => `${SIGNATURE_NAMES[cause] ?? cause} ${object}`;
+// Seen by the data, and beyond its U95.
+const isFound = ({seen, value, u}) => seen && Math.abs(value) > COVERAGE * u;
+
+function circleFigureTable(result) {
+  const runs = runsOf(result);
+  return table({
+    caption: 'Figures of ISO\u00a0230-4',
+    columns: [
+      {head: 'Figure'},
+      ...runs.map(
+          ({circle, run}) => ({head: runName(circle, run), unit: '\u00b5m', numeric: true})),
+      {head: 'Meaning'}
+    ],
+    rows: CIRCLE_FIGURES.filter(([key]) => runs.some(({run}) => isNumber(run[key])))
+              .map(
+                  ([key, symbol, meaning]) =>
+                      [symbol,
+                       ...runs.map(({run}) => isNumber(run[key]) ? significant(run[key]) : null),
+                       meaning]),
+  });
+}
+
+function signatureTable(circle) {
+  if (!circle.causes?.length) return null;
+  const scale = 1e6;  // um, urad, us, ppm, and s2 to ms2
+  return table({
+    caption: `Causes by one joint fit: ${circle.instrument} ${circle.plane}`,
+    columns: [
+      {head: 'Cause'}, {head: 'Amount', numeric: true}, {head: 'Unit'},
+      {head: 'On the radius', unit: '\u00b5m', numeric: true}, {head: 'Told by the data'}
+    ],
+    rows: circle.causes.map(
+        (one) =>
+            [signatureName(one),
+             one.seen ? quantity(one.value * scale, COVERAGE * one.u * scale) : null,
+             SIGNATURE_UNITS[one.unit] ?? one.unit, one.seen ? significant(one.effect_um) : null,
+             isFound(one) ? 'yes' : one.seen ? 'below its uncertainty' : 'not seen']),
+  });
+}
+
+// A magnification of 1, 2 or 5 times a power of ten near `value`.
+function roundNumber(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return power * (value < 2 * power ? 1 : value < 5 * power ? 2 : 5);
+}
+
+const circleDeviation = (run) =>
+    Math.max(1e-9, ...SENSES.map(([sense]) => largest(run.profile?.[sense]?.radial)));
+
+// Magnifications from 10 to 100 000 in steps of 1, 2, 5; the first shown makes the largest deviation
+// a fifth of `size`.
+function magnifierFor(size, deviation) {
+  const values = [1, 2, 3, 4].flatMap((power) => [1, 2, 5].map((one) => one * 10 ** power));
+  values.push(1e5);
+  const best = roundNumber(Math.min(1e5, Math.max(10, 0.2 * size / deviation)));
+  return {label: 'Magnification', values, at: Math.max(0, values.indexOf(best)),
+          text: (value) => `${grouped(value)}\u00a0\u00d7`};
+}
+
+// Lists closed, so that the last point meets the first.
+const closed = (list) => list?.length ? [...list, list[0]] : [];
+
+function circleTrace(name, radius, {angle, radial}, amount, line) {
+  const r = radial.map((one) => radius + amount * one * 1e3);
+  return {
+    ...lineTrace(
+        name, closed(angle.map((at, index) => r[index] * Math.cos(at))),
+        closed(angle.map((at, index) => r[index] * Math.sin(at))), line.color, ''),
+    line,
+    text: closed(
+        radial.map((one, index) => `${fixed(angle[index] * 180 / Math.PI, 0)}\u00b0: ` +
+                       `${fixed(one * 1e6, 2)}\u00a0\u00b5m`)),
+    hovertemplate: '%{text}',
+  };
+}
+
+// The nominal circle and a ring inside and outside, each with its deviation beside it.
+function circleRings(radius, amount, colours) {
+  const step = roundNumber(0.3 * radius / amount * 1e3);  // um
+  const turn = Array.from({length: 181}, (unused, index) => index * Math.PI / 90);
+  return [-step, 0, step].map((at) => {
+    const r = radius + amount * at * 1e-3;
+    return {
+      trace: {
+        ...lineTrace(
+            'ring', turn.map((t) => r * Math.cos(t)), turn.map((t) => r * Math.sin(t)),
+            at ? colours.line : colours.axis, ''),
+        line: {color: at ? colours.line : colours.axis, width: 1},
+        hoverinfo: 'skip',
+        hovertemplate: null,
+      },
+      label: {
+        x: r * Math.SQRT1_2,
+        y: r * Math.SQRT1_2,
+        text: at ? `${at > 0 ? '+' : MINUS}${fixed(Math.abs(at), step < 1 ? 3 : 0)}\u00a0\u00b5m` : '0',
+        showarrow: false,
+        font: {size: 11, color: colours.muted},
+        bgcolor: colours.surface,
+      },
+    };
+  });
+}
+
+const squareLayout = (colours, span, extra) => figureLayout(colours, {
+  hovermode: 'closest',
+  ...extra,
+  xaxis: {visible: false, range: [-span, span], scaleanchor: 'y', ...extra?.xaxis},
+  yaxis: {visible: false, range: [-span, span], ...extra?.yaxis},
+});
+
+function polarPanel(circle, run) {
+  const radius = circle.radius_mm;
+  return {
+    name: runName(circle, run),
+    unit: '\u00b5m',
+    width: 'half',
+    height: 440,
+    about: `Radial deviation of the ${circle.plane} circle, ${circle.instrument}, magnified, ` +
+        'around the nominal circle; the values follow as a table.',
+    draw: (colours, shown, amount) => {
+      const rings = circleRings(radius, amount, colours);
+      const senses = SENSES.filter(([sense]) => shown.has(sense) && run.profile?.[sense]);
+      return {
+        data: [
+          ...rings.map(({trace}) => trace),
+          ...senses.map(
+              ([sense, name, colour]) => circleTrace(
+                  name, radius, run.profile[sense], amount, {color: colours[colour], width: 1.8})),
+          ...senses.filter(([sense]) => shown.has('explained') && run.profile[sense].explained)
+              .map(
+                  ([sense, name, colour]) => circleTrace(
+                      `explained, ${name}`, radius,
+                      {...run.profile[sense], radial: run.profile[sense].explained}, amount,
+                      {color: colours[colour], width: 1.2, dash: 'dot'})),
+        ],
+        layout: squareLayout(
+            colours, CIRCLE_SPAN * radius, {annotations: rings.map(({label}) => label)}),
+      };
+    },
+    values: () => profileValues(run),
+  };
+}
+
+function profileValues(run) {
+  const known = SENSES.filter(([sense]) => run.profile?.[sense]);
+  const rows = known.flatMap(
+      ([sense, name]) => run.profile[sense].angle.map(
+          (at, index) =>
+              [fixed(at * 180 / Math.PI, 1), name, fixed(run.profile[sense].radial[index] * 1e6, 3),
+               fixed((run.profile[sense].axial?.[index] ?? NaN) * 1e6, 3)]));
+  const numeric = (head, unit) => ({head, unit, numeric: true});
+  return {
+    columns: [
+      numeric('Angle', '\u00b0'), {head: 'Sense'}, numeric('Radial', '\u00b5m'),
+      numeric('Out of plane', '\u00b5m')
+    ],
+    rows,
+  };
+}
+
+function polarGroup(result) {
+  const runs = runsOf(result).filter(({run}) => run.profile);
+  if (!runs.length) return null;
+  return figureGroup({
+    title: 'The circle, its deviation magnified',
+    intro: 'About the least-squares centre of both senses: what the set-up put off centre is gone. ' +
+        'Dotted: what the causes of the joint fit explain.',
+    items: [
+      {key: 'ccw', label: 'Counter-clockwise', swatch: 'forward'},
+      {key: 'cw', label: 'Clockwise', swatch: 'backward'},
+      {key: 'explained', label: 'Explained', swatch: 'mean', on: false},
+    ],
+    slider: magnifierFor(
+        Math.min(...runs.map(({circle}) => circle.radius_mm)) * 1e-3,
+        Math.max(...runs.map(({run}) => circleDeviation(run)))),
+    panels: runs.map(({circle, run}) => polarPanel(circle, run)),
+  });
+}
+
+// The circle in its own frame: first, second, out of plane; position and deviation in m.
+function circleInSpace(circle, profile) {
+  const radius = circle.radius_mm * 1e-3;
+  const [angle, radial, axial] = [profile.angle, profile.radial, profile.axial].map(closed);
+  const [cos, sin] = [angle.map(Math.cos), angle.map(Math.sin)];
+  return {
+    position: [cos.map((one) => radius * one), sin.map((one) => radius * one), angle.map(() => 0)],
+    deviation: [radial.map((one, i) => one * cos[i]), radial.map((one, i) => one * sin[i]), axial],
+  };
+}
+
+function circleSpaceGroup(result) {
+  const runs = runsOf(result).filter(
+      ({run}) => SENSES.some(([sense]) => run.profile?.[sense]?.axial));
+  return spaceGroup(
+      runs.map(({circle, run}) => {
+        const known = SENSES.filter(([sense]) => run.profile[sense]?.axial);
+        const [first, second] = circle.plane.length === 2 ? circle.plane : ['1', '2'];
+        const third = 'XYZ'.split('').find((axis) => !circle.plane.includes(axis)) ?? '3';
+        return {
+          name: runName(circle, run),
+          axes: circle.plane.length === 2 ? [first, second, third] : ['1', '2', '3'],
+          paths: known.map(
+              ([sense, name, colour]) =>
+                  ({key: sense, name, colour, ...circleInSpace(circle, run.profile[sense])})),
+        };
+      }),
+      SENSES.map(([key, name, swatch]) => ({key, label: capital(name), swatch})));
+}
+
+function harmonicPanel(circle, run) {
+  const known = SENSES.filter(([sense]) => run.harmonics?.[sense]?.length);
+  return {
+    name: runName(circle, run),
+    unit: '\u00b5m',
+    width: 'half',
+    height: 240,
+    about: `Amplitude of the harmonics of the radius, ${circle.plane} circle, ` +
+        `${circle.instrument}, both senses; the values follow as a table.`,
+    draw: (colours, shown) => ({
+      data: known.filter(([sense]) => shown.has(sense)).map(([sense, name, colour]) => ({
+        type: 'bar',
+        name,
+        x: run.harmonics[sense].map(({order}) => order),
+        y: run.harmonics[sense].map(({amplitude_um}) => amplitude_um),
+        marker: {color: colours[colour]},
+        hovertemplate: '%{y:.3f}\u00a0\u00b5m',
+      })),
+      layout: figureLayout(
+          colours, {x: 'Undulations a turn', xaxis: {dtick: 1}, bargap: 0.35, bargroupgap: 0.1}),
+    }),
+    values: () => ({
+      columns: [
+        {head: 'Order', numeric: true}, {head: 'Sense'},
+        {head: 'Amplitude', unit: '\u00b5m', numeric: true},
+        {head: 'Phase', unit: '\u00b0', numeric: true}
+      ],
+      rows: known.flatMap(
+          ([sense, name]) => run.harmonics[sense].map(
+              ({order, amplitude_um, phase_deg}) =>
+                  [String(order), name, fixed(amplitude_um, 3), fixed(phase_deg, 1)])),
+    }),
+  };
+}
+
+function harmonicGroup(result) {
+  const runs = runsOf(result).filter(
+      ({run}) => SENSES.some(([sense]) => run.harmonics?.[sense]?.length));
+  if (!runs.length) return null;
+  return figureGroup({
+    title: 'Harmonics of the radius',
+    intro: 'Two a turn is an oval: squareness, scales and servo mismatch together. One harmonic ' +
+        'alone names no cause; the joint fit does.',
+    items: SENSES.map(([key, name, swatch]) => ({key, label: capital(name), swatch})),
+    panels: runs.map(({circle, run}) => harmonicPanel(circle, run)),
+  });
+}
+
+registerSection({
+  command: 'circle',
+  title: (result) => `Circular test, ${result.plane} plane`,
+  short: (result) => `Circle ${result.plane}`,
+  summary: circleSummary,
+  facts: (result) =>
+      [['Radius', isNumber(result.radius_mm) ? `${positionText(result.radius_mm)}\u00a0mm` : null],
+       [
+         'Filter',
+         result.circles?.[0]?.filter_undulations ?
+             `${positionText(result.circles[0].filter_undulations)} undulations a turn` :
+             'none'
+       ],
+       ['Recordings', [...new Set(runsOf(result).flatMap(({run}) => run.recordings))].join(', ')]],
+  body: (result) =>
+      [circleFigureTable(result), polarGroup(result), circleSpaceGroup(result),
+       harmonicGroup(result), ...(result.circles ?? []).map(signatureTable),
+       notesBlock('Notes', result.notes)]
+          .filter(Boolean),
+  overview: {
+    title: 'Circular tests (ISO\u00a0230-4)',
+    columns: [
+      {head: 'Plane'}, {head: 'Instrument'},
+      ...CIRCLE_FIGURES.map(([, symbol]) => ({head: symbol, unit: '\u00b5m', numeric: true}))
+    ],
+    row: (result) =>
+        [result.plane, result.circles?.[0]?.instrument,
+         ...CIRCLE_FIGURES.map(([key]) => isNumber(result[key]) ? significant(result[key]) : null)],
+  },
+});

@@ -1,0 +1,81 @@
+// The linkage of the virtual rig, drawn by a seed from the tolerances of the machine file: two
+// links, three pivots, a ball. Its angles are those that close the loop exactly for a ball that the
+// machine holds at a place.
+//
+// Built from axes in space, nothing linearised: pivot i turns everything after it by a finite angle
+// about its own line, whose place and direction are off by the drawn errors, runs out with the
+// angle, and gives under gravity; links grow with the temperature. At zero angles the nominal axes
+// are z through the origin, y through the origin and y through (L1, 0, 0), the ball stands at
+// (L1, 0, L2); frame B, the base. It shares no code with the models that are tested against it.
+//
+// An encoder shows turn + zero + eccentricity and graduation harmonics of the turn, without noise.
+// Units: m, rad, degC. Failure: InputError for a place out of reach, NumericalError when the loop
+// does not close.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "rig/linkage_settings.h"
+#include "rig/rotation.h"
+
+namespace abbe::rig {
+
+inline constexpr int kPivots = 3;
+
+struct Harmonic {
+  int order;
+  double sine, cosine;
+
+  double At(double angle) const;
+};
+
+struct PivotTruth {
+  Eigen::Vector3d point, direction;              // of its axis in B at zero angles; unit
+  std::array<Eigen::Vector3d, 2> across;         // two directions across the axis, at zero angles
+  std::array<std::vector<Harmonic>, 2> run_out;  // m, along `across`
+  double encoder_zero;                           // rad
+  std::vector<Harmonic> encoder;                 // rad; order 1 is the eccentricity
+  double give;                                   // rad, under a horizontal link
+};
+
+class Linkage {
+ public:
+  Linkage(const LinkageSettings& settings, std::uint64_t seed);
+
+  const LinkageSettings& settings() const { return settings_; }
+  const std::array<PivotTruth, kPivots>& pivots() const { return pivots_; }
+  const Eigen::Vector3d& ball() const { return ball_; }                  // in B at zero angles
+  const std::array<double, 2>& expansion() const { return expansion_; }  // 1/K, of the links
+  const Displacement& base() const { return base_; }                     // takes B to M
+
+  // Where the ball stands in B for turns of the pivots.
+  Eigen::Vector3d BallAt(const Eigen::Vector3d& turns, double temperature) const;
+  // The turns that put the ball at p_B, to 1e-13 m.
+  Eigen::Vector3d TurnsFor(const Eigen::Vector3d& p_B, double temperature) const;
+  // What the encoders show at these turns.
+  Eigen::Vector3d EncodersAt(const Eigen::Vector3d& turns) const;
+  // The same for a ball at a place in M.
+  Eigen::Vector3d EncodersFor(const Eigen::Vector3d& p_M, double temperature) const;
+
+ private:
+  // The state of the chain at some turns.
+  struct Posture {
+    std::array<Eigen::Vector3d, kPivots> point, direction;  // of the axes, as they stand now
+    Eigen::Vector3d ball;
+  };
+
+  Posture PostureAt(const Eigen::Vector3d& turns, double temperature) const;
+  Eigen::Vector3d Guess(const Eigen::Vector3d& p_B) const;
+
+  LinkageSettings settings_;
+  std::array<PivotTruth, kPivots> pivots_;
+  Eigen::Vector3d ball_;
+  std::array<double, 2> expansion_;
+  Displacement base_;
+  Eigen::Vector3d down_B_;
+};
+
+}  // namespace abbe::rig

@@ -1,0 +1,62 @@
+// Recordings of the linkage and of a grid encoder on the rig, made in memory: what `abbe` would
+// have recorded of a programmed course.
+//
+//   const LinkageRig rig(World(ReadRigSettings(root), seed), Linkage(ReadLinkage(root), seed));
+//   const Course course = CircleCourse({.radius = 0.01, .feed = 1e-3});
+//   const recording::Recording circle = rig.Record(course, {.kind = "linkage"});
+//
+// Kind "linkage": the angles of the encoders; kind "reference": the place of the tool in the
+// workpiece by a grid encoder of [linkage.noise] reference_um, in axis coordinates: what the axes
+// would show there on a perfect machine. x_mm, y_mm, z_mm are the scales of the axes. The same
+// (machine file, seed, course, run) gives the same recording.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "recording/recording.h"
+#include "rig/course.h"
+#include "rig/linkage.h"
+#include "rig/world.h"
+
+namespace abbe::rig {
+
+struct CourseOptions {
+  std::string kind = "linkage";  // or "reference"
+  bool reference = false;        // the grid encoder beside the linkage, in one recording
+  double rate = 100.0;           // rows in a second, at most the update rate
+  double cap_force = 0.0;        // N, of the magnet in the tool cap; 0: that of the machine file
+  std::uint64_t run = 1;         // runs of one world differ in their noise only
+  std::string started = "1970-01-01T00:00:00Z";
+};
+
+class LinkageRig {
+ public:
+  LinkageRig(World world, Linkage linkage);
+
+  const World& world() const { return world_; }
+  const Linkage& linkage() const { return linkage_; }
+
+  // Where the tool stands in the workpiece, as the table carries it: with all axes at zero and
+  // without error in the machine's origin.
+  Eigen::Vector3d ToolAt(const Eigen::Vector3d& position) const;
+  // The same place in axis coordinates.
+  Eigen::Vector3d ReferenceAt(const Eigen::Vector3d& position) const;
+  // How far the ball trails behind the cap while the axes move.
+  Eigen::Vector3d TrailingAt(const Eigen::Vector3d& velocity, double cap_force) const;
+  // Angles without noise, not cut into counts.
+  Eigen::Vector3d EncodersAt(const CourseState& state, double temperature, double cap_force) const;
+
+  // InputError for an unknown kind, a bad rate, or a place out of the linkage's reach.
+  recording::Recording Record(const Course& course, const CourseOptions& options = {}) const;
+
+  // What was drawn of the linkage.
+  nlohmann::ordered_json Truth() const;
+
+ private:
+  World world_;
+  Linkage linkage_;
+};
+
+}  // namespace abbe::rig

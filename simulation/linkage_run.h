@@ -1,0 +1,57 @@
+// A run of the linkage as the simulation sees it: where the axes were sent, what the encoders said.
+//
+//   const LinkageRun run = MeansOfStays(ReadLinkageRun(recording, linkage));
+//
+// `reference` are axis positions like `commanded`, but as a reference instrument (grid encoder,
+// tracker) gives them in the columns ref_x_mm, ref_y_mm, ref_z_mm; a direction without such a
+// column has the commanded position and `referenced` false. `reference_sd` is what is stated of
+// either in the machine file (linkage.noise), or the column ref_u_um; it is not averaged in a stay.
+// Units: m, rad, s, K. Shapes: one column or entry per pose; `rows` tells the row of the recording,
+// or the first row of a stay. Rows with a flag are left out.
+// Failure: InputError with the recording's name for another kind of recording, a missing column, or
+// a number that is not finite in a row without a flag; see relm/tip_path.h for the angles.
+// Validity: a stay is a sequence of rows whose commanded position keeps within `window` of that of
+// its first row; its mean is as good as its rows as long as the errors of the linkage do not change
+// over the window.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "recording/recording.h"
+#include "relm/linkage_settings.h"
+
+namespace abbe::simulation {
+
+struct LinkageRun {
+  std::string name;      // of the recording, for messages
+  std::string mounting;  // header mounting.base: runs that share it share the pose of the base
+  std::vector<std::size_t> rows;
+  Eigen::VectorXd time;
+  Eigen::Matrix3Xd commanded;     // [x y z]
+  Eigen::Matrix3Xd reference;     // [x y z]
+  Eigen::Matrix3Xd reference_sd;  // standard deviation of each
+  std::array<bool, 3> referenced{};
+  relm::LinkageReadings readings;
+  Eigen::VectorXd samples;  // rows averaged in each pose
+
+  Eigen::Index poses() const { return commanded.cols(); }
+};
+
+LinkageRun ReadLinkageRun(const recording::Recording& recording,
+                          const relm::LinkageSettings& settings);
+
+inline constexpr double kStayWindow = 5e-6;  // m
+LinkageRun MeansOfStays(const LinkageRun& run, double window = kStayWindow);
+
+// A run that stands at the given axis positions [x y z], its reference instrument present, before
+// any encoder has been read.
+LinkageRun RunAt(const Eigen::Matrix3Xd& positions, const relm::LinkageSettings& settings);
+
+// The poses with the given indices, in that order.
+LinkageRun Selection(const LinkageRun& run, const std::vector<Eigen::Index>& poses);
+
+}  // namespace abbe::simulation

@@ -1,0 +1,139 @@
+#include "standards/circle.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "failure/failure.h"
+#include "standards/narrowest_annulus.h"
+
+namespace abbe::standards {
+namespace {
+
+constexpr int kMaxSteps = 50;
+// Of the radius: a centre that moves less has settled.
+constexpr double kSettled = 1e-13;
+
+void CheckPoints(std::span<const double> x, std::span<const double> y) {
+  if (x.size() != y.size() || x.size() < 3) {
+    throw InputError(
+        fmt::format("circle through {} x and {} y: give both coordinates of three points at least",
+                    x.size(), y.size()));
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) {
+      throw InputError(
+          fmt::format("circle, point {}: x = {}, y = {}: give finite numbers", i + 1, x[i], y[i]));
+    }
+  }
+}
+
+double Mean(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+[[noreturn]] void ThrowLine(std::size_t n) {
+  throw InputError(
+      fmt::format("the {} points stand on a line or in one place: no circle; check which columns "
+                  "hold the plane of the path",
+                  n));
+}
+
+// Of x^2 + y^2 + a x + b y + c = 0 by linear least squares, about the mean of the points.
+Circle AlgebraicCircle(std::span<const double> x, std::span<const double> y) {
+  const double mx = Mean(x), my = Mean(y);
+  Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+  double square = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Eigen::Vector2d p(x[i] - mx, y[i] - my);
+    A += p * p.transpose();
+    b += p * p.squaredNorm() / 2.0;
+    square += p.squaredNorm();
+  }
+  constexpr double kFlat = 1e-20;  // of the larger extent: what rounding leaves of a line
+  if (!(A.determinant() > kFlat * A.trace() * A.trace())) ThrowLine(x.size());
+  const Eigen::Vector2d c = A.inverse() * b;
+  return {mx + c.x(), my + c.y(),
+          std::sqrt(square / static_cast<double>(x.size()) + c.squaredNorm())};
+}
+
+// One Gauss-Newton step of the radial deviations; returns how far the centre moved.
+double StepLeastSquares(std::span<const double> x, std::span<const double> y, Circle& circle) {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double dx = x[i] - circle.x, dy = y[i] - circle.y;
+    const double r = std::hypot(dx, dy);
+    const Eigen::Vector3d g(dx / r, dy / r, 1.0);
+    A += g * g.transpose();
+    b += g * (r - circle.radius);
+  }
+  const Eigen::Vector3d step = A.ldlt().solve(b);
+  circle = {circle.x + step.x(), circle.y + step.y(), circle.radius + step.z()};
+  return step.head<2>().norm();
+}
+
+Circle LeastSquaresCircle(std::span<const double> x, std::span<const double> y) {
+  Circle circle = AlgebraicCircle(x, y);
+  for (int step = 0; step < kMaxSteps; ++step) {
+    if (StepLeastSquares(x, y, circle) <= kSettled * circle.radius) return circle;
+  }
+  throw NumericalError(fmt::format(
+      "least-squares circle of {} points: the centre did not settle in {} steps; is the path a "
+      "circle?",
+      x.size(), kMaxSteps));
+}
+
+Circle MinimumZoneCircle(std::span<const double> x, std::span<const double> y) {
+  Circle circle = LeastSquaresCircle(x, y);
+  std::vector<AnnulusPoint> points(x.size());
+  for (int step = 0; step < kMaxSteps; ++step) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double dx = x[i] - circle.x, dy = y[i] - circle.y;
+      const double r = std::hypot(dx, dy);
+      points[i] = {dx / r, dy / r, r};
+    }
+    const Annulus zone = NarrowestAnnulus(points);
+    circle = {circle.x + zone.x, circle.y + zone.y, (zone.outer + zone.inner) / 2.0};
+    if (std::hypot(zone.x, zone.y) <= kSettled * circle.radius) return circle;
+  }
+  throw NumericalError(
+      fmt::format("minimum-zone circle of {} points: the centre did not settle in {} steps; are "
+                  "the deviations small beside the radius?",
+                  x.size(), kMaxSteps));
+}
+
+}  // namespace
+
+Circle ReferenceCircle(CircleKind kind, std::span<const double> x, std::span<const double> y) {
+  CheckPoints(x, y);
+  return kind == CircleKind::kLeastSquares ? LeastSquaresCircle(x, y) : MinimumZoneCircle(x, y);
+}
+
+std::vector<double> RadialDeviations(const Circle& circle, std::span<const double> x,
+                                     std::span<const double> y) {
+  std::vector<double> deviations(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    deviations[i] = std::hypot(x[i] - circle.x, y[i] - circle.y) - circle.radius;
+  }
+  return deviations;
+}
+
+Roundness EvaluateRoundness(CircleKind kind, std::span<const double> x, std::span<const double> y) {
+  Roundness roundness{ReferenceCircle(kind, x, y)};
+  double squares = 0.0;
+  for (const double deviation : RadialDeviations(roundness.circle, x, y)) {
+    roundness.peak = std::max(roundness.peak, deviation);
+    roundness.valley = std::max(roundness.valley, -deviation);
+    squares += deviation * deviation;
+  }
+  roundness.rms = std::sqrt(squares / static_cast<double>(x.size()));
+  return roundness;
+}
+
+}  // namespace abbe::standards

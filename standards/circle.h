@@ -1,0 +1,52 @@
+// Reference circles of a measured path: least squares and minimum zone.
+//
+//   const Roundness zone = EvaluateRoundness(CircleKind::kMinimumZone, x, y);
+//   zone.circle.x, zone.circle.y, zone.Error();
+//
+// Frames: x and y are the two coordinates of the plane, in any origin. A deviation is the distance
+// to the centre minus the radius: positive outside. Units: m. Shapes: n points, in any order, of a
+// whole circle or an arc; both senses together where they are judged together.
+// Failure: InputError for fewer than three points, lists of different length, numbers that are not
+// finite, or points on a line. NumericalError when the iteration does not settle (deviations that
+// are no longer small beside the radius). Source: ISO 230-4 and ISO 12181-1 (definitions of the two
+// circles), from memory of the standards. Least squares: the squares of the radial deviations, by
+// Gauss-Newton from the algebraic circle of Kasa (1976). Minimum zone: two concentric circles of
+// smallest separation. About a centre c near the solution the distance of point i is r_i - c u_i +
+// O(|c|^2 / r), so each step is a linear programme in (c, outer, inner); it is solved exactly by
+// adding the points that its zone leaves out, and repeated about the new centre until the centre
+// rests. Validity: deviations below some percent of the radius; the zone is then the narrowest of
+// all. Law: minimum zone <= least squares.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace abbe::standards {
+
+enum class CircleKind { kLeastSquares, kMinimumZone };
+
+struct Circle {
+  double x = 0.0;
+  double y = 0.0;
+  double radius = 0.0;  // minimum zone: the middle of the zone
+};
+
+Circle ReferenceCircle(CircleKind kind, std::span<const double> x, std::span<const double> y);
+
+// The figures of ISO 12181-1 about a reference circle; for the minimum zone Error() is RONt.
+struct Roundness {
+  Circle circle;
+  double peak = 0.0;    // largest deviation outwards
+  double valley = 0.0;  // largest deviation inwards, not negative
+  double rms = 0.0;
+
+  double Error() const { return peak + valley; }
+};
+
+Roundness EvaluateRoundness(CircleKind kind, std::span<const double> x, std::span<const double> y);
+
+// The distance of each point to (circle.x, circle.y), minus circle.radius.
+std::vector<double> RadialDeviations(const Circle& circle, std::span<const double> x,
+                                     std::span<const double> y);
+
+}  // namespace abbe::standards

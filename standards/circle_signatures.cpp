@@ -1,0 +1,83 @@
+#include "standards/circle_signatures.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace abbe::standards {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+double Sign(double value) { return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0; }
+
+// The angle since the axis whose extremes stand at `extreme` and half a turn on last turned back.
+double SinceReversal(const CirclePoint& at, double extreme) {
+  const double turned = at.sense * (at.angle - extreme);
+  return turned - kPi * std::floor(turned / kPi);
+}
+
+double Spike(double since, double width) { return since / width * std::exp(1.0 - since / width); }
+
+// Two waves of an axis at `position(t)`, which moves the radius by `along(t)`.
+void AddCyclic(char axis, double pitch, const std::function<double(const CirclePoint&)>& position,
+               double (*along)(double), std::vector<Signature>& signatures) {
+  for (const auto& [name, wave] :
+       {std::pair<const char*, double (*)(double)>{"cyclic_cos", std::cos},
+        std::pair<const char*, double (*)(double)>{"cyclic_sin", std::sin}}) {
+    signatures.push_back(
+        {name, std::string(1, axis), "m", 20e-6, [=, wave = wave](const CirclePoint& at) {
+           return wave(2.0 * kPi * position(at) / pitch) * along(at.angle);
+         }});
+  }
+}
+
+}  // namespace
+
+std::vector<Signature> CircleSignatures(const SignatureOptions& options) {
+  const std::string x(1, options.first), y(1, options.second), plane = x + y;
+  using At = const CirclePoint&;
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  std::vector<Signature> table{
+      {"centre", x, "m", kAny, [](At at) { return std::cos(at.angle); }},
+      {"centre", y, "m", kAny, [](At at) { return std::sin(at.angle); }},
+      {"scale", x, "1", 200e-6,
+       [](At at) { return at.radius * std::cos(at.angle) * std::cos(at.angle); }},
+      {"scale", y, "1", 200e-6,
+       [](At at) { return at.radius * std::sin(at.angle) * std::sin(at.angle); }},
+      {"squareness", plane, "rad", 1e-3,
+       [](At at) { return -at.radius / 2.0 * std::sin(2.0 * at.angle); }},
+      {"servo_mismatch", plane, "s", 10e-3,
+       [](At at) { return at.sense * at.feed / 2.0 * std::sin(2.0 * at.angle); }},
+      {"servo_lag_squared", plane, "s2", 1e-3,
+       [](At at) { return -at.feed * at.feed / (2.0 * at.radius); }},
+      {"backlash", x, "m", 50e-6,
+       [](At at) { return at.sense / 2.0 * std::cos(at.angle) * Sign(std::sin(at.angle)); }},
+      {"backlash", y, "m", 50e-6,
+       [](At at) { return -at.sense / 2.0 * std::sin(at.angle) * Sign(std::cos(at.angle)); }},
+      {"straightness", "E" + y + x, "m", 50e-6,
+       [](At at) { return (std::sin(at.angle) + std::sin(3.0 * at.angle)) / 4.0; }},
+      {"straightness", "E" + x + y, "m", 50e-6,
+       [](At at) { return (std::cos(at.angle) - std::cos(3.0 * at.angle)) / 4.0; }},
+      {"reversal_spike", x, "m", 20e-6,
+       [w = options.spike_width](At at) { return Spike(SinceReversal(at, 0.0), w); }},
+      {"reversal_spike", y, "m", 20e-6,
+       [w = options.spike_width](At at) { return Spike(SinceReversal(at, kPi / 2.0), w); }},
+  };
+  if (const auto pitch = options.pitch.find(options.first); pitch != options.pitch.end()) {
+    const auto position = [c = options.first_centre](At at) {
+      return c + at.radius * std::cos(at.angle);
+    };
+    AddCyclic(options.first, pitch->second, position, std::cos, table);
+  }
+  if (const auto pitch = options.pitch.find(options.second); pitch != options.pitch.end()) {
+    const auto position = [c = options.second_centre](At at) {
+      return c + at.radius * std::sin(at.angle);
+    };
+    AddCyclic(options.second, pitch->second, position, std::sin, table);
+  }
+  return table;
+}
+
+}  // namespace abbe::standards

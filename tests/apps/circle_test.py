@@ -1,0 +1,171 @@
+"""`abbe circle` as a user runs it, on circles whose errors are known."""
+import json
+import math
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import linkage_runs
+
+PROGRAM = os.environ["ABBE"]
+MACHINE = os.environ["ABBE_MACHINE"]
+CENTRE = (30.0, 30.0, 30.0)
+
+
+def circle(machine, senses=(1, -1), radius=10.0, feed=100.0, plane="XY", points=720, run_in=False):
+    """Rows of a circle; `machine` tells where it goes for position (mm, from the centre) and velocity (mm/s)."""
+    first, second = ("XYZ".index(axis) for axis in plane)
+    rows = []
+    for turn, sense in enumerate(senses, 1):
+        for number in range(points):
+            t = 2 * math.pi * (number + 0.5) / points
+            t *= sense
+            w = sense * feed / 60 / radius
+            place = (radius * math.cos(t), radius * math.sin(t))
+            speed = (-w * place[1], w * place[0])
+            gone = machine(*place, *speed)
+            commanded, actual = list(CENTRE), list(CENTRE)
+            commanded[first] += place[0]
+            commanded[second] += place[1]
+            actual[first] += gone[0]
+            actual[second] += gone[1]
+            if run_in and number == 0:
+                for step in range(1, 50):  # from the centre to the circle
+                    way = [c + (p - c) * step / 50 for c, p in zip(CENTRE, commanded)]
+                    rows.append((way, way, turn, sense, feed))
+            rows.append((commanded, actual, turn, sense, feed))
+    return rows
+
+
+def perfect(x, y, vx, vy):
+    return x, y
+
+
+def worn(x, y, vx, vy):
+    """Backlash of 4 um on X, 200 urad out of square, Y too long by 100 ppm."""
+    x -= 0.002 * (1 if vx > 0 else -1)
+    y *= 1 + 100e-6
+    return x - y * 200e-6, y
+
+
+class Circle(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = pathlib.Path(self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def run_program(self, *arguments):
+        return subprocess.run([PROGRAM, "circle", *map(str, arguments)], capture_output=True,
+                              text=True, timeout=60)
+
+    def result(self, *arguments):
+        done = self.run_program(*arguments, "--json", self.path / "result.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads((self.path / "result.json").read_text())
+
+    def refuse(self, *arguments, saying):
+        done = self.run_program(*arguments)
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        for text in saying:
+            self.assertIn(text, done.stderr)
+
+    def test_perfect_circle_in_every_plane(self):
+        for plane in ("XY", "YZ", "ZX"):
+            recording = linkage_runs.write(self.path / f"{plane}.csv", circle(perfect, plane=plane))
+            result = self.result(recording, "--machine", MACHINE)
+            self.assertEqual(result["plane"], plane)
+            self.assertAlmostEqual(result["radius_mm"], 10.0, places=9)
+            for key in ("G_cw_um", "G_ccw_um", "G_b_um", "F_max_um", "F_min_um", "D_um"):
+                self.assertLess(abs(result[key]), 1e-6, (plane, key))
+
+    def test_linkage_and_reference_side_by_side(self):
+        recording = linkage_runs.write(self.path / "both.csv", circle(worn), reference=True)
+        done = self.run_program(recording, "--machine", MACHINE)
+        self.assertIn("linkage XY", done.stdout)
+        self.assertIn("reference XY", done.stdout)
+        result = self.result(recording, "--machine", MACHINE)
+        linkage, reference = result["circles"]
+        self.assertEqual((linkage["instrument"], reference["instrument"]), ("linkage", "reference"))
+        for key, value in reference["runs"][0].items():
+            if key.endswith("_um") and not isinstance(value, list):
+                self.assertAlmostEqual(linkage["runs"][0][key], value, delta=1e-5, msg=key)
+        truth = {("backlash", "X"): 4e-6, ("backlash", "Y"): 0, ("squareness", "XY"): 200e-6,
+                 ("servo_mismatch", "XY"): 0, ("straightness", "EYX"): 0}
+        for one in linkage["causes"]:
+            expected = truth.get((one["cause"], one["object"]))
+            if expected is not None:
+                # Second order: (1 um)^2 over the radius, and the backlash times 200 urad.
+                scale = one["effect_um"] / abs(one["value"])
+                self.assertAlmostEqual(one["value"] * scale, expected * scale, delta=5e-3, msg=one)
+
+    def test_offset_senses_and_set_up(self):
+        """Senses in two recordings, radii 10.002 and 9.999 mm, 5 um off centre, with run-in."""
+        def grown(by):
+            return lambda x, y, vx, vy: (x * (1 + by / 10) + 0.005, y * (1 + by / 10))
+        ccw = linkage_runs.write(self.path / "ccw.csv", circle(grown(0.002), (1,), run_in=True),
+                                 reference=True, linkage=False)
+        cw = linkage_runs.write(self.path / "cw.csv", circle(grown(-0.001), (-1,), run_in=True),
+                                reference=True, linkage=False)
+        result = self.result(ccw, cw)
+        self.assertAlmostEqual(result["G_b_um"], 3.0, delta=1e-3)
+        self.assertAlmostEqual(result["G_cw_um"], 0.0, delta=1e-3)
+        self.assertAlmostEqual(result["D_um"], 0.5, delta=1e-3)
+        self.assertAlmostEqual(result["F_max_um"], 7.0, delta=2e-3)
+        self.assertAlmostEqual(result["F_min_um"], -6.0, delta=2e-3)
+        run = result["circles"][0]["runs"][0]
+        self.assertAlmostEqual(run["setup_offset_um"][0], 5.0, delta=1e-3)
+        self.assertEqual(run["recordings"], ["ccw.csv", "cw.csv"])
+        self.assertGreaterEqual(run["left_out_rows"], 98 - 2)
+
+    def test_inclined_plane(self):
+        tilt = math.radians(30)
+        rows = []
+        for commanded, _, *rest in circle(perfect):
+            x, y = commanded[0] - 30, commanded[1] - 30
+            place = [30 + x, 30 + y * math.cos(tilt), 30 + y * math.sin(tilt)]
+            rows.append((place, place, *rest))
+        result = self.result(linkage_runs.write(self.path / "tilted.csv", rows), "--machine", MACHINE)
+        self.assertEqual(result["plane"], "inclined")
+        self.assertLess(result["G_b_um"], 1e-6)
+        self.assertNotIn("causes", result)
+
+    def test_limit(self):
+        recording = linkage_runs.write(self.path / "worn.csv", circle(worn), reference=True,
+                                       linkage=False)
+        self.assertEqual(self.run_program(recording, "--limit", "50").returncode, 0)
+        done = self.run_program(recording, "--limit", "2")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("limit", done.stderr)
+
+    def test_bad_input(self):
+        rows = circle(perfect)
+        recording = linkage_runs.write(self.path / "good.csv", rows)
+        self.refuse(recording, saying=["good.csv", "--machine FILE"])
+        self.refuse(recording, "--machine", MACHINE, "--plane", "XX", saying=['"XX"'])
+        self.refuse(recording, "--machine", MACHINE, "--pitch", "5", saying=["--pitch"])
+        line = [((x / 10, 0, 0), (x / 10, 0, 0), 1, 1, 100) for x in range(100)]
+        self.refuse(linkage_runs.write(self.path / "line.csv", line), "--machine", MACHINE,
+                    saying=["line.csv", "no circle"])
+        half = linkage_runs.write(self.path / "half.csv", rows[:360] + rows[720:])
+        self.refuse(half, "--machine", MACHINE,
+                    saying=["half.csv", "360 points counter-clockwise", "180 of 360", "whole turns"])
+        few = linkage_runs.write(self.path / "few.csv", circle(perfect, points=8))
+        self.refuse(few, "--machine", MACHINE, saying=["few.csv", "8 points", "40 of 360"])
+        self.refuse(recording, "--machine", MACHINE, "--plane", "YZ",
+                    saying=["good.csv", "commanded path in YZ", "no circle"])
+        other = pathlib.Path(recording).read_text().replace('"demo-mill"', '"another"')
+        (self.path / "other.csv").write_text(other)
+        self.refuse(self.path / "other.csv", "--machine", MACHINE, saying=['"another"', '"demo-mill"'])
+        plane = linkage_runs.write(self.path / "grid.csv", rows, reference=True, linkage=False)
+        text = pathlib.Path(plane).read_text().replace("ref_z_mm", "spare")
+        (self.path / "grid.csv").write_text(text)
+        self.refuse(plane, "--plane", "YZ", saying=["ref_z_mm", "--plane"])
+
+
+if __name__ == "__main__":
+    unittest.main()

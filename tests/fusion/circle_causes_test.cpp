@@ -1,0 +1,231 @@
+#include "fusion/circle_causes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "failure/failure.h"
+#include "random/counter_random.h"
+
+namespace abbe::fusion {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kRadius = 0.01;
+
+struct Machine {
+  double scale_x = 0, scale_y = 0, squareness = 0;
+  double delay_x = 0, delay_y = 0, lag = 0;  // s
+  double backlash_x = 0, backlash_y = 0;
+  double bow_eyx = 0, bow_exy = 0;  // m at the radius
+  double lobes = 0;                 // m: a fifth harmonic, which no cause explains
+  double offset_x = 0, offset_y = 0;
+  double noise = 0;
+};
+
+double Sign(double value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
+
+// Where the tool goes: position errors, one after the other; nothing of the table of signatures.
+relm::CircleRun Measure(const Machine& m, double feed, const std::vector<int>& senses,
+                        std::uint64_t seed = 1, int points = 720) {
+  relm::CircleRun run;
+  run.recordings = {"made"};
+  run.instrument = "reference";
+  run.plane = {"XY", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
+  run.radius = kRadius;
+  run.centre = Eigen::Vector3d(0.03, 0.03, 0.02);
+  run.feed = feed;
+  const random::CounterRandom noise(seed, static_cast<std::uint64_t>(feed * 1e6));
+  std::uint64_t draw = 0;
+  for (const int sense : senses) {
+    const double w = sense * feed / kRadius;
+    const double amplitude = kRadius / std::sqrt(1 + w * w * m.lag * m.lag);
+    for (int i = 0; i < points; ++i) {
+      const double t = 2 * kPi * (i + 0.5) / points;
+      const double cx = amplitude * std::cos(t - w * m.delay_x);
+      const double cy = amplitude * std::sin(t - w * m.delay_y);
+      const double vx = -w * std::sin(t), vy = w * std::cos(t);
+      double x = cx * (1 + m.scale_x) - m.backlash_x / 2 * Sign(vx);
+      double y = cy * (1 + m.scale_y) - m.backlash_y / 2 * Sign(vy);
+      y += m.bow_eyx * cx * cx / (kRadius * kRadius);
+      x += m.bow_exy * cy * cy / (kRadius * kRadius);
+      x -= y * std::sin(m.squareness);
+      x += m.lobes * std::cos(5 * t) * std::cos(t);
+      y += m.lobes * std::cos(5 * t) * std::sin(t);
+      x += m.offset_x + m.noise * noise.Normal(draw++);
+      y += m.offset_y + m.noise * noise.Normal(draw++);
+      run.points.push_back({x, y, 0, t, sense, 1});
+    }
+  }
+  return run;
+}
+
+const CauseEstimate& Find(const CircleCauses& causes, const std::string& cause,
+                          const std::string& object) {
+  for (const CauseEstimate& one : causes.causes) {
+    if (one.cause == cause && one.object == object) return one;
+  }
+  throw std::out_of_range(cause + " " + object);
+}
+
+struct Truth {
+  const char* cause;
+  const char* object;
+  double value;
+};
+
+std::vector<Truth> TruthOf(const Machine& m) {
+  return {{"scale", "X", m.scale_x},
+          {"scale", "Y", m.scale_y},
+          {"squareness", "XY", m.squareness},
+          {"servo_mismatch", "XY", m.delay_x - m.delay_y},
+          {"servo_lag_squared", "XY", m.lag * m.lag},
+          {"backlash", "X", m.backlash_x},
+          {"backlash", "Y", m.backlash_y},
+          {"straightness", "EYX", m.bow_eyx},
+          {"straightness", "EXY", m.bow_exy},
+          {"reversal_spike", "X", 0.0},
+          {"reversal_spike", "Y", 0.0}};
+}
+
+const Machine kAll{.scale_x = 60e-6,
+                   .scale_y = -40e-6,
+                   .squareness = 80e-6,
+                   .delay_x = 0.4e-3,
+                   .delay_y = 0.1e-3,
+                   .lag = 4e-3,
+                   .backlash_x = 3e-6,
+                   .backlash_y = 1e-6,
+                   .bow_eyx = 2e-6,
+                   .bow_exy = -1e-6,
+                   .lobes = 0,
+                   .offset_x = 20e-6,
+                   .offset_y = -10e-6,
+                   .noise = 0};
+
+TEST(CircleCauses, AllCausesAtOnceAreToldApart) {
+  const auto slow = Measure(kAll, 0.002, {1, -1}), fast = Measure(kAll, 0.03, {1, -1});
+  const CircleCauses found = FitCircleCauses({&slow, &fast});
+  // Neglected: squares of the errors beside the radius (20 um, 10 mm: 40 nm), products such as
+  // bow and angle (0.3 ms at 30 mm/s turns by 1 mrad: 3 nm on bow and backlash).
+  for (const Truth& truth : TruthOf(kAll)) {
+    const CauseEstimate& one = Find(found, truth.cause, truth.object);
+    const double effect_per_unit = one.effect / std::abs(one.value);
+    EXPECT_NEAR(one.value * effect_per_unit, truth.value * effect_per_unit, 60e-9)
+        << truth.cause << ' ' << truth.object;
+  }
+  EXPECT_LT(found.rms_after, 60e-9);
+  EXPECT_GT(found.rms_before, 1e-6);
+}
+
+// Ten micrometres of backlash on one axis: a harmonic by harmonic reading sees 4.2 um of servo
+// mismatch (4 / (3 pi) of it), the joint fit none.
+TEST(CircleCauses, BacklashIsNotTakenForServoMismatch) {
+  Machine m;
+  m.backlash_x = 10e-6;
+  const auto slow = Measure(m, 0.002, {1, -1}), fast = Measure(m, 0.01, {1, -1});
+  const CircleCauses found = FitCircleCauses({&slow, &fast});
+  EXPECT_NEAR(Find(found, "backlash", "X").value, 10e-6, 20e-9);
+  EXPECT_LT(Find(found, "servo_mismatch", "XY").effect, 50e-9);
+  EXPECT_LT(Find(found, "squareness", "XY").effect, 20e-9);
+}
+
+TEST(CircleCauses, OneSenseCannotTellSquarenessFromMismatch) {
+  Machine m;
+  m.squareness = 100e-6;
+  m.noise = 0.1e-6;
+  const auto one = Measure(m, 0.002, {1});
+  const CircleCauses found = FitCircleCauses({&one});
+  EXPECT_FALSE(Find(found, "servo_mismatch", "XY").seen);
+  bool named = false;
+  for (const std::string& words : found.weak_directions) {
+    named = named || (words.find("servo_mismatch") != std::string::npos);
+  }
+  EXPECT_TRUE(named);
+  // Honest: the truth lies within what the uncertainty allows.
+  const CauseEstimate& square = Find(found, "squareness", "XY");
+  EXPECT_LT(std::abs(square.value - 100e-6), 3 * square.u);
+  EXPECT_GT(square.u, 50e-6);
+}
+
+TEST(CircleCauses, OneFeedCannotTellLagFromScale) {
+  Machine m;
+  m.scale_x = m.scale_y = -50e-6;
+  m.noise = 0.1e-6;
+  const auto one = Measure(m, 0.03, {1, -1});
+  EXPECT_GT(Find(FitCircleCauses({&one}), "servo_lag_squared", "XY").u, 5e-6);
+  const auto slow = Measure(m, 0.005, {1, -1});
+  EXPECT_LT(Find(FitCircleCauses({&one, &slow}), "servo_lag_squared", "XY").u, 1e-6);
+}
+
+// Pulls over 200 machines measured: mean 0, variance 1, each within its 99.9 % band.
+TEST(CircleCauses, UncertaintiesAreTrue) {
+  constexpr int kSeeds = 200;
+  Machine m = kAll;
+  m.noise = 0.5e-6;
+  m.offset_x = m.offset_y = 0;
+  std::vector<double> sums(TruthOf(m).size()), squares(sums.size());
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const auto slow = Measure(m, 0.002, {1, -1}, 10 + seed),
+               fast = Measure(m, 0.01, {1, -1}, 500 + seed);
+    const CircleCauses found = FitCircleCauses({&slow, &fast});
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const Truth truth = TruthOf(m)[i];
+      const CauseEstimate& one = Find(found, truth.cause, truth.object);
+      const double pull = (one.value - truth.value) / one.u;
+      sums[i] += pull;
+      squares[i] += pull * pull;
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const double mean = sums[i] / kSeeds;
+    const double variance = squares[i] / kSeeds - mean * mean;
+    const char* name = TruthOf(m)[i].cause;
+    EXPECT_LT(std::abs(mean), 3.3 / std::sqrt(kSeeds)) << name;
+    // The noise is estimated with the factor for shared scatter, which is held at 1 and more: it
+    // errs by up to 1 / sqrt(2 * 144 sectors) = 6 % upwards, half of the time.
+    EXPECT_GT(variance, (1 - 3.3 * std::sqrt(2.0 / kSeeds)) / 1.06) << name;
+    EXPECT_LT(variance, 1 + 3.3 * std::sqrt(2.0 / kSeeds)) << name;
+  }
+}
+
+// What no cause explains makes the uncertainties larger, not the causes.
+TEST(CircleCauses, UnexplainedLobesWidenTheUncertainty) {
+  Machine m;
+  m.noise = 0.2e-6;
+  const auto plain = Measure(m, 0.002, {1, -1});
+  m.lobes = 1e-6;
+  const auto lobed = Measure(m, 0.002, {1, -1});
+  const CircleCauses quiet = FitCircleCauses({&plain}), loud = FitCircleCauses({&lobed});
+  EXPECT_GT(loud.correlated, 2.0);
+  EXPECT_GT(Find(loud, "backlash", "X").u, 3 * Find(quiet, "backlash", "X").u);
+  EXPECT_LT(std::abs(Find(loud, "backlash", "X").value), 3 * Find(loud, "backlash", "X").u);
+}
+
+TEST(CircleCauses, CyclicErrorsAtAKnownPitch) {
+  relm::CircleRun run = Measure({}, 0.002, {1, -1});
+  for (auto& point : run.points) {
+    const double x = 0.03 + kRadius * std::cos(point.angle);
+    point.first += 0.5e-6 * std::sin(2 * kPi * x / 0.002);
+  }
+  const CircleCauses found = FitCircleCauses({&run}, {{{'X', 0.002}, {'Y', 0.002}}});
+  EXPECT_NEAR(Find(found, "cyclic_sin", "X").value, 0.5e-6, 2e-9);
+  EXPECT_NEAR(Find(found, "cyclic_cos", "X").value, 0.0, 2e-9);
+  EXPECT_NEAR(Find(found, "cyclic_sin", "Y").value, 0.0, 2e-9);
+}
+
+TEST(CircleCauses, RefusesCirclesThatAreNotOne) {
+  const auto one = Measure({}, 0.002, {1});
+  auto other = one;
+  other.radius = 0.02;
+  EXPECT_THROW(FitCircleCauses(std::vector<const relm::CircleRun*>{}), InputError);
+  EXPECT_THROW(FitCircleCauses({&one, &other}), InputError);
+  other = one;
+  other.plane.name = "inclined";
+  EXPECT_THROW(FitCircleCauses({&other}), InputError);
+}
+
+}  // namespace
+}  // namespace abbe::fusion

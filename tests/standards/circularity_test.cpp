@@ -1,0 +1,80 @@
+#include "standards/circularity.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "failure/failure.h"
+
+namespace abbe::standards {
+namespace {
+
+constexpr double kRadius = 0.05;
+constexpr double kRounding = 1e-15;
+
+PlanePath Path(const std::function<double(double)>& r, double cx = 0.0, double cy = 0.0) {
+  PlanePath path;
+  for (int degree = 0; degree < 360; ++degree) {
+    const double t = degree * std::numbers::pi / 180.0;
+    path.x.push_back(cx + r(t) * std::cos(t));
+    path.y.push_back(cy + r(t) * std::sin(t));
+  }
+  return path;
+}
+
+TEST(Circularity, SensesOfDifferentRadius) {
+  const auto figures = EvaluateCircularity({.radius = kRadius,
+                                            .cw = Path([](double) { return kRadius - 1e-6; }),
+                                            .ccw = Path([](double) { return kRadius + 3e-6; })});
+  EXPECT_NEAR(figures.cw->G, 0.0, kRounding);
+  EXPECT_NEAR(figures.ccw->G, 0.0, kRounding);
+  EXPECT_NEAR(figures.both->G, 4e-6, kRounding);
+  EXPECT_NEAR(figures.F_max, 3e-6, kRounding);
+  EXPECT_NEAR(figures.F_min, -1e-6, kRounding);
+  EXPECT_NEAR(*figures.D, 1e-6, kRounding);
+  EXPECT_NEAR(figures.cw->F_max, -1e-6, kRounding);
+}
+
+// Radius and centring are no circular deviation: G is zero, F tells both.
+TEST(Circularity, AnOffCentreCircleHasNoGButAnF) {
+  constexpr double e = 5e-6;
+  const auto figures = EvaluateCircularity(
+      {.radius = kRadius, .cw = {}, .ccw = Path([](double) { return kRadius; }, e, 0.0)});
+  EXPECT_NEAR(figures.ccw->G, 0.0, kRounding);
+  EXPECT_NEAR(figures.F_max, e, kRounding);
+  EXPECT_NEAR(figures.F_min, -e, kRounding);
+  EXPECT_NEAR(figures.F_max_ls, 0.0, kRounding);
+  EXPECT_FALSE(figures.cw || figures.both || figures.D);
+}
+
+// A servo mismatch: the oval of one sense is the other's turned by 90 degrees.
+TEST(Circularity, OvalsThatTurnWithTheSense) {
+  constexpr double a = 4e-6;
+  const auto oval = [](double sense) {
+    return Path([=](double t) { return kRadius + sense * a * std::sin(2 * t); });
+  };
+  const auto figures = EvaluateCircularity({.radius = kRadius, .cw = oval(-1), .ccw = oval(1)});
+  constexpr double kSecondOrder = a * a / kRadius;
+  for (const auto& sense : {figures.cw, figures.ccw, figures.both}) {
+    EXPECT_NEAR(sense->G, 2 * a, kSecondOrder);
+    EXPECT_NEAR(sense->G_ls, 2 * a, kSecondOrder);
+  }
+  EXPECT_NEAR(*figures.D, 0.0, kSecondOrder);
+}
+
+TEST(Circularity, RefusesWhatCannotBeJudged) {
+  EXPECT_THROW(EvaluateCircularity({.radius = kRadius, .cw = {}, .ccw = {}}), InputError);
+  EXPECT_THROW(EvaluateCircularity({.radius = 0.0, .cw = {}, .ccw = {{0, 1, 0}, {0, 0, 1}}}),
+               InputError);
+  try {
+    EvaluateCircularity({.radius = 1.0, .cw = {{0, 1}, {0, 1}}, .ccw = {}});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("clockwise: ", 0), 0U) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace abbe::standards
