@@ -167,7 +167,7 @@ class CalibrationJob {
       problem.Block({static_cast<int>(b)}).Hold();
     }
     for (const std::string& mounting : MountingsOf(runs_)) {
-      problem.Block(problem.Find(BaseBlock(mounting))).Free();
+      problem.Block(problem.Find(simulation::BaseBlock(mounting))).Free();
     }
     Calibration nominal;
     nominal.model = options_.model;

@@ -48,10 +48,6 @@ struct Calibration {
   double held_out_rms = std::numeric_limits<double>::quiet_NaN();  // m, 3D
 };
 
-// Names of the blocks of the base: position [x y z] in M, turn [a b c] in B.
-std::string BaseBlock(const std::string& mounting);
-std::string BaseTurnBlock(const std::string& mounting);
-
 class CalibratedLinkage {
  public:
   CalibratedLinkage(const relm::LinkageSettings& settings, Calibration calibration);

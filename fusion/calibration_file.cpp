@@ -196,8 +196,8 @@ Calibration ReadCalibration(const std::filesystem::path& path,
   calibration.held_out_rms = root.Quantity("held_out_rms_um");
   for (const std::string& mounting : calibration.mountings) {
     auto base = simulation::BaseBlocks(settings);
-    base[0].name = BaseBlock(mounting);
-    base[1].name = BaseTurnBlock(mounting);
+    base[0].name = simulation::BaseBlock(mounting);
+    base[1].name = simulation::BaseTurnBlock(mounting);
     calibration.blocks.insert(calibration.blocks.end(), base.begin(), base.end());
   }
   const auto model = relm::MakeLinkageModel(settings, calibration.model);

@@ -56,7 +56,7 @@ bool IsBase(const ParameterBlock& block) { return block.name.starts_with("base")
 std::vector<const ParameterBlock*> BlocksOf(const std::vector<ParameterBlock>& blocks,
                                             const std::string& mounting) {
   std::vector<const ParameterBlock*> found;
-  for (const std::string& name : {BaseBlock(mounting), BaseTurnBlock(mounting)}) {
+  for (const std::string& name : {simulation::BaseBlock(mounting), simulation::BaseTurnBlock(mounting)}) {
     for (const ParameterBlock& block : blocks) {
       if (block.name == name) found.push_back(&block);
     }
@@ -71,14 +71,6 @@ std::vector<const ParameterBlock*> BlocksOf(const std::vector<ParameterBlock>& b
 }
 
 }  // namespace
-
-std::string BaseBlock(const std::string& mounting) {
-  return mounting.empty() ? "base" : "base " + mounting;
-}
-
-std::string BaseTurnBlock(const std::string& mounting) {
-  return mounting.empty() ? "base_turn" : "base_turn " + mounting;
-}
 
 std::vector<std::string> MountingsOf(const std::vector<LinkageRun>& runs) {
   std::vector<std::string> names;
@@ -133,8 +125,8 @@ estimation::Problem MakeLinkageProblem(const LinkageSimulation& simulation,
   std::vector<std::vector<estimation::Input>> inputs(mountings.size());
   for (std::size_t m = 0; m < mountings.size(); ++m) {
     ParameterBlock base = blocks[0], turn = blocks[1];
-    base.name = BaseBlock(mountings[m]);
-    turn.name = BaseTurnBlock(mountings[m]);
+    base.name = simulation::BaseBlock(mountings[m]);
+    turn.name = simulation::BaseTurnBlock(mountings[m]);
     if (options.displacement) {
       for (auto& entry : base.entries) entry.prior_sd = estimation::kNoPrior;
       base.Free();

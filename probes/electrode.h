@@ -28,17 +28,19 @@ struct Electrode {
   double stray = 0;   // 1/m: stray capacitance over (permittivity times electrode area)
 };
 
-// What the probe says at the gap `gap` over a surface tilted by `tilt`.
-inline double ElectrodeReading(const Electrode& electrode, double gap, double tilt) {
-  const double edge = electrode.radius * tilt / gap;
-  if (!(gap > 0) || !(std::abs(edge) < 1)) {
+// What the probe says at the gap `gap` over a surface tilted by `tilt`. T: double or a dual number.
+template <typename T>
+T ElectrodeReading(const Electrode& electrode, const T& gap, double tilt) {
+  using std::sqrt;
+  const T edge = electrode.radius * tilt / gap;
+  if (!(gap > T(0)) || !(edge * edge < T(1))) {
     throw InputError(
         "electrode: the gap is not above the tilt times the electrode radius, so the electrode "
         "would "
         "touch the target; check the gap and [head] electrode_radius_mm");
   }
-  const double tilted = gap * (1 + std::sqrt(1 - edge * edge)) / 2;
-  return tilted / (1 + electrode.stray * tilted);
+  const T tilted = gap * (T(1) + sqrt(T(1) - edge * edge)) / T(2);
+  return tilted / (T(1) + electrode.stray * tilted);
 }
 
 // The gap at which the probe says `reading` over a surface tilted by `tilt`.

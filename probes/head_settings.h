@@ -48,6 +48,12 @@ struct HeadSettings {
   HeadTolerance tolerance;
   std::array<AxisFrame, 3> axes;  // of the sweeps of X, Y, Z
 
+  // The largest gap of each probe, m.
+  PerProbe<> Ranges() const {
+    PerProbe<> ranges;
+    for (std::size_t i = 0; i < kProbes; ++i) ranges[i] = probes[i].range;
+    return ranges;
+  }
   // The frame for the sweep of `axis`, 'X', 'Y' or 'Z', else InputError.
   const AxisFrame& Frame(char axis) const { return axes[machine::AxisIndex(axis)]; }
 };

@@ -161,11 +161,7 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
                     "\"{}\"; give the file of that machine",
                     recording.name, machine, setup.machine.name));
   }
-  PerProbe<> ranges;
-  for (std::size_t probe = 0; probe < kProbes; ++probe) {
-    ranges[probe] = setup.head.probes[probe].range;
-  }
-  const SweepDwells sweep = FindDwells(recording, DwellRuleOf(recording), ranges);
+  const SweepDwells sweep = FindDwells(recording, DwellRuleOf(recording), setup.head.Ranges());
   const StationMeans means = FitStations(recording.name, sweep, setup.noise);
   const SweepInversion inversion(setup.machine, setup.head, sweep.axis, sweep.start);
   const auto directions = static_cast<Eigen::Index>(means.directions.size());

@@ -50,7 +50,8 @@ LinkageNoise ReadNoise(const Table& table) {
   const LinkageNoise noise{
       .encoder = table.Quantity("encoder_urad", {.fallback = 3.0, .at_least = 0.0}),
       .reference = table.Quantity("reference_um", {.fallback = 0.3, .at_least = 0.0}),
-      .machine = table.Quantity("machine_um", {.fallback = 5.0, .at_least = 0.0})};
+      .machine = table.Quantity("machine_um", {.fallback = 5.0, .at_least = 0.0}),
+      .repeatability = table.Quantity("repeatability_um", {.fallback = 0.0, .at_least = 0.0})};
   table.RefuseUnknown();
   return noise;
 }

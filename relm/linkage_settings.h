@@ -45,6 +45,7 @@ struct LinkageNoise {
   double encoder;    // rad: standard deviation of one reading
   double reference;  // m: of a position that a reference instrument gives, each direction
   double machine;    // m: of a commanded position where it is the reference, each direction
+  double repeatability;  // m: of the ball when a position is approached again, each direction
 };
 
 struct LinkageSettings {

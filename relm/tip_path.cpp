@@ -8,6 +8,7 @@
 #include <string>
 
 #include "failure/failure.h"
+#include "recording/good_rows.h"
 
 namespace abbe::relm {
 namespace {
@@ -31,19 +32,6 @@ std::vector<Column> AngleColumns(const recording::Recording& recording, Eigen::I
 Column TemperatureColumn(const recording::Recording& recording, const LinkageSettings& settings) {
   if (settings.temperature.empty()) return {};
   return recording.Find(settings.temperature).value_or(Column{});
-}
-
-std::vector<std::size_t> GoodRows(const recording::Recording& recording) {
-  const Column flags = recording.Find("flags").value_or(Column{});
-  std::vector<std::size_t> rows;
-  for (std::size_t row = 0; row < recording.rows(); ++row) {
-    if (flags.empty() || flags[row] == 0) rows.push_back(row);
-  }
-  if (rows.empty()) {
-    throw InputError(fmt::format("{}: none of the {} rows is without a flag; nothing to evaluate",
-                                 recording.name, recording.rows()));
-  }
-  return rows;
 }
 
 double Finite(const recording::Recording& recording, Column column, std::size_t row,
@@ -73,7 +61,7 @@ GoodReadings ReadAngles(const recording::Recording& recording, const LinkageSett
   const std::vector<Column> columns = AngleColumns(recording, settings.chain.joints());
   const Column temperatures = TemperatureColumn(recording, settings);
   GoodReadings good;
-  good.rows = GoodRows(recording);
+  good.rows = recording::GoodRows(recording);
   good.flagged = recording.rows() - good.rows.size();
   good.readings.angles.resize(settings.chain.joints(), static_cast<Eigen::Index>(good.rows.size()));
   if (!temperatures.empty()) good.readings.warmth.resize(good.readings.poses());

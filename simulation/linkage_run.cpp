@@ -3,19 +3,16 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 #include <optional>
-#include <span>
 
 #include "failure/failure.h"
+#include "recording/good_rows.h"
 #include "relm/tip_path.h"
-#include "settings/unit.h"
 
 namespace abbe::simulation {
 namespace {
 
 using Eigen::Index;
-using Column = std::span<const double>;
 
 constexpr std::array<const char*, 3> kCommanded{"x_mm", "y_mm", "z_mm"};
 constexpr std::array<const char*, 3> kReference{"ref_x_mm", "ref_y_mm", "ref_z_mm"};
@@ -30,19 +27,10 @@ void RefuseOtherKinds(const recording::Recording& recording) {
       recording.name, kind));
 }
 
-Eigen::VectorXd Take(const recording::Recording& recording, const std::string& name, Column column,
+Eigen::VectorXd Take(const recording::Recording& recording, const std::string& name,
                      const std::vector<std::size_t>& rows) {
-  const double si = settings::UnitOf(name).si;
-  Eigen::VectorXd values(static_cast<Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double value = column[rows[i]] * si;
-    if (!std::isfinite(value)) {
-      throw InputError(fmt::format("{}: row {}: {} is no number and has no flag", recording.name,
-                                   rows[i] + 1, name));
-    }
-    values[static_cast<Index>(i)] = value;
-  }
-  return values;
+  const std::vector<double> values = recording::ValuesOf(recording, name, rows);
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
 // Where a new stay begins; the last one is the number of poses.
@@ -90,7 +78,7 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
   run.readings = std::move(good.readings);
   run.rows = std::move(good.rows);
   const auto time = recording.Find("time_s");
-  run.time = time ? Take(recording, "time_s", *time, run.rows)
+  run.time = time ? Take(recording, "time_s", run.rows)
                   : Eigen::VectorXd::LinSpaced(run.poses(), 0.0, run.poses() - 1.0);
   run.samples.setOnes();
   const auto stated = recording.Find(kStated);
@@ -105,14 +93,13 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
           recording.name, kCommanded[axis], kReference[axis]));
     }
     run.referenced[axis] = reference.has_value();
-    run.commanded.row(row) = Take(recording, commanded ? kCommanded[axis] : kReference[axis],
-                                  commanded ? *commanded : *reference, run.rows);
-    run.reference.row(row) = reference ? Take(recording, kReference[axis], *reference, run.rows)
+    run.commanded.row(row) =
+        Take(recording, commanded ? kCommanded[axis] : kReference[axis], run.rows);
+    run.reference.row(row) = reference ? Take(recording, kReference[axis], run.rows)
                                        : Eigen::VectorXd(run.commanded.row(row));
     run.reference_sd.row(row).setConstant(reference ? settings.noise.reference
                                                     : settings.noise.machine);
-    if (stated && reference)
-      run.reference_sd.row(row) = Take(recording, kStated, *stated, run.rows);
+    if (stated && reference) run.reference_sd.row(row) = Take(recording, kStated, run.rows);
   }
   return run;
 }

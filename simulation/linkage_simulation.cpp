@@ -86,6 +86,14 @@ void JacobianInMachine(const geometry::Transform<double>& nominal_X_MB, const Ve
   }
 }
 
+std::string BaseBlock(const std::string& mounting) {
+  return mounting.empty() ? "base" : "base " + mounting;
+}
+
+std::string BaseTurnBlock(const std::string& mounting) {
+  return mounting.empty() ? "base_turn" : "base_turn " + mounting;
+}
+
 std::vector<estimation::ParameterBlock> BaseBlocks(const relm::LinkageSettings& settings) {
   return {BlockOf("base", kMicrometres, {"x", "y", "z"}, settings.tolerance.base_position),
           BlockOf("base_turn", kMicroradians, {"a", "b", "c"}, settings.tolerance.base_angle)};

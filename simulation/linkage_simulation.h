@@ -24,6 +24,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "estimation/parameter.h"
@@ -45,6 +46,10 @@ geometry::Transform<double> BaseAt(const geometry::Transform<double>& nominal_X_
 void JacobianInMachine(const geometry::Transform<double>& nominal_X_MB, const Eigen::VectorXd& x,
                        const Eigen::Matrix3Xd& p_BT, const estimation::RowMatrix& J_tip_x,
                        estimation::RowMatrix& J);
+
+// Names of the blocks of the base of a mounting: position [x y z] in M, turn [a b c] in B.
+std::string BaseBlock(const std::string& mounting);
+std::string BaseTurnBlock(const std::string& mounting);
 
 // The blocks "base" [x y z] and "base_turn" [a b c] with the priors of the machine file.
 std::vector<estimation::ParameterBlock> BaseBlocks(const relm::LinkageSettings& settings);

@@ -44,7 +44,7 @@ TEST(Electrode, AddsTheStrayCapacitance) {
 TEST(Electrode, RefusesTheImpossible) {
   const Electrode electrode{.radius = 2.5e-3, .stray = 500};
   EXPECT_THROW(ElectrodeReading(electrode, 100e-6, 0.04), InputError);  // the edge touches
-  EXPECT_THROW(ElectrodeReading(electrode, 0, 0), InputError);
+  EXPECT_THROW(ElectrodeReading(electrode, 0.0, 0.0), InputError);
   EXPECT_THROW(ElectrodeReading(electrode, -1e-6, 0), InputError);
   EXPECT_THROW(ElectrodeReading(electrode, std::nan(""), 0), InputError);
   EXPECT_THROW(ElectrodeGap(electrode, 2e-3, 0), InputError);      // k m = 1: an infinite gap

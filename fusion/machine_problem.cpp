@@ -1,0 +1,73 @@
+#include "fusion/machine_problem.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "failure/failure.h"
+
+namespace abbe::fusion {
+namespace {
+
+using estimation::BlockId;
+using estimation::ParameterBlock;
+
+void AddMachine(const machine::Machine& machine, const machine::VolumetricModel& model,
+                estimation::Problem& problem, std::map<std::string, BlockId>& known) {
+  for (ParameterBlock& block : model.Blocks()) {
+    if (block.name == "squareness") {
+      for (auto& entry : block.entries) entry.prior_sd = machine.population.squareness;
+    }
+    const std::string name = block.name;
+    known.emplace(name, problem.Add(std::move(block)));
+  }
+}
+
+void AddSmoothness(const MachinePrior& prior, const machine::VolumetricModel& model,
+                   estimation::Problem& problem) {
+  const auto source = problem.AddSource(std::string(kSmoothnessSource), {.is_prior = true});
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    for (int motion = 0; motion < machine::kMotions; ++motion) {
+      if (model.Function(axis, motion).size() == 0) continue;
+      const Eigen::MatrixXd W = prior.Whitening(axis, motion);
+      problem.Add(
+          source, std::make_shared<estimation::LinearResidual>(W, Eigen::VectorXd::Zero(W.rows())),
+          {problem.Find(machine::MotionName(axis, motion))}, 1.0);
+    }
+  }
+}
+
+}  // namespace
+
+estimation::Problem MakeMachineProblem(const machine::Machine& machine,
+                                       const machine::VolumetricModel& model,
+                                       const MachinePrior& prior,
+                                       const std::vector<simulation::SimulatedRun>& runs) {
+  if (runs.empty()) throw InputError("no recording to fuse; name at least one");
+  estimation::Problem problem;
+  std::map<std::string, BlockId> known;
+  AddMachine(machine, model, problem, known);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    std::vector<estimation::Input> inputs;
+    for (const ParameterBlock& block : runs[r].blocks) {
+      const auto at = known.find(block.name);
+      inputs.emplace_back(at != known.end() ? at->second
+                                            : (known[block.name] = problem.Add(block)));
+    }
+    const auto same = [&](const simulation::SimulatedRun& other) {
+      return other.name == runs[r].name;
+    };
+    const bool unique = std::count_if(runs.begin(), runs.end(), same) == 1;
+    const auto source =
+        problem.AddSource(unique ? runs[r].name : fmt::format("{} ({})", runs[r].name, r + 1),
+                          {.loss = runs[r].loss});
+    problem.Add(source, runs[r].residual, inputs, 1.0);
+  }
+  AddSmoothness(prior, model, problem);
+  return problem;
+}
+
+}  // namespace abbe::fusion

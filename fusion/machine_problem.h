@@ -1,0 +1,26 @@
+// Any set of runs on one machine as one estimation problem.
+//
+//   estimation::Problem problem = MakeMachineProblem(mill, model, prior, runs);
+//
+// Blocks: the functions of the machine and its squareness, then what each run brings, shared by
+// name. Sources: one for each run in their order, then "smoothness", the prior of the functions.
+// Failure: InputError for no run.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "estimation/problem.h"
+#include "fusion/machine_prior.h"
+#include "simulation/simulated_run.h"
+
+namespace abbe::fusion {
+
+inline constexpr std::string_view kSmoothnessSource = "smoothness";
+
+estimation::Problem MakeMachineProblem(const machine::Machine& machine,
+                                       const machine::VolumetricModel& model,
+                                       const MachinePrior& prior,
+                                       const std::vector<simulation::SimulatedRun>& runs);
+
+}  // namespace abbe::fusion

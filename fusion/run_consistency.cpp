@@ -1,0 +1,102 @@
+#include "fusion/run_consistency.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+
+#include "estimation/linearization.h"
+
+namespace abbe::fusion {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kSeen = 0.5;           // lambda
+constexpr double kSignificance = 0.01;  // of the whole set
+constexpr double kUnknown = 1e-12;      // of a parameter's information: nobody else sees it
+
+struct Quadratic {
+  MatrixXd information;
+  VectorXd score;
+};
+
+// The same without the unknowns of `own`, which are free to follow.
+Quadratic Eliminate(const Quadratic& all, const std::vector<int>& others,
+                    const std::vector<int>& own) {
+  Quadratic left{all.information(others, others), all.score(others)};
+  if (own.empty()) return left;
+  const MatrixXd cross = all.information(own, others);
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> inner(all.information(own, own));
+  left.information -= cross.transpose() * inner.solve(cross);
+  left.score -= cross.transpose() * inner.solve(VectorXd(all.score(own)));
+  return left;
+}
+
+RunConsistency Check(const std::string& name, const estimation::SourceSums& run,
+                     const MatrixXd& all) {
+  const MatrixXd rest = all - run.information;
+  std::vector<int> others, own;
+  for (Index i = 0; i < all.rows(); ++i) {
+    (rest(i, i) > kUnknown * all(i, i) ? others : own).push_back(static_cast<int>(i));
+  }
+  const Quadratic seen = Eliminate({run.information, run.gradient}, others, own);
+  RunConsistency check{.name = name};
+  const Eigen::LLT<MatrixXd> H{MatrixXd(rest(others, others))};
+  if (H.info() != Eigen::Success) return check;
+  // L = U^-1 with H = U'U.
+  const MatrixXd half = H.matrixL().solve(seen.information);
+  const MatrixXd M = H.matrixL().solve(half.transpose());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (M + M.transpose()));
+  const VectorXd y = eigen.eigenvectors().transpose() * H.matrixL().solve(seen.score);
+  for (Index i = 0; i < y.size(); ++i) {
+    const double lambda = eigen.eigenvalues()[i];
+    if (!(lambda > kSeen)) continue;
+    check.statistic += (1.0 + lambda) / lambda * y[i] * y[i];
+    ++check.directions;
+  }
+  if (check.directions > 0) {
+    const boost::math::chi_squared chi(check.directions);
+    check.probability = boost::math::cdf(boost::math::complement(chi, check.statistic));
+  }
+  return check;
+}
+
+}  // namespace
+
+std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
+                                      const estimation::Result& result) {
+  const estimation::Layout layout(problem);
+  VectorXd x(layout.start.size());
+  Index at = 0;
+  for (const auto& block : result.blocks) {
+    x.segment(at, block.size()) = block.Values();
+    at += block.size();
+  }
+  const auto sums = estimation::Linearize(problem, layout, x, 0);
+  MatrixXd all = sums.prior.information;
+  for (const auto& source : sums.sources) all += source.information;
+  std::vector<RunConsistency> checks;
+  for (std::size_t s = 0; s < sums.sources.size(); ++s) {
+    if (problem.sources()[s].options.is_prior) continue;
+    checks.push_back(Check(problem.sources()[s].name, sums.sources[s], all));
+  }
+  return checks;
+}
+
+int Contradicting(const std::vector<RunConsistency>& runs) {
+  const auto worst = std::min_element(runs.begin(), runs.end(), [](const auto& a, const auto& b) {
+    // Beyond what a probability can hold, the statistic decides.
+    if (a.probability == 0.0 && b.probability == 0.0) {
+      return a.statistic / a.directions > b.statistic / b.directions;
+    }
+    return a.probability < b.probability;
+  });
+  if (worst == runs.end()) return -1;
+  if (worst->probability * static_cast<double>(runs.size()) > kSignificance) return -1;
+  return static_cast<int>(worst - runs.begin());
+}
+
+}  // namespace abbe::fusion

@@ -1,0 +1,27 @@
+// What a run of the linkage should read on a machine with errors of its own.
+//
+// The loop of linkage_simulation.h, with the ball where the machine really holds it:
+//
+//   gap = X_MB p_BT(readings) - (p_MT(commanded) + error(commanded))       error: machine/
+//
+// Here the commanded position is no reference with an uncertainty of its own: what the machine does
+// with a command is what is to be found. What is left is the noise of the encoders and how well the
+// ball repeats (linkage.noise.repeatability). The ball stands in the machine's origin when all axes
+// are at zero.
+// Unknowns: those of the linkage and its base, then the machine's functions and squareness.
+// Units: m, rad. Failure: InputError for a position outside the travels, naming the row. Validity:
+// exact.
+#pragma once
+
+#include "machine/volumetric_model.h"
+#include "simulation/linkage_simulation.h"
+#include "simulation/simulated_run.h"
+
+namespace abbe::simulation {
+
+// `reference`: the machine's reference point, m, in M.
+SimulatedRun SimulateLinkage(const machine::VolumetricModel& model,
+                             const Eigen::Vector3d& reference, const LinkageSimulation& linkage,
+                             const LinkageRun& run);
+
+}  // namespace abbe::simulation

@@ -1,0 +1,85 @@
+#include "simulation/machine_points.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <utility>
+
+#include "failure/failure.h"
+#include "machine/volumetric_error.h"
+#include "recording/good_rows.h"
+
+namespace abbe::simulation {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+Vector3d ToolOf(const recording::Recording& recording) {
+  const auto text = recording.HeaderText("tool_mm");
+  if (!text) return Vector3d::Zero();
+  std::array<double, 3> tool{};
+  if (std::sscanf(text->c_str(), " [ %lf , %lf , %lf ]", &tool[0], &tool[1], &tool[2]) != 3) {
+    throw InputError(
+        fmt::format("{}: header: tool_mm is {}; write three numbers, such as [0.0, 0.0, 50.0]",
+                    recording.name, *text));
+  }
+  return 1e-3 * Vector3d(tool[0], tool[1], tool[2]);
+}
+
+}  // namespace
+
+MachinePoints ReadMachinePoints(const recording::Recording& recording) {
+  MachinePoints points;
+  points.name = recording.name;
+  points.rows = recording::GoodRows(recording);
+  points.tool = ToolOf(recording);
+  points.axes.resize(3, static_cast<Index>(points.rows.size()));
+  for (Index axis = 0; axis < 3; ++axis) {
+    points.axes.row(axis) = ColumnAt(recording, points, fmt::format("{}_mm", "xyz"[axis]));
+  }
+  return points;
+}
+
+Eigen::VectorXd ColumnAt(const recording::Recording& recording, const MachinePoints& points,
+                         const std::string& column) {
+  const std::vector<double> values = recording::ValuesOf(recording, column, points.rows);
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
+}
+
+PointsOnMachine::PointsOnMachine(machine::VolumetricModel model, const Vector3d& reference,
+                                 MachinePoints points)
+    : model_(std::move(model)),
+      points_(std::move(points)),
+      tool_(points_.tool - reference),
+      nominal_(3, points_.count()) {
+  for (Index i = 0; i < points_.count(); ++i) {
+    const Vector3d axes = points_.axes.col(i);
+    nominal_.col(i) = machine::NominalToolInWork<double>(model_.chain(), axes, points_.tool);
+    try {
+      model_.Motions(axes);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: row {}: {}", points_.name,
+                                   points_.rows[static_cast<std::size_t>(i)] + 1, error.what()));
+    }
+  }
+}
+
+Matrix3Xd PointsOnMachine::Places(const Eigen::VectorXd& machine_parameters,
+                                  std::vector<Matrix3Xd>* J_p_x) const {
+  machine::VolumetricModel model = model_;
+  model.SetParameters(machine_parameters);
+  Matrix3Xd places = nominal_;
+  if (J_p_x == nullptr) return places + model.Errors(points_.axes, tool_);
+  J_p_x->clear();
+  for (Index i = 0; i < points_.count(); ++i) {
+    auto at = model.Linearize(points_.axes.col(i), tool_);
+    places.col(i) += at.error;
+    J_p_x->push_back(std::move(at.J_error_parameters));
+  }
+  return places;
+}
+
+}  // namespace abbe::simulation

@@ -1,0 +1,28 @@
+// What a reference instrument (grid encoder, tracker) should read: the place of the tool point.
+//
+//   const SimulatedRun run = SimulateReference(model, reference, 0.3e-6, recording);
+//
+// Columns ref_x_mm, ref_y_mm, ref_z_mm are in axis coordinates: what the axes would show there on a
+// perfect machine; any may be absent. The instrument is set up by hand, so its place and its turn
+// are unknown, its own scales and squareness are taken as right:
+//
+//   residual = ref - (place + exp(turn) p(x, y, z))         p of simulation/machine_points.h
+//
+// Unknowns: "reference_place RUN" [x y z], of which nothing is known, "reference_turn RUN" [a b c],
+// known to 10 mrad; the machine's functions and squareness. Turn and squareness together stay as
+// well determined as two or three directions of the instrument allow.
+// Noise: header-independent `sd` in each direction, or the column ref_u_um.
+// Units: m, rad. Failure: that of simulation/machine_points.h; InputError without any ref column.
+#pragma once
+
+#include "machine/volumetric_model.h"
+#include "recording/recording.h"
+#include "simulation/simulated_run.h"
+
+namespace abbe::simulation {
+
+SimulatedRun SimulateReference(const machine::VolumetricModel& model,
+                               const Eigen::Vector3d& reference, double sd,
+                               const recording::Recording& recording);
+
+}  // namespace abbe::simulation
