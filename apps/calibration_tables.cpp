@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "apps/parameters_json.h"
 #include "fusion/calibration_file.h"
 
 namespace abbe::apps {
@@ -34,24 +35,6 @@ ordered_json Json(const fusion::PoseResidual& residual,
           {"gap_um", InMicrometres(residual.gap)},
           {"held_out_um", InMicrometres(residual.held_out)},
           {"normalised", residual.normalised}};
-}
-
-ordered_json Parameters(const estimation::Result& fit) {
-  ordered_json parameters = ordered_json::array();
-  for (const auto& block : fit.blocks) {
-    for (std::size_t i = 0; i < block.entries.size(); ++i) {
-      const auto& entry = block.entries[i];
-      const std::string name = block.FullName(i);
-      parameters.push_back({{"name", name},
-                            {"unit", block.unit.name},
-                            {"value", entry.value / block.unit.si},
-                            {"uncertainty", entry.uncertainty / block.unit.si},
-                            {"nominal", entry.nominal / block.unit.si},
-                            {"prior", entry.prior_sd / block.unit.si},
-                            {"seen_by", estimation::Name(fit.Seen(name))}});
-    }
-  }
-  return parameters;
 }
 
 std::string Spread(const char* what, const fusion::Distances& distances) {
@@ -136,7 +119,7 @@ ordered_json CalibrationJson(const fusion::CalibrationReport& report,
                       {"combinations_seen", report.seen.rank},
                       {"scaled_condition", report.seen.condition},
                       {"noise_amplification_index", report.seen.noise_amplification},
-                      {"parameters", Parameters(report.fit)},
+                      {"parameters", ParametersJson(report.fit)},
                       {"unseen", unseen},
                       {"residuals", residuals},
                       {"outliers", outliers}};

@@ -56,7 +56,8 @@ bool IsBase(const ParameterBlock& block) { return block.name.starts_with("base")
 std::vector<const ParameterBlock*> BlocksOf(const std::vector<ParameterBlock>& blocks,
                                             const std::string& mounting) {
   std::vector<const ParameterBlock*> found;
-  for (const std::string& name : {simulation::BaseBlock(mounting), simulation::BaseTurnBlock(mounting)}) {
+  for (const std::string& name :
+       {simulation::BaseBlock(mounting), simulation::BaseTurnBlock(mounting)}) {
     for (const ParameterBlock& block : blocks) {
       if (block.name == name) found.push_back(&block);
     }

@@ -41,8 +41,8 @@ machine::VolumetricModel UnknownMachine(const machine::Machine& machine) {
     const machine::Travel& travel = machine.travels[static_cast<std::size_t>(axis)];
     const double spans =
         std::ceil(kKnotsPerLength * (travel.last - travel.first) / machine.population.smoothness);
-    const auto form =
-        machine::MakeBSplineForm(BasisOf(travel, static_cast<Index>(std::max(1.0, spans)) + kDegree));
+    const auto form = machine::MakeBSplineForm(
+        BasisOf(travel, static_cast<Index>(std::max(1.0, spans)) + kDegree));
     for (int motion = 0; motion < machine::kMotions; ++motion) model.SetForm(axis, motion, form);
   }
   return model;
@@ -52,7 +52,8 @@ MachinePrior::MachinePrior(const machine::Machine& machine, const machine::Volum
                            double smoothness)
     : machine_(machine), sizes_{}, smoothness_(smoothness) {
   if (!(smoothness > 0.0)) {
-    throw InputError(fmt::format("a correlation length of {} mm must be above 0", 1e3 * smoothness));
+    throw InputError(
+        fmt::format("a correlation length of {} mm must be above 0", 1e3 * smoothness));
   }
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     for (int motion = 0; motion < machine::kMotions; ++motion) {

@@ -33,9 +33,9 @@ void AddSmoothness(const MachinePrior& prior, const machine::VolumetricModel& mo
     for (int motion = 0; motion < machine::kMotions; ++motion) {
       if (model.Function(axis, motion).size() == 0) continue;
       const Eigen::MatrixXd W = prior.Whitening(axis, motion);
-      problem.Add(
-          source, std::make_shared<estimation::LinearResidual>(W, Eigen::VectorXd::Zero(W.rows())),
-          {problem.Find(machine::MotionName(axis, motion))}, 1.0);
+      problem.Add(source,
+                  std::make_shared<estimation::LinearResidual>(W, Eigen::VectorXd::Zero(W.rows())),
+                  {problem.Find(machine::MotionName(axis, motion))}, 1.0);
     }
   }
 }

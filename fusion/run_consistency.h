@@ -2,8 +2,8 @@
 //
 //   for (const RunConsistency& run : CheckRuns(problem, result)) ...
 //
-// Background: at the common estimate x, run r has the information D and the score g = J'r of its own
-// rows; all others and the priors have the information H. Without run r the estimate would be
+// Background: at the common estimate x, run r has the information D and the score g = J'r of its
+// own rows; all others and the priors have the information H. Without run r the estimate would be
 // x + H^-1 g. There the score of run r is s = (1 + D H^-1) g, and if all is stated truly its
 // covariance is D + D H^-1 D. In the directions v that run r sees better than it was known
 // (lambda > 1/2 of L'DL, H^-1 = LL'):
@@ -37,7 +37,8 @@ struct RunConsistency {
 std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
                                       const estimation::Result& result);
 
-// The run that contradicts the others, an index into `runs`; -1: none does at 1 % for the whole set.
+// The run that contradicts the others, an index into `runs`; -1: none does at 1 % for the whole
+// set.
 int Contradicting(const std::vector<RunConsistency>& runs);
 
 }  // namespace abbe::fusion

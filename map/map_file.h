@@ -13,7 +13,7 @@
 //   x = [0.0, 0.06]  y = ...  z = ...           # m
 //   [[error]]                                   # 18 of them, those that are zero may be left out
 //   name = "EXX"
-//   from = "sweep"                              # sweep, linkage, reference, plate, prior
+//   from = "sweep"                              # sweep, linkage, reference, plate, length, prior
 //   form = "b-spline"                           # machine/form_of_shape.h
 //   degree = 3
 //   knots_m = [...]

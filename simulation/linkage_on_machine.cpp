@@ -1,11 +1,9 @@
 #include "simulation/linkage_on_machine.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <utility>
 
-#include "failure/failure.h"
+#include "simulation/axes_in_travel.h"
 
 namespace abbe::simulation {
 namespace {
@@ -26,14 +24,7 @@ class LinkageOnMachine : public estimation::Residual {
         linkage_(std::move(linkage)),
         run_(std::move(run)),
         noise_(linkage_.GapNoise(run_)) {
-    for (Index pose = 0; pose < run_.poses(); ++pose) {
-      try {
-        model_.Error(run_.commanded.col(pose), ball_);
-      } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: row {}: {}", run_.name,
-                                     run_.rows[static_cast<std::size_t>(pose)] + 1, error.what()));
-      }
-    }
+    run_.commanded = AxesInTravel(model_, run_.commanded, run_.name, run_.rows);
   }
 
   Index Rows() const override { return 3 * run_.poses(); }

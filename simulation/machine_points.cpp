@@ -9,6 +9,7 @@
 #include "failure/failure.h"
 #include "machine/volumetric_error.h"
 #include "recording/good_rows.h"
+#include "simulation/axes_in_travel.h"
 
 namespace abbe::simulation {
 namespace {
@@ -55,15 +56,10 @@ PointsOnMachine::PointsOnMachine(machine::VolumetricModel model, const Vector3d&
       points_(std::move(points)),
       tool_(points_.tool - reference),
       nominal_(3, points_.count()) {
+  points_.axes = AxesInTravel(model_, points_.axes, points_.name, points_.rows);
   for (Index i = 0; i < points_.count(); ++i) {
     const Vector3d axes = points_.axes.col(i);
     nominal_.col(i) = machine::NominalToolInWork<double>(model_.chain(), axes, points_.tool);
-    try {
-      model_.Motions(axes);
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: row {}: {}", points_.name,
-                                   points_.rows[static_cast<std::size_t>(i)] + 1, error.what()));
-    }
   }
 }
 

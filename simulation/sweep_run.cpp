@@ -1,5 +1,6 @@
 #include "simulation/sweep_run.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "probes/sweep_dwells.h"
@@ -19,9 +20,17 @@ SweepRun ReadSweepRun(const recording::Recording& recording, const probes::HeadS
   run.position = std::move(means.position);
   run.gap = std::move(means.gap);
   run.covariance = std::move(means.covariance);
+  const std::vector<int>& directions = means.directions;
   for (Eigen::Index row = 0; row < run.rows(); ++row) {
-    run.direction.push_back(
-        means.directions[static_cast<std::size_t>(row) % means.directions.size()]);
+    const auto group = static_cast<std::size_t>(row);
+    const int direction = directions[group % directions.size()];
+    const std::size_t station = group / directions.size();
+    const auto first =
+        std::find_if(means.dwells.begin(), means.dwells.end(), [&](const probes::Dwell& dwell) {
+          return dwell.station == station && dwell.direction == direction;
+        });
+    run.direction.push_back(direction);
+    run.first_rows.push_back(first->first_row);
   }
   return run;
 }

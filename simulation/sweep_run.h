@@ -10,6 +10,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,10 @@ struct SweepRun {
   std::string name;      // of the recording, for messages
   std::string mounting;  // header `mounting`: sweeps that share it share the mounted target
   char axis = 'X';
-  Eigen::Vector3d start;                                       // [x y z] when the sweep began
-  Eigen::VectorXd position;                                    // of the swept axis
-  std::vector<int> direction;                                  // +1, -1
+  Eigen::Vector3d start;                // [x y z] when the sweep began
+  Eigen::VectorXd position;             // of the swept axis
+  std::vector<int> direction;           // +1, -1
+  std::vector<std::size_t> first_rows;  // of the recording: of the first dwell of each row
   Eigen::Matrix<double, probes::kProbes, Eigen::Dynamic> gap;  // as read
   probes::PerProbe<Eigen::MatrixXd> covariance;                // m^2
 

@@ -12,6 +12,7 @@
 #include "estimation/dual_number.h"
 #include "failure/failure.h"
 #include "machine/volumetric_error.h"
+#include "simulation/axes_in_travel.h"
 
 namespace abbe::simulation {
 namespace {
@@ -374,6 +375,10 @@ std::vector<ParameterBlock> InstrumentBlocks(const SweepInstrument& instrument,
 SimulatedRun SimulateSweep(const machine::VolumetricModel& model, const Vector3d& reference,
                            const SweepInstrument& instrument, const SweepRun& run) {
   SimulatedRun simulated{run.name, "sweep", {}, nullptr, estimation::RobustLoss::None()};
+  SweepRun within = run;
+  Eigen::Matrix3Xd axes(3, run.rows());
+  for (Index row = 0; row < run.rows(); ++row) axes.col(row) = run.AxesAt(row);
+  within.position = AxesInTravel(model, axes, run.name, run.first_rows).row(run.axis - 'X');
   const SweepPlan plan = PlanOf(model.chain(), reference, instrument.head, run);
   const std::vector<ParameterBlock> machine_blocks = model.Blocks();
   for (int motion = 0; motion < machine::kMotions; ++motion) {
@@ -386,7 +391,7 @@ SimulatedRun SimulateSweep(const machine::VolumetricModel& model, const Vector3d
   for (ParameterBlock& block : InstrumentBlocks(instrument, run)) {
     simulated.blocks.push_back(std::move(block));
   }
-  simulated.residual = std::make_shared<SweepResidual>(model, plan, instrument, run);
+  simulated.residual = std::make_shared<SweepResidual>(model, plan, instrument, within);
   return simulated;
 }
 

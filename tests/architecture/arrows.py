@@ -24,7 +24,7 @@ ARROWS = {
     "probes": "failure random settings recording geometry estimation standards machine",
     "relm": "failure random settings recording geometry estimation standards machine",
     "simulation": "failure settings recording geometry estimation machine probes relm",
-    "fusion": "failure settings recording geometry estimation standards machine probes relm simulation",
+    "fusion": "failure settings recording geometry estimation standards machine map probes relm simulation",
     "report": "failure",
     "rig": "failure random settings recording hal",
     "apps": "failure random settings recording geometry estimation standards hal machine map probes relm simulation fusion report rig",

@@ -1,0 +1,113 @@
+#include "apps/fuse_result.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "apps/parameters_json.h"
+
+namespace abbe::apps {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kMicro = 1e-6;
+
+std::string DeterminedBy(const fusion::FunctionSeen& function) {
+  return function.determined_by.empty()
+             ? "prior only"
+             : fmt::format("{}", fmt::join(function.determined_by, ", "));
+}
+
+std::string ScaleText(const fusion::ScaleSeen& scale) {
+  return fmt::format(
+      "Isotropic scale {:+.2f} ppm, u {:.2f} ppm: {}\n", scale.value / kMicro, scale.u / kMicro,
+      scale.calibrated
+          ? "calibrated"
+          : fmt::format("PRIOR ONLY ({:.2f} ppm before the data); give a run of kind length",
+                        scale.prior / kMicro));
+}
+
+std::string RunTable(const fusion::FuseReport& report,
+                     const std::vector<simulation::SimulatedRun>& runs) {
+  std::string text = fmt::format("\n{:<32}{:<11}{:>7}{:>13}{:>22}\n", "run", "kind", "rows",
+                                 "chi2/redund.", "p of its agreement");
+  for (std::size_t i = 0; i < report.runs.size(); ++i) {
+    const auto& source = report.fit.sources[i];
+    text += fmt::format(
+        "{:<32}{:<11}{:>7}{:>13.3f}{:>22}\n", source.name, runs[i].kind, source.rows,
+        source.redundancy > 0.0 ? source.chi_square / source.redundancy : 0.0,
+        report.runs[i].directions == 0 ? "nobody else saw it"
+                                       : fmt::format("{:.2g}", report.runs[i].probability));
+  }
+  if (report.contradicting >= 0) {
+    const auto& run = report.runs[static_cast<std::size_t>(report.contradicting)];
+    text += fmt::format(
+        "\nCONTRADICTION: {} disagrees with all other runs (chi-square {:.1f} of {}); look at its "
+        "set-up, or leave it out and fuse again.\n",
+        run.name, run.statistic, run.directions);
+  }
+  return text;
+}
+
+}  // namespace
+
+ordered_json FuseJson(const fusion::FuseReport& report,
+                      const std::vector<simulation::SimulatedRun>& runs) {
+  ordered_json json;
+  json["machine"] = report.map.origin().machine;
+  json["scale"] = {{"value_ppm", report.scale.value / kMicro},
+                   {"u_ppm", report.scale.u / kMicro},
+                   {"prior_ppm", report.scale.prior / kMicro},
+                   {"statement", report.map.Scale()}};
+  json["smoothness_mm"] = 1e3 * report.chosen_smoothness;
+  for (const auto& each : report.smoothness) {
+    json["smoothness_tried"].push_back(
+        {{"length_mm", 1e3 * each.length}, {"log_evidence", each.log_evidence}});
+  }
+  for (const auto& function : report.functions) {
+    json["observability"][function.name] = {
+        {"prior", function.prior}, {"u", function.u}, {"determined_by", function.determined_by}};
+  }
+  for (std::size_t i = 0; i < report.runs.size(); ++i) {
+    const auto& source = report.fit.sources[i];
+    json["chi2"].push_back({{"run", source.name},
+                            {"kind", runs[i].kind},
+                            {"rows", source.rows},
+                            {"chi2", source.chi_square},
+                            {"redundancy", source.redundancy},
+                            {"outliers", source.outlier_count},
+                            {"agreement",
+                             {{"statistic", report.runs[i].statistic},
+                              {"directions", report.runs[i].directions},
+                              {"p", report.runs[i].probability}}}});
+  }
+  json["contradictions"] = ordered_json::array();
+  if (report.contradicting >= 0) {
+    json["contradictions"].push_back(
+        report.runs[static_cast<std::size_t>(report.contradicting)].name);
+  }
+  json["parameters"] = ParametersJson(report.fit);
+  return json;
+}
+
+std::string FuseTable(const fusion::FuseReport& report,
+                      const std::vector<simulation::SimulatedRun>& runs) {
+  std::string text =
+      fmt::format("{:<7}{:>10}{:>10}  {:<6}{}\n", "error", "before", "u", "unit", "determined by");
+  for (const auto& function : report.functions) {
+    const bool length = function.name[1] >= 'X';
+    text +=
+        fmt::format("{:<7}{:>10.3f}{:>10.3f}  {:<6}{}\n", function.name, function.prior / kMicro,
+                    function.u / kMicro, length ? "um" : "urad", DeterminedBy(function));
+  }
+  text += "\n" + ScaleText(report.scale);
+  text += fmt::format("Correlation length of the error functions: {:.1f} mm\n",
+                      1e3 * report.chosen_smoothness);
+  return text + RunTable(report, runs);
+}
+
+}  // namespace abbe::apps

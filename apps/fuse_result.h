@@ -1,0 +1,18 @@
+// `abbe fuse`: what it found, as data and as tables for people. SI in the data unless the name says
+// otherwise; tables end in a newline.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "fusion/fuse.h"
+
+namespace abbe::apps {
+
+nlohmann::ordered_json FuseJson(const fusion::FuseReport& report,
+                                const std::vector<simulation::SimulatedRun>& runs);
+std::string FuseTable(const fusion::FuseReport& report,
+                      const std::vector<simulation::SimulatedRun>& runs);
+
+}  // namespace abbe::apps

@@ -1,0 +1,278 @@
+#include "fusion/fuse.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "estimation/linearization.h"
+#include "fusion/linkage_problem.h"
+
+namespace abbe::fusion {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using estimation::Linearization;
+using estimation::Problem;
+using estimation::Result;
+using simulation::SimulatedRun;
+
+constexpr std::array<double, 6> kLengthsTried{0.5, 0.71, 1.0, 1.41, 2.0, 2.83};  // of the file's
+constexpr double kHalf = 0.5;
+constexpr Index kStations = 25;  // over a travel, for variances
+
+VectorXd AllValues(const Result& result) {
+  std::vector<double> values;
+  for (const auto& block : result.blocks) {
+    for (const auto& entry : block.entries) values.push_back(entry.value);
+  }
+  return Eigen::Map<VectorXd>(values.data(), static_cast<Index>(values.size()));
+}
+
+MatrixXd Inverse(const MatrixXd& information) {
+  return estimation::InvertInformation(information,
+                                       MatrixXd::Zero(information.rows(), information.cols()))
+      .determined;
+}
+
+double LogDeterminant(const MatrixXd& positive) {
+  const Eigen::LDLT<MatrixXd> factor(positive);
+  return factor.vectorD().cwiseMax(std::numeric_limits<double>::min()).array().log().sum();
+}
+
+// The parameters of the machine among all columns of a problem.
+std::vector<int> MachineColumns(const estimation::Layout& layout,
+                                const machine::VolumetricModel& model) {
+  std::vector<int> columns;
+  for (const auto& block : model.Blocks()) {
+    for (std::size_t i = 0; i < block.entries.size(); ++i) {
+      const auto at = std::find(layout.names.begin(), layout.names.end(), block.FullName(i));
+      columns.push_back(static_cast<int>(at - layout.names.begin()));
+    }
+  }
+  return columns;
+}
+
+map::Source SourceOf(const std::string& kind) {
+  const auto found = std::find(map::kSourceNames.begin(), map::kSourceNames.end(), kind);
+  return static_cast<map::Source>(found - map::kSourceNames.begin());
+}
+
+class FuseJob {
+ public:
+  FuseJob(const machine::Machine& machine, const std::vector<SimulatedRun>& runs,
+          const FuseOptions& options)
+      : machine_(machine), runs_(runs), options_(options), model_(UnknownMachine(machine)) {}
+
+  FuseReport Run() {
+    double length = machine_.population.smoothness;
+    Problem problem = ProblemWith(length);
+    Result fit = SolveLinkage(problem, options_.threads);
+    std::vector<SmoothnessTried> tried;
+    if (options_.choose_smoothness) {
+      tried = TryLengths(problem, fit);
+      const auto best = std::max_element(
+          tried.begin(), tried.end(),
+          [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
+      if (best->length != length) {
+        length = best->length;
+        problem = ProblemWith(length);
+        fit = SolveLinkage(problem, options_.threads);
+      }
+    }
+    Describe(problem, fit);
+    FuseReport report{.map = MapOf(fit)};
+    report.functions = std::move(functions_);
+    report.scale = scale_;
+    report.smoothness = std::move(tried);
+    report.chosen_smoothness = length;
+    report.runs = CheckRuns(problem, fit);
+    report.contradicting = Contradicting(report.runs);
+    report.fit = std::move(fit);
+    return report;
+  }
+
+ private:
+  Problem ProblemWith(double length) const {
+    return MakeMachineProblem(machine_, model_, MachinePrior(machine_, model_, length), runs_);
+  }
+
+  // The precision of the smoothness prior among all columns, and its log determinant.
+  std::pair<MatrixXd, double> Smoothness(double length, const std::vector<int>& machine_columns,
+                                         Index n) const {
+    const MachinePrior prior(machine_, model_, length);
+    MatrixXd precision = MatrixXd::Zero(n, n);
+    double log_determinant = 0.0;
+    std::size_t at = 0;
+    for (int axis = 0; axis < machine::kAxes; ++axis) {
+      for (int motion = 0; motion < machine::kMotions; ++motion) {
+        const MatrixXd W = prior.Whitening(axis, motion);
+        const auto size = static_cast<std::size_t>(W.cols());
+        const std::vector<int> columns(
+            machine_columns.begin() + static_cast<std::ptrdiff_t>(at),
+            machine_columns.begin() + static_cast<std::ptrdiff_t>(at + size));
+        const MatrixXd P = W.transpose() * W;
+        precision(columns, columns) += P;
+        // W = diag(1/sd) V': det P is the product of 1/sd^2, and the rows of W have the length
+        // 1/sd.
+        log_determinant += 2.0 * W.rowwise().norm().array().log().sum();
+        at += size;
+      }
+    }
+    return {precision, log_determinant};
+  }
+
+  std::vector<SmoothnessTried> TryLengths(const Problem& problem, const Result& fit) const {
+    const estimation::Layout layout(problem);
+    const VectorXd x = AllValues(fit);
+    const Linearization at = estimation::Linearize(problem, layout, x, options_.threads);
+    const std::vector<int> columns = MachineColumns(layout, model_);
+    // All but the smoothness: information and gradient at x; x itself for the prior to come.
+    MatrixXd information = at.prior.information;
+    VectorXd gradient = at.prior.gradient;
+    for (std::size_t s = 0; s < runs_.size(); ++s) {
+      information += at.sources[s].information;
+      gradient += at.sources[s].gradient;
+    }
+    VectorXd now(layout.columns());
+    for (Index c = 0; c < now.size(); ++c) {
+      now[c] = x[layout.entry_of_column[static_cast<std::size_t>(c)]];
+    }
+    VectorXd coefficients = VectorXd::Zero(now.size());
+    for (std::size_t i = 0; i + 3 < columns.size(); ++i) coefficients[columns[i]] = now[columns[i]];
+    std::vector<SmoothnessTried> tried;
+    double base = 0.0;
+    for (const double factor : kLengthsTried) {
+      const double length = factor * machine_.population.smoothness;
+      const auto [precision, log_determinant] = Smoothness(length, columns, now.size());
+      const MatrixXd H = information + precision;
+      const VectorXd g = gradient + precision * coefficients;
+      const Eigen::LDLT<MatrixXd> factorized(H);
+      const double chi_square =
+          coefficients.dot(precision * coefficients) - g.dot(factorized.solve(g));
+      const double evidence = 0.5 * (log_determinant - LogDeterminant(H) - chi_square);
+      if (factor == 1.0) base = evidence;
+      tried.push_back({length, evidence});
+    }
+    for (auto& each : tried) each.log_evidence -= base;
+    return tried;
+  }
+
+  // Rows of the functionals of one error: its values over the travel; a squareness itself.
+  MatrixXd ValuesOf(int error) const {
+    const Index n = model_.ParameterCount();
+    if (error >= machine::kAxes * machine::kMotions) {
+      return Eigen::RowVectorXd::Unit(n, n - 3 + error - machine::kAxes * machine::kMotions);
+    }
+    const int axis = error / machine::kMotions, motion = error % machine::kMotions;
+    Index first = 0;
+    for (int e = 0; e < error; ++e) {
+      first += model_.Function(e / machine::kMotions, e % machine::kMotions).size();
+    }
+    const auto& function = model_.Function(axis, motion);
+    const auto& travel = machine_.travels[static_cast<std::size_t>(axis)];
+    const VectorXd stations = VectorXd::LinSpaced(kStations, travel.first, travel.last);
+    MatrixXd rows = MatrixXd::Zero(kStations, n);
+    VectorXd gradient(function.size());
+    for (Index i = 0; i < kStations; ++i) {
+      function.Evaluate(stations[i], nullptr, gradient.data());
+      rows.row(i).segment(first, function.size()) = gradient.transpose();
+    }
+    return rows;
+  }
+
+  // The mean slope of EXX, EYY and EZZ.
+  Eigen::RowVectorXd ScaleRow() const {
+    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(model_.ParameterCount());
+    for (int axis = 0; axis < machine::kAxes; ++axis) {
+      const auto& travel = machine_.travels[static_cast<std::size_t>(axis)];
+      const VectorXd x = VectorXd::LinSpaced(kStations, travel.first, travel.last);
+      const VectorXd centred = x.array() - x.mean();
+      row += centred.transpose() * ValuesOf(machine::kMotions * axis + axis) /
+             (3.0 * centred.squaredNorm());
+    }
+    return row;
+  }
+
+  void Describe(const Problem& problem, const Result& fit) {
+    const estimation::Layout layout(problem);
+    const Linearization at =
+        estimation::Linearize(problem, layout, AllValues(fit), options_.threads);
+    const std::vector<int> columns = MachineColumns(layout, model_);
+    MatrixXd prior = at.prior.information + at.sources.back().information;
+    MatrixXd all = prior;
+    std::map<std::string, MatrixXd> kinds;
+    for (std::size_t s = 0; s < runs_.size(); ++s) {
+      auto& kind = kinds.try_emplace(runs_[s].kind, prior).first->second;
+      kind += at.sources[s].information;
+      all += at.sources[s].information;
+    }
+    const auto of_machine = [&](const MatrixXd& information) {
+      return MatrixXd(Inverse(information)(columns, columns));
+    };
+    const MatrixXd C_prior = of_machine(prior);
+    cov_pp_ = of_machine(all);
+    std::map<std::string, MatrixXd> C_kinds;
+    for (const auto& [kind, information] : kinds) C_kinds[kind] = of_machine(information);
+    const auto variance = [](const MatrixXd& E, const MatrixXd& C) {
+      return (E * C).cwiseProduct(E).sum() / static_cast<double>(E.rows());
+    };
+    for (int error = 0; error < map::kErrors; ++error) {
+      const MatrixXd E = ValuesOf(error);
+      const double before = variance(E, C_prior);
+      FunctionSeen seen{
+          map::ErrorName(error), std::sqrt(before), std::sqrt(variance(E, cov_pp_)), {}};
+      std::vector<std::pair<double, std::string>> by;
+      for (const auto& [kind, C] : C_kinds) {
+        const double after = variance(E, C);
+        if (after < kHalf * before) by.emplace_back(after, kind);
+      }
+      std::sort(by.begin(), by.end());
+      for (auto& [after, kind] : by) seen.determined_by.push_back(kind);
+      functions_.push_back(std::move(seen));
+    }
+    const Eigen::RowVectorXd row = ScaleRow();
+    scale_.prior = std::sqrt(variance(row, C_prior));
+    scale_.u = std::sqrt(variance(row, cov_pp_));
+    scale_.calibrated = scale_.u * scale_.u < kHalf * scale_.prior * scale_.prior;
+  }
+
+  map::ErrorMap MapOf(const Result& fit) {
+    machine::VolumetricModel model = model_;
+    const VectorXd values = AllValues(fit).head(model.ParameterCount());
+    model.SetParameters(values);
+    scale_.value = ScaleRow().dot(values);
+    map::MapOrigin origin;
+    origin.machine = machine_.name;
+    origin.reference = machine_.reference;
+    origin.tool = -machine_.reference;
+    origin.scale_is_calibrated = scale_.calibrated;
+    for (std::size_t error = 0; error < functions_.size(); ++error) {
+      const auto& by = functions_[error].determined_by;
+      if (!by.empty()) origin.sources[error] = SourceOf(by.front());
+    }
+    return {origin, model, cov_pp_};
+  }
+
+  const machine::Machine& machine_;
+  const std::vector<SimulatedRun>& runs_;
+  const FuseOptions options_;
+  const machine::VolumetricModel model_;
+  MatrixXd cov_pp_;
+  std::vector<FunctionSeen> functions_;
+  ScaleSeen scale_;
+};
+
+}  // namespace
+
+FuseReport Fuse(const machine::Machine& machine, const std::vector<SimulatedRun>& runs,
+                const FuseOptions& options) {
+  return FuseJob(machine, runs, options).Run();
+}
+
+}  // namespace abbe::fusion

@@ -1,0 +1,69 @@
+// The joint estimate: from all runs of a machine to one error map, with what each part rests on.
+//
+//   const FuseReport report = Fuse(mill, runs, {});
+//   map::WriteMap(report.map, "out/map.toml");
+//   report.functions[4].determined_by;          // {"sweep", "linkage"}; empty: prior only
+//   report.contradicting;                       // index of the run that contradicts the others
+//
+// One estimation, not an average of maps: the functions of the machine, the linkage and its base,
+// the head, its target and every offset of a run are free together, under the priors of the machine
+// file. The smoothness of the functions is chosen by marginal likelihood: for each correlation
+// length the probability of the data with all unknowns integrated out, to second order at the
+// solution (exact for a linear problem, which this nearly is).
+//
+// What determined a function: its variance over the travel, without and with the data. A kind of
+// run determines it when it alone at least halves the prior variance. The isotropic scale, the mean
+// slope of EXX, EYY and EZZ, is what a linkage of unknown links cannot see: calibrated when the
+// data at least halve its prior variance, else "prior only".
+//
+// Units: SI. Failure: InputError for no run; NumericalError when the estimate does not converge.
+// Source: Rasmussen and Williams (2006), 5.4.1 for the marginal likelihood.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimation/result.h"
+#include "fusion/machine_problem.h"
+#include "fusion/run_consistency.h"
+#include "map/error_map.h"
+
+namespace abbe::fusion {
+
+struct FuseOptions {
+  bool choose_smoothness = true;  // else that of the machine file
+  int threads = 0;
+};
+
+struct FunctionSeen {
+  std::string name;                        // "EXX" ... "ECZ", then "A0Z", "B0Z", "C0Y"
+  double prior = 0.0;                      // rms standard uncertainty over the travel before
+  double u = 0.0;                          // and after: m or rad
+  std::vector<std::string> determined_by;  // kinds of runs, the best first
+};
+
+struct ScaleSeen {
+  double value = 0.0, u = 0.0, prior = 0.0;  // relative
+  bool calibrated = false;
+};
+
+struct SmoothnessTried {
+  double length;        // m
+  double log_evidence;  // against that of the machine file
+};
+
+struct FuseReport {
+  map::ErrorMap map;
+  estimation::Result fit = {};
+  std::vector<FunctionSeen> functions = {};
+  ScaleSeen scale = {};
+  std::vector<SmoothnessTried> smoothness = {};
+  double chosen_smoothness = 0.0;  // m
+  std::vector<RunConsistency> runs = {};
+  int contradicting = -1;  // of `runs`
+};
+
+FuseReport Fuse(const machine::Machine& machine, const std::vector<simulation::SimulatedRun>& runs,
+                const FuseOptions& options);
+
+}  // namespace abbe::fusion

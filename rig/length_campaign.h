@@ -1,0 +1,31 @@
+// Recordings of calibrated lengths on the rig: what an interferometer or a step gauge along a line
+// of the machine would have given.
+//
+//   const recording::Recording line = RecordLengths(rig, {.axis = 'X', .step = 5e-3, .count = 12});
+//
+// The axes stand at `count` + 1 places, from the first end of the travel of `axis` on, the others
+// at `at`. length_mm is how far the tool really stands from the first place, over the calibrated
+// length's own relative error, with white noise of u. Columns and header: docs/recordings.md.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "recording/recording.h"
+#include "rig/linkage_campaign.h"
+
+namespace abbe::rig {
+
+struct LengthProgram {
+  char axis = 'X';
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  // m, positions of the other axes
+  double step = 5e-3;                            // m
+  int count = 12;
+  double u = 0.1e-6;      // m: noise of one length
+  double u_scale = 2e-6;  // relative: of which the error that all lengths share is drawn
+  std::uint64_t run = 1;
+};
+
+recording::Recording RecordLengths(const LinkageRig& rig, const LengthProgram& program);
+
+}  // namespace abbe::rig

@@ -1,0 +1,104 @@
+// A measuring campaign on the rig, reduced so that it takes a second: sweeps of the three axes with
+// few stations, the linkage on a grid over nearly the whole volume, one interferometer line along
+// the body diagonal's first axis.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "fusion/fuse.h"
+#include "hal/device_settings.h"
+#include "machine/machine.h"
+#include "probes/head_settings.h"
+#include "relm/linkage_settings.h"
+#include "rig/campaign.h"
+#include "rig/length_campaign.h"
+#include "rig/linkage_campaign.h"
+#include "settings/document.h"
+#include "simulation/length_simulation.h"
+#include "simulation/linkage_on_machine.h"
+#include "simulation/sweep_simulation.h"
+
+namespace abbe::fusion {
+
+// The demonstration machine with other values: "step_mm = 1.0" -> "step_mm = 5.0".
+inline settings::Document CampaignMachine(
+    const std::vector<std::pair<std::string, std::string>>& changes = {}) {
+  std::ifstream file(std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  text = std::regex_replace(text, std::regex("step_mm = 1.0"), "step_mm = 4.0");
+  text = std::regex_replace(text, std::regex("passes = 5"), "passes = 2");
+  for (const auto& [from, to] : changes) text = std::regex_replace(text, std::regex(from), to);
+  return settings::Document::Parse(text, "campaign.toml");
+}
+
+struct Campaign {
+  explicit Campaign(const settings::Document& document, std::uint64_t seed)
+      : machine(machine::ReadMachine(document.Root())),
+        reference(machine.reference),
+        instrument{probes::ReadHeadSettings(document.Root()),
+                   probes::ReadTargetSettings(document.Root())},
+        noise(probes::ReadProbeNoise(document.Root())),
+        linkage(relm::ReadLinkageSettings(document.Root())),
+        model(UnknownMachine(machine)),
+        channels(rig::ChannelsOf(hal::ReadDevices(document.Root().Child("devices")))),
+        rig(rig::World(rig::ReadRigSettings(document.Root()), seed),
+            rig::Linkage(rig::ReadLinkage(document.Root()), seed)) {}
+
+  simulation::SimulatedRun Sweep(char axis, std::uint64_t run = 1) const {
+    rig::CampaignOptions options;
+    options.rate = 50.0;
+    options.moving = false;
+    options.run = run;
+    auto recording = rig::RecordSweep(rig.world(), axis, channels, options);
+    recording.name = std::string("sweep ") + axis;
+    recording.header = "mounting = \"A\"\n" + recording.header;
+    return simulation::SimulateSweep(model, reference, instrument,
+                                     simulation::ReadSweepRun(recording, instrument.head, noise));
+  }
+
+  recording::Recording LinkageRecording(int points = 6, std::uint64_t run = 1) const {
+    const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.030);
+    const Eigen::Vector3d size = Eigen::Vector3d::Constant(0.058);
+    const auto course = rig::DwellCourse(
+        rig::GridPlaces(middle, size, Eigen::Vector3i::Constant(points)), 0.1, 0.1, 1);
+    return rig.Record(course, {.rate = 100.0, .run = run});
+  }
+
+  simulation::SimulatedRun Linkage(const recording::Recording& recording) const {
+    const simulation::LinkageSimulation nominal(
+        machine.chain, linkage, relm::MakeLinkageModel(linkage, relm::ErrorModel::kComplete));
+    auto run = simulation::MeansOfStays(simulation::ReadLinkageRun(recording, linkage));
+    run.name = "linkage";
+    return simulation::SimulateLinkage(model, reference, nominal, run);
+  }
+  simulation::SimulatedRun Linkage() const { return Linkage(LinkageRecording()); }
+
+  simulation::SimulatedRun Length(char axis, std::uint64_t run = 1) const {
+    auto recording =
+        rig::RecordLengths(rig, {.axis = axis, .at = Eigen::Vector3d::Constant(0.030), .run = run});
+    recording.name = std::string("length ") + axis;
+    return simulation::SimulateLengths(model, reference, recording);
+  }
+
+  // What the machine really does at a position, in W.
+  Eigen::Vector3d TrueError(const Eigen::Vector3d& axes) const {
+    return rig.ToolAt(axes) - relm::NominalTip(machine.chain, axes);
+  }
+
+  machine::Machine machine;
+  Eigen::Vector3d reference;
+  simulation::SweepInstrument instrument;
+  probes::ProbeNoise noise;
+  relm::LinkageSettings linkage;
+  machine::VolumetricModel model;
+  std::vector<hal::Channel> channels;
+  rig::LinkageRig rig;
+};
+
+}  // namespace abbe::fusion
