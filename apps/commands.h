@@ -14,12 +14,13 @@ void AddReduce(CLI::App& program, int& exit_code);
 void AddCircle(CLI::App& program, int& exit_code);
 void AddPath(CLI::App& program, int& exit_code);
 void AddCalibrate(CLI::App& program, int& exit_code);
+void AddHarmonics(CLI::App& program, int& exit_code);
 void AddConvert(CLI::App& program, int& exit_code);
 void AddSensitivity(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands =
     std::to_array<AddCommand>({AddRig, AddSweep, AddRecord, AddReduce, AddCalibrate, AddCircle,
-                               AddPath, AddConvert, AddSensitivity, AddReport});
+                               AddPath, AddHarmonics, AddConvert, AddSensitivity, AddReport});
 
 }  // namespace abbe::apps
