@@ -3,8 +3,7 @@
 // description of its linkage (rig/linkage.h), written out once more with matrices; shares no code
 // with relm/, simulation/ and fusion/ and none with the rig.
 //
-// Unknown: everything that the rig draws, in its own conventions: a tilt turns an axis and nothing
-// else, a run-out shifts in two directions of the part that carries the pivot. Data: encoder
+// Unknown: everything that the rig draws. Data: encoder
 // readings and ball positions with white noise. Units: m, rad, K. Shapes: poses and places 3 x n in
 // B, the nominal base.
 #pragma once
@@ -99,9 +98,9 @@ class RigLinkageBound {
     for (std::size_t i = 0; i < 3; ++i) {
       const Pivot& pivot = pivots_[i];
       const Vector3d first = X, second = axes[i].cross(X);
-      const Vector3d axis =
-          AngleAxisd(at(pivot.tilt[0]), first) * (AngleAxisd(at(pivot.tilt[1]), second) * axes[i]);
-      const Vector3d point = points[i] + at(pivot.offset[0]) * first + at(pivot.offset[1]) * second;
+      moved = moved * Translation3d(points[i]) * AngleAxisd(at(pivot.tilt[0]), first) *
+              AngleAxisd(at(pivot.tilt[1]), second) *
+              Translation3d(at(pivot.offset[0]) * first + at(pivot.offset[1]) * second - points[i]);
       const auto sum = [&](const std::vector<Wave>& waves, double angle) {
         double total = 0.0;
         for (const Wave& wave : waves) {
@@ -118,11 +117,11 @@ class RigLinkageBound {
       const Vector3d shift =
           sum(pivot.run_out[0], turn) * first + sum(pivot.run_out[1], turn) * second;
       const auto turned = [&](double angle) {
-        return Isometry3d(moved * Translation3d(shift + point) * AngleAxisd(angle, axis) *
-                          Translation3d(-point));
+        return Isometry3d(moved * Translation3d(shift + points[i]) * AngleAxisd(angle, axes[i]) *
+                          Translation3d(-points[i]));
       };
       const Vector3d torque = (turned(turn).rotation() * weights[i]).cross(down);
-      moved = turned(turn + at(pivot.give) * (moved.rotation() * axis).dot(torque));
+      moved = turned(turn + at(pivot.give) * (moved.rotation() * axes[i]).dot(torque));
     }
     const Vector3d p =
         moved * (elbow + Vector3d(at(ball_[0]), at(ball_[1]), settings_.link_2 + at(links_[1])) +
