@@ -23,10 +23,10 @@ namespace fs = std::filesystem;
 using Eigen::Index;
 
 struct CalibrateArguments {
-  std::vector<fs::path> recordings;
+  std::vector<fs::path> recordings, checks;
   fs::path machine, out, json;
   std::string model;
-  bool displacement = false, mapped = false, study = false, quiet = false;
+  bool displacement = false, mapped = false, compare = false, study = false, quiet = false;
   int poses = 0;
   int folds = 5;
 };
@@ -53,6 +53,8 @@ class Calibration {
   int Run() {
     if (arguments_.study) {
       Show(VolumeTable(fusion::StudyVolumes(Simulation(), Travel())));
+    } else if (!arguments_.recordings.empty() && arguments_.compare) {
+      Compare();
     } else if (!arguments_.recordings.empty()) {
       FromRecordings();
     } else if (arguments_.poses > 0) {
@@ -66,30 +68,44 @@ class Calibration {
   }
 
  private:
+  simulation::LinkageRun Read(const fs::path& path) const {
+    const recording::Recording recording = recording::Read(path);
+    for (const std::string& warning : recording.warnings) {
+      fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
+    }
+    return simulation::ReadLinkageRun(recording, *file_.linkage);
+  }
+
+  void Compare() {
+    if (arguments_.recordings.size() != 1) {
+      throw InputError(
+          fmt::format("--compare takes one recording, {} given; name others by --check",
+                      arguments_.recordings.size()));
+    }
+    std::vector<simulation::LinkageRun> checks;
+    for (const fs::path& path : arguments_.checks) checks.push_back(Read(path));
+    const auto rows = fusion::CompareModels(
+        file_.sweep_setup.machine.chain, *file_.linkage,
+        simulation::MeansOfStays(Read(arguments_.recordings.front())), checks, options_);
+    Show(ComparisonTable(rows));
+    if (!arguments_.json.empty()) {
+      WriteResult({{"kind", "calibration comparison"}, {"models", ComparisonJson(rows)}},
+                  arguments_.json);
+    }
+  }
+
   void FromRecordings() {
     std::vector<simulation::LinkageRun> runs;
     for (const fs::path& path : arguments_.recordings) {
-      const recording::Recording recording = recording::Read(path);
-      for (const std::string& warning : recording.warnings) {
-        fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
-      }
-      runs.push_back(
-          simulation::MeansOfStays(simulation::ReadLinkageRun(recording, *file_.linkage)));
+      runs.push_back(simulation::MeansOfStays(Read(path)));
     }
     if (arguments_.poses > 0) KeepBest(runs);
     fusion::CalibrationReport report =
         fusion::Calibrate(file_.sweep_setup.machine.chain, *file_.linkage, runs, options_);
     report.calibration.machine = file_.sweep_setup.machine.name;
     Show(CalibrationTable(report, runs));
-    nlohmann::ordered_json result = CalibrationJson(report, runs);
-    if (arguments_.mapped) {
-      const auto rows = fusion::CompareModels(file_.sweep_setup.machine.chain, *file_.linkage,
-                                              runs.front(), options_);
-      Show(ComparisonTable(rows));
-      result["models"] = ComparisonJson(rows);
-    }
     if (!arguments_.out.empty()) fusion::WriteCalibration(report.calibration, arguments_.out);
-    if (!arguments_.json.empty()) WriteResult(result, arguments_.json);
+    if (!arguments_.json.empty()) WriteResult(CalibrationJson(report, runs), arguments_.json);
   }
 
   // The poses of one recording that make the best calibration.
@@ -168,8 +184,13 @@ void AddCalibrate(CLI::App& program, int& exit_code) {
                       "pivots, published, \"published with bearing\" or complete (the default)");
   command->add_flag("--displacement", arguments->displacement,
                     "Nothing is known of the base position");
-  command->add_flag("--mapped", arguments->mapped,
-                    "Local parameters on the grid of the poses; compares all models");
+  command->add_flag("--mapped", arguments->mapped, "Local parameters on the grid of the poses");
+  command->add_flag("--compare", arguments->compare,
+                    "All models side by side, mapped and not, instead of a calibration");
+  command
+      ->add_option("--check", arguments->checks,
+                   "With --compare: a recording that takes no part, such as a circle; repeatable")
+      ->allow_extra_args(false);
   command
       ->add_option("--poses", arguments->poses,
                    "Use the best N poses; without recordings: plan them")

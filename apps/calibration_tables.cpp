@@ -87,12 +87,20 @@ std::string Outliers(const fusion::CalibrationReport& report,
 
 // Largest 2D or 3D deviations in um that Boelens (2006) reports for the step.
 std::string Published(const std::string& name) {
+  if (name == "reference") return "circle 2.19 (2D)";
   if (name == "nominal") return "349 (3D)";
   if (name == "published") return "5.10 (3D), circle 5.29 (2D)";
+  if (name == "published, one cell") return "circle 5.96 (2D)";
+  if (name == "published, mapped") return "circle 5.22 (2D)";
   if (name == "published with bearing") return "circle 4.19 (2D)";
-  if (name == "published, mapped") return "circle 5.22 (2D), one cell 5.96";
-  if (name == "published with bearing, mapped") return "circle 5.02 (2D) = 6.15 (3D)";
+  if (name == "published with bearing, mapped") return "circle 5.02 (2D)";
   return "";
+}
+
+// Micrometres in a column; a dash where there is no number.
+std::string Cell(double metres, int width) {
+  const std::string text = std::isfinite(metres) ? fmt::format("{:.3f}", metres / kMicro) : "-";
+  return fmt::format("{:>{}}", text, width);
 }
 
 }  // namespace
@@ -165,22 +173,34 @@ std::string CalibrationTable(const fusion::CalibrationReport& report,
 ordered_json ComparisonJson(const std::vector<fusion::ComparedModel>& rows) {
   ordered_json models = ordered_json::array();
   for (const auto& row : rows) {
+    ordered_json checks = ordered_json::array();
+    for (const auto& check : row.checks) {
+      checks.push_back({{"distance", Json(check.distance)}, {"circle_um", check.circle / kMicro}});
+    }
     models.push_back({{"name", row.name},
                       {"parameters", row.parameters},
                       {"after", Json(row.after)},
                       {"held_out", Json(row.held_out)},
+                      {"checks", checks},
                       {"published", Published(row.name)}});
   }
   return models;
 }
 
 std::string ComparisonTable(const std::vector<fusion::ComparedModel>& rows) {
-  std::string text = fmt::format("\n{:<34}{:>6}{:>12}{:>12}{:>14}  {}\n", "model, 3D in um", "free",
-                                 "rms", "held out", "held out max", "Boelens 2006, largest");
+  std::string text = fmt::format("{:<34}{:>6}{:>10}{:>10}{:>10}", "model, 3D in um", "free", "rms",
+                                 "held out", "max");
+  for (std::size_t i = 0; i < rows.front().checks.size(); ++i) {
+    text += fmt::format("{:>12}{:>10}", fmt::format("check {} max", i + 1), "circle");
+  }
+  text += "  Boelens 2006, largest\n";
   for (const auto& row : rows) {
-    text += fmt::format("{:<34}{:>6}{:>12.3f}{:>12.3f}{:>14.3f}  {}\n", row.name, row.parameters,
-                        row.after.rms / kMicro, row.held_out.rms / kMicro,
-                        row.held_out.max / kMicro, Published(row.name));
+    text += fmt::format("{:<34}{:>6}", row.name, row.parameters) + Cell(row.after.rms, 10) +
+            Cell(row.held_out.rms, 10) + Cell(row.held_out.max, 10);
+    for (const auto& check : row.checks) {
+      text += Cell(check.distance.max, 12) + Cell(check.circle, 10);
+    }
+    text += fmt::format("  {}\n", Published(row.name));
   }
   return text;
 }

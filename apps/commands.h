@@ -15,12 +15,13 @@ void AddCircle(CLI::App& program, int& exit_code);
 void AddPath(CLI::App& program, int& exit_code);
 void AddCalibrate(CLI::App& program, int& exit_code);
 void AddFuse(CLI::App& program, int& exit_code);
+void AddHarmonics(CLI::App& program, int& exit_code);
 void AddConvert(CLI::App& program, int& exit_code);
 void AddSensitivity(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands =
     std::to_array<AddCommand>({AddRig, AddSweep, AddRecord, AddReduce, AddCalibrate, AddCircle,
-                               AddPath, AddFuse, AddConvert, AddSensitivity, AddReport});
+                               AddPath, AddHarmonics, AddFuse, AddConvert, AddSensitivity, AddReport});
 
 }  // namespace abbe::apps

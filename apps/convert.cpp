@@ -3,12 +3,15 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/machine_file.h"
 #include "hal/candump_recording.h"
 #include "recording/import.h"
+#include "recording/monitor_log.h"
 #include "recording/recording_file.h"
 
 namespace abbe::apps {
@@ -18,12 +21,13 @@ struct ConvertOptions {
   std::filesystem::path from;
   std::filesystem::path to;
   recording::ImportOptions import;
+  std::vector<std::string> columns;  // NAME=CHANNEL
   std::string machine;
   std::string device;
   bool quiet = false;
 };
 
-bool IsCanLog(const std::filesystem::path& path) { return path.extension() == ".log"; }
+bool IsLog(const std::filesystem::path& path) { return path.extension() == ".log"; }
 
 // The encoders that a log of CAN traffic is about.
 const hal::CanopenSettings& EncodersOf(const MachineFile& file, const std::string& device) {
@@ -46,8 +50,24 @@ MachineFile MachineOf(const ConvertOptions& options) {
       "--machine");
 }
 
+std::vector<recording::MonitoredColumn> ColumnsOf(const ConvertOptions& options) {
+  std::vector<recording::MonitoredColumn> columns;
+  for (const std::string& text : options.columns) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw InputError(fmt::format(
+          "--column {}: is not NAME=CHANNEL, for example shaft_deg=TARGET:Rotation-PosAct", text));
+    }
+    columns.push_back({text.substr(0, equals), text.substr(equals + 1)});
+  }
+  return columns;
+}
+
 recording::Recording ReadAny(const ConvertOptions& options) {
-  if (IsCanLog(options.from)) {
+  if (IsLog(options.from) && recording::IsMonitorLog(options.from)) {
+    return recording::ReadMonitorLog(options.from, ColumnsOf(options));
+  }
+  if (IsLog(options.from)) {
     const MachineFile file = MachineOf(options);
     return hal::RecordingOf(hal::ReadCandump(options.from), EncodersOf(file, options.device),
                             file.devices.stale, file.sweep_setup.machine.name);
@@ -57,7 +77,7 @@ recording::Recording ReadAny(const ConvertOptions& options) {
 }
 
 void WriteAny(const recording::Recording& recording, const ConvertOptions& options) {
-  if (!IsCanLog(options.to)) return recording::Write(recording, options.to);
+  if (!IsLog(options.to)) return recording::Write(recording, options.to);
   const MachineFile file = MachineOf(options);
   hal::WriteCandump(hal::LogOf(recording, EncodersOf(file, options.device)), options.to);
 }
@@ -84,15 +104,19 @@ void AddConvert(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<ConvertOptions>();
   CLI::App* command = program.add_subcommand(
       "convert",
-      "A recording from CSV to HDF5 or back, from a table, or from and to a log of candump");
+      "A recording from CSV to HDF5 or back, from a table or a log, or to a log of candump");
   command
       ->add_option("from", options->from,
-                   "A recording (.csv, .h5, .hdf5), a table (.dat), a log of candump (.log)")
+                   "A recording (.csv, .h5, .hdf5), a table (.dat), a log (.log)")
       ->required();
   command->add_option("to", options->to, "The new recording (.csv, .h5, .hdf5), or log (.log)")
       ->required();
   command->add_option("--machine", options->machine, "Logs: the machine file with the encoders");
   command->add_option("--device", options->device, "Logs: the device, where several are on CAN");
+  command
+      ->add_option("--column", options->columns,
+                   "Logs of a monitor: NAME=CHANNEL, the name with its unit; may be repeated")
+      ->allow_extra_args(false);
   command->add_option("--axis", options->import.axis, "The axis of a table that does not say (X)")
       ->check(CLI::IsMember({"X", "Y", "Z"}));
   command->add_flag("--quiet", options->quiet, "Print nothing but warnings");

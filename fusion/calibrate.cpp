@@ -106,7 +106,7 @@ class CalibrationJob {
     report.fit = Solve(problem);
     report.excess = Excess(report.fit);
     if (report.excess > kBadFit) CheckAllEncoders();
-    RefuseContradiction(report.fit, report.excess);
+    if (!options_.contradict) RefuseContradiction(report.fit, report.excess);
     report.seen = Observe(problem, report.fit);
     report.calibration = From(report.fit, runs_);
     report.before = DistancesOf(All(BeforeCalibration()));

@@ -31,6 +31,9 @@ struct CalibrateOptions {
   LinkageProblemOptions problem = {};
   int folds = 5;        // below 2: nothing is held out
   bool mapped = false;  // also local parameter sets, fusion/mapping.h
+  // Whether estimates may contradict their priors: a model that leaves something out bends its
+  // parameters beyond their tolerances, and still says how well it does.
+  bool contradict = false;
 };
 
 // Of distances between measured and true ball positions, 3D.

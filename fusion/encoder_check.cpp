@@ -13,6 +13,7 @@
 
 #include "estimation/problem.h"
 #include "failure/failure.h"
+#include "fusion/linkage_problem.h"
 #include "geometry/rotation.h"
 
 namespace abbe::fusion {
@@ -99,7 +100,7 @@ std::optional<Assumption> Fit(const LinkageSimulation& simulation, const Matrix3
   const auto residual = std::make_shared<NominalGap>(simulation, p_MT, angles);
   problem.Add(source, residual, inputs, kSpread);
   try {
-    const auto result = problem.Solve();
+    const auto result = SolveLinkage(problem);
     const auto& gap = result.Source("gaps");
     return Assumption{kSpread * gap.rms * std::sqrt(3.0), result.Block("gain").Values()};
   } catch (const NumericalError&) {
@@ -109,7 +110,7 @@ std::optional<Assumption> Fit(const LinkageSimulation& simulation, const Matrix3
 
 struct Finding {
   double rms;  // m
-  std::string what, todo;
+  std::string what, advice;
 };
 
 std::vector<Finding> Swaps(const LinkageSimulation& simulation, const Matrix3Xd& p_MT,
@@ -164,7 +165,7 @@ void CheckEncoders(const LinkageSimulation& simulation, const simulation::Linkag
   if (best->rms > kLeftOver * simulation.model().chain().Reach()) return;
   throw InputError(
       fmt::format("{}: {} (this leaves a gap of {:.3g} mm, as stated it is {:.3g} mm); {}",
-                  run.name, best->what, 1e3 * best->rms, 1e3 * gap, best->todo));
+                  run.name, best->what, 1e3 * best->rms, 1e3 * gap, best->advice));
 }
 
 }  // namespace abbe::fusion

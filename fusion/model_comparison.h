@@ -1,11 +1,13 @@
 // The error models side by side on one recording: what each more complete one is worth.
 //
-//   for (const ComparedModel& row : CompareModels(chain, linkage, run, options)) ...
+//   for (const ComparedModel& row : CompareModels(chain, linkage, run, {circle}, options)) ...
 //
-// Rows: the nominal linkage, then for each model the calibrated linkage, global and, where the
-// poses form a grid, mapped. `options.model` and `options.mapped` are not looked at.
-// Units: m. Failure: that of Calibrate; a model that this form of linkage does not have is left
-// out. Source of the order: Boelens (2006), see fusion/mapping.h; the complete model is beyond it.
+// Rows: the reference itself (its circles only), the nominal linkage, then for each model the
+// calibrated linkage: global; where the poses form a grid also by the one cell in its middle alone,
+// and mapped. `checks` are runs that take no part, such as a circle. `options.model`,
+// `options.mapped` and `options.contradict` are not looked at. Units: m. Failure: that of
+// Calibrate; a model that this form of linkage does not have is left out. Source of the order:
+// Boelens (2006), see fusion/mapping.h; the complete model is beyond it.
 #pragma once
 
 #include <string>
@@ -15,16 +17,29 @@
 
 namespace abbe::fusion {
 
+// How a linkage does on a run that it was not calibrated with.
+struct CheckedRun {
+  Distances distance;  // from the reference; as displacements for the nominal linkage
+  // Largest distance of the path from its least-squares circle, in the plane of the two axes that
+  // move most; NaN where that is more than a hundredth of the radius: no circle.
+  double circle = 0.0;
+};
+
 struct ComparedModel {
   std::string name;             // "published, mapped"
   Eigen::Index parameters = 0;  // of the model, of each cell where mapped
   Distances after;              // of the poses that it was calibrated with
-  Distances held_out;           // of poses that took no part
+  Distances held_out;           // of poses that took no part; NaN for one cell
+  std::vector<CheckedRun> checks;
 };
 
 std::vector<ComparedModel> CompareModels(const machine::Chain& chain,
                                          const relm::LinkageSettings& settings,
                                          const simulation::LinkageRun& run,
+                                         const std::vector<simulation::LinkageRun>& checks,
                                          CalibrateOptions options);
+
+// The largest distance of a path from its circle, as above.
+double CircleDeviation(const Eigen::Matrix3Xd& path);
 
 }  // namespace abbe::fusion

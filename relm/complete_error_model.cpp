@@ -29,8 +29,7 @@ Vector3d Across(const Vector3d& axis, const Vector3d& preferred) {
 
 struct PivotMotions {
   int tilt_u, tilt_v, shift_u, shift_v, turn;
-  int run_out = -1;  // along the arm after the pivot
-  int growth = -1;   // along the link after the pivot
+  int growth = -1;  // along the link after the pivot
   double shift_u_sd;
 };
 
@@ -47,8 +46,6 @@ PivotMotions AddPivot(const LinkageSettings& settings, Index joint, MotionChain&
   const double along_link = arriving.norm() > kAcross ? arriving.normalized().dot(u) : 0.0;
   pivot.shift_u_sd =
       std::hypot(settings.tolerance.link * along_link, settings.tolerance.pivot_offset);
-  const Vector3d arm = motions.ArmAfter(static_cast<int>(joint));
-  pivot.run_out = arm == Vector3d::Zero() ? -1 : motions.Shift(arm);
   const Vector3d link = settings.chain.Link(joint);
   pivot.growth = link.norm() > kAcross ? motions.Shift(link.normalized()) : -1;
   return pivot;
@@ -112,8 +109,10 @@ void AddPhysics(const LinkageSettings& settings, const std::vector<PivotMotions>
   const auto count = static_cast<int>(pivots.size());
   model.Block("bearing", kMicrometres);
   for (int i = 0; i < count; ++i) {
-    if (pivots[i].run_out < 0) continue;
-    model.HarmonicEntries(PivotName(i), sd.bearing, pivots[i].run_out, i,
+    const std::string name = PivotName(i);
+    model.HarmonicEntries(name + "_u", sd.bearing, pivots[i].shift_u, i,
+                          settings.bearing_harmonics);
+    model.HarmonicEntries(name + "_v", sd.bearing, pivots[i].shift_v, i,
                           settings.bearing_harmonics);
   }
   model.Block("compliance", kMicroradians);

@@ -16,8 +16,11 @@
 //
 // CompleteErrorModel, any chain of n joints, every small motion of every axis:
 //   blocks  tilt: pivot_i_u pivot_i_v | shift: pivot_i_u pivot_i_v | ball: along across axial |
-//           encoder_offset | eccentricity: pivot_i_sin pivot_i_cos | graduation | bearing |
+//           encoder_offset | eccentricity: pivot_i_sin pivot_i_cos | graduation |
+//           bearing: pivot_i_u_sin_1 pivot_i_u_cos_1 ... pivot_i_v_sin_1 ... |
 //           compliance | expansion: after_pivot_i
+//   A tilt or a shift of an axis carries the axis and all that is mounted on it. A bearing shifts
+//   its axis in both directions across it, as the part that carries the pivot sees them.
 //   4 per joint and 3 of the ball leave no geometric error out. An encoder offset is a combination
 //   of those, but it has a tolerance of its own, so it has a parameter of its own; the prior
 //   decides what the data cannot tell apart. u is the direction across the axis nearest to the

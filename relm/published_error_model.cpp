@@ -1,6 +1,9 @@
 // The twelve geometric errors of Boelens (2006), and its bearing roundness.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "failure/failure.h"
 #include "geometry/rotation.h"
 #include "relm/error_models.h"
@@ -86,12 +89,21 @@ Motions AddMotions(const LinkageSettings& settings, const std::vector<PlacedSegm
   return motions;
 }
 
+// A segment of no length stands for an offset, and for what leans that the model does not have do
+// at the end of a link.
+double OffsetDeviation(const LinkageSettings& settings) {
+  double longest = 0.0;
+  for (const Segment& segment : settings.segments) longest = std::max(longest, segment.length);
+  return std::hypot(settings.tolerance.pivot_offset, settings.tolerance.pivot_angle * longest);
+}
+
 void AddGeometry(const LinkageSettings& settings, const Motions& motions, ModelBuilder& model) {
   const LinkageTolerance& sd = settings.tolerance;
+  const double offset = OffsetDeviation(settings);
   model.Block("link", kMillimetres);
   for (std::size_t q = 1; q < settings.segments.size(); ++q) {
     const double length = settings.segments[q].length;
-    model.Entry(fmt::format("segment_{}", q), length > 0 ? sd.link : sd.pivot_offset,
+    model.Entry(fmt::format("segment_{}", q), length > 0 ? sd.link : offset,
                 {.motion = motions.links[q]}, length, length);
   }
   model.Block("tilt", kMicroradians);

@@ -39,18 +39,33 @@ std::vector<Harmonic> DrawHarmonics(Draws& draws, const std::vector<int>& orders
   return harmonics;
 }
 
+// A turn about a line that does not pass through the origin, then a shift.
+Displacement TurnAbout(const Vector3d& point, const Eigen::Matrix3d& rotation,
+                       const Vector3d& shift) {
+  return {rotation, point - rotation * point + shift};
+}
+
+Displacement TurnAbout(const Vector3d& point, const Vector3d& direction, double angle,
+                       const Vector3d& shift) {
+  return TurnAbout(point, Eigen::AngleAxisd(angle, direction).toRotationMatrix(), shift);
+}
+
+// `carried` is where the pivots before have put what is mounted on them; afterwards also this one.
 PivotTruth DrawPivot(const LinkageSettings& settings, std::uint64_t seed, int pivot,
-                     const Vector3d& point, const Vector3d& direction) {
+                     const Vector3d& point, const Vector3d& direction, Displacement& carried) {
   Draws draws(seed, kLinkageStream + static_cast<std::uint64_t>(pivot));
   PivotTruth truth;
   const Vector3d first = Vector3d::UnitX();  // across z and y, the two nominal axes
   const Vector3d second = direction.cross(first);
   const double about_first = draws.Normal(settings.pivot_angle);
   const double about_second = draws.Normal(settings.pivot_angle);
-  truth.direction =
-      Eigen::AngleAxisd(about_first, first) * (Eigen::AngleAxisd(about_second, second) * direction);
+  const Eigen::Matrix3d askew =
+      Eigen::AngleAxisd(about_first, first) * Eigen::AngleAxisd(about_second, second).matrix();
   const double along_first = draws.Normal(settings.pivot_offset);
-  truth.point = point + along_first * first + draws.Normal(settings.pivot_offset) * second;
+  const Vector3d offset = along_first * first + draws.Normal(settings.pivot_offset) * second;
+  carried = carried * TurnAbout(point, askew, offset);
+  truth.direction = carried.rotation * direction;
+  truth.point = carried * point;
   truth.across = {first, second};
   for (auto& run_out : truth.run_out) {
     run_out = DrawHarmonics(draws, settings.bearing_harmonics, settings.bearing);
@@ -71,13 +86,6 @@ double Sum(const std::vector<Harmonic>& harmonics, double angle) {
   return sum;
 }
 
-// A turn about a line that does not pass through the origin, then a shift.
-Displacement TurnAbout(const Vector3d& point, const Vector3d& direction, double angle,
-                       const Vector3d& shift) {
-  const Eigen::Matrix3d rotation = Eigen::AngleAxisd(angle, direction).toRotationMatrix();
-  return {rotation, point - rotation * point + shift};
-}
-
 }  // namespace
 
 double Harmonic::At(double angle) const {
@@ -89,11 +97,12 @@ Linkage::Linkage(const LinkageSettings& settings, std::uint64_t seed) : settings
   const double link_1 = settings.link_1 + draws.Normal(settings.link);
   const double link_2 = settings.link_2 + draws.Normal(settings.link);
   const Vector3d elbow(link_1, 0.0, 0.0);
-  pivots_ = {DrawPivot(settings, seed, 0, Vector3d::Zero(), Vector3d::UnitZ()),
-             DrawPivot(settings, seed, 1, Vector3d::Zero(), Vector3d::UnitY()),
-             DrawPivot(settings, seed, 2, elbow, Vector3d::UnitY())};
+  Displacement carried;
+  pivots_ = {DrawPivot(settings, seed, 0, Vector3d::Zero(), Vector3d::UnitZ(), carried),
+             DrawPivot(settings, seed, 1, Vector3d::Zero(), Vector3d::UnitY(), carried),
+             DrawPivot(settings, seed, 2, elbow, Vector3d::UnitY(), carried)};
   const double ball_x = draws.Normal(settings.ball);
-  ball_ = elbow + Vector3d(ball_x, draws.Normal(settings.ball), link_2);
+  ball_ = carried * (elbow + Vector3d(ball_x, draws.Normal(settings.ball), link_2));
   for (double& each : expansion_) each = settings.expansion + draws.Normal(settings.thermal);
   Vector3d place, angles;
   for (double& each : place) each = draws.Normal(settings.base_place);

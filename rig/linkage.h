@@ -3,8 +3,9 @@
 // machine holds at a place.
 //
 // Built from axes in space, nothing linearised: pivot i turns everything after it by a finite angle
-// about its own line, whose place and direction are off by the drawn errors, runs out with the
-// angle, and gives under gravity; links grow with the temperature. At zero angles the nominal axes
+// about its own line, which runs out with the angle and gives under gravity; links grow with the
+// temperature. A pivot is built askew by the drawn angles and offsets, and with it all that is
+// mounted on it. At zero angles the nominal axes
 // are z through the origin, y through the origin and y through (L1, 0, 0), the ball stands at
 // (L1, 0, L2); frame B, the base. It shares no code with the models that are tested against it.
 //

@@ -1,20 +1,19 @@
-// Are the uncertainties of a calibration true, and could anybody do better? One world a seed, seeds
-// 1 to ABBE_SEEDS (200); ABBE_SHARD=k/n takes every n-th of them. Worlds, readings and the bound
-// come from plain matrix products (tests/relm/linkage_by_matrices.h) and share no model with the
-// program.
+// Are the uncertainties of a calibration true, and could anybody do better? One world a seed
+// (tests/seeds.h). Worlds, readings and the bound come from plain matrix products
+// (tests/relm/linkage_by_matrices.h) and share no model with the program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstdlib>
-#include <sstream>
 
 #include "fusion/calibrate.h"
 #include "linkage_world.h"
 #include "random/counter_random.h"
+#include "tests/pull_statistics.h"
 #include "tests/relm/linkage_by_matrices.h"
+#include "tests/seeds.h"
 
 namespace abbe::fusion {
 namespace {
@@ -26,20 +25,6 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using relm::ErrorModel;
-
-struct Seeds {
-  std::uint64_t first = 1, last = 200, step = 1;
-};
-
-Seeds SeedsFromEnvironment() {
-  Seeds seeds;
-  if (const char* count = std::getenv("ABBE_SEEDS")) seeds.last = std::strtoull(count, nullptr, 10);
-  if (const char* shard = std::getenv("ABBE_SHARD")) {
-    char slash = 0;
-    std::istringstream(shard) >> seeds.first >> slash >> seeds.step;
-  }
-  return seeds;
-}
 
 // The linkage on a perfect machine, its parameters in the order of the program's free ones.
 class MatrixWorld {
@@ -185,19 +170,6 @@ MatrixXd Bound(const MatrixWorld& world, const Matrix3Xd& positions) {
   return scale.asDiagonal() * scaled.llt().solve(MatrixXd::Identity(scale.size(), scale.size())) *
          scale.asDiagonal();
 }
-
-struct Mean {
-  double count = 0.0, sum = 0.0, squares = 0.0;
-  void Add(double value) {
-    count += 1.0;
-    sum += value;
-    squares += value * value;
-  }
-  double mean() const { return sum / count; }
-  double error() const { return std::sqrt((squares / count - mean() * mean()) / (count - 1.0)); }
-};
-
-constexpr double k99 = 2.576;  // quantile of the normal distribution, two-sided
 
 void Check(ErrorModel model, const Matrix3Xd& positions, const Vector3d& volume) {
   const MatrixWorld world(WorldSettings(), model);

@@ -54,6 +54,30 @@ MapErrors Judge(const Campaign& campaign, const FuseReport& report) {
   return {std::sqrt(sum.rms), std::sqrt(sum.stated), std::sqrt(sum.pull)};
 }
 
+TEST(Fuse, Sweeps) {
+  const std::vector<std::vector<std::pair<std::string, std::string>>> cases{
+      {},
+      {{"form_nm = 10.0", "form_nm = 0.0"}},
+      {{"drift_nm = 30.0", "drift_nm = 0.0"}},
+      {{"drift_nm = 30.0", "drift_nm = 0.0"}, {"form_nm = 10.0", "form_nm = 0.0"}},
+      {{"drift_nm = 30.0", "drift_nm = 0.0"}, {"form_nm = 10.0", "form_nm = 0.0"}, {"gain_ppm = 500.0", "gain_ppm = 0.0"}},
+      {{"drift_nm = 30.0", "drift_nm = 0.0"}, {"form_nm = 10.0", "form_nm = 0.0"}, {"gain_ppm = 500.0", "gain_ppm = 0.0"}, {"probe_position_um = 10.0", "probe_position_um = 0.0"}, {"installation_urad = 500.0", "installation_urad = 0.0"}, {"installation_um = 50.0", "installation_um = 0.0"}},
+  };
+  for (const auto& changes : cases) {
+    const settings::Document document = CampaignMachine(changes);
+    double chi[3] = {0, 0, 0}, red[3] = {0, 0, 0};
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      const Campaign campaign(document, seed);
+      const FuseReport report = Fuse(campaign.machine, {campaign.Sweep('X'), campaign.Sweep('Y'), campaign.Sweep('Z')}, {.choose_smoothness = false});
+      for (int i = 0; i < 3; ++i) {
+        chi[i] += report.fit.sources[i].chi_square;
+        red[i] += report.fit.sources[i].redundancy;
+      }
+    }
+    fmt::print("case {}: {:.3f} {:.3f} {:.3f}\n", changes.size(), chi[0] / red[0], chi[1] / red[1], chi[2] / red[2]);
+  }
+}
+
 TEST(Fuse, Prototype) {
   const settings::Document document = CampaignMachine();
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {

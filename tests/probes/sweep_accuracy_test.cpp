@@ -1,35 +1,19 @@
 // The reduction against the virtual rig, which shares no model with it: are the uncertainties true,
-// and could anybody do better? One world a seed, seeds 1 to ABBE_SEEDS (200); ABBE_SHARD=k/n takes
-// every n-th of them.
+// and could anybody do better? One world a seed (tests/seeds.h).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <sstream>
 
 #include "probes/sweep_reduction.h"
 #include "random/counter_random.h"
 #include "rig/campaign.h"
 #include "tests/probes/cramer_rao_bound.h"
+#include "tests/pull_statistics.h"
+#include "tests/seeds.h"
 
 namespace abbe::probes {
 namespace {
 
 constexpr double kRate = 100.0;  // readings in a second
-
-struct Seeds {
-  std::uint64_t first = 1, last = 200, step = 1;
-};
-
-Seeds SeedsFromEnvironment() {
-  Seeds seeds;
-  if (const char* count = std::getenv("ABBE_SEEDS")) seeds.last = std::strtoull(count, nullptr, 10);
-  if (const char* shard = std::getenv("ABBE_SHARD")) {
-    char slash = 0;
-    std::istringstream(shard) >> seeds.first >> slash >> seeds.step;
-  }
-  return seeds;
-}
 
 // Cuts every reading into the counts of its register.
 void Digitise(const hal::DevicesSettings& devices, recording::Recording& sweep) {
@@ -47,23 +31,10 @@ void Digitise(const hal::DevicesSettings& devices, recording::Recording& sweep) 
   }
 }
 
-// A mean with its standard error.
-struct Mean {
-  double count = 0.0, sum = 0.0, squares = 0.0;
-  void Add(double value) {
-    count += 1.0;
-    sum += value;
-    squares += value * value;
-  }
-  double mean() const { return sum / count; }
-  double error() const { return std::sqrt((squares / count - mean() * mean()) / (count - 1.0)); }
-};
-
 struct Score {
-  Mean pull, pull_square;  // error / u of one random station and component a seed
-  Mean inside;             // whether |error| < U95, the same
-  Mean square_to_bound;    // (error / bound)^2, mean over all stations and components of a seed
-  Mean stated_to_bound;    // (u / bound)^2, the same
+  Pulls pulls;           // of one random station and component a seed
+  Mean square_to_bound;  // (error / bound)^2, mean over all stations and components of a seed
+  Mean stated_to_bound;  // (u / bound)^2, the same
 };
 
 enum class Head { kAsToleranced, kPerfect };
@@ -119,9 +90,7 @@ class Campaign {
         square += share * std::pow(error / bound(c, i), 2);
         stated += share * std::pow(u / bound(c, i), 2);
         if (c != component || i != station) continue;
-        score.pull.Add(error / u);
-        score.pull_square.Add(error / u * error / u);
-        score.inside.Add(std::abs(error) < found.coverage * u ? 1.0 : 0.0);
+        score.pulls.Add(error, u, found.coverage);
       }
     }
     score.square_to_bound.Add(square);
@@ -134,18 +103,6 @@ class Campaign {
   SweepSetup setup_;
   rig::RigSettings rig_;
 };
-
-constexpr double k99 = 2.576;  // quantile of the normal distribution, two-sided
-
-void ExpectTrueUncertainties(const Score& score) {
-  const double n = score.pull.count;
-  EXPECT_NEAR(score.pull.mean(), 0.0, k99 / std::sqrt(n));
-  // Chi-squared / n by Wilson and Hilferty.
-  const double q = 2.0 / (9.0 * n);
-  EXPECT_GT(score.pull_square.mean(), std::pow(1.0 - q - k99 * std::sqrt(q), 3));
-  EXPECT_LT(score.pull_square.mean(), std::pow(1.0 - q + k99 * std::sqrt(q), 3));
-  EXPECT_NEAR(score.inside.mean(), 0.95, k99 * std::sqrt(0.95 * 0.05 / n));
-}
 
 // Half of the 10 % that may be lost is the limit, so that a true 1.00 passes and a true 1.10 fails:
 // the scatter of the mean of squares says how surely. Nobody is better than the bound.
@@ -162,10 +119,11 @@ void Check(int axis, Head head) {
   fmt::print(
       "{} axis, {}, {} seeds: error/u has mean {:+.3f}, variance {:.3f}, {:.1f} % inside U95; rms "
       "error / bound {:.3f} +- {:.3f}; u / bound {:.4f}\n",
-      "XYZ"[axis], head == Head::kPerfect ? "perfect head" : "head as toleranced", score.pull.count,
-      score.pull.mean(), score.pull_square.mean(), 100.0 * score.inside.mean(), ratio,
-      score.square_to_bound.error() / (2.0 * ratio), std::sqrt(score.stated_to_bound.mean()));
-  ExpectTrueUncertainties(score);
+      "XYZ"[axis], head == Head::kPerfect ? "perfect head" : "head as toleranced",
+      score.pulls.pull.count, score.pulls.pull.mean(), score.pulls.square.mean(),
+      100.0 * score.pulls.inside.mean(), ratio, score.square_to_bound.error() / (2.0 * ratio),
+      std::sqrt(score.stated_to_bound.mean()));
+  score.pulls.ExpectTrueUncertainties();
   ExpectTheBoundReached(score);
 }
 

@@ -126,23 +126,18 @@ class CompleteByMatrices {
   Eigen::Matrix<T, 3, 1> Tip() const {
     using std::cos, std::sin;
     const T o(0), lean_2 = cos(q_[1]), lean_3 = sin(q_[1] + q_[2]);
-    // Pivot 1 stands upright, u = x, v = y; its arm is link 1, along x.
+    // Pivot 1 stands upright, u = x, v = y.
     const Matrix4<T> pivot_1 = TurnX<T>(At("tilt.pivot_1_u")) * TurnY<T>(At("tilt.pivot_1_v")) *
-                               MoveBy<T>(At("shift.pivot_1_u"), At("shift.pivot_1_v"), o) *
-                               TurnZ<T>(Angle("pivot_1", 0)) *
-                               MoveBy<T>(RunOut<T>(x_, "pivot_1", q_[0]), o, o);
+                               MoveBy<T>(Shift("pivot_1", "u", 0), Shift("pivot_1", "v", 0), o) *
+                               TurnZ<T>(Angle("pivot_1", 0));
     // Pivots 2 and 3 lie along y, u = x, v = y x x = -z. Gravity turns them towards +q: link 1
     // (cos q2, 0, -sin q2) sinks with the rate cos q2, link 2 with sin(q2 + q3).
-    const Matrix4<T> pivot_2 =
-        Horizontal("pivot_2") * TurnY<T>(Angle("pivot_2", 1) + At("compliance.pivot_2") * lean_2) *
-        MoveBy<T>(
-            kLink1 + RunOut<T>(x_, "pivot_2", q_[1]) + Grown("expansion.after_pivot_2", kLink1), o,
-            o);
-    const Matrix4<T> pivot_3 =
-        Horizontal("pivot_3") * TurnY<T>(Angle("pivot_3", 2) + At("compliance.pivot_3") * lean_3) *
-        MoveBy<T>(
-            o, o,
-            kLink2 + RunOut<T>(x_, "pivot_3", q_[2]) + Grown("expansion.after_pivot_3", kLink2));
+    const Matrix4<T> pivot_2 = Horizontal("pivot_2", 1) *
+                               TurnY<T>(Angle("pivot_2", 1) + At("compliance.pivot_2") * lean_2) *
+                               MoveBy<T>(kLink1 + Grown("expansion.after_pivot_2", kLink1), o, o);
+    const Matrix4<T> pivot_3 = Horizontal("pivot_3", 2) *
+                               TurnY<T>(Angle("pivot_3", 2) + At("compliance.pivot_3") * lean_3) *
+                               MoveBy<T>(o, o, kLink2 + Grown("expansion.after_pivot_3", kLink2));
     return PositionOf<T>(pivot_1 * pivot_2 * pivot_3 *
                          MoveBy<T>(At("ball.across"), At("ball.axial"), At("ball.along")));
   }
@@ -159,9 +154,14 @@ class CompleteByMatrices {
            At("graduation." + pivot + "_sin_3") * sin(T(3) * q) +
            At("graduation." + pivot + "_cos_3") * cos(T(3) * q);
   }
-  Matrix4<T> Horizontal(const std::string& pivot) const {
+  // Of the axis, with the run-out of its bearing.
+  T Shift(const std::string& pivot, const std::string& direction, int joint) const {
+    return At("shift." + pivot + "_" + direction) +
+           RunOut<T>(x_, pivot + "_" + direction, q_[joint]);
+  }
+  Matrix4<T> Horizontal(const std::string& pivot, int joint) const {
     return TurnX<T>(At("tilt." + pivot + "_u")) * TurnZ<T>(-At("tilt." + pivot + "_v")) *
-           MoveBy<T>(At("shift." + pivot + "_u"), T(0), -At("shift." + pivot + "_v"));
+           MoveBy<T>(Shift(pivot, "u", joint), T(0), -Shift(pivot, "v", joint));
   }
   T Grown(const std::string& name, double length) const { return At(name) * length * warmth_; }
 

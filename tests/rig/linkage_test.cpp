@@ -163,6 +163,18 @@ TEST(RigLinkage, ATiltedPivotTurnsTheBallAboutItsOwnAxis) {
   }
 }
 
+// Link 2 is mounted on pivot 3 and stays square to it however it was built; the same for link 1.
+TEST(RigLinkage, APivotBuiltAskewCarriesWhatIsMountedOnIt) {
+  const Linkage linkage = With(&LinkageSettings::pivot_angle, 5e-4);
+  const PivotTruth &second = linkage.pivots()[1], &third = linkage.pivots()[2];
+  const Vector3d link_1 = third.point - second.point, link_2 = linkage.ball() - third.point;
+  EXPECT_NEAR(link_1.norm(), 0.130, kRounding);
+  EXPECT_NEAR(link_2.norm(), 0.110, kRounding);
+  EXPECT_NEAR(link_1.dot(second.direction), 0.0, kRounding);
+  EXPECT_NEAR(link_2.dot(third.direction), 0.0, kRounding);
+  EXPECT_GT(Distance(linkage.ball(), {0.130, 0.0, 0.110}), 1e-5);
+}
+
 TEST(RigLinkage, LinksAreLongerByWhatIsDrawn) {
   const Linkage linkage = With(&LinkageSettings::link, 1e-4);
   const double link_1 = linkage.ball().x(), link_2 = linkage.ball().z();
@@ -273,7 +285,8 @@ TEST(RigLinkage, DrawsWithTheTolerancesOfTheMachineFile) {
     lean += std::pow(pivot.direction.x() / settings.pivot_angle, 2);
     base +=
         std::pow((drawn.base().translation - settings.base_position).y() / settings.base_place, 2);
-    link += std::pow((drawn.ball().z() - settings.link_2) / settings.link, 2);
+    const double link_2 = (drawn.ball() - drawn.pivots()[2].point).norm();
+    link += std::pow((link_2 - settings.link_2) / settings.link, 2);
   }
   // Four standard deviations of a mean of squares.
   const double noise = 4.0 * std::sqrt(2.0 / kSeeds);

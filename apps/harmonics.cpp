@@ -1,0 +1,131 @@
+// abbe harmonics: the run-out of a turning shaft, from a recording of probes and an angle.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <numeric>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/result_file.h"
+#include "fusion/bearing_harmonics.h"
+#include "recording/recording_file.h"
+#include "relm/shaft_readings.h"
+#include "settings/unit.h"
+
+namespace abbe::apps {
+namespace {
+
+using fusion::BearingHarmonics;
+using nlohmann::ordered_json;
+
+struct HarmonicsArguments {
+  std::filesystem::path recording, json;
+  std::string angle;
+  std::vector<std::string> columns;
+  int orders = 2;
+  bool quiet = false;
+};
+
+double Micrometres(double metres) { return metres / settings::kMicrometre; }
+
+// What a fit without any harmonic, and one with all, leave of readings in later time.
+struct HeldOut {
+  double without, with;
+};
+
+HeldOut SecondHalf(const relm::ShaftReadings& shaft, const std::vector<int>& orders) {
+  const std::size_t half = shaft.value.size() / 2;
+  const std::span angle(shaft.angle), value(shaft.value);
+  const auto rms = [&](const std::vector<int>& of) {
+    const BearingHarmonics first = fusion::FitBearing(angle.first(half), value.first(half), of);
+    return fusion::RmsAbout(first, angle.subspan(half), value.subspan(half));
+  };
+  return {rms({}), rms(orders)};
+}
+
+ordered_json ChannelJson(const std::string& column, const relm::ShaftReadings& shaft,
+                         const std::vector<int>& orders) {
+  const BearingHarmonics fit = fusion::FitBearing(shaft.angle, shaft.value, orders);
+  const HeldOut held_out = SecondHalf(shaft, orders);
+  ordered_json harmonics = ordered_json::array();
+  for (const int order : orders) {
+    const auto entry = [&](const char* wave) {
+      return fmt::format("bearing.shaft_{}_{}", wave, order);
+    };
+    harmonics.push_back({{"order", order},
+                         {"sin_um", Micrometres(fit.result.Value(entry("sin")))},
+                         {"cos_um", Micrometres(fit.result.Value(entry("cos")))},
+                         {"amplitude_um", Micrometres(fit.Amplitude(order))},
+                         {"u_um", Micrometres(fit.result.Uncertainty(entry("sin")))}});
+  }
+  return {{"column", column},
+          {"readings", shaft.value.size()},
+          {"mean_um", Micrometres(fit.result.Value("mean.gap"))},
+          {"harmonics", harmonics},
+          {"rms_um", Micrometres(fit.rms)},
+          {"held_out_rms_um", Micrometres(held_out.with)},
+          {"held_out_rms_without_um", Micrometres(held_out.without)}};
+}
+
+std::string ChannelTable(const ordered_json& channel) {
+  std::string text = fmt::format(
+      "\n{}: {} readings\n{:>8}{:>12}{:>12}{:>14}{:>10}\n", channel["column"].get<std::string>(),
+      channel["readings"].get<std::size_t>(), "order", "sin um", "cos um", "amplitude um", "u um");
+  for (const ordered_json& one : channel["harmonics"]) {
+    text += fmt::format("{:>8}{:>12.3f}{:>12.3f}{:>14.3f}{:>10.3f}\n", one["order"].get<int>(),
+                        one["sin_um"].get<double>(), one["cos_um"].get<double>(),
+                        one["amplitude_um"].get<double>(), one["u_um"].get<double>());
+  }
+  text += fmt::format(
+      "residuals {:.2f} um rms; the second half by a fit of the first: {:.2f} um, without "
+      "harmonics {:.2f} um\n",
+      channel["rms_um"].get<double>(), channel["held_out_rms_um"].get<double>(),
+      channel["held_out_rms_without_um"].get<double>());
+  return text;
+}
+
+int Harmonics(const HarmonicsArguments& arguments) {
+  const recording::Recording recording = recording::Read(arguments.recording);
+  for (const std::string& warning : recording.warnings) fmt::print(stderr, "abbe: {}\n", warning);
+  std::vector<int> orders(static_cast<std::size_t>(arguments.orders));
+  std::iota(orders.begin(), orders.end(), 1);
+  ordered_json result{{"kind", "harmonics"},
+                      {"recording", recording.name},
+                      {"angle", arguments.angle},
+                      {"channels", ordered_json::array()}};
+  for (const std::string& column : arguments.columns) {
+    const auto shaft = relm::ReadShaft(recording, arguments.angle, column);
+    result["channels"].push_back(ChannelJson(column, shaft, orders));
+    if (!arguments.quiet) fmt::print("{}", ChannelTable(result["channels"].back()));
+  }
+  if (!arguments.json.empty()) WriteResult(result, arguments.json);
+  return kDone;
+}
+
+}  // namespace
+
+void AddHarmonics(CLI::App& program, int& exit_code) {
+  auto arguments = std::make_shared<HarmonicsArguments>();
+  CLI::App* command =
+      program.add_subcommand("harmonics", "Run-out of a turning shaft: eccentricity and lobes");
+  command->add_option("recording", arguments->recording, "A recording of probes and an angle")
+      ->required();
+  command->add_option("--angle", arguments->angle, "Column of the shaft's angle (..._deg)")
+      ->required();
+  command->add_option("--of", arguments->columns, "Columns of the probes, with commas between")
+      ->delimiter(',')
+      ->required();
+  command->add_option("--orders", arguments->orders, "Harmonics 1 to N")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command->add_option("--json", arguments->json, "File for the result as data");
+  command->add_flag("--quiet", arguments->quiet, "No table");
+  command->footer("Example: abbe harmonics turn.csv --angle shaft_deg --of gap_1_mm,gap_2_mm");
+  command->callback([arguments, &exit_code] { exit_code = Harmonics(*arguments); });
+}
+
+}  // namespace abbe::apps

@@ -1,0 +1,50 @@
+// What many independent results say together: means with their standard error, and whether stated
+// uncertainties are true.
+//
+//   Pulls pulls;
+//   for (...) pulls.Add(error, u, coverage);   // one number a seed, so that they are independent
+//   pulls.ExpectTrueUncertainties();
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace abbe {
+
+inline constexpr double k99 = 2.576;  // quantile of the normal distribution, two-sided
+
+struct Mean {
+  double count = 0.0, sum = 0.0, squares = 0.0;
+  void Add(double value) {
+    count += 1.0;
+    sum += value;
+    squares += value * value;
+  }
+  double mean() const { return sum / count; }
+  double error() const { return std::sqrt((squares / count - mean() * mean()) / (count - 1.0)); }
+};
+
+struct Pulls {
+  Mean pull, square;  // error / u
+  Mean inside;        // whether |error| < U95
+
+  void Add(double error, double u, double coverage) {
+    pull.Add(error / u);
+    square.Add(error / u * error / u);
+    inside.Add(std::abs(error) < coverage * u ? 1.0 : 0.0);
+  }
+
+  // Mean 0, variance 1 and coverage 95 % within 99 % bands.
+  void ExpectTrueUncertainties() const {
+    const double n = pull.count;
+    EXPECT_NEAR(pull.mean(), 0.0, k99 / std::sqrt(n));
+    // Chi-squared / n by Wilson and Hilferty.
+    const double q = 2.0 / (9.0 * n);
+    EXPECT_GT(square.mean(), std::pow(1.0 - q - k99 * std::sqrt(q), 3));
+    EXPECT_LT(square.mean(), std::pow(1.0 - q + k99 * std::sqrt(q), 3));
+    EXPECT_NEAR(inside.mean(), 0.95, k99 * std::sqrt(0.95 * 0.05 / n));
+  }
+};
+
+}  // namespace abbe
