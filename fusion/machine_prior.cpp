@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using geometry::BSplineBasis;
 
-constexpr int kDegree = 3;
+constexpr int kDegree = 5;
 constexpr double kKnotsPerLength = 2.0;
 constexpr int kPointsPerCoefficient = 6;
 constexpr double kHardlyAllowed = 1e-9;  // of the largest variance
