@@ -24,11 +24,9 @@ std::string DeterminedBy(const fusion::FunctionSeen& function) {
 
 std::string ScaleText(const fusion::ScaleSeen& scale) {
   return fmt::format(
-      "Isotropic scale {:+.2f} ppm, u {:.2f} ppm: {}\n", scale.value / kMicro, scale.u / kMicro,
-      scale.calibrated
-          ? "calibrated"
-          : fmt::format("PRIOR ONLY ({:.2f} ppm before the data); give a run of kind length",
-                        scale.prior / kMicro));
+      "\nIsotropic scale {:+.2f} ppm, u {:.2f} ppm, {:.2f} ppm before the data: {}\n",
+      scale.value / kMicro, scale.u / kMicro, scale.prior / kMicro,
+      scale.calibrated ? "calibrated" : "PRIOR ONLY; give a run of kind length");
 }
 
 std::string RunTable(const fusion::FuseReport& report,
@@ -104,10 +102,11 @@ std::string FuseTable(const fusion::FuseReport& report,
         fmt::format("{:<7}{:>10.3f}{:>10.3f}  {:<6}{}\n", function.name, function.prior / kMicro,
                     function.u / kMicro, length ? "um" : "urad", DeterminedBy(function));
   }
-  text += "\n" + ScaleText(report.scale);
+  text += ScaleText(report.scale);
   text += fmt::format("Correlation length of the error functions: {:.1f} mm\n",
                       1e3 * report.chosen_smoothness);
-  return text + RunTable(report, runs);
+  text += RunTable(report, runs);
+  return text;
 }
 
 }  // namespace abbe::apps

@@ -21,6 +21,7 @@
 #include "hal/sweep_recorder.h"
 #include "recording/recording_file.h"
 #include "rig/campaign.h"
+#include "rig/length_campaign.h"
 #include "rig/linkage_campaign.h"
 #include "rig/register_server.h"
 #include "rig/truth.h"
@@ -35,7 +36,7 @@ struct RigOptions {
   double speed = 1.0;
   std::vector<std::string> rtu;  // DEVICE=LINK
   std::filesystem::path truth, ready_file, out;
-  std::string start, axis;
+  std::string start, axis, length, mounting;
   CourseRequest course;
   double rate = 200.0;
   std::filesystem::path truth_to_compare;
@@ -134,23 +135,40 @@ int Serve(const RigOptions& options) {
   return kDone;
 }
 
+// An interferometer over the whole travel of an axis, the others in the middle of theirs.
+recording::Recording RecordLine(const Rig& rig, char axis) {
+  constexpr int kSteps = 12;
+  rig::LengthProgram program{.axis = axis, .count = kSteps};
+  const rig::RigSettings& machine = rig.world.settings();
+  for (int i = 0; i < rig::kAxes; ++i) {
+    program.at[i] = (machine.travels[i].first + machine.travels[i].last) / 2;
+  }
+  const auto& [first, last] = machine.travels[rig::AxisNumber(axis)];
+  program.step = (last - first) / kSteps;
+  return rig::RecordLengths(*rig.linkage, program);
+}
+
 recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
-  if (options.course.course.empty()) {
-    return rig::RecordSweep(rig.world, options.axis.front(), rig::ChannelsOf(rig.devices),
-                            {.rate = options.rate, .started = hal::UtcNow()});
+  if (!options.axis.empty()) {
+    return rig::RecordSweep(
+        rig.world, options.axis.front(), rig::ChannelsOf(rig.devices),
+        {.rate = options.rate, .mounting = options.mounting, .started = hal::UtcNow()});
   }
   if (!rig.linkage) {
-    throw InputError(fmt::format("--course {}: {} has no linkage to record; add a table [linkage]",
-                                 options.course.course, options.machine));
+    throw InputError(
+        fmt::format("{} has no linkage to record with; add a table [linkage]", options.machine));
   }
+  if (!options.length.empty()) return RecordLine(rig, options.length.front());
   return RecordCourse(*rig.linkage, options.course, options.rate, hal::UtcNow());
 }
 
 int Record(const RigOptions& options) {
-  if (options.axis.empty() == options.course.course.empty()) {
+  const int kinds = (options.axis.empty() ? 0 : 1) + (options.course.course.empty() ? 0 : 1) +
+                    (options.length.empty() ? 0 : 1);
+  if (kinds != 1) {
     throw InputError(
-        "rig record: say what to record: a sweep by --axis X or a path of the linkage "
-        "by --course circle");
+        "rig record: say what to record: a sweep by --axis X, a path of the linkage by --course "
+        "circle, or calibrated lengths by --length X");
   }
   recording::Write(Recorded(Rig(options), options), options.out);
   fmt::print("{}\n", options.out.string());
@@ -211,6 +229,9 @@ void AddRig(CLI::App& program, int& exit_code) {
   AddWorldOptions(record, *options);
   record->get_option("--machine")->required();
   record->add_option("--axis", options->axis, "Of the probe head: sweep X, Y or Z")->check(axis);
+  record->add_option("--length", options->length, "Calibrated lengths along X, Y or Z")
+      ->check(axis);
+  record->add_option("--mounting", options->mounting, "For the header of a sweep");
   AddCourseOptions(*record, options->course);
   record->add_option("--out", options->out, "Recording (.csv, .h5)")->required();
   record->add_option("--rate", options->rate, "Rows in a second")->capture_default_str();

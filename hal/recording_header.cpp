@@ -76,6 +76,7 @@ std::string SweepHeader(const SweepPlan& plan, const SweepAbout& about,
       "window_um = {:.9g}\nfeed_mm_min = {:.9g}\noverrun_mm = {:.9g}\n",
       stations, plan.passes, plan.dwell, plan.settle, plan.window / kMicrometre,
       plan.feed / settings::UnitOf("feed_mm_min").si, plan.overrun / kMillimetre);
+  if (!about.mounting.empty()) text += fmt::format("[mounting]\nid = {}\n", Quoted(about.mounting));
   return text + about.more;
 }
 

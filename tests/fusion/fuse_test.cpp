@@ -1,103 +1,157 @@
 // The joint estimate against the virtual rig, which shares no code with it.
 #include "fusion/fuse.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 
-#include "random/counter_random.h"
+#include "fusion/calibrate.h"
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::fusion {
 namespace {
 
+using Eigen::Vector3d;
 using simulation::SimulatedRun;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
 
-void Print(const FuseReport& report) {
-  for (const auto& f : report.functions) {
-    fmt::print("{} prior {:.3f} u {:.3f}  {}\n", f.name, 1e6 * f.prior, 1e6 * f.u,
-               fmt::join(f.determined_by, " "));
-  }
-  fmt::print("scale {:.2f} +- {:.2f} ppm, prior {:.2f}, calibrated {}\n", 1e6 * report.scale.value,
-             1e6 * report.scale.u, 1e6 * report.scale.prior, report.scale.calibrated);
-  for (const auto& s : report.smoothness)
-    fmt::print("smoothness {:.1f} mm: {:.2f}\n", 1e3 * s.length, s.log_evidence);
-  for (const auto& r : report.runs)
-    fmt::print("{}: T {:.1f} of {} p {:.3g}\n", r.name, r.statistic, r.directions, r.probability);
-  for (const auto& s : report.fit.sources)
-    fmt::print("source {} rows {} chi2 {:.1f} redundancy {:.1f}\n", s.name, s.rows, s.chi_square,
-               s.redundancy);
-  fmt::print("iterations {}\n", report.fit.iterations);
+const FunctionSeen& Seen(const FuseReport& report, const std::string& name) {
+  return *std::find_if(report.functions.begin(), report.functions.end(),
+                       [&](const FunctionSeen& function) { return function.name == name; });
 }
 
-struct MapErrors {
-  double rms = 0, stated = 0, pull = 0;
+class FuseOfRig : public testing::Test {
+ protected:
+  static const Campaign& World() {
+    static const Campaign campaign(CampaignMachine(), 5);
+    return campaign;
+  }
+  static const std::vector<SimulatedRun>& Sweeps() {
+    static const std::vector<SimulatedRun> sweeps{World().Sweep('X'), World().Sweep('Y'),
+                                                  World().Sweep('Z')};
+    return sweeps;
+  }
+  static const std::vector<SimulatedRun>& AllRuns() {
+    static const std::vector<SimulatedRun> runs = [] {
+      std::vector<SimulatedRun> all = Sweeps();
+      all.push_back(World().Linkage());
+      all.push_back(World().Length('X'));
+      return all;
+    }();
+    return runs;
+  }
+  static const FuseReport& All() {
+    static const FuseReport report = Fuse(World().machine, AllRuns(), {});
+    return report;
+  }
 };
-MapErrors Judge(const Campaign& campaign, const FuseReport& report) {
-  const random::CounterRandom random(campaign.rig.world().seed(), 4711);
-  MapErrors sum;
-  constexpr int kPoints = 200;
-  for (int i = 0; i < kPoints; ++i) {
-    Eigen::Vector3d axes;
-    for (int k = 0; k < 3; ++k)
-      axes[k] = random.Uniform(static_cast<std::uint64_t>(3 * i + k), 0.0, 0.06);
-    const Eigen::Vector3d off = report.map.Error(axes, Eigen::Vector3d::Zero()) -
-                                campaign.TrueError(axes) + campaign.TrueError({0, 0, 0});
-    const Eigen::Vector3d u = report.map.StandardUncertainty(axes, Eigen::Vector3d::Zero());
-    sum.rms += off.squaredNorm() / kPoints;
-    sum.stated += u.squaredNorm() / kPoints;
-    sum.pull += off.cwiseQuotient(u).squaredNorm() / (3 * kPoints);
+
+// The rig's noise is what the machine file states, so what is left must be noise of that size: the
+// whole simulation is as exact as the rig. 99.9 % band of chi-square, rows as many as stated.
+TEST_F(FuseOfRig, LeavesNothingButTheStatedNoise) {
+  for (const auto& source : All().fit.sources) {
+    if (source.is_prior) continue;
+    const double spread = 3.3 * std::sqrt(2.0 / source.redundancy);
+    EXPECT_NEAR(source.chi_square / source.redundancy, 1.0, spread) << source.name;
   }
-  return {std::sqrt(sum.rms), std::sqrt(sum.stated), std::sqrt(sum.pull)};
+  EXPECT_EQ(All().contradicting, -1);
 }
 
-TEST(Fuse, Sweeps) {
-  const std::vector<std::vector<std::pair<std::string, std::string>>> cases{
-      {},
-      {{"form_nm = 10.0", "form_nm = 0.0"}},
-      {{"drift_nm = 30.0", "drift_nm = 0.0"}},
-      {{"drift_nm = 30.0", "drift_nm = 0.0"}, {"form_nm = 10.0", "form_nm = 0.0"}},
-      {{"drift_nm = 30.0", "drift_nm = 0.0"}, {"form_nm = 10.0", "form_nm = 0.0"}, {"gain_ppm = 500.0", "gain_ppm = 0.0"}},
-      {{"drift_nm = 30.0", "drift_nm = 0.0"}, {"form_nm = 10.0", "form_nm = 0.0"}, {"gain_ppm = 500.0", "gain_ppm = 0.0"}, {"probe_position_um = 10.0", "probe_position_um = 0.0"}, {"installation_urad = 500.0", "installation_urad = 0.0"}, {"installation_um = 50.0", "installation_um = 0.0"}},
-  };
-  for (const auto& changes : cases) {
-    const settings::Document document = CampaignMachine(changes);
-    double chi[3] = {0, 0, 0}, red[3] = {0, 0, 0};
-    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-      const Campaign campaign(document, seed);
-      const FuseReport report = Fuse(campaign.machine, {campaign.Sweep('X'), campaign.Sweep('Y'), campaign.Sweep('Z')}, {.choose_smoothness = false});
-      for (int i = 0; i < 3; ++i) {
-        chi[i] += report.fit.sources[i].chi_square;
-        red[i] += report.fit.sources[i].redundancy;
+TEST_F(FuseOfRig, FindsTheMapOfTheMachine) {
+  double square = 0.0, machine = 0.0;
+  int count = 0;
+  for (double x = 0.002; x < 0.06; x += 0.008) {
+    for (double y = 0.002; y < 0.06; y += 0.008) {
+      for (double z = 0.002; z < 0.06; z += 0.008) {
+        const Vector3d truth = World().TrueError({x, y, z});
+        square += (All().map.Error({x, y, z}, Vector3d::Zero()) - truth).squaredNorm();
+        machine += truth.squaredNorm();
+        ++count;
       }
     }
-    fmt::print("case {}: {:.3f} {:.3f} {:.3f}\n", changes.size(), chi[0] / red[0], chi[1] / red[1], chi[2] / red[2]);
   }
+  // The stated uncertainty of such a campaign is 0.8 um; one world in a hundred may have twice it.
+  EXPECT_LT(std::sqrt(square / count), 1.6e-6);
+  EXPECT_GT(std::sqrt(machine / count), 3e-6);  // there was something to find
 }
 
-TEST(Fuse, Prototype) {
-  const settings::Document document = CampaignMachine();
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const Campaign campaign(document, seed);
-    const std::vector<SimulatedRun> sweeps{campaign.Sweep('X'), campaign.Sweep('Y'),
-                                           campaign.Sweep('Z')};
-    const SimulatedRun linkage = campaign.Linkage();
-    const SimulatedRun length = campaign.Length('X');
-    std::vector<std::vector<SimulatedRun>> sets{sweeps, {linkage}, sweeps, sweeps};
-    sets[2].push_back(linkage);
-    sets[3].push_back(linkage);
-    sets[3].push_back(length);
-    for (const auto& runs : sets) {
-      const FuseReport report = Fuse(campaign.machine, runs, {});
-      const MapErrors e = Judge(campaign, report);
-      fmt::print("seed {} runs {}: map rms {:.3f} um, stated {:.3f}, pull {:.2f}\n", seed,
-                 runs.size(), 1e6 * e.rms, 1e6 * e.stated, e.pull);
-      if (seed == 1) Print(report);
-    }
+TEST_F(FuseOfRig, ChoosesTheSmoothnessOfThePopulation) {
+  EXPECT_NEAR(All().chosen_smoothness, 0.015, 1e-9);
+  const settings::Document wrong =
+      CampaignMachine({{"smoothness_mm = 15.0", "smoothness_mm = 7.5"}});
+  const FuseReport report = Fuse(machine::ReadMachine(wrong.Root()), Sweeps(), {});
+  EXPECT_NEAR(report.chosen_smoothness, 0.015, 1e-9);
+}
+
+TEST_F(FuseOfRig, TellsWhatDeterminedEachError) {
+  EXPECT_THAT(Seen(All(), "EBX").determined_by, testing::Contains("sweep"));
+  EXPECT_THAT(Seen(All(), "EXX").determined_by, testing::Contains("length"));
+  EXPECT_THAT(Seen(All(), "EYY").determined_by, ElementsAre("linkage"));
+  // A ball at the reference point does not move when the axis that carries the spindle turns.
+  EXPECT_THAT(Seen(All(), "EAZ").determined_by, ElementsAre("sweep"));
+  EXPECT_TRUE(All().scale.calibrated);
+
+  const FuseReport sweeps = Fuse(World().machine, Sweeps(), {.choose_smoothness = false});
+  EXPECT_THAT(Seen(sweeps, "EXX").determined_by, IsEmpty());
+  EXPECT_FALSE(sweeps.scale.calibrated);
+  EXPECT_EQ(sweeps.map.Scale(), "prior only");
+  // Nothing was seen of it, so it is known as before.
+  EXPECT_NEAR(Seen(sweeps, "EXX").u, Seen(sweeps, "EXX").prior, 1e-3 * Seen(sweeps, "EXX").prior);
+}
+
+// A gauge that is 50 um too long over 60 mm.
+TEST_F(FuseOfRig, NamesAWrongLength) {
+  auto recording = World().LengthRecording('X');
+  for (auto& column : recording.columns) {
+    if (column.name != "length_mm") continue;
+    for (double& value : column.values) value *= 1.0 + 50e-6 / 0.06;
   }
+  auto runs = AllRuns();
+  runs.back() = simulation::SimulateLengths(World().model, World().reference, recording);
+  const FuseReport report = Fuse(World().machine, runs, {.choose_smoothness = false});
+  ASSERT_EQ(report.contradicting, 4);
+  EXPECT_EQ(report.runs[4].name, "length X");
+}
+
+// The sweep of Y says that it saw the target as mounted for X and Z, but it was knocked meanwhile.
+TEST_F(FuseOfRig, NamesASweepWithAnotherMounting) {
+  const Campaign knocked(
+      CampaignMachine({{"\\[target\\]", "[rig]\ntarget_tilt_urad = 2000\n[target]"}}), 5);
+  auto runs = AllRuns();
+  runs[1] = knocked.Sweep('Y');
+  const FuseReport report = Fuse(World().machine, runs, {.choose_smoothness = false});
+  ASSERT_GE(report.contradicting, 0);
+  EXPECT_EQ(report.runs[static_cast<std::size_t>(report.contradicting)].name, "sweep Y");
+}
+
+// Calibrated on a machine that is taken as perfect, the linkage learns the machine's errors: over a
+// cube of 25 x 25 x 50 mm nearly all of them.
+TEST_F(FuseOfRig, ShowsThatALinkageAloneSwallowsTheMachine) {
+  const auto course = rig::DwellCourse(
+      rig::GridPlaces(Vector3d::Constant(0.030), {0.025, 0.025, 0.050}, {5, 5, 7}), 0.1, 0.1, 1);
+  const auto recording = World().rig.Record(course, {.rate = 100.0});
+  const auto run = simulation::MeansOfStays(simulation::ReadLinkageRun(recording, World().linkage));
+  const CalibrationReport alone =
+      Calibrate(World().machine.chain, World().linkage, {run}, {.folds = 0});
+  Eigen::Matrix3Xd errors(3, run.poses());
+  for (Eigen::Index i = 0; i < run.poses(); ++i)
+    errors.col(i) = World().TrueError(run.commanded.col(i));
+  errors.colwise() -= errors.rowwise().mean();
+  const double machine = errors.colwise().norm().norm() / std::sqrt(run.poses());
+  EXPECT_LT(alone.after.rms, 0.3 * machine);
+}
+
+TEST_F(FuseOfRig, RefusesNoRunsAndPlacesOutside) {
+  EXPECT_THAT([] { Fuse(World().machine, {}, {}); },
+              ThrowsMessage<InputError>(HasSubstr("name at least one")));
+  auto recording = World().LengthRecording('Y');
+  recording.columns[2].values[3] = 80.0;
+  EXPECT_THAT([&] { simulation::SimulateLengths(World().model, World().reference, recording); },
+              ThrowsMessage<InputError>(HasSubstr("length Y: row 4: y = 80.0000 mm lies outside")));
 }
 
 }  // namespace

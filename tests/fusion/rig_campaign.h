@@ -1,6 +1,5 @@
 // A measuring campaign on the rig, reduced so that it takes a second: sweeps of the three axes with
-// few stations, the linkage on a grid over nearly the whole volume, one interferometer line along
-// the body diagonal's first axis.
+// few stations, the linkage on a grid over nearly the whole volume, one interferometer line.
 #pragma once
 
 #include <Eigen/Core>
@@ -55,9 +54,9 @@ struct Campaign {
     options.rate = 50.0;
     options.moving = false;
     options.run = run;
+    options.mounting = "A";
     auto recording = rig::RecordSweep(rig.world(), axis, channels, options);
     recording.name = std::string("sweep ") + axis;
-    recording.header = "mounting = \"A\"\n" + recording.header;
     return simulation::SimulateSweep(model, reference, instrument,
                                      simulation::ReadSweepRun(recording, instrument.head, noise));
   }
@@ -86,9 +85,13 @@ struct Campaign {
     return simulation::SimulateLengths(model, reference, recording);
   }
 
-  // What the machine really does at a position, in W.
-  Eigen::Vector3d TrueError(const Eigen::Vector3d& axes) const {
-    return rig.ToolAt(axes) - relm::NominalTip(machine.chain, axes);
+  // What the machine really does at a position with a tool point p_TQ, in W.
+  Eigen::Vector3d TrueError(const Eigen::Vector3d& axes,
+                            const Eigen::Vector3d& p_TQ = Eigen::Vector3d::Zero()) const {
+    const auto table = rig.world().PoseOfTarget(axes);
+    const Eigen::Vector3d tool = rig.world().PoseOfHead(axes) * p_TQ;
+    return table.rotation.transpose() * (tool - table.translation) - p_TQ -
+           relm::NominalTip(machine.chain, axes);
   }
 
   machine::Machine machine;

@@ -1,0 +1,85 @@
+// Is the map as uncertain as it says, and how good are the instruments apart and together? One
+// world of the virtual rig a seed, one random point, tool and component of it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "random/counter_random.h"
+#include "tests/fusion/rig_campaign.h"
+#include "tests/pull_statistics.h"
+#include "tests/seeds.h"
+
+namespace abbe::fusion {
+namespace {
+
+using Eigen::Vector3d;
+using simulation::SimulatedRun;
+
+constexpr double kCoverage = 1.96;
+constexpr double kTool = 0.05;  // m: largest coordinate of the tool vector
+constexpr int kPoints = 40;     // of the rms over the volume
+
+struct Set {
+  std::string name;
+  bool sweeps, linkage, length;
+  Pulls pulls = {};
+  Mean square = {}, variance = {};  // 3D with the ball as tool, m^2
+};
+
+Vector3d Draw(const random::CounterRandom& random, std::uint64_t first, double low, double high) {
+  return {random.Uniform(first, low, high), random.Uniform(first + 1, low, high),
+          random.Uniform(first + 2, low, high)};
+}
+
+void Judge(const Campaign& campaign, const FuseReport& report, std::uint64_t seed, Set& set) {
+  const random::CounterRandom random(seed, 0x3A9);
+  const Vector3d at = Draw(random, 0, 0.0, 0.06), tool = Draw(random, 3, -kTool, kTool);
+  const auto component = static_cast<Eigen::Index>(3.0 * random.Uniform(6, 0.0, 1.0));
+  const Vector3d off = report.map.Error(at, tool) - campaign.TrueError(at, tool);
+  set.pulls.Add(off[component], report.map.StandardUncertainty(at, tool)[component], kCoverage);
+  for (int i = 0; i < kPoints; ++i) {
+    const Vector3d place = Draw(random, 10 + 3 * static_cast<std::uint64_t>(i), 0.0, 0.06);
+    const Vector3d none = Vector3d::Zero();
+    set.square.Add((report.map.Error(place, none) - campaign.TrueError(place)).squaredNorm());
+    set.variance.Add(report.map.StandardUncertainty(place, none).squaredNorm());
+  }
+}
+
+TEST(MapAccuracy, StatesTrueUncertaintiesAndGainsFromTheOtherInstrument) {
+  const settings::Document document = CampaignMachine();
+  std::array<Set, 4> sets{Set{"sweeps", true, false, false}, Set{"RELM", false, true, false},
+                          Set{"RELM + sweeps", true, true, false},
+                          Set{"RELM + sweeps + length", true, true, true}};
+  const Seeds seeds = SeedsFromEnvironment();
+  for (std::uint64_t seed = seeds.first; seed <= seeds.last; seed += seeds.step) {
+    const Campaign campaign(document, seed);
+    const std::vector<SimulatedRun> sweeps{campaign.Sweep('X'), campaign.Sweep('Y'),
+                                           campaign.Sweep('Z')};
+    const SimulatedRun linkage = campaign.Linkage(), length = campaign.Length('X');
+    for (Set& set : sets) {
+      std::vector<SimulatedRun> runs;
+      if (set.sweeps) runs = sweeps;
+      if (set.linkage) runs.push_back(linkage);
+      if (set.length) runs.push_back(length);
+      Judge(campaign, Fuse(campaign.machine, runs, {.choose_smoothness = false}), seed, set);
+    }
+  }
+  fmt::print("{:<24}{:>10}{:>10}{:>12}{:>12}{:>10}\n", "data", "rms um", "stated", "mean pull",
+             "variance", "in U95");
+  for (const Set& set : sets) {
+    fmt::print("{:<24}{:>10.3f}{:>10.3f}{:>12.3f}{:>12.3f}{:>9.1f}%\n", set.name,
+               1e6 * std::sqrt(set.square.mean()), 1e6 * std::sqrt(set.variance.mean()),
+               set.pulls.pull.mean(), set.pulls.square.mean(), 100.0 * set.pulls.inside.mean());
+    SCOPED_TRACE(set.name);
+    set.pulls.ExpectTrueUncertainties();
+  }
+  const double best_alone = std::min(sets[0].square.mean(), sets[1].square.mean());
+  EXPECT_GT(std::sqrt(best_alone / sets[3].square.mean()), 3.0);
+}
+
+}  // namespace
+}  // namespace abbe::fusion
