@@ -78,9 +78,7 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
       });
   opened = true;
   const hal::SweepAbout about{file.sweep_setup.machine.name, hal::UtcNow(), "modbus",
-                              options.mounting.empty()
-                                  ? std::string()
-                                  : fmt::format("[mounting]\nid = \"{}\"\n", options.mounting)};
+                              options.mounting, ""};
   const auto& channels = devices.source->channels();
   const auto writer = recording::Writer::Create(path, hal::SweepHeader(plan, about, channels),
                                                 hal::SweepColumns(channels));

@@ -40,7 +40,7 @@ class SweepMaker {
       channels_.push_back(*channel);
     }
     const hal::SweepAbout about{
-        world.settings().name, options.started, "rig",
+        world.settings().name, options.started, "rig", options.mounting,
         fmt::format("[rig]\nseed = {}\nrun = {}\n", world.seed(), options.run)};
     sweep_.header = hal::SweepHeader(plan_, about, channels);
     sweep_.name = fmt::format("rig sweep {:c}, seed {}", plan_.axis, world.seed());

@@ -78,11 +78,14 @@ struct Campaign {
   }
   simulation::SimulatedRun Linkage() const { return Linkage(LinkageRecording()); }
 
-  simulation::SimulatedRun Length(char axis, std::uint64_t run = 1) const {
+  recording::Recording LengthRecording(char axis) const {
     auto recording =
-        rig::RecordLengths(rig, {.axis = axis, .at = Eigen::Vector3d::Constant(0.030), .run = run});
+        rig::RecordLengths(rig, {.axis = axis, .at = Eigen::Vector3d::Constant(0.030)});
     recording.name = std::string("length ") + axis;
-    return simulation::SimulateLengths(model, reference, recording);
+    return recording;
+  }
+  simulation::SimulatedRun Length(char axis) const {
+    return simulation::SimulateLengths(model, reference, LengthRecording(axis));
   }
 
   // What the machine really does at a position with a tool point p_TQ, in W.
