@@ -20,7 +20,7 @@ using geometry::BSplineBasis;
 constexpr int kDegree = 5;
 constexpr double kKnotsPerLength = 2.0;
 constexpr int kPointsPerCoefficient = 6;
-constexpr double kHardlyAllowed = 1e-9;  // of the largest variance
+constexpr double kHardlyAllowed = 1e-7;  // of the largest variance
 
 BSplineBasis BasisOf(const machine::Travel& travel, Index size) {
   return BSplineBasis::Uniform(kDegree, travel.first, travel.last, static_cast<int>(size));

@@ -30,8 +30,8 @@ class MachinePrior {
 
   double smoothness() const { return smoothness_; }
   Eigen::MatrixXd Covariance(int axis, int motion) const;
-  // W with W' W the inverse of the covariance, directions that the prior hardly allows at a
-  // thirty-thousandth of its largest deviation.
+  // W with W' W the inverse of the covariance; directions that the prior hardly allows keep a
+  // three-thousandth of its largest deviation.
   Eigen::MatrixXd Whitening(int axis, int motion) const;
 
  private:

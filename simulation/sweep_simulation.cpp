@@ -104,7 +104,9 @@ T ReadingOf(const SweepPlan& plan, std::size_t probe, const Transform<T>& X_WT,
   const Eigen::Vector3<T> in_head = OnTop(probe)
                                         ? Eigen::Vector3<T>(at.place[0], at.place[1], height)
                                         : Eigen::Vector3<T>(at.place[0], height, at.place[1]);
-  const Eigen::Vector3<T> p_T = plan.head_T.cast<T>() + R * in_head + R_MH * at.shift;
+  Eigen::Vector3<T> shift = at.shift;
+  shift[normal] = T(0);  // the zero takes it in: apart, the two could not be told
+  const Eigen::Vector3<T> p_T = plan.head_T.cast<T>() + R * in_head + R_MH * shift;
   const Eigen::Vector3<T> w_W = X_WT.R * Eigen::Vector3<T>(-R.col(normal));
   const Eigen::Vector3<T> m = FaceNormal<T>(plan.R_MH.col(normal), at);
   const T gap = m.dot(plan.corner_W.cast<T>() - X_WT * p_T) / m.dot(w_W);

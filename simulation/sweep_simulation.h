@@ -17,8 +17,8 @@
 //   head_turn AXIS, head_place AXIS                           installation for the axis and
 //   mounting target_tilt, target_squareness                            of the target, of the
 //   mounting probe_zero RUN   a ... e, m                               nothing known of it
-// The zero takes in the height of each electrode, the place of the faces and the error of the
-// machine at the start, so a sweep says nothing of these.
+// The zero takes in the height of each electrode, the place of head and faces along their normal
+// and the error of the machine at the start, so a sweep says nothing of these.
 //
 // The form of the faces is a Gaussian process (target.form); where a probe sees it is nominal. It
 // correlates the readings of probes of one face, and is put into the covariance.
