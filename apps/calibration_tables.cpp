@@ -75,19 +75,6 @@ std::string ParameterTable(const estimation::Result& fit) {
   return text;
 }
 
-std::string UnseenList(const fusion::Observability& seen) {
-  std::string text = fmt::format(
-      "\nThe data see {} of {} combinations of parameters; scaled condition {:.3g}, noise "
-      "amplification index {:.3g}.\n",
-      seen.rank, seen.parameters, seen.condition, seen.noise_amplification);
-  if (seen.unseen.empty()) return text;
-  text += "Not seen (in units of the priors; the share of the prior's deviation that is left):\n";
-  for (const auto& weak : seen.unseen) {
-    text += fmt::format("  {:4.0f} %  {}\n", 100.0 * weak.ratio, weak.words);
-  }
-  return text;
-}
-
 std::string Outliers(const fusion::CalibrationReport& report,
                      const std::vector<simulation::LinkageRun>& runs) {
   if (report.outliers.empty()) return "";
@@ -170,7 +157,7 @@ std::string CalibrationTable(const fusion::CalibrationReport& report,
   if (report.calibration.mapped) {
     text += fmt::format("  mapped with {} cells\n", report.calibration.mapped->values.size());
   }
-  text += ParameterTable(report.fit) + UnseenList(report.seen) + Outliers(report, runs);
+  text += ParameterTable(report.fit) + "\n" + SeenTable(report.seen) + Outliers(report, runs);
   if (report.excess > kNoticed) {
     text += fmt::format(
         "\nThe residuals are {:.1f} times the stated noise: the reference or the model is worse "
@@ -183,6 +170,19 @@ std::string CalibrationTable(const fusion::CalibrationReport& report,
         "\n{}: no reference instrument in every direction: errors of the machine itself went into "
         "the parameters.\n",
         run.name);
+  }
+  return text;
+}
+
+std::string SeenTable(const fusion::Observability& seen) {
+  std::string text = fmt::format(
+      "The data see {} of {} combinations of parameters; scaled condition {:.3g}, noise "
+      "amplification index {:.3g}.\n",
+      seen.rank, seen.parameters, seen.condition, seen.noise_amplification);
+  if (seen.unseen.empty()) return text;
+  text += "Not seen (in units of the priors; the share of the prior's deviation that is left):\n";
+  for (const auto& weak : seen.unseen) {
+    text += fmt::format("  {:4.0f} %  {}\n", 100.0 * weak.ratio, weak.words);
   }
   return text;
 }
