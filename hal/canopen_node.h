@@ -25,6 +25,8 @@ class CanopenNode {
 
   // Any frame of the bus but PDOs. True when it means that the node has started anew.
   bool Hear(const CanReceived& received);
+  // A PDO of the node: only an operational one sends it.
+  void HearPdo() { state_ = NmtState::kOperational; }
   // Sends what is due: the next question, or the command to start. `silent`: it has not answered
   // the last SYNC.
   void Act(CanBus& bus, double now_s, bool silent);

@@ -184,6 +184,7 @@ CanopenSource::Heard CanopenSource::HearSync(const CanReceived& received) {
 }
 
 CanopenSource::Heard CanopenSource::HearPdo(Encoder& encoder, const CanReceived& received) {
+  encoder.node.HearPdo();
   const bool follows_sync = produces() || sync_heard_;
   if (!follows_sync && encoder.answer) return Heard::kNextCycle;
   if (encoder.answer || (follows_sync && !sync_s_)) {
