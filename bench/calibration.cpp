@@ -46,9 +46,10 @@ struct Case {
   Case() {
     Eigen::Matrix3Xd positions(3, 588);
     for (Index i = 0; i < 588; ++i) {
+      const Index layer = i / 49;
       positions.col(i) = Vector3d(0.0175 + 0.025 / 6 * static_cast<double>(i % 7),
                                   0.0175 + 0.025 / 6 * static_cast<double>(i / 7 % 7),
-                                  0.005 + 0.050 / 11 * static_cast<double>(i / 49));
+                                  0.005 + 0.050 / 11 * static_cast<double>(layer));
     }
     run = simulation::RunAt(positions, settings);
     const random::CounterRandom random(1, 0);

@@ -1,6 +1,6 @@
 // Points per second of the volumetric error on one core: exact, and with all derivatives.
 // bench/volumetric_numpy.py runs this program and SciPy in one run on the same machine, and holds
-// the mean error (the counter mean_um) of the two against each other.
+// the mean error (the counter mean_um) of the two against each other. Target: 5 million points/s.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
