@@ -187,7 +187,8 @@ RC_GTEST_FIXTURE_PROP(CandumpTest, ARecordingComesBackFromItsLog, ()) {
     count += steps[row];
     recording.columns[0].values.push_back(0.01 * static_cast<double>(row));
     recording.columns[1].values.push_back(kStep * count);
-    recording.columns[2].values.push_back(-kStep * (count / 2));
+    const int other = count / 2;
+    recording.columns[2].values.push_back(-kStep * other);
   }
   WriteCandump(LogOf(recording, Encoders()), path_);
   const recording::Recording again = RecordingOf(ReadCandump(path_), Encoders(), 1.0, "mill");

@@ -100,6 +100,7 @@ TEST(Recorder, ClosesTheFileWhenTheDiskIsFull) {
 TEST(Recorder, TheKindFollowsFromTheChannels) {
   const auto kind = [](const std::vector<std::string>& names) {
     std::vector<Channel> channels;
+    channels.reserve(names.size());
     for (const std::string& name : names) channels.push_back({name, "d"});
     return KindOf(channels);
   };
