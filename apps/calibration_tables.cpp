@@ -10,7 +10,6 @@
 namespace abbe::apps {
 namespace {
 
-using estimation::SeenBy;
 using nlohmann::ordered_json;
 
 constexpr double kMicro = 1e-6;

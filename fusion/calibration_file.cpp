@@ -44,6 +44,7 @@ std::string Quoted(const std::string& text) {
 
 std::string QuotedList(const std::vector<std::string>& texts) {
   std::vector<std::string> quoted;
+  quoted.reserve(texts.size());
   for (const std::string& text : texts) quoted.push_back(Quoted(text));
   return fmt::format("[{}]", fmt::join(quoted, ", "));
 }
@@ -59,6 +60,7 @@ std::string Float(double value) {
 template <typename Values>
 std::string Floats(const Values& values, double si) {
   std::vector<std::string> texts;
+  texts.reserve(static_cast<std::size_t>(values.size()));
   for (const double value : values) texts.push_back(Float(value / si));
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }

@@ -93,6 +93,7 @@ std::optional<Assumption> Fit(const LinkageSimulation& simulation, const Matrix3
   if (!with_gains) blocks.back().Hold();
   estimation::Problem problem;
   std::vector<estimation::Input> inputs;
+  inputs.reserve(blocks.size());
   for (auto& block : blocks) inputs.emplace_back(problem.Add(block));
   const auto source = problem.AddSource("gaps");
   const auto residual = std::make_shared<NominalGap>(simulation, p_MT, angles);

@@ -16,15 +16,17 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kRounding = 1e-13;
 
 std::vector<double> EvenAngles(int n, int turns = 1) {
-  std::vector<double> angles;
-  for (int i = 0; i < n * turns; ++i) angles.push_back(kTurn * i / n - 4.0);
+  std::vector<double> angles(static_cast<std::size_t>(n) * turns);
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    angles[i] = kTurn * static_cast<double>(i) / n - 4.0;
+  }
   return angles;
 }
 
 TEST(Harmonics, AreTheDiscreteFourierTransformAtEvenSpacing) {
   const std::vector<double> angles = EvenAngles(16);
-  std::vector<double> values;
-  for (int i = 0; i < 16; ++i) values.push_back((i * 37) % 11 - 5);
+  std::vector<double> values(16);
+  for (int i = 0; i < 16; ++i) values[i] = (i * 37) % 11 - 5;
   const HarmonicFit fit = FitHarmonics(angles, values, 5);
   for (int n = 1; n <= 5; ++n) {
     double cosine = 0, sine = 0;
@@ -67,6 +69,7 @@ TEST(ClosedProfileFilter, PassesWavesAsTheStandardSays) {
   const std::vector<double> angles = EvenAngles(720, 2);
   for (const int order : {0, 5, 15, 30}) {
     std::vector<double> wave;
+    wave.reserve(angles.size());
     for (const double t : angles) wave.push_back(std::cos(order * t));
     const std::vector<double> smooth = FilterClosedProfile(angles, wave, 15.0);
     const double transmission = std::exp(-std::numbers::ln2 * order * order / 225.0);
@@ -80,6 +83,7 @@ TEST(ClosedProfileFilter, PassesWavesAsTheStandardSays) {
 TEST(ClosedProfileFilter, ACutoffBelowOneTurnAveragesNearlyAll) {
   const std::vector<double> angles = EvenAngles(90);
   std::vector<double> wave;
+  wave.reserve(angles.size());
   for (const double t : angles) wave.push_back(1 + std::cos(t));
   // At a cutoff of 0.05 the bell is flat to exp(-pi (pi / (0.47 * 40 pi))^2) = 1 - 9e-3 over a
   // turn.
