@@ -53,8 +53,13 @@ CanFrame FromWire(const can_frame& wire) {
 
 }  // namespace
 
-CanSocket::CanSocket(std::string interface, Clock& clock, int buffer)
-    : interface_(std::move(interface)), clock_(clock), buffer_(buffer), last_s_(clock.Now()) {
+CanSocket::CanSocket(std::string interface, Clock& clock, std::vector<std::uint32_t> only,
+                     int buffer)
+    : interface_(std::move(interface)),
+      clock_(clock),
+      only_(std::move(only)),
+      buffer_(buffer),
+      last_s_(clock.Now()) {
   Open();
 }
 
@@ -75,6 +80,14 @@ void CanSocket::Open() {
   }
   Set(socket_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, 1);
   Set(socket_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, can_err_mask_t{CAN_ERR_MASK});
+  if (!only_.empty()) {
+    std::vector<can_filter> filters;
+    for (const std::uint32_t id : only_) {
+      filters.push_back({id, CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
+    }
+    setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
+               static_cast<socklen_t>(filters.size() * sizeof(can_filter)));
+  }
   Set(socket_, SOL_SOCKET, SO_TIMESTAMPNS, 1);
   Set(socket_, SOL_SOCKET, SO_RXQ_OVFL, 1);
   Set(socket_, SOL_SOCKET, SO_RCVBUF, buffer_);

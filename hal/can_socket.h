@@ -6,7 +6,9 @@
 // call of Receive() looks whether it is back, at most every 50 ms.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "hal/can_bus.h"
 #include "hal/clock.h"
@@ -16,8 +18,10 @@ namespace abbe::hal {
 class CanSocket : public CanBus {
  public:
   // Never throws for an interface that is not there: state() and Fault() say so. `clock` must
-  // outlive the bus. `buffer` in bytes; the kernel may grant less without the right to force it.
-  CanSocket(std::string interface, Clock& clock, int buffer = 4 << 20);
+  // outlive the bus. `only`: the identifiers (11 bits) to receive, the others are left to the
+  // kernel; empty: all. `buffer` in bytes; the kernel may grant less without the right to force it.
+  CanSocket(std::string interface, Clock& clock, std::vector<std::uint32_t> only = {},
+            int buffer = 4 << 20);
   ~CanSocket() override;
   CanSocket(const CanSocket&) = delete;
   CanSocket& operator=(const CanSocket&) = delete;
@@ -44,6 +48,7 @@ class CanSocket : public CanBus {
 
   const std::string interface_;
   Clock& clock_;
+  const std::vector<std::uint32_t> only_;
   const int buffer_;
   int socket_ = -1;
   CanState state_ = CanState::kGone;

@@ -106,9 +106,9 @@ void CanopenSource::AwaitLateAnswers() {
 
 void CanopenSource::Command() {
   if (!Works(bus_->state())) return;
-  for (Encoder& encoder : encoders_) encoder.node.Act(*bus_, clock_.Now(), encoder.silent);
-  if (!produces()) return;
   const double now = clock_.Now();
+  for (Encoder& encoder : encoders_) encoder.node.Act(*bus_, now, encoder.silent);
+  if (!produces()) return;
   if (std::none_of(encoders_.begin(), encoders_.end(),
                    [now](const Encoder& encoder) { return encoder.node.Answers(now); })) {
     return;
@@ -118,12 +118,11 @@ void CanopenSource::Command() {
   sync_due_ = bus_->Send(SyncFrame());
 }
 
-bool CanopenSource::Complete() const {
-  const double now = clock_.Now();
+bool CanopenSource::Complete(double now_s) const {
   bool any = false;
   for (const Encoder& encoder : encoders_) {
     any = any || encoder.answer;
-    if (!encoder.answer && encoder.node.Answers(now)) return false;
+    if (!encoder.answer && encoder.node.Answers(now_s)) return false;
   }
   return any;
 }
@@ -131,13 +130,15 @@ bool CanopenSource::Complete() const {
 void CanopenSource::Collect() {
   constexpr double kBetweenCycles = 1.0;  // s, that a listener waits for the next one
   const double answer = Span(settings_.times.answer);
-  double until = clock_.Now() + (produces() ? answer : Span(kBetweenCycles));
+  double now = clock_.Now();
+  double until = now + (produces() ? answer : Span(kBetweenCycles));
   bool begun = produces();
-  while (!Complete() && Works(bus_->state())) {
+  while (!Complete(now) && Works(bus_->state())) {
     std::optional<CanReceived> received;
     std::swap(received, ahead_);
     if (!received) received = bus_->Receive(until);
     if (!received) break;
+    now = received->time_s;
     if (Hear(*received) == Heard::kNextCycle) {
       ahead_ = received;
       break;
