@@ -37,9 +37,11 @@ void EncoderNode::Put(std::uint32_t index, int sub, std::uint32_t value, int byt
 }
 
 void EncoderNode::Describe() {
-  const auto per_turn = static_cast<std::uint32_t>(encoder_.counts_per_turn);
-  const auto turns = static_cast<std::uint32_t>(encoder_.range / per_turn);
-  const auto range = static_cast<std::uint32_t>(encoder_.range);  // 2^32 reads 0
+  // What does not fit into 32 bits is not told whole: 2^32 reads 0.
+  const auto per_turn = static_cast<std::uint32_t>(std::llround(encoder_.counts_per_turn));
+  const auto range = static_cast<std::uint32_t>(encoder_.range);
+  const auto turns = static_cast<std::uint32_t>(
+      std::llround(static_cast<double>(encoder_.range) / encoder_.counts_per_turn));
   const std::uint32_t pdo = 0x80 + 0x100 * static_cast<std::uint32_t>(encoder_.tpdo);
   const auto nth = static_cast<std::uint32_t>(encoder_.tpdo - 1);
   Put(0x1000, 0, turns > 1 ? 0x00020196 : 0x00010196, 4);  // profile 406, absolute
