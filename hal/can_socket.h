@@ -1,12 +1,13 @@
 // A SocketCAN interface as a bus.
 //
 // Frames are stamped by the kernel when they pass the interface; the stamp comes with the frame, in
-// the same system call, and is turned into the measurement's clock by its age. Error frames set
-// state() and are not handed over. An interface that is switched off or removed is awaited: each
-// call of Receive() looks whether it is back, at most every 50 ms.
+// the same system call (which fetches all that have come), and is turned into the measurement's
+// clock by its age. Error frames set state() and are not handed over. An interface that is switched
+// off or removed is awaited: each call of Receive() looks whether it is back, at most every 50 ms.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,14 +35,17 @@ class CanSocket : public CanBus {
   std::uint64_t errors() const override { return errors_; }
 
  private:
-  enum class Got { kFrame, kNothing, kError };
+  struct Letter;
+  struct Batch;
 
   void Open();
   void Close();
   void Recover();        // looks whether the interface is back
   void Fail(int error);  // of a system call
   bool InterfaceUp() const;
-  Got Fetch(CanReceived& received);
+  void Fetch();  // into the batch
+  // False when it is no frame to hand over.
+  bool Understand(Letter& letter, CanReceived& received);
   void HearErrorFrame(std::uint32_t id, const std::uint8_t* data);
   double TimeOf(double age_s);
   bool Wait(double until_s);  // false: the time has come
@@ -58,6 +62,9 @@ class CanSocket : public CanBus {
   std::uint32_t overflow_ = 0;  // of the kernel's counter
   std::uint64_t lost_ = 0;
   std::uint64_t errors_ = 0;
+  std::unique_ptr<Batch> batch_;
+  std::size_t next_ = 0, fetched_ = 0;  // of the batch
+  bool drained_ = false;                // the kernel had no more
 };
 
 }  // namespace abbe::hal

@@ -113,8 +113,12 @@ void CanopenSource::Command() {
                    [now](const Encoder& encoder) { return encoder.node.Answers(now); })) {
     return;
   }
-  Listen(sent_s_ + settings_.times.sync);
-  sent_s_ = clock_.Now();
+  const double due_s = sent_s_ + settings_.times.sync;
+  sent_s_ = now;
+  if (now < due_s) {
+    Listen(due_s);
+    sent_s_ = clock_.Now();
+  }
   sync_due_ = bus_->Send(SyncFrame());
 }
 
@@ -130,7 +134,7 @@ bool CanopenSource::Complete(double now_s) const {
 void CanopenSource::Collect() {
   constexpr double kBetweenCycles = 1.0;  // s, that a listener waits for the next one
   const double answer = Span(settings_.times.answer);
-  double now = clock_.Now();
+  double now = sync_due_ ? sent_s_ : clock_.Now();
   double until = now + (produces() ? answer : Span(kBetweenCycles));
   bool begun = produces();
   while (!Complete(now) && Works(bus_->state())) {

@@ -35,8 +35,9 @@ RecordOutcome Record(SampleSource& source, Clock& clock, recording::Writer& writ
   try {
     while (!(options.stopped && options.stopped()) && !source.Ended()) {
       clock.SleepUntil(next_s);
-      if (clock.Now() - start_s >= options.seconds) break;
-      next_s = std::max(next_s + 1.0 / options.rate, clock.Now());
+      const double now_s = clock.Now();
+      if (now_s - start_s >= options.seconds) break;
+      next_s = std::max(next_s + 1.0 / options.rate, now_s);
       const SampleSet set = source.Read();
       const double set_s = set.time_s - start_s;
       if (!(set_s > row_s)) continue;  // the very same set again is no new row
