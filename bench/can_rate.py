@@ -90,10 +90,6 @@ def finish(process):
     return process.returncode, usage.ru_utime + usage.ru_stime
 
 
-def quantile(ordered, share):
-    return ordered[min(len(ordered) - 1, int(share * len(ordered)))]
-
-
 def main(seconds):
     folder = pathlib.Path(tempfile.mkdtemp())
     machine, out = describe(folder), folder / "angles.csv"
@@ -114,16 +110,16 @@ def main(seconds):
     flagged = sum(row["flags"] != "0" for row in rows)
     recorded = heard[-len(rows):]  # those before were sent while the nodes were started
     times = [s - recorded[0][0] + 1e-9 * (ns - recorded[0][1]) for s, ns in recorded]
-    gaps = sorted(1e3 * (b - a) for a, b in zip(times, times[1:]))
+    gaps = [1e3 * (b - a) for a, b in zip(times, times[1:])]
+    jitter = sorted(abs(gap - 1.0) for gap in gaps)
     # The SYNCs on the bus and the rows are one and the same when the first and the last are equally far apart.
     apart = 1e3 * abs(times[-1] - (float(rows[-1]["time_s"]) - float(rows[0]["time_s"])))
 
     print(f"SYNC: {counted[SYNC]} on the bus in {lasted:.1f} s, {counted[SYNC] - len(rows)} of them to start the "
           f"nodes; {len(rows)} recorded, {flagged} flagged")
     print("PDO: " + ", ".join(f"{counted[pdo]} of node {node}" for node, pdo in enumerate(PDOS, 1)))
-    print(f"SYNC to SYNC: mean {sum(gaps) / len(gaps):.3f} ms, 99 % below {quantile(gaps, 0.99):.3f} ms, "
-          f"largest {gaps[-1]:.3f} ms, smallest {gaps[0]:.3f} ms")
-    print(f"late by (beyond 1 ms): mean {sum(max(0.0, gap - 1.0) for gap in gaps) / len(gaps):.3f} ms")
+    print(f"SYNC to SYNC: {sum(gaps) / len(gaps):.3f} ms; off 1 ms by {sum(jitter) / len(jitter):.3f} ms on average, "
+          f"99 % by less than {jitter[int(0.99 * len(jitter))]:.3f} ms, at most {jitter[-1]:.3f} ms")
     print(f"processor: abbe record {100 * record_cpu / lasted:.1f} %, abbe rig {100 * rig_cpu / lasted:.1f} %")
     faults = []
     if len(heard) != counted[SYNC]:

@@ -50,7 +50,7 @@ class EncodersTest(unittest.TestCase):
     def serve(self, *arguments):
         ready = self.folder / "port"
         rig = subprocess.Popen([ABBE, "rig", "--machine", self.machine, "--seed", "7", "--ready-file", ready, "--can",
-                                "vcan0", *map(str, arguments)], stdout=subprocess.PIPE, text=True)
+                                *map(str, arguments)], stdout=subprocess.PIPE, text=True)
         self.addCleanup(rig.stdout.close)
         self.addCleanup(rig.wait)
         self.addCleanup(rig.kill)
@@ -130,6 +130,19 @@ class EncodersTest(unittest.TestCase):
         for what in ("node 2", "pivot_2_rad", "vcan0", "check that"):
             self.assertIn(what, done.stderr)
         self.assertFalse(out.exists())
+
+    def test_what_cannot_be_recorded_is_refused_in_one_line(self):
+        self.describe()
+        self.serve()
+        for says, options in (("no table [devices.gauge]", ["--devices", "linkage,gauge"]),
+                              ("cycle_start", ["--devices", "linkage", "--start", 4]),
+                              ('a channel "pass"', ["--devices", "linkage", "--passes-only"])):
+            out = self.folder / "refused.csv"
+            done = self.abbe("record", self.machine, *options, "--seconds", 1, "-o", out)
+            self.assertEqual(done.returncode, 2, (says, done.stderr))
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertIn(says, done.stderr)
+            self.assertFalse(out.exists())
 
     def test_an_interface_that_is_not_there_is_named_with_what_to_do(self):
         done = self.abbe("rig", "--machine", MILL, "--port", 0, "--can", "vcan7")
