@@ -157,7 +157,7 @@ class Served {
     for (hal::CanopenSettings device : rig.devices.canopen) {
       if (!options.can->empty()) device.interface = *options.can;
       auto bus = std::make_unique<hal::CanSocket>(device.interface, clock_,
-                                                  rig::EncoderServer::HeardIds(device));
+                                                  rig::LinkageEncoders::HeardIds(device));
       encoders_.push_back(
           std::make_unique<rig::EncoderServer>(machine_, device, std::move(bus), clock_));
     }

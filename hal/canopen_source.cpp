@@ -132,10 +132,13 @@ bool CanopenSource::Complete(double now_s) const {
 }
 
 void CanopenSource::Collect() {
-  constexpr double kBetweenCycles = 1.0;  // s, that a listener waits for the next one
+  constexpr double kBetweenCycles = 1.0;      // s, that a listener waits for the next one
+  constexpr double kBetweenQuestions = 0.01;  // s, while no node has been started
   const double answer = Span(settings_.times.answer);
   double now = sync_due_ ? sent_s_ : clock_.Now();
-  double until = now + (produces() ? answer : Span(kBetweenCycles));
+  double until = now + (sync_due_    ? answer
+                        : produces() ? Span(kBetweenQuestions)
+                                     : Span(kBetweenCycles));
   bool begun = produces();
   while (!Complete(now) && Works(bus_->state())) {
     std::optional<CanReceived> received;

@@ -22,21 +22,55 @@ Eigen::Index PivotOf(const hal::CanopenSettings& device, const hal::EncoderSetti
 
 }  // namespace
 
-EncoderServer::EncoderServer(LiveMachine& machine, const hal::CanopenSettings& device,
-                             std::unique_ptr<hal::CanBus> bus, hal::Clock& clock)
-    : machine_(machine), device_(device), bus_(std::move(bus)), clock_(clock) {
+LinkageEncoders::LinkageEncoders(LiveMachine& machine, const hal::CanopenSettings& device,
+                                 const EncoderNode::Send& send)
+    : machine_(machine) {
   if (!machine_.has_linkage()) {
     throw InputError(fmt::format(
         "devices.{}: encoders without a linkage; add a table [linkage] to the machine file",
-        device_.name));
+        device.name));
   }
+  for (const hal::EncoderSettings& encoder : device.encoders) {
+    encoders_.push_back({EncoderNode(encoder, send), PivotOf(device, encoder)});
+  }
+}
+
+std::vector<std::uint32_t> LinkageEncoders::HeardIds(const hal::CanopenSettings& device) {
+  std::vector<std::uint32_t> ids{kNmt, kSync};
+  for (const hal::EncoderSettings& encoder : device.encoders) {
+    ids.push_back(kSdoRequest + static_cast<std::uint32_t>(encoder.node));
+  }
+  return ids;
+}
+
+void LinkageEncoders::Boot() {
+  for (Encoder& encoder : encoders_) encoder.node.Boot();
+}
+
+void LinkageEncoders::Beat() {
+  for (Encoder& encoder : encoders_) encoder.node.Beat();
+}
+
+void LinkageEncoders::Hear(const hal::CanFrame& frame) {
+  if (frame.id != kSync || frame.extended || frame.remote) {
+    for (Encoder& encoder : encoders_) encoder.node.Hear(frame);
+    return;
+  }
+  ++syncs_;
+  const auto angles = machine_.EncodersNow();
+  for (Encoder& encoder : encoders_) {
+    encoder.node.Sync(angles ? std::optional((*angles)[encoder.pivot]) : std::nullopt);
+  }
+}
+
+EncoderServer::EncoderServer(LiveMachine& machine, const hal::CanopenSettings& device,
+                             std::unique_ptr<hal::CanBus> bus, hal::Clock& clock)
+    : device_(device),
+      bus_(std::move(bus)),
+      clock_(clock),
+      encoders_(machine, device, [this](const hal::CanFrame& frame) { bus_->Send(frame); }) {
   if (!hal::Works(bus_->state())) {
     throw DeviceError(fmt::format("devices.{}: {}", device_.name, bus_->Fault()));
-  }
-  for (const hal::EncoderSettings& encoder : device_.encoders) {
-    encoders_.push_back(
-        {EncoderNode(encoder, [this](const hal::CanFrame& frame) { bus_->Send(frame); }),
-         PivotOf(device_, encoder)});
   }
   thread_ = std::thread([this] { Serve(); });
 }
@@ -46,36 +80,16 @@ EncoderServer::~EncoderServer() {
   thread_.join();
 }
 
-std::vector<std::uint32_t> EncoderServer::HeardIds(const hal::CanopenSettings& device) {
-  std::vector<std::uint32_t> ids{kNmt, kSync};
-  for (const hal::EncoderSettings& encoder : device.encoders) {
-    ids.push_back(kSdoRequest + static_cast<std::uint32_t>(encoder.node));
-  }
-  return ids;
-}
-
 void EncoderServer::Serve() {
-  for (Encoder& encoder : encoders_) encoder.node.Boot();
+  encoders_.Boot();
   double beat_s = clock_.Now();
   while (!stopped_) {
     const auto received = bus_->Receive(beat_s);
-    if (received && !received->own) Hear(received->frame);
+    if (received && !received->own) encoders_.Hear(received->frame);
     if (received && received->time_s < beat_s) continue;
     if (!hal::Works(bus_->state())) clock_.SleepUntil(clock_.Now() + kHeartbeat * clock_.speed());
-    for (Encoder& encoder : encoders_) encoder.node.Beat();
+    encoders_.Beat();
     beat_s = clock_.Now() + kHeartbeat * clock_.speed();
-  }
-}
-
-void EncoderServer::Hear(const hal::CanFrame& frame) {
-  if (frame.id != kSync || frame.extended || frame.remote) {
-    for (Encoder& encoder : encoders_) encoder.node.Hear(frame);
-    return;
-  }
-  ++syncs_;
-  const auto angles = machine_.EncodersNow();
-  for (Encoder& encoder : encoders_) {
-    encoder.node.Sync(angles ? std::optional((*angles)[encoder.pivot]) : std::nullopt);
   }
 }
 

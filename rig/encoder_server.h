@@ -1,14 +1,12 @@
 // The rig on the CAN bus: the encoders of its linkage as CANopen nodes, one for each
-// [[devices.NAME.node]] of a device of the machine file, served by a thread.
+// [[devices.NAME.node]] of a device of the machine file.
 //
-//   hal::SteadyClock clock;
 //   const hal::CanopenSettings& device = devices.canopen[0];
-//   auto bus = std::make_unique<hal::CanSocket>("vcan0", clock, EncoderServer::HeardIds(device));
+//   auto bus = std::make_unique<hal::CanSocket>("vcan0", clock, LinkageEncoders::HeardIds(device));
 //   EncoderServer encoders(machine, device, std::move(bus), clock);
 //
-// At each SYNC all nodes look at the machine at the same moment. Heartbeats go out every 100 ms. A
-// machine that stands out of the linkage's reach makes the nodes say an emergency. A bus that goes
-// down is waited for.
+// At each SYNC all nodes look at the machine at the same moment. A machine that stands out of the
+// linkage's reach makes them say an emergency.
 #pragma once
 
 #include <atomic>
@@ -25,23 +23,22 @@
 
 namespace abbe::rig {
 
-class EncoderServer {
+// The nodes of one device; whoever has them lets them hear and beat.
+class LinkageEncoders {
  public:
-  // Serves when it returns. The bus is on `clock`, which must outlive the server, as must the
-  // machine. InputError when a node is no pivot of the rig's linkage, or the machine has no
-  // linkage; DeviceError when the bus does not work.
-  EncoderServer(LiveMachine& machine, const hal::CanopenSettings& device,
-                std::unique_ptr<hal::CanBus> bus, hal::Clock& clock);
-  ~EncoderServer();
-  EncoderServer(const EncoderServer&) = delete;
-  EncoderServer& operator=(const EncoderServer&) = delete;
+  // `machine` must outlive them. InputError when a node is no pivot of the rig's linkage, or the
+  // machine has no linkage.
+  LinkageEncoders(LiveMachine& machine, const hal::CanopenSettings& device,
+                  const EncoderNode::Send& send);
 
-  // The identifiers that its nodes listen to: NMT, SYNC, and the questions to each.
+  void Boot();
+  void Beat();
+  void Hear(const hal::CanFrame& frame);
+
+  // The identifiers that they listen to: NMT, SYNC, and the questions to each.
   static std::vector<std::uint32_t> HeardIds(const hal::CanopenSettings& device);
 
-  std::uint64_t syncs() const { return syncs_; }  // heard so far
-  // A line for a person: which node has which pivot.
-  std::string MapText() const;
+  std::uint64_t syncs() const { return syncs_; }  // heard so far; from any thread
 
  private:
   struct Encoder {
@@ -49,15 +46,33 @@ class EncoderServer {
     Eigen::Index pivot;
   };
 
-  void Serve();
-  void Hear(const hal::CanFrame& frame);
-
   LiveMachine& machine_;
+  std::vector<Encoder> encoders_;
+  std::atomic<std::uint64_t> syncs_{0};
+};
+
+// A thread that serves them on a bus: heartbeats every 100 ms; a bus that goes down is waited for.
+class EncoderServer {
+ public:
+  // Serves when it returns. The bus is on `clock`, which must outlive the server. DeviceError when
+  // the bus does not work.
+  EncoderServer(LiveMachine& machine, const hal::CanopenSettings& device,
+                std::unique_ptr<hal::CanBus> bus, hal::Clock& clock);
+  ~EncoderServer();
+  EncoderServer(const EncoderServer&) = delete;
+  EncoderServer& operator=(const EncoderServer&) = delete;
+
+  std::uint64_t syncs() const { return encoders_.syncs(); }
+  // A line for each node, for a person.
+  std::string MapText() const;
+
+ private:
+  void Serve();
+
   const hal::CanopenSettings device_;
   std::unique_ptr<hal::CanBus> bus_;
   hal::Clock& clock_;
-  std::vector<Encoder> encoders_;
-  std::atomic<std::uint64_t> syncs_{0};
+  LinkageEncoders encoders_;
   std::atomic<bool> stopped_{false};
   std::thread thread_;
 };

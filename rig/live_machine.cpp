@@ -73,8 +73,8 @@ LiveMachine::LiveMachine(const World& world, std::function<double()> time,
 
 StartOutcome LiveMachine::Start(int program) {
   const RigSettings& settings = world_.settings();
-  if (Now().state == ProgramState::kRunning) return StartOutcome::kBusy;
   const std::lock_guard lock(mutex_);
+  if (Latest().state == ProgramState::kRunning) return StartOutcome::kBusy;
   const Dynamics dynamics{settings.acceleration, settings.lag};
   motion_.reset();
   run_.reset();
@@ -97,11 +97,12 @@ StartOutcome LiveMachine::Start(int program) {
 
 Moment LiveMachine::Now() {
   const std::lock_guard lock(mutex_);
-  const double ticks = std::max(0.0, time_()) * world_.settings().update_rate;
-  return At(static_cast<std::uint64_t>(ticks));
+  return Latest();
 }
 
-Moment LiveMachine::At(std::uint64_t tick) {
+const Moment& LiveMachine::Latest() {
+  const double ticks = std::max(0.0, time_()) * world_.settings().update_rate;
+  const auto tick = static_cast<std::uint64_t>(ticks);
   if (tick > latest_.tick) {
     latest_.tick = tick;
     if (latest_.state == ProgramState::kRunning) Advance(latest_);
@@ -178,8 +179,8 @@ double LiveMachine::TemperatureOf(std::string_view channel, double time) {
 
 std::optional<Vector3d> LiveMachine::EncodersNow() {
   if (linkage_ == nullptr) return std::nullopt;
-  const Moment now = Now();
   const std::lock_guard lock(mutex_);
+  const Moment& now = Latest();
   const double temperature = TemperatureOf(temperatures_.front(), now.axes.time);
   try {
     return linkage_->EncodersAt(now.axes, temperature, cap_force_) + encoder_noise_.At(now.tick);

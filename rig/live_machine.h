@@ -65,7 +65,7 @@ class LiveMachine {
   std::optional<Eigen::Vector3d> EncodersNow();
 
  private:
-  Moment At(std::uint64_t tick);
+  const Moment& Latest();  // moves on to it
   void Advance(Moment& moment);
   double TemperatureOf(std::string_view channel, double time);
   const Readings& GapsAt(const Moment& moment);

@@ -17,7 +17,7 @@ import unittest
 
 ABBE = os.environ["ABBE"]
 MILL = pathlib.Path(__file__).parents[2] / "machines" / "demo_mill.toml"
-COURSE = ["--course", "circle", "--size", 20, "--feed", 1200, "--passes", 1]
+COURSE = ["--course", "circle", "--size", 20, "--feed", 1200, "--passes", 2]
 # Nothing is drawn of the linkage and it has no noise: its nominal parameters are the true ones. A
 # count is 0.4 urad, 45 nm at the end of a link.
 PERFECT = [(rf"(?m)^{key} = .*", f"{key} = 0.0") for key in (
@@ -25,8 +25,9 @@ PERFECT = [(rf"(?m)^{key} = .*", f"{key} = 0.0") for key in (
     "base_um", "base_urad", "ball_um", "compliance_urad", "thermal_ppm_per_c", "encoder_urad", "reference_um")]
 CROOKED = [(r"(?m)^squareness_urad = 30.0", "squareness_urad = 300.0")]  # of the machine: it has something to show
 # The guest has one virtual processor, which the whole computer shares.
-PATIENT = [(r"(?m)^max_skew_ms = .*", "max_skew_ms = 1000.0"),
-           (r"(?m)^sync_ms = .*", "sync_ms = 1.0\nanswer_timeout_ms = 300.0\nheartbeat_timeout_ms = 3000.0")]
+PATIENT = [(r"(?m)^max_skew_ms = .*", "max_skew_ms = 5000.0"), (r"(?m)^stale_ms = .*", "stale_ms = 5000.0"),
+           (r"(?m)^unit = 2", "unit = 2\nresponse_timeout_ms = 2000.0\ndeadline_ms = 4000.0"),
+           (r"(?m)^sync_ms = .*", "sync_ms = 1.0\nanswer_timeout_ms = 2000.0\nheartbeat_timeout_ms = 3000.0")]
 
 
 def rows_of(path):
@@ -76,7 +77,7 @@ class EncodersTest(unittest.TestCase):
         self.describe(PERFECT + CROOKED)
         rig = self.serve(*COURSE)
         recorded = self.folder / "circle.csv"
-        done = self.run_abbe("record", self.machine, "--devices", "machine,linkage", "--start", 4, "--seconds", 12,
+        done = self.run_abbe("record", self.machine, "--devices", "machine,linkage", "--start", 4, "--seconds", 23,
                              "--passes-only", "-o", recorded)
         print(done.stdout, end="")
         self.assertIn("(0 flagged", done.stdout)

@@ -4,7 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -23,8 +24,6 @@
 
 namespace abbe::rig {
 namespace {
-
-constexpr double kSpeed = 10.0;  // seconds of the machine in one of the computer
 
 // The demonstration machine with the errors of its axes, and a linkage without any.
 LinkageSettings PerfectLinkage() {
@@ -47,36 +46,20 @@ RigSettings Mill() {
 const CircleProgram kCircle{
     .centre = Eigen::Vector3d::Constant(0.03), .radius = 0.01, .feed = 0.01, .run_in = 0.25};
 
-class EncoderServerTest : public testing::Test {
- protected:
-  explicit EncoderServerTest(const LinkageSettings& settings = PerfectLinkage())
-      : linkage_(world_, Linkage(settings, 7)) {
-    devices_ = hal::ReadDevices(DemoMill().Root().Child("devices"));
-    std::erase_if(devices_.devices, [](const auto& device) { return device.name == "head"; });
-    devices_.devices[0].port = registers_.port();
-    // A computer that is busy is no fault of the bus.
-    devices_.max_skew = 10.0;
-    devices_.canopen[0].times.answer = 0.5;
-    devices_.canopen[0].times.heartbeat = 5.0;
-  }
-  EncoderServer Encoders() {
-    return {machine_, hal::ReadDevices(DemoMill().Root().Child("devices")).canopen[0], wire_.Join(),
-            clock_};
-  }
-  hal::OpenedDevices Open() {
-    return hal::OpenDevices(devices_, clock_, hal::Presence::kRequired, {},
-                            [this](const std::string&, hal::Clock&) { return wire_.Join(); });
+// A clock that several threads look at and one moves: time passes only where the client waits.
+class SharedHandClock : public hal::Clock {
+ public:
+  double Now() override { return now_s_; }
+  void SleepUntil(double time_s) override { now_s_ = std::max(time_s, now_s_.load()); }
+  void WaitUntil(double time_s, std::unique_lock<std::mutex>&, std::condition_variable&) override {
+    SleepUntil(time_s);
   }
 
-  const World world_{Mill(), 7};
-  const LinkageRig linkage_;
-  const Course course_ = CircleCourse(kCircle);
-  hal::SteadyClock clock_{kSpeed};
-  hal::CanInProcess wire_{clock_};
-  LiveMachine machine_{world_, [this] { return clock_.Now(); }, &linkage_, course_};
-  RegisterServer registers_{machine_, hal::ReadDevices(DemoMill().Root().Child("devices")), {}};
-  hal::DevicesSettings devices_;
+ private:
+  std::atomic<double> now_s_{0.0};
 };
+
+hal::DevicesSettings Devices() { return hal::ReadDevices(DemoMill().Root().Child("devices")); }
 
 relm::CircleRun OneRun(const relm::MeasuredPath& path) {
   const auto runs = relm::CircleRuns({path});
@@ -84,12 +67,34 @@ relm::CircleRun OneRun(const relm::MeasuredPath& path) {
   return runs.front();
 }
 
-TEST_F(EncoderServerTest, ACircleIsRecordedAndEvaluatedAsTheRigRanIt) {
-  const EncoderServer encoders = Encoders();
-  const hal::OpenedDevices devices = Open();
+// Nothing of it depends on how quick the computer is.
+TEST(LinkageEncoders, ACircleIsRecordedAndEvaluatedAsTheRigRanIt) {
+  const World world(Mill(), 7);
+  const LinkageRig linkage(world, Linkage(PerfectLinkage(), 7));
+  const Course course = CircleCourse(kCircle);
+  SharedHandClock clock;
+  LiveMachine machine(
+      world, [&clock] { return clock.Now(); }, &linkage, course);
+  const RegisterServer registers(machine, Devices(), {});
+  hal::CanInProcess wire(clock);
+  std::unique_ptr<hal::CanBus> bus;
+  LinkageEncoders encoders(machine, Devices().canopen[0],
+                           [&bus](const hal::CanFrame& frame) { bus->Send(frame); });
+  bus = wire.Join([&encoders](const hal::CanReceived& heard) { encoders.Hear(heard.frame); });
+  encoders.Boot();
+
+  hal::DevicesSettings settings_of_devices = Devices();
+  std::erase_if(settings_of_devices.devices, [](const auto& each) { return each.name == "head"; });
+  settings_of_devices.devices[0].port = registers.port();
+  settings_of_devices.devices[0].times.response = 5.0;
+  settings_of_devices.devices[0].times.deadline = 10.0;
+  settings_of_devices.canopen[0].times.heartbeat = 0.0;  // nobody beats while time stands
+  const hal::OpenedDevices devices =
+      hal::OpenDevices(settings_of_devices, clock, hal::Presence::kRequired, {},
+                       [&wire](const std::string&, hal::Clock&) { return wire.Join(); });
   const auto& channels = devices.source->channels();
   const std::filesystem::path file =
-      std::filesystem::path(testing::TempDir()) / "encoder_server_circle.csv";
+      std::filesystem::path(testing::TempDir()) / "linkage_encoders_circle.csv";
   std::filesystem::remove(file);
   const auto writer = recording::Writer::Create(
       file,
@@ -99,24 +104,24 @@ TEST_F(EncoderServerTest, ACircleIsRecordedAndEvaluatedAsTheRigRanIt) {
       hal::RecordColumns(channels));
   devices.start_cycle(kCourseProgram + 1);
   hal::RecordOptions options{.rate = 100.0, .seconds = 60.0, .passes_only = true};
-  options.stopped = [this] { return machine_.Now().state == ProgramState::kDone; };
-  const hal::RecordOutcome outcome = hal::Record(*devices.source, clock_, *writer, options);
+  options.stopped = [&machine] { return machine.Now().state == ProgramState::kDone; };
+  const hal::RecordOutcome outcome = hal::Record(*devices.source, clock, *writer, options);
   EXPECT_EQ(outcome.flagged, 0u) << outcome.worst_channel << outcome.fault;
   EXPECT_GT(encoders.syncs(), outcome.rows);
 
   // The linkage as its nominal parameters have it: in this world they are the true ones.
   const settings::Document mill = DemoMill();
   const relm::LinkageSettings settings = relm::ReadLinkageSettings(mill.Root());
-  const machine::Machine machine = machine::ReadMachine(mill.Root());
+  const machine::Machine described = machine::ReadMachine(mill.Root());
   const relm::LinkageModel model = relm::MakeLinkageModel(settings, relm::ErrorModel::kComplete);
   const recording::Recording recorded = recording::Read(file);
   const relm::TipPath tips = relm::EvaluateTipPath(recorded, settings, model, model.Values());
   const relm::CircleRun measured = OneRun(relm::LinkagePath(
-      recorded, machine.chain, tips.rows, relm::InFrame(settings.X_MB, tips.tips)));
+      recorded, described.chain, tips.rows, relm::InFrame(settings.X_MB, tips.tips)));
 
   // What the rig knows of the same course.
   const relm::CircleRun truth =
-      OneRun(relm::ReferencePath(linkage_.Record(course_, {.kind = "reference", .rate = 1000.0})));
+      OneRun(relm::ReferencePath(linkage.Record(course, {.kind = "reference", .rate = 1000.0})));
   const auto of_linkage = relm::EvaluateCircle(measured).iso;
   const auto of_truth = relm::EvaluateCircle(truth).iso;
   ASSERT_TRUE(of_linkage.ccw && of_linkage.cw && of_linkage.both);
@@ -131,24 +136,45 @@ TEST_F(EncoderServerTest, ACircleIsRecordedAndEvaluatedAsTheRigRanIt) {
   EXPECT_NEAR(measured.feed, kCircle.feed, 1e-9);
 }
 
+// The server's thread, on the computer's clock.
+class EncoderServerTest : public testing::Test {
+ protected:
+  explicit EncoderServerTest(const LinkageSettings& settings = PerfectLinkage())
+      : linkage_(world_, Linkage(settings, 7)) {
+    // A computer that is busy is no fault of the bus.
+    device_.times.answer = device_.times.heartbeat = 10.0;
+  }
+  std::unique_ptr<hal::CanopenSource> Client() {
+    return std::make_unique<hal::CanopenSource>(device_, 100.0, wire_.Join(), clock_);
+  }
+
+  const World world_{Mill(), 7};
+  const LinkageRig linkage_;
+  const Course course_ = CircleCourse(kCircle);
+  hal::SteadyClock clock_;
+  hal::CanInProcess wire_{clock_};
+  LiveMachine machine_{world_, [this] { return clock_.Now(); }, &linkage_, course_};
+  hal::CanopenSettings device_ = Devices().canopen[0];
+};
+
 TEST_F(EncoderServerTest, AnswersEverySyncThreeTimes) {
-  const EncoderServer encoders = Encoders();
-  hal::CanopenSource source(devices_.canopen[0], 1.0, wire_.Join(), clock_);
-  source.Require();
-  for (int i = 0; i < 300; ++i) ASSERT_TRUE(source.Read().AllGood());
-  EXPECT_EQ(source.counts().missing, 0u);
-  EXPECT_EQ(source.counts().unasked, 0u);
-  EXPECT_EQ(source.counts().syncs, encoders.syncs());
+  const EncoderServer encoders(machine_, device_, wire_.Join(), clock_);
+  const auto client = Client();
+  client->Require();
+  for (int i = 0; i < 300; ++i) ASSERT_TRUE(client->Read().AllGood());
+  EXPECT_EQ(client->counts().missing, 0u);
+  EXPECT_EQ(client->counts().unasked, 0u);
+  EXPECT_EQ(client->counts().syncs, encoders.syncs());
 }
 
-TEST_F(EncoderServerTest, ANodeOfAnotherNameIsRefused) {
-  hal::CanopenSettings device = devices_.canopen[0];
+TEST_F(EncoderServerTest, WhatItCannotServeIsRefused) {
+  hal::CanopenSettings device = device_;
   device.encoders[1].name = "pivot_4_rad";
   EXPECT_THROW(EncoderServer(machine_, device, wire_.Join(), clock_), InputError);
   LiveMachine bare(world_, [] { return 0.0; });
-  EXPECT_THROW(EncoderServer(bare, devices_.canopen[0], wire_.Join(), clock_), InputError);
+  EXPECT_THROW(EncoderServer(bare, device_, wire_.Join(), clock_), InputError);
   wire_.SetState(hal::CanState::kDown);
-  EXPECT_THROW(EncoderServer(machine_, devices_.canopen[0], wire_.Join(), clock_), DeviceError);
+  EXPECT_THROW(EncoderServer(machine_, device_, wire_.Join(), clock_), DeviceError);
 }
 
 // The base so far away that rest is out of reach and the circle is not.
@@ -163,20 +189,21 @@ class BeyondReach : public EncoderServerTest {
 };
 
 TEST_F(BeyondReach, OutOfReachIsAnEmergencyUntilTheMachineComesIntoReach) {
-  const EncoderServer encoders = Encoders();
-  hal::CanopenSource source(devices_.canopen[0], 1.0, wire_.Join(), clock_);
+  const EncoderServer encoders(machine_, device_, wire_.Join(), clock_);
+  const auto client = Client();
   const auto becomes = [&](auto wanted) {
-    const double until = clock_.Now() + 100.0;
+    const double until = clock_.Now() + 30.0;
     while (clock_.Now() < until) {
-      if (wanted(source.Read())) return true;
+      if (wanted(client->Read())) return true;
     }
     return false;
   };
   EXPECT_TRUE(becomes(
       [](const hal::SampleSet& set) { return set.samples[0].cause == hal::Cause::kSensorFault; }));
-  EXPECT_NE(source.Fault().find("emergency 5000h (hardware)"), std::string::npos) << source.Fault();
+  EXPECT_NE(client->Fault().find("emergency 5000h (hardware)"), std::string::npos)
+      << client->Fault();
   EXPECT_EQ(machine_.Start(kCourseProgram), StartOutcome::kStarted);
-  EXPECT_TRUE(becomes([](const hal::SampleSet& set) { return set.AllGood(); })) << source.Fault();
+  EXPECT_TRUE(becomes([](const hal::SampleSet& set) { return set.AllGood(); })) << client->Fault();
 }
 
 }  // namespace
