@@ -64,7 +64,7 @@ def describe(folder):
                          # rate_hz sets the pace, sync_ms only the least distance. The guest has one virtual
                          # processor, which the whole computer shares.
                          (r"(?m)^sync_ms = .*",
-                          "sync_ms = 0.5\nanswer_timeout_ms = 2000.0\nheartbeat_timeout_ms = 5000.0")):
+                          "sync_ms = 0.5\nanswer_timeout_ms = 1000.0\nheartbeat_timeout_ms = 5000.0")):
         text, count = re.subn(pattern, put, text)
         assert count == 1, pattern
     machine = folder / "machine.toml"

@@ -27,7 +27,7 @@ CROOKED = [(r"(?m)^squareness_urad = 30.0", "squareness_urad = 300.0")]  # of th
 # The guest has one virtual processor, which the whole computer shares.
 PATIENT = [(r"(?m)^max_skew_ms = .*", "max_skew_ms = 5000.0"), (r"(?m)^stale_ms = .*", "stale_ms = 5000.0"),
            (r"(?m)^unit = 2", "unit = 2\nresponse_timeout_ms = 2000.0\ndeadline_ms = 4000.0"),
-           (r"(?m)^sync_ms = .*", "sync_ms = 1.0\nanswer_timeout_ms = 2000.0\nheartbeat_timeout_ms = 3000.0")]
+           (r"(?m)^sync_ms = .*", "sync_ms = 1.0\nanswer_timeout_ms = 1000.0\nheartbeat_timeout_ms = 3000.0")]
 
 
 def rows_of(path):
