@@ -33,6 +33,8 @@ class CanopenNode {
 
   // Started, and not known to be away: its answer to a SYNC is worth waiting for.
   bool Answers(double now_s) const { return started_s_.has_value() && Alive(now_s); }
+  // There, and answering what it is asked before it is started.
+  bool Starting(double now_s) const;
   bool described() const { return mismatch_.empty(); }
   bool in_emergency() const { return emergency_.has_value(); }
   // What is wrong, in one line: "node 2: no heartbeat for 500 ms"; empty when all is well.

@@ -109,10 +109,11 @@ void CanopenSource::Command() {
   const double now = clock_.Now();
   for (Encoder& encoder : encoders_) encoder.node.Act(*bus_, now, encoder.silent);
   if (!produces()) return;
-  if (std::none_of(encoders_.begin(), encoders_.end(),
-                   [now](const Encoder& encoder) { return encoder.node.Answers(now); })) {
-    return;
-  }
+  const auto answers = [now](const Encoder& encoder) { return encoder.node.Answers(now); };
+  if (std::none_of(encoders_.begin(), encoders_.end(), answers)) return;
+  // The first SYNC is for all that are there.
+  const auto starting = [now](const Encoder& encoder) { return encoder.node.Starting(now); };
+  if (!sync_heard_ && std::any_of(encoders_.begin(), encoders_.end(), starting)) return;
   const double due_s = sent_s_ + settings_.times.sync;
   sent_s_ = now;
   if (now < due_s) {
