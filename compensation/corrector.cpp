@@ -14,7 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSettled = 1e-14;  // m: below the rounding of positions up to 10 m
+// m. The last step leaves the change times the slope of the error, 1e-3 and less: 1e-15.
+constexpr double kSettled = 1e-12;
 constexpr int kMostSteps = 50;
 
 }  // namespace

@@ -18,7 +18,8 @@ TEST(CorrectedTable, CorrectsThePositionsAndKeepsTheRest) {
   EXPECT_EQ(table.rows, 2);
   EXPECT_TRUE(table.text.starts_with("# part 7\nname,z_mm,x_mm,y_mm,note\nhole 1,"));
   const Vector3d made = corrector.Made({0.02, 0.03, 0.01});
-  const auto words = map::PartsOf(table.text.substr(table.text.find("hole 2")), ',');
+  const std::string row = table.text.substr(table.text.find("hole 2"));
+  const auto words = map::PartsOf(row, ',');
   EXPECT_NEAR(map::NumberOf(words[1], "z"), 1e3 * made.z(), 1e-13);
   EXPECT_NEAR(map::NumberOf(words[2], "x"), 1e3 * made.x(), 1e-13);
   EXPECT_NEAR(map::NumberOf(words[3], "y"), 1e3 * made.y(), 1e-13);
