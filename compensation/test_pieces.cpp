@@ -75,6 +75,7 @@ double RadiusOf(const Volume& volume, const TestSize& size) {
 std::vector<double> Coordinates(const Matrix3Xd& made, Index first, Index count, int k,
                                 double origin) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (Index i = first; i < first + count; ++i) values.push_back(made(k, i) - origin);
   return values;
 }

@@ -34,6 +34,14 @@ GridAxis AxisOfPositions(const std::vector<double>& positions, const std::string
   return axis;
 }
 
+std::vector<double> Millimetres(const GridAxis& axis) {
+  std::vector<double> positions(static_cast<std::size_t>(axis.count));
+  for (Eigen::Index i = 0; i < axis.count; ++i) {
+    positions[static_cast<std::size_t>(i)] = axis.At(i) * 1e3;
+  }
+  return positions;
+}
+
 ErrorField ReadBackCsvGrid(const Format::Paths& files, const machine::Chain& /*chain*/) {
   return FieldOfGrid(ReadCsvGrid(files.front()));
 }

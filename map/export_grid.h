@@ -30,6 +30,9 @@ GridFile GridFileOf(const ErrorMap& map, const ExportOptions& options);
 // The columns of positions, of each grid point one, as an axis: equal steps, else InputError.
 GridAxis AxisOfPositions(const std::vector<double>& positions, const std::string& where);
 
+// The positions of an axis as files hold them.
+std::vector<double> Millimetres(const GridAxis& axis);
+
 Format::Paths WriteCsvGrid(const ErrorMap& map, const ExportOptions& options,
                            const std::filesystem::path& path);
 Format::Paths WriteJsonGrid(const ErrorMap& map, const ExportOptions& options,

@@ -66,8 +66,7 @@ Format::Paths WriteJsonGrid(const ErrorMap& map, const ExportOptions& options,
                {"scale", file.header.scale},
                {"sign", "actual - nominal of the tool in the workpiece"}};
   for (std::size_t k = 0; k < 3; ++k) {
-    const GridAxis& axis = file.grid.axes()[k];
-    for (Eigen::Index i = 0; i < axis.count; ++i) json[kAxisKeys[k]].push_back(axis.At(i) * 1e3);
+    json[kAxisKeys[k]] = Millimetres(file.grid.axes()[k]);
   }
   json["error_um"] = Triples(file.grid.error());
   if (file.grid.u95().size() > 0) json["u95_um"] = Triples(file.grid.u95());

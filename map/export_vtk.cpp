@@ -29,9 +29,8 @@ void AddArray(std::string& text, std::string_view name, int components, const Va
 }
 
 std::vector<double> InMicrometres(const Eigen::Matrix3Xd& values) {
-  std::vector<double> all;
-  for (Eigen::Index i = 0; i < values.size(); ++i) all.push_back(values.data()[i] * 1e6);
-  return all;
+  const Eigen::Matrix3Xd scaled = values * 1e6;
+  return {scaled.data(), scaled.data() + scaled.size()};
 }
 
 // The header as an XML comment, which must not hold "--".
@@ -76,9 +75,7 @@ Format::Paths WriteVtkGrid(const ErrorMap& map, const ExportOptions& options,
   if (file.grid.u95().size() > 0) AddArray(text, "u95_um", 3, InMicrometres(file.grid.u95()));
   text += "</PointData>\n<Coordinates>\n";
   for (std::size_t k = 0; k < 3; ++k) {
-    std::vector<double> positions;
-    for (Eigen::Index i = 0; i < axes[k].count; ++i) positions.push_back(axes[k].At(i) * 1e3);
-    AddArray(text, kAxisNames[k], 1, positions);
+    AddArray(text, kAxisNames[k], 1, Millimetres(axes[k]));
   }
   text += "</Coordinates>\n</Piece>\n</RectilinearGrid>\n</VTKFile>\n";
   WriteWhole(text, path);

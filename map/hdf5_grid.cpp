@@ -71,8 +71,7 @@ void PutGrid(hid_t file, const GridFile& content, const std::filesystem::path& p
   const auto& axes = content.grid.axes();
   std::vector<hsize_t> shape = {3};
   for (std::size_t k = 0; k < 3; ++k) {
-    std::vector<double> positions;
-    for (Eigen::Index i = 0; i < axes[k].count; ++i) positions.push_back(axes[k].At(i) * 1e3);
+    const std::vector<double> positions = Millimetres(axes[k]);
     PutNumbers(file, kAxisNames[k], {positions.size()}, positions.data(), path);
     shape.insert(shape.begin(), positions.size());
   }
