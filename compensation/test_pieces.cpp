@@ -187,7 +187,8 @@ PerformanceTest Cylinder(const Volume& volume, const TestSize& size) {
   Matrix3Xd wanted(3, kAngles * kHeights);
   for (Index i = 0; i < wanted.cols(); ++i) {
     const double t = 2 * std::numbers::pi * static_cast<double>(i % kAngles) / kAngles;
-    const double height = 2.0 * static_cast<double>(i / kAngles) / (kHeights - 1) - 1.0;
+    const Index level = i / kAngles;
+    const double height = 2.0 * static_cast<double>(level) / (kHeights - 1) - 1.0;
     wanted.col(i) = volume.middle +
                     Vector3d(radius * std::cos(t), radius * std::sin(t), height * volume.half.z());
   }
