@@ -32,6 +32,7 @@ class ErrorFunction {
   ErrorFunction(int axis, int motion, SharedForm form, const Travel& travel);
 
   int size() const { return static_cast<int>(coefficients_.size()); }
+  const SharedForm& form() const { return form_; }  // null: zero at every x
   const Eigen::VectorXd& coefficients() const { return coefficients_; }
   void SetCoefficients(const Eigen::Ref<const Eigen::VectorXd>& coefficients);
 

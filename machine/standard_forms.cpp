@@ -19,6 +19,11 @@ class BSplineForm : public FunctionForm {
 
   std::string Name() const override { return name_; }
   int size() const override { return basis_.size(); }
+  FormShape Shape() const override {
+    const std::vector<double>& knots = basis_.knots();
+    if (name_ == "table") return {{"positions_m", {knots.begin() + 1, knots.end() - 1}}};
+    return {{"degree", {static_cast<double>(basis_.degree())}}, {"knots_m", knots}};
+  }
   bool IsLinear() const override { return true; }
 
   double Evaluate(double x, const double* c, double* slope, double* gradient) const override {
@@ -51,10 +56,13 @@ class BSplineForm : public FunctionForm {
 class PolynomialForm : public FunctionForm {
  public:
   PolynomialForm(int degree, double a, double b)
-      : degree_(degree), middle_((a + b) / 2), half_((b - a) / 2) {}
+      : degree_(degree), a_(a), b_(b), middle_((a + b) / 2), half_((b - a) / 2) {}
 
   std::string Name() const override { return "polynomial"; }
   int size() const override { return degree_ + 1; }
+  FormShape Shape() const override {
+    return {{"degree", {static_cast<double>(degree_)}}, {"interval_m", {a_, b_}}};
+  }
   bool IsLinear() const override { return true; }
 
   // T_(k+1) = 2 u T_k - T_(k-1), and its derivative.
@@ -79,7 +87,7 @@ class PolynomialForm : public FunctionForm {
 
  private:
   int degree_;
-  double middle_, half_;
+  double a_, b_, middle_, half_;
 };
 
 class FourierForm : public FunctionForm {
@@ -88,6 +96,9 @@ class FourierForm : public FunctionForm {
 
   std::string Name() const override { return "fourier"; }
   int size() const override { return 2 * harmonics_; }
+  FormShape Shape() const override {
+    return {{"harmonics", {static_cast<double>(harmonics_)}}, {"period_m", {period_}}};
+  }
   bool IsLinear() const override { return true; }
 
   double Evaluate(double x, const double* c, double* slope, double* gradient) const override {

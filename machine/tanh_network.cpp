@@ -16,6 +16,9 @@ class TanhNetwork : public FunctionForm {
 
   std::string Name() const override { return has_bias_ ? "network with bias" : "network"; }
   int size() const override { return has_bias_ ? 3 * neurons_ + 1 : 2 * neurons_; }
+  FormShape Shape() const override {
+    return {{"neurons", {static_cast<double>(neurons_)}}, {"gain_per_m", {gain_}}};
+  }
   bool IsLinear() const override { return false; }
 
   double Evaluate(double x, const double* c, double* slope, double* gradient) const override {

@@ -31,6 +31,7 @@ class VolumetricModel {
   VolumetricModel(Chain chain, const std::array<Travel, kAxes>& travels);
 
   const Chain& chain() const { return chain_; }
+  const std::array<Travel, kAxes>& travels() const { return travels_; }
   const ErrorFunction& Function(int axis, int motion) const;
   const Eigen::Vector3d& squareness() const { return squareness_; }  // [A0Z B0Z C0Y], rad
 

@@ -20,13 +20,15 @@ ARROWS = {
     "recording": "failure settings",
     "hal": "failure settings recording",
     "machine": "failure settings geometry estimation",
+    "map": "failure settings recording geometry estimation machine",
+    "compensation": "failure random standards geometry estimation machine map",
     "probes": "failure random settings recording geometry estimation standards machine",
     "relm": "failure random settings recording geometry estimation standards machine",
     "simulation": "failure settings recording geometry estimation machine relm",
     "fusion": "failure settings geometry estimation standards machine relm simulation",
     "report": "failure",
     "rig": "failure random settings recording hal",
-    "apps": "failure random settings recording geometry estimation standards hal machine probes relm simulation fusion report rig",
+    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes relm simulation fusion report rig",
 }
 
 # header of a library -> the files that may include it; everybody else goes through them.
@@ -34,7 +36,7 @@ GATES = {
     "modbus.h": r"hal/modbus_.*",
     "modbus/modbus.h": r"hal/modbus_.*",
     "linux/can.h": r"hal/can_socket.*",
-    "hdf5.h": r"recording/hdf5_.*",
+    "hdf5.h": r"(recording|map)/hdf5_.*",
     "ceres/": r"estimation/.*",
     "Random123/": r"random/.*",
     "toml++/": r"(settings|recording)/.*\.cpp",

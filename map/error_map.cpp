@@ -1,0 +1,95 @@
+#include "map/error_map.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "failure/failure.h"
+
+namespace abbe::map {
+namespace {
+
+// The covariance is used as given: an asymmetry beyond rounding is a mistake of its maker.
+constexpr double kAsymmetry = 1e-9;
+
+void RefuseBadCovariance(const Eigen::MatrixXd& cov, const std::vector<std::string>& names) {
+  const auto count = static_cast<Eigen::Index>(names.size());
+  if (cov.rows() != count || cov.cols() != count) {
+    throw InputError(fmt::format("a covariance of {} x {} for a map of {} parameters", cov.rows(),
+                                 cov.cols(), count));
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::string& name = names[static_cast<std::size_t>(i)];
+    if (!cov.row(i).allFinite()) {
+      throw InputError(fmt::format("the covariance of {} is not finite", name));
+    }
+    if (cov(i, i) < 0.0) throw InputError(fmt::format("the variance of {} is negative", name));
+  }
+  if ((cov - cov.transpose()).cwiseAbs().maxCoeff() > kAsymmetry * cov.cwiseAbs().maxCoeff()) {
+    throw InputError("the covariance of the map is not symmetric");
+  }
+}
+
+}  // namespace
+
+std::string ErrorName(int error) {
+  if (error < 0 || error >= kErrors) {
+    throw InputError(fmt::format("error {} does not exist: there are {}", error, kErrors));
+  }
+  const int motions = machine::kAxes * machine::kMotions;
+  if (error < motions) {
+    return machine::MotionName(error / machine::kMotions, error % machine::kMotions);
+  }
+  return std::array{"A0Z", "B0Z", "C0Y"}[static_cast<std::size_t>(error - motions)];
+}
+
+int ErrorNamed(std::string_view name) {
+  int error = kErrors - 1;
+  while (error >= 0 && ErrorName(error) != name) --error;
+  return error;
+}
+
+ErrorMap::ErrorMap(MapOrigin origin, machine::VolumetricModel model, Eigen::MatrixXd cov_pp)
+    : origin_(std::move(origin)), model_(std::move(model)), cov_pp_(std::move(cov_pp)) {
+  if (!model_.Parameters().allFinite() || !origin_.reference.allFinite() ||
+      !origin_.tool.allFinite() || !std::isfinite(origin_.temperature)) {
+    throw InputError("the map of " + origin_.machine + " holds a number that is not finite");
+  }
+  if (StatesUncertainty()) RefuseBadCovariance(cov_pp_, ParameterNames());
+}
+
+std::vector<std::string> ErrorMap::ParameterNames() const {
+  std::vector<std::string> names;
+  for (const auto& block : model_.Blocks()) {
+    for (std::size_t i = 0; i < block.entries.size(); ++i) names.push_back(block.FullName(i));
+  }
+  return names;
+}
+
+std::string_view ErrorMap::Scale() const {
+  return origin_.scale_is_calibrated ? "calibrated" : "prior only";
+}
+
+Eigen::Matrix3d ErrorMap::Covariance(const Eigen::Vector3d& position,
+                                     const Eigen::Vector3d& p_TQ) const {
+  if (!StatesUncertainty()) {
+    throw InputError("the map of " + origin_.machine +
+                     " states no uncertainty; fuse the runs anew for one that does");
+  }
+  const Eigen::Matrix3Xd J = model_.Linearize(position, p_TQ).J_error_parameters;
+  return J * cov_pp_ * J.transpose();
+}
+
+Eigen::Vector3d ErrorMap::StandardUncertainty(const Eigen::Vector3d& position,
+                                              const Eigen::Vector3d& p_TQ) const {
+  return Covariance(position, p_TQ).diagonal().cwiseMax(0.0).cwiseSqrt();
+}
+
+Eigen::Vector3d AxisSigns(const machine::Chain& chain) {
+  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+  for (const char axis : chain.workpiece_axes()) signs[axis - 'X'] = -1.0;
+  return signs;
+}
+
+}  // namespace abbe::map

@@ -1,0 +1,83 @@
+// The error map of a machine: what the tool does at every point of the volume, how well that is
+// known, and from what.
+//
+//   const ErrorMap map = ReadMap("out/map.toml");
+//   const Eigen::Vector3d error = map.Error({0.03, 0.02, 0.05}, map.origin().tool);
+//   const Eigen::Matrix3d cov_ee = map.Covariance({0.03, 0.02, 0.05}, map.origin().tool);
+//
+// Frames: error is p_WQ - nominal along the axes of the workpiece frame W, volumetric_error.h;
+// position is [X Y Z] as the axes are commanded; p_TQ is the tool point from the reference point.
+// Units: SI. Shapes: the covariance of the parameters is P x P in the order of
+// VolumetricModel::Parameters(); 0 x 0 for a map that states no uncertainty, as an imported one.
+// Failure: InputError for a position outside the travels, which is never extrapolated; for a
+// covariance of another size, not symmetric, not finite or with a negative variance; for an
+// uncertainty asked of a map that states none.
+// Source: GUM (2008) 5.2.2, first order: cov_ee = J cov_pp J^T. Validity: parameters whose effect
+// on the error is linear over their uncertainty, which for errors below 1 mrad it is to 1e-3.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "machine/volumetric_model.h"
+
+namespace abbe::map {
+
+// What determined an error; beyond the prior it names the best of the runs that saw it.
+enum class Source { kPrior, kSweep, kLinkage, kReference, kPlate };
+inline constexpr std::array<std::string_view, 5> kSourceNames = {"prior", "sweep", "linkage",
+                                                                 "reference", "plate"};
+
+// The 21 errors: 18 motions in the order of error_motion.h, then A0Z, B0Z, C0Y.
+inline constexpr int kErrors = machine::kAxes * machine::kMotions + 3;
+std::string ErrorName(int error);
+// -1 for a name that is none of the 21.
+int ErrorNamed(std::string_view name);
+
+// Where a map comes from.
+struct MapOrigin {
+  std::string machine;
+  Eigen::Vector3d reference = Eigen::Vector3d::Zero();  // m, in M, with all axes at zero
+  Eigen::Vector3d tool = Eigen::Vector3d::Zero();       // p_TQ of the measurement, m
+  double temperature = 20.0;                            // of the machine, degC
+  // Whether a calibrated length or scale went into it; if not, its isotropic scale is the prior's.
+  bool scale_is_calibrated = false;
+  std::array<Source, kErrors> sources = {};
+};
+
+class ErrorMap {
+ public:
+  ErrorMap(MapOrigin origin, machine::VolumetricModel model, Eigen::MatrixXd cov_pp);
+
+  const MapOrigin& origin() const { return origin_; }
+  const machine::VolumetricModel& model() const { return model_; }
+  const Eigen::MatrixXd& cov_pp() const { return cov_pp_; }
+  bool StatesUncertainty() const { return cov_pp_.size() > 0; }
+  // "EXX.c0" ... "squareness.C0Y", in the order of the parameters.
+  std::vector<std::string> ParameterNames() const;
+  // "calibrated" or "prior only".
+  std::string_view Scale() const;
+
+  Eigen::Vector3d Error(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const {
+    return model_.Error(position, p_TQ);
+  }
+  // Of the three components, m^2.
+  Eigen::Matrix3d Covariance(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const;
+  // The roots of its diagonal, m.
+  Eigen::Vector3d StandardUncertainty(const Eigen::Vector3d& position,
+                                      const Eigen::Vector3d& p_TQ) const;
+
+ private:
+  MapOrigin origin_;
+  machine::VolumetricModel model_;
+  Eigen::MatrixXd cov_pp_;
+};
+
+// +1 for an axis that carries the tool, -1 for one that carries the workpiece: axis position =
+// nominal + AxisSigns .* (error in W) is where the axis should read for the tool to be there.
+Eigen::Vector3d AxisSigns(const machine::Chain& chain);
+
+}  // namespace abbe::map

@@ -1,0 +1,223 @@
+#include "map/map_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "failure/failure.h"
+#include "machine/form_of_shape.h"
+#include "map/text_file.h"
+#include "settings/document.h"
+
+namespace abbe::map {
+namespace {
+
+using Eigen::Index;
+using machine::FormShape;
+using settings::Table;
+
+constexpr std::int64_t kFormat = 1;
+constexpr std::array kAxisKeys{"x", "y", "z"};
+
+std::string Quoted(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char letter : text) {
+    if (letter == '"' || letter == '\\') quoted += '\\';
+    quoted += letter;
+  }
+  return quoted + '"';
+}
+
+// A TOML float, in the shortest form that reads back the same.
+std::string Float(double value) {
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+template <typename Values>
+std::string Floats(const Values& values) {
+  std::string text = "[";
+  for (const double value : values) text += (text.size() > 1 ? ", " : "") + Float(value);
+  return text + "]";
+}
+
+template <typename Texts>
+std::string QuotedList(const Texts& texts) {
+  std::string list = "[";
+  for (const auto& text : texts) list += (list.size() > 1 ? ", " : "") + Quoted(text);
+  return list + "]";
+}
+
+std::string_view NameOf(Source source) { return kSourceNames[static_cast<std::size_t>(source)]; }
+
+std::string HeadText(const ErrorMap& map) {
+  const MapOrigin& origin = map.origin();
+  const auto of_squareness = [&](int i) { return NameOf(origin.sources[kErrors - 3 + i]); };
+  std::string text = fmt::format(
+      "# An error map: docs/map.md says what each key means.\nformat = {}\nmachine = {}\n"
+      "chain = {}\nreference = {}\ntool = {}\ntemperature_c = {}\nscale = {}\nsquareness = {}\n"
+      "squareness_from = {}\n\n[travel]\n",
+      kFormat, Quoted(origin.machine), Quoted(map.model().chain().Text()), Floats(origin.reference),
+      Floats(origin.tool), Float(origin.temperature), Quoted(map.Scale()),
+      Floats(map.model().squareness()),
+      QuotedList(std::array{of_squareness(0), of_squareness(1), of_squareness(2)}));
+  for (std::size_t axis = 0; axis < kAxisKeys.size(); ++axis) {
+    const machine::Travel& travel = map.model().travels()[axis];
+    text +=
+        fmt::format("{} = {}\n", kAxisKeys[axis], Floats(std::array{travel.first, travel.last}));
+  }
+  return text;
+}
+
+std::string FunctionText(const std::string& name, Source source,
+                         const machine::ErrorFunction& function) {
+  std::string text = fmt::format("\n[[error]]\nname = \"{}\"\nfrom = \"{}\"\nform = {}\n", name,
+                                 NameOf(source), Quoted(function.form()->Name()));
+  for (const auto& [key, numbers] : function.form()->Shape()) {
+    text += fmt::format("{} = {}\n", key, Floats(numbers));
+  }
+  return text + fmt::format("coefficients = {}\n", Floats(function.coefficients()));
+}
+
+std::string CovarianceText(const ErrorMap& map) {
+  std::string text =
+      fmt::format("\n[covariance]\nnames = {}\nrows = [\n", QuotedList(map.ParameterNames()));
+  for (Index i = 0; i < map.cov_pp().rows(); ++i) {
+    for (Index j = 0; j <= i; ++j) text += Float(map.cov_pp()(i, j)) + ", ";
+    text.back() = '\n';
+  }
+  return text + "]\n";
+}
+
+Eigen::Vector3d Vector(const Table& table, const char* key) {
+  return Eigen::Vector3d(table.Quantities(key, 3).data());
+}
+
+Source SourceNamed(const Table& table, const char* key, const std::string& name) {
+  const auto found = std::find(kSourceNames.begin(), kSourceNames.end(), name);
+  if (found == kSourceNames.end()) {
+    throw table.Error(
+        key, fmt::format("\"{}\" is no source; write {}", name, fmt::join(kSourceNames, ", ")));
+  }
+  return static_cast<Source>(found - kSourceNames.begin());
+}
+
+MapOrigin ReadOrigin(const Table& root) {
+  MapOrigin origin;
+  origin.machine = root.Text("machine");
+  origin.reference = Vector(root, "reference");
+  origin.tool = Vector(root, "tool");
+  origin.temperature = root.Quantity("temperature_c");
+  origin.scale_is_calibrated =
+      root.Choice("scale", {"prior only", "calibrated"}, true) == "calibrated";
+  const auto names = root.Texts("squareness_from", 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    origin.sources[kErrors - 3 + i] = SourceNamed(root, "squareness_from", names[i]);
+  }
+  return origin;
+}
+
+// What `make` gives; when it refuses, with the place in the file.
+template <typename Make>
+auto Located(const Table& table, const char* key, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& failure) {
+    throw table.Error(key, failure.what());
+  }
+}
+
+machine::VolumetricModel ReadFrame(const Table& root) {
+  std::array<machine::Travel, machine::kAxes> travels;
+  const Table table = root.Child("travel");
+  for (std::size_t axis = 0; axis < kAxisKeys.size(); ++axis) {
+    const auto ends = table.Quantities(kAxisKeys[axis], 2);
+    if (!(ends[0] < ends[1])) {
+      throw table.Error(kAxisKeys[axis], "must be [first, last] with the first below the last");
+    }
+    travels[axis] = {ends[0], ends[1]};
+  }
+  table.RefuseUnknown();
+  const machine::Chain chain =
+      Located(root, "chain", [&] { return machine::Chain::Parse(root.Text("chain")); });
+  return {chain, travels};
+}
+
+void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin& origin,
+                  std::array<bool, kErrors>& seen) {
+  const std::string name = table.Text("name");
+  const int error = ErrorNamed(name);
+  if (error < 0 || error >= kErrors - 3)
+    throw table.Error("name", "is no error motion; write EXX ... ECZ");
+  if (std::exchange(seen[static_cast<std::size_t>(error)], true)) {
+    throw table.Error("name", name + " stands twice");
+  }
+  origin.sources[static_cast<std::size_t>(error)] = SourceNamed(table, "from", table.Text("from"));
+  const int axis = error / machine::kMotions, motion = error % machine::kMotions;
+  const std::string form = table.Text("form");
+  FormShape shape;
+  for (const std::string& key : Located(table, "form", [&] { return machine::ShapeNames(form); })) {
+    shape[key] = table.Quantities(key, 0);
+  }
+  model.SetForm(axis, motion, Located(table, "form", [&] { return machine::FormOf(form, shape); }));
+  const auto c = table.Quantities("coefficients",
+                                  static_cast<std::size_t>(model.Function(axis, motion).size()));
+  model.SetCoefficients(axis, motion,
+                        Eigen::Map<const Eigen::VectorXd>(c.data(), static_cast<Index>(c.size())));
+  table.RefuseUnknown();
+}
+
+Eigen::MatrixXd ReadCovariance(const Table& table, const std::vector<std::string>& names) {
+  if (table.Texts("names", 0) != names) {
+    throw table.Error("names", "are not the parameters of this map; write the map anew");
+  }
+  const auto n = static_cast<Index>(names.size());
+  const auto rows = table.Quantities("rows", static_cast<std::size_t>(n * (n + 1) / 2));
+  Eigen::MatrixXd cov(n, n);
+  std::size_t at = 0;
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j <= i; ++j) cov(i, j) = cov(j, i) = rows[at++];
+  }
+  table.RefuseUnknown();
+  return cov;
+}
+
+}  // namespace
+
+void WriteMap(const ErrorMap& map, const std::filesystem::path& path) {
+  std::string text = HeadText(map);
+  for (int error = 0; error < kErrors - 3; ++error) {
+    const auto& function =
+        map.model().Function(error / machine::kMotions, error % machine::kMotions);
+    if (function.form() == nullptr) continue;
+    text += FunctionText(ErrorName(error), map.origin().sources[static_cast<std::size_t>(error)],
+                         function);
+  }
+  if (map.StatesUncertainty()) text += CovarianceText(map);
+  WriteWhole(text, path);
+}
+
+ErrorMap ReadMap(const std::filesystem::path& path) {
+  const auto document = settings::Document::Read(path);
+  const Table root = document.Root();
+  if (root.Integer("format") != kFormat) {
+    throw root.Error("format", "is of another version of abbe; fuse the runs again");
+  }
+  MapOrigin origin = ReadOrigin(root);
+  machine::VolumetricModel model = ReadFrame(root);
+  model.SetSquareness(Vector(root, "squareness"));
+  std::array<bool, kErrors> seen{};
+  for (const Table& table : root.Children("error")) ReadFunction(table, model, origin, seen);
+  Eigen::MatrixXd cov;
+  if (root.Has("covariance")) {
+    const ErrorMap bare(origin, model, {});
+    cov = ReadCovariance(root.Child("covariance"), bare.ParameterNames());
+  }
+  root.RefuseUnknown();
+  return {std::move(origin), std::move(model), std::move(cov)};
+}
+
+}  // namespace abbe::map

@@ -1,0 +1,75 @@
+// An error map on a grid: for programs that take points, and where millions of points are asked
+// for.
+//
+//   const MapGrid grid = SampleGrid(map, p_TQ, {31, 31, 31});
+//   const Eigen::Vector3d error = grid.Error({0.03, 0.02, 0.05});     // trilinear
+//   const Discrepancy worst = InterpolationError(map, p_TQ, grid);
+//
+// Frames, signs: error_map.h. Units: m. Shapes: one column a grid point, x runs fastest, then y,
+// then z; u95 is empty where the map states no uncertainty. u95 = 1.96 u of each component.
+// Failure: InputError for fewer than two points along an axis, and for a position outside the
+// grid.
+// Source: own; trilinear interpolation. Validity: between the points the grid errs by what
+// InterpolationError says, which falls with the square of the spacing.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <string>
+
+#include "map/error_map.h"
+
+namespace abbe::map {
+
+// `count` points from `first` to `last`, both included.
+struct GridAxis {
+  double first = 0.0, last = 0.0;  // m
+  Eigen::Index count = 0;
+
+  double Step() const { return (last - first) / static_cast<double>(count - 1); }
+  double At(Eigen::Index i) const {
+    return i == count - 1 ? last : first + Step() * static_cast<double>(i);
+  }
+};
+
+class MapGrid {
+ public:
+  MapGrid(const std::array<GridAxis, 3>& axes, Eigen::Matrix3Xd error, Eigen::Matrix3Xd u95);
+
+  const std::array<GridAxis, 3>& axes() const { return axes_; }
+  const Eigen::Matrix3Xd& error() const { return error_; }
+  const Eigen::Matrix3Xd& u95() const { return u95_; }
+  Eigen::Index size() const { return error_.cols(); }
+  Eigen::Vector3d Position(Eigen::Index point) const;
+
+  Eigen::Vector3d Error(const Eigen::Vector3d& position) const;
+
+ private:
+  std::array<GridAxis, 3> axes_;
+  Eigen::Matrix3Xd error_, u95_;
+  Eigen::Vector3d first_, per_step_;
+};
+
+MapGrid SampleGrid(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
+                   const std::array<Eigen::Index, 3>& counts);
+
+// Where, and by how much, something that stands for a map differs from it most: |difference|, and
+// the largest |error| of the map at the points compared; m.
+struct Discrepancy {
+  double largest = 0.0, rms = 0.0, error = 0.0;
+  Eigen::Vector3d where = Eigen::Vector3d::Zero();
+};
+
+// Compares at `points` points that fill the travels evenly and lie on no grid (Halton's sequence
+// in bases 2, 3, 5).
+using ErrorField = std::function<Eigen::Vector3d(const Eigen::Vector3d& position)>;
+Discrepancy Compare(const ErrorMap& map, const Eigen::Vector3d& p_TQ, const ErrorField& field,
+                    int points = 4000);
+
+// Compares at the middle of every cell, edge and face of the grid, where a trilinear interpolation
+// errs most.
+Discrepancy InterpolationError(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
+                               const MapGrid& grid);
+
+}  // namespace abbe::map

@@ -1,0 +1,100 @@
+#include "map/map_file.h"
+
+#include "failure/failure.h"
+#include "map/text_file.h"
+#include "map_cases.h"
+
+namespace abbe::map {
+namespace {
+
+using Eigen::Vector3d;
+
+void ExpectSame(const ErrorMap& a, const ErrorMap& b) {
+  EXPECT_EQ(a.origin().machine, b.origin().machine);
+  EXPECT_EQ(a.origin().reference, b.origin().reference);
+  EXPECT_EQ(a.origin().tool, b.origin().tool);
+  EXPECT_EQ(a.origin().temperature, b.origin().temperature);
+  EXPECT_EQ(a.Scale(), b.Scale());
+  EXPECT_EQ(a.origin().sources, b.origin().sources);
+  EXPECT_EQ(a.model().chain().Text(), b.model().chain().Text());
+  EXPECT_EQ(a.ParameterNames(), b.ParameterNames());
+  EXPECT_EQ(a.model().Parameters(), b.model().Parameters());
+  EXPECT_EQ(a.cov_pp(), b.cov_pp());
+  for (int i = 0; i < 50; ++i) {
+    const Vector3d place = RandomPlace(a, 5, i), tool(0.02, 0.0, -0.1);
+    EXPECT_EQ(a.Error(place, tool), b.Error(place, tool));
+  }
+}
+
+TEST(MapFile, WrittenAndReadItIsTheSameBitForBit) {
+  const Folder folder;
+  for (const ErrorMap& map : {RandomMap(1), RandomMap(2, kBridge), MapOfAllForms(3)}) {
+    WriteMap(map, folder / "a/map.toml");
+    const ErrorMap read = ReadMap(folder / "a/map.toml");
+    ExpectSame(map, read);
+    WriteMap(read, folder / "b.toml");
+    EXPECT_EQ(ReadWhole(folder / "a/map.toml"), ReadWhole(folder / "b.toml"));
+  }
+}
+
+TEST(MapFile, AMapWithoutUncertaintyStaysOne) {
+  const Folder folder;
+  const ErrorMap full = RandomMap(1);
+  const ErrorMap map(full.origin(), full.model(), {});
+  WriteMap(map, folder / "map.toml");
+  EXPECT_FALSE(ReadMap(folder / "map.toml").StatesUncertainty());
+}
+
+class BrokenMap : public testing::Test {
+ protected:
+  BrokenMap() {
+    WriteMap(RandomMap(1), folder_ / "map.toml");
+    text_ = ReadWhole(folder_ / "map.toml");
+  }
+  std::string Refusal(const std::string& text) {
+    WriteWhole(text, folder_ / "bad.toml");
+    return MessageOf<InputError>([&] { ReadMap(folder_ / "bad.toml"); });
+  }
+  std::string With(const std::string& from, const std::string& to) {
+    std::string text = text_;
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return Refusal(text.replace(at, from.size(), to));
+  }
+  Folder folder_;
+  std::string text_;
+};
+
+TEST_F(BrokenMap, IsRefusedWithFileLineAndKey) {
+  ExpectHas(With("coefficients = [", "coefficients = [nan, "), "bad.toml:");
+  ExpectHas(With("rows = [\n", "rows = [ nan,\n"), "covariance.rows");
+  ExpectHas(With("reference = [", "reference = [nan, "), "reference");
+  ExpectHas(With("form = \"b-spline\"", "form = \"bspline\""), "no form of an error function");
+  ExpectHas(With("name = \"EYX\"", "name = \"EXX\""), "EXX stands twice");
+  ExpectHas(With("name = \"EYX\"", "name = \"EQX\""), "no error motion");
+  ExpectHas(With("from = \"", "from = \"my "), "no source");
+  ExpectHas(With("format = 1", "format = 2"), "another version");
+  ExpectHas(With("scale = \"", "scale = \"not "), "scale");
+  ExpectHas(With("x = [0.0, 0.06]", "x = [0.06, 0.06]"), "first below the last");
+  ExpectHas(With("machine =", "colour = 3\nmachine ="), "colour");
+  ExpectHas(With("\"EXX.c0\", ", ""), "covariance.names");
+}
+
+TEST_F(BrokenMap, ANaNInPlaceOfANumberIsNamed) {
+  const auto at = text_.find("coefficients = [") + 16;
+  std::string text = text_;
+  ExpectHas(Refusal(text.replace(at, text.find(',', at) - at, "nan")),
+            "coefficients: must be a list of 8 numbers");
+}
+
+// Wherever the file breaks off it is refused: the covariance comes last, and a file without one
+// differs from a file that lost it only where the cut falls between the tables.
+TEST_F(BrokenMap, ATruncatedFileIsRefused) {
+  for (const double part : {0.0, 0.05, 0.2, 0.5, 0.9, 0.999}) {
+    const auto size = static_cast<std::size_t>(part * static_cast<double>(text_.size()));
+    ExpectHas(Refusal(text_.substr(0, size)), "bad.toml");
+  }
+}
+
+}  // namespace
+}  // namespace abbe::map
