@@ -11,6 +11,7 @@
 #include "apps/commands.h"
 #include "apps/measured_paths.h"
 #include "apps/path_result.h"
+#include "apps/path_uncertainty.h"
 #include "apps/result_file.h"
 #include "recording/recording_file.h"
 #include "relm/nominal_path.h"
@@ -91,8 +92,18 @@ class PathTests {
       if (!IsNamed(command_.test)) {
         result_["nominal"] = std::filesystem::path(command_.test).filename().string();
       }
-      for (const relm::MeasuredPath& path : paths.All()) {
-        Keep(path.recording, path.instrument, Evaluate(command_, path));
+      const std::vector<relm::MeasuredPath> all = paths.All();
+      std::vector<std::vector<TestResult>> shifted(all.size());
+      for (std::size_t error = 0; error < paths.errors.size(); ++error) {
+        const std::vector<relm::MeasuredPath> moved = paths.WithError(error);
+        for (std::size_t i = 0; i < paths.linkage.size(); ++i) {
+          shifted[i].push_back(Evaluate(command_, moved[i]));
+        }
+      }
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        TestResult test = Evaluate(command_, all[i]);
+        AddCalibrationUncertainty(shifted[i], test);
+        Keep(all[i].recording, all[i].instrument, test);
       }
       Note(paths.notes);
     }

@@ -55,6 +55,10 @@ const signatureName = ({cause, object}) => `${SIGNATURE_NAMES[cause] ?? cause} $
 // Seen by the data, and beyond its U95.
 const isFound = ({seen, value, u}) => seen && Math.abs(value) > COVERAGE * u;
 
+// With its expanded uncertainty, where that is known.
+const circleFigure = (run, key) =>
+    isNumber(run[key]) ? quantity(run[key], COVERAGE * (run.u?.[key] ?? 0)) : null;
+
 function circleFigureTable(result) {
   const runs = runsOf(result);
   return table({
@@ -68,9 +72,7 @@ function circleFigureTable(result) {
     rows: CIRCLE_FIGURES.filter(([key]) => runs.some(({run}) => isNumber(run[key])))
               .map(
                   ([key, symbol, meaning]) =>
-                      [symbol,
-                       ...runs.map(({run}) => isNumber(run[key]) ? significant(run[key]) : null),
-                       meaning]),
+                      [symbol, ...runs.map(({run}) => circleFigure(run, key)), meaning]),
   });
 }
 
@@ -111,17 +113,25 @@ function magnifierFor(size, deviation) {
           text: (value) => `${grouped(value)}\u00a0\u00d7`};
 }
 
-// Lists closed, so that the last point meets the first.
-const closed = (list) => list?.length ? [...list, list[0]] : [];
+const ARC_GAP = 0.3;  // rad between neighbours: the path was not measured there
+
+// Lists along a circle, closed where the circle is, with a gap (NaN) where nothing was measured.
+const ringOf = (angle) => (list) => {
+  if (!list?.length) return [];
+  const ring =
+      list.flatMap((one, i) => i && angle[i] - angle[i - 1] > ARC_GAP ? [NaN, one] : [one]);
+  return angle[0] + 2 * Math.PI - angle.at(-1) > ARC_GAP ? ring : [...ring, list[0]];
+};
 
 function circleTrace(name, radius, {angle, radial}, amount, line) {
   const r = radial.map((one) => radius + amount * one * 1e3);
+  const ring = ringOf(angle);
   return {
     ...lineTrace(
-        name, closed(angle.map((at, index) => r[index] * Math.cos(at))),
-        closed(angle.map((at, index) => r[index] * Math.sin(at))), line.color, ''),
+        name, ring(angle.map((at, index) => r[index] * Math.cos(at))),
+        ring(angle.map((at, index) => r[index] * Math.sin(at))), line.color, ''),
     line,
-    text: closed(
+    text: ring(
         radial.map((one, index) => `${fixed(angle[index] * 180 / Math.PI, 0)}\u00b0: ` +
                        `${fixed(one * 1e6, 2)}\u00a0\u00b5m`)),
     hovertemplate: '%{text}',
@@ -234,7 +244,8 @@ function polarGroup(result) {
 // The circle in its own frame: first, second, out of plane; position and deviation in m.
 function circleInSpace(circle, profile) {
   const radius = circle.radius_mm * 1e-3;
-  const [angle, radial, axial] = [profile.angle, profile.radial, profile.axial].map(closed);
+  const [angle, radial, axial] =
+      [profile.angle, profile.radial, profile.axial].map(ringOf(profile.angle));
   const [cos, sin] = [angle.map(Math.cos), angle.map(Math.sin)];
   return {
     position: [cos.map((one) => radius * one), sin.map((one) => radius * one), angle.map(() => 0)],
@@ -309,9 +320,28 @@ function harmonicGroup(result) {
   });
 }
 
+// How the encoders became positions: {parameters, file, model, mapped, held_out_rms_um}.
+function linkageText(linkage) {
+  if (!linkage) return null;
+  if (linkage.parameters !== 'calibrated') return 'its nominal parameters';
+  const rms = linkage.held_out_rms_um;
+  return `${linkage.file}, model ${linkage.model}${linkage.mapped ? ', mapped' : ''}` +
+      (isNumber(rms) ? `, held-out rms ${micrometres(rms)}` : '');
+}
+
+// Only of a part of the circle: "240 degrees counter-clockwise, 120 clockwise".
+function coveredText(result) {
+  const part = runsOf(result).map(({run}) => run).find((run) => run.partial);
+  if (!part) return null;
+  return SENSES.filter(([sense]) => part.covered_deg?.[sense] > 0)
+             .map(([sense, name]) => `${fixed(part.covered_deg[sense], 0)}\u00b0 ${name}`)
+             .join(', ');
+}
+
 registerSection({
   command: 'circle',
-  title: (result) => `Circular test, ${result.plane} plane`,
+  title: (result) =>
+      `${result.partial ? 'Part of a circle' : 'Circular test'}, ${result.plane} plane`,
   short: (result) => `Circle ${result.plane}`,
   summary: circleSummary,
   facts: (result) =>
@@ -322,6 +352,7 @@ registerSection({
              `${positionText(result.circles[0].filter_undulations)} undulations a turn` :
              'none'
        ],
+       ['Linkage read with', linkageText(result.linkage)], ['Covered', coveredText(result)],
        ['Recordings', [...new Set(runsOf(result).flatMap(({run}) => run.recordings))].join(', ')]],
   body: (result) =>
       [circleFigureTable(result), polarGroup(result), circleSpaceGroup(result),
@@ -336,6 +367,6 @@ registerSection({
     ],
     row: (result) =>
         [result.plane, result.circles?.[0]?.instrument,
-         ...CIRCLE_FIGURES.map(([key]) => isNumber(result[key]) ? significant(result[key]) : null)],
+         ...CIRCLE_FIGURES.map(([key]) => circleFigure(result, key))],
   },
 });

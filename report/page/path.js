@@ -33,7 +33,11 @@ function pathFigureTable(result) {
     ],
     rows: rows.map(
         ([key, name]) =>
-            [name, ...tests.map((test) => isNumber(test[key]) ? significant(test[key]) : null)]),
+            [name,
+             ...tests.map(
+                 (test) => isNumber(test[key]) ?
+                     quantity(test[key], COVERAGE * (test.u_calibration?.[key] ?? 0)) :
+                     null)]),
   });
 }
 
@@ -92,7 +96,8 @@ registerSection({
                   `${instrument}: at most ${micrometres(largest_um)} from the path`)
           .join('; ')),
   facts: (result) =>
-      [['Recordings', [...new Set(pathTests(result).map(({recording}) => recording))].join(', ')]],
+      [['Linkage read with', linkageText(result.linkage)],
+       ['Recordings', [...new Set(pathTests(result).map(({recording}) => recording))].join(', ')]],
   body: (result) =>
       [pathFigureTable(result), pathSpaceGroup(result), ...pathTests(result).flatMap(pathLists),
        notesBlock('Notes', result.notes)]

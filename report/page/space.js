@@ -12,7 +12,7 @@ const isometric = (lists) => [0, 1].map(
 // The middle of the nominal path, and the largest distance to it, in m.
 function spaceExtent(paths) {
   const ends = [0, 1, 2].map((axis) => {
-    const all = paths.flatMap(({position}) => position[axis]);
+    const all = numbers(paths.flatMap(({position}) => position[axis]));
     return [Math.min(...all), Math.max(...all)];
   });
   return {

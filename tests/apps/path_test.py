@@ -1,41 +1,13 @@
 """`abbe path` as a user runs it, on paths whose errors are known."""
-import json
 import math
-import os
-import pathlib
-import subprocess
-import tempfile
 import unittest
 
 import linkage_runs
-
-PROGRAM = os.environ["ABBE"]
-MACHINE = os.environ["ABBE_MACHINE"]
+from program_case import MACHINE, ProgramCase
 
 
-class PathTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.path = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def run_program(self, *arguments):
-        return subprocess.run([PROGRAM, "path", *map(str, arguments)], capture_output=True,
-                              text=True, timeout=60)
-
-    def result(self, *arguments):
-        done = self.run_program(*arguments, "--json", self.path / "result.json")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads((self.path / "result.json").read_text())
-
-    def refuse(self, *arguments, saying):
-        done = self.run_program(*arguments)
-        self.assertEqual(done.returncode, 2, done.stdout)
-        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
-        for text in saying:
-            self.assertIn(text, done.stderr)
+class PathTest(ProgramCase):
+    command = "path"
 
     def test_stepping(self):
         """0, 5, ... 25 mm along X, Y and Z; X is 100 ppm too long and rolls 1 um of Z in 25 mm."""

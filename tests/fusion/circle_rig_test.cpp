@@ -1,0 +1,130 @@
+// Causes of circles on machines of the rig: smooth errors alone must not pass for backlash or
+// reversal spikes, and true backlash must still be found.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "fusion/circle_causes.h"
+#include "machine/machine.h"
+#include "rig/linkage_campaign.h"
+#include "settings/document.h"
+
+namespace abbe::fusion {
+namespace {
+
+constexpr int kWorlds = 100;
+constexpr double kRadius = 0.020, kMiddle = 0.030;  // m
+constexpr double kBacklash = 5e-6;
+constexpr double kCoverage = 2.0;
+
+const settings::Document& MachineFile() {
+  static const auto document = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
+  return document;
+}
+
+relm::MeasuredPath Circle(std::uint64_t seed, double feed) {
+  const settings::Table root = MachineFile().Root();
+  const rig::LinkageRig rig(rig::World(rig::ReadRigSettings(root), seed),
+                            rig::Linkage(rig::ReadLinkage(root), seed));
+  rig::CircleProgram program;
+  program.centre = Eigen::Vector3d::Constant(kMiddle);
+  program.radius = kRadius;
+  program.feed = feed;
+  return relm::ReferencePath(rig.Record(CircleCourse(program), {.kind = "reference"}));
+}
+
+// X trails its command by half the backlash.
+void AddBacklash(relm::MeasuredPath& path) {
+  for (Eigen::Index i = 0; i < path.poses(); ++i) {
+    const double towards = -path.direction[i] * (path.commanded(1, i) - kMiddle);
+    path.measured(0, i) -= kBacklash / 2.0 * (towards > 0.0 ? 1.0 : -1.0);
+  }
+}
+
+CircleCauses CausesOf(const std::vector<relm::MeasuredPath>& paths, bool known_population) {
+  const std::vector<relm::CircleRun> runs = relm::CircleRuns(paths);
+  CauseOptions options;
+  if (known_population) {
+    options.smooth = SmoothHarmonics(machine::ReadMachine(MachineFile().Root()), runs.front());
+  }
+  std::vector<const relm::CircleRun*> all;
+  all.reserve(runs.size());
+  for (const relm::CircleRun& run : runs) all.push_back(&run);
+  return FitCircleCauses(all, options);
+}
+
+// Scales, squareness and bows of the axes are really there; these are not.
+bool IsAbsent(const CauseEstimate& one) {
+  return one.cause == "backlash" || one.cause == "reversal_spike" ||
+         one.cause == "servo_mismatch" || one.cause == "servo_lag_squared";
+}
+
+struct Counts {
+  int judged = 0, starred = 0;
+};
+
+void Count(const CircleCauses& found, Counts& counts) {
+  for (const CauseEstimate& one : found.causes) {
+    if (!IsAbsent(one)) continue;
+    ++counts.judged;
+    if (std::abs(one.value) > kCoverage * one.u) ++counts.starred;
+  }
+}
+
+// A share of 4.55 % lies beyond two standard uncertainties; these are taken up to 6 % too large
+// (circle_causes_test.cpp), which leaves 3.4 %. 600 decisions, three standard deviations to each
+// side.
+void ExpectNominal(const Counts& counts) {
+  ASSERT_EQ(counts.judged, 6 * kWorlds);
+  const double low = 0.034, high = 0.0455, n = counts.judged;
+  EXPECT_GT(counts.starred, n * low - 3.0 * std::sqrt(n * low * (1.0 - low)));
+  EXPECT_LT(counts.starred, n * high + 3.0 * std::sqrt(n * high * (1.0 - high)));
+}
+
+TEST(CircleOnTheRig, SmoothErrorsPassForNoOtherCauseAndBacklashIsFound) {
+  Counts known, unknown;
+  int found = 0, within = 0;
+  for (int seed = 1; seed <= kWorlds; ++seed) {
+    std::vector<relm::MeasuredPath> paths{Circle(seed, 0.02), Circle(seed, 0.1)};
+    Count(CausesOf(paths, true), known);
+    Count(CausesOf(paths, false), unknown);
+    for (relm::MeasuredPath& path : paths) AddBacklash(path);
+    for (const CauseEstimate& one : CausesOf(paths, true).causes) {
+      if (one.cause != "backlash" || one.object != "X") continue;
+      if (one.seen && std::abs(one.value) > kCoverage * one.u) ++found;
+      if (std::abs(one.value - kBacklash) < 3.0 * one.u) ++within;
+    }
+  }
+  ExpectNominal(known);
+  ExpectNominal(unknown);
+  EXPECT_EQ(found, kWorlds);
+  EXPECT_GE(within, kWorlds - 3);  // 0.3 % lie beyond three standard uncertainties
+  RecordProperty("starred_of_600", std::to_string(known.starred));
+}
+
+// What the population says of the harmonics beside what a hundred machines have of them.
+TEST(CircleOnTheRig, SmoothHarmonicsHaveThePopulationsSize) {
+  std::vector<double> squares;
+  std::vector<double> stated;
+  for (int seed = 1; seed <= kWorlds; ++seed) {
+    const auto runs = relm::CircleRuns({Circle(seed, 0.1)});
+    stated = SmoothHarmonics(machine::ReadMachine(MachineFile().Root()), runs.front());
+    const auto figures = relm::EvaluateCircle(runs.front(), {.cutoff = 0.0, .harmonics = 6});
+    squares.resize(3);
+    for (const standards::Harmonic& wave : figures.ccw->harmonics) {
+      if (wave.order < kFirstHarmonic || wave.order > 6) continue;
+      squares[static_cast<std::size_t>(wave.order - kFirstHarmonic)] +=
+          wave.Amplitude() * wave.Amplitude() / 2.0;
+    }
+  }
+  for (std::size_t k = 0; k < squares.size(); ++k) {
+    // Two hundred squares: their mean is known to 10 %, its root to 5 %; the noise of 300 points
+    // adds 0.3 um sqrt(2 / 300) = 0.024 um, less than a tenth of order 6 squared.
+    EXPECT_NEAR(std::sqrt(squares[k] / kWorlds) / stated[k], 1.0, 0.2) << "order " << k + 4;
+  }
+}
+
+}  // namespace
+}  // namespace abbe::fusion
