@@ -1,6 +1,7 @@
 #include "apps/circle_figures.h"
 
 #include <cmath>
+#include <string_view>
 
 #include "relm/circle_noise.h"
 
@@ -70,6 +71,7 @@ FigureUncertainties UncertaintiesOf(const CircleRun& run,
   }
   FigureUncertainties u;
   for (std::size_t i = 0; i < u.size(); ++i) {
+    if (std::string_view(kCircleFigures[i].key).starts_with("rms")) continue;  // is noise itself
     u[i] = {std::sqrt(squares[i].calibration), std::sqrt(squares[i].noise)};
   }
   return u;

@@ -148,6 +148,11 @@ std::string CauseTable(const fusion::CircleCauses& causes) {
   return text;
 }
 
+std::string FigureText(double value, double U) {
+  if (U == 0.0) return fmt::format("{:.2f}", Um(value));
+  return fmt::format("{:.2f} +- {:.2f}", Um(value), Um(U));
+}
+
 }  // namespace
 
 ordered_json CircleJson(const Circle& circle) {
@@ -206,8 +211,7 @@ std::string CircleTable(const std::vector<Circle>& circles) {
         const Figure value = kCircleFigures[i].of(circle.figures[run]);
         any = any || value.has_value();
         const double U = standards::kCoverage * circle.uncertainties[run][i].Total();
-        line +=
-            fmt::format("{:>20}", value ? fmt::format("{:.2f} +- {:.2f}", Um(*value), Um(U)) : "-");
+        line += fmt::format("{:>20}", value ? FigureText(*value, U) : "-");
       }
     }
     if (any) text += fmt::format("{:<40}{}\n", kCircleFigures[i].text, line);

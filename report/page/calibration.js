@@ -104,8 +104,9 @@ const folded = (rows, summary, content) => rows.length <= CALIBRATION_SHOWN ?
 
 const parameterColumns = [
   {head: 'Parameter'}, {head: 'Value', numeric: true}, {head: 'Unit'},
-  {head: 'Nominal', numeric: true}, {head: 'Tolerance, 1 s', numeric: true}
+  {head: 'Nominal', numeric: true}, {head: 'Tolerance', numeric: true}
 ];
+const micro = (unit) => unit?.replace(/^u(?=m$|rad$)/, '\u00b5');  // um, urad
 
 function parameterTable(caption, parameters) {
   if (!parameters.length) return null;
@@ -114,7 +115,7 @@ function parameterTable(caption, parameters) {
     columns: parameterColumns,
     rows: parameters.map(
         ({name, value, uncertainty, unit, nominal, prior}) =>
-            [code(name), quantity(value, COVERAGE * uncertainty), unit, significant(nominal),
+            [code(name), quantity(value, COVERAGE * uncertainty), micro(unit), positionText(nominal),
              isNumber(prior) ? significant(prior, 2) : 'free']),
   });
 }
@@ -149,6 +150,16 @@ function unseenTable(result) {
 const cellCentres = ([xs, ys, zs]) =>
     xs.flatMap((x) => ys.flatMap((y) => zs.map((z) => [x, y, z].map((at) => at * 1e3))));
 
+// The edges of the box around the centres, in mm, with a gap (NaN) after each.
+function boxEdges(grid) {
+  const ends = grid.map((list) => [Math.min(...list) * 1e3, Math.max(...list) * 1e3]);
+  const corner = (bits) => ends.map((pair, axis) => pair[bits >> axis & 1]);
+  return [0, 1, 2, 3, 4, 5, 6, 7].flatMap(
+      (bits) => [0, 1, 2]
+                    .filter((axis) => !(bits >> axis & 1))
+                    .flatMap((axis) => [corner(bits), corner(bits | 1 << axis), [NaN, NaN, NaN]]));
+}
+
 function cellGroup(result) {
   const {centres_m: grid, shifts_um: shifts} = result.mapped ?? {};
   if (!grid || !shifts?.length) return null;
@@ -159,6 +170,7 @@ function cellGroup(result) {
     return (Math.min(...all) + Math.max(...all)) / 2;
   });
   const size = Math.max(0.5, ...ends) / 2;  // mm
+  const span = 2.4 * size;
   const most = Math.max(1e-3, ...shifts.map((one) => length3(one) ?? 0));  // um
   const lists = (rows) => [0, 1, 2].map((axis) => rows.map((one) => one[axis] - middle[axis]));
   const panel = {
@@ -174,6 +186,8 @@ function cellGroup(result) {
       const stems = (from, to) => from.flatMap((at, i) => [at, to[i], null]);
       return {
         data: [
+          {...lineTrace('box', ...isometric(lists(boxEdges(grid))), colours.line, ''),
+           line: {color: colours.line, width: 1}, hoverinfo: 'skip', hovertemplate: null},
           {...lineTrace('shift', stems(x, tx), stems(y, ty), colours.mean, ''), hoverinfo: 'skip',
            hovertemplate: null},
           {
@@ -185,7 +199,7 @@ function cellGroup(result) {
           },
         ],
         layout: squareLayout(
-            colours, 1.9 * size, {annotations: spaceAxes(['X', 'Y', 'Z'], 1.9 * size, colours)}),
+            colours, span, {annotations: spaceAxes(['X', 'Y', 'Z'], span, colours)}),
       };
     },
     values: () => ({
@@ -218,9 +232,9 @@ function modelTable(result) {
       numeric('Held out, rms'), numeric('Held out, largest'), {head: 'Boelens (2006), largest, \u00b5m'}
     ],
     rows: result.models.map(
-        ({name, parameters, after, held_out: held, published}) =>
-            [capital(name), String(parameters), text(after?.rms_um), text(held?.rms_um),
-             text(held?.max_um), published || null]),
+        ({name, parameters, after, held_out: held, published, why_not: why}) =>
+            [capital(name), String(parameters), why ? 'contradicts its priors' : text(after?.rms_um),
+             text(held?.rms_um), text(held?.max_um), published || null]),
   });
 }
 

@@ -345,7 +345,7 @@ registerSection({
   short: (result) => `Circle ${result.plane}`,
   summary: circleSummary,
   facts: (result) =>
-      [['Radius', isNumber(result.radius_mm) ? `${positionText(result.radius_mm)}\u00a0mm` : null],
+      [['Radius', isNumber(result.radius_mm) ? `${positionText(Number(result.radius_mm.toFixed(2)))}\u00a0mm` : null],
        [
          'Filter',
          result.circles?.[0]?.filter_undulations ?

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "failure/failure.h"
@@ -52,6 +53,24 @@ TEST(PathDeviation, AlignmentIsNoReflection) {
     return {p.x(), p.y(), -p.z() + (p.x() > 0.015 ? 1e-6 : 0.0)};
   });
   EXPECT_NEAR(RigidMotion(path.measured, path.commanded).R.determinant(), 1.0, 1e-12);
+}
+
+// Round a square and back: its first corner is passed four times, and a search that begins at the
+// wrong passage must find back.
+TEST(PathDeviation, APathThatCrossesItselfIsFollowed) {
+  std::vector<Vector3d> path;
+  const std::array<Vector3d, 5> corners{Vector3d(0.0, 0.0, 0.0), Vector3d(0.04, 0.0, 0.0),
+                                        Vector3d(0.04, 0.04, 0.0), Vector3d(0.0, 0.04, 0.0),
+                                        Vector3d(0.0, 0.0, 0.0)};
+  for (std::size_t i = 0; i < 4; ++i) Go(path, corners[i], corners[i + 1], 400);
+  for (std::size_t i = 4; i > 0; --i) Go(path, corners[i], corners[i - 1], 400);
+  for (const double off : {-2e-6, 2e-6}) {
+    const auto seen = HandMade(
+        path, [off](const Vector3d& p) -> Vector3d { return p + Vector3d(off, off, 1e-6); });
+    // Beside a side by 2 um and 1 um above, or over the end of the square by as much more.
+    EXPECT_LE(DeviationFrom(seen, {}).largest, 3e-6 + kRounding);
+    EXPECT_LE(DeviationFrom(seen, {.align = true}).largest, 1e-12);
+  }
 }
 
 TEST(PathDeviation, OfANominalPathOfItsOwn) {

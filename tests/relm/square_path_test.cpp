@@ -90,6 +90,11 @@ TEST(SquarePath, RefusesWhatIsNoSquare) {
   std::vector<Vector3d> open = SquareXY();
   open.resize(3000);  // without its last side
   EXPECT_THAT(refusal(open), HasSubstr("made.csv: 0 pieces of the side along Y at X = 5.000 mm"));
+  std::vector<Vector3d> circle;
+  for (int i = 0; i < 720; ++i) {
+    circle.emplace_back(0.02 * std::cos(i * 0.00873), 0.02 * std::sin(i * 0.00873), 0.0);
+  }
+  EXPECT_THAT(refusal(circle), HasSubstr("% of the rows lie on the sides"));
   std::vector<Vector3d> line;
   Go(line, Vector3d::Zero(), Vector3d::Constant(0.01), 100);
   EXPECT_THAT(refusal(line), HasSubstr("made.csv: the commanded path fills"));
