@@ -28,7 +28,8 @@ struct MeasuredPaths {
   // standard deviation: [error][path], 3 x poses, m.
   std::vector<std::vector<Eigen::Matrix3Xd>> errors;
   std::optional<machine::Machine> machine;  // of the machine file
-  nlohmann::ordered_json head;              // what a result begins with, but for its command
+  // What a result begins with, but for its command.
+  nlohmann::ordered_json head = nlohmann::ordered_json::object();
   std::vector<std::string> notes;
 
   // Those of the linkage, then those of the reference.

@@ -32,12 +32,12 @@
 namespace abbe::fusion {
 
 struct CauseOptions {
-  std::map<char, double> pitch;  // m: of cyclic errors, by axis
-  double spike_width = 0.07;     // rad
+  std::map<char, double> pitch = {};  // m: of cyclic errors, by axis
+  double spike_width = 0.07;          // rad
   // m: sine and cosine of order kFirstHarmonic, ... each; fusion/smooth_harmonics.h. By default
   // nothing is known of the machine: orders 4 to 12 are as the data have them.
   std::vector<double> smooth = std::vector<double>(9, 20e-6);
-  std::vector<std::vector<const relm::CircleRun*>> shifted;  // of each error, all runs
+  std::vector<std::vector<const relm::CircleRun*>> shifted = {};  // of each error, all runs
 };
 
 struct CauseEstimate {

@@ -228,7 +228,9 @@ TEST(CircleCauses, SmoothErrorsAreNoSpikes) {
   }
   EXPECT_NEAR(with.rms_smooth, std::sqrt((4.0 + 1.0) / 2.0) * 1e-6, 0.02e-6);
   // What is left without these terms is what they are for.
-  const CircleCauses naive = FitCircleCauses({&smooth}, {.smooth = {}});
+  CauseOptions without_terms;
+  without_terms.smooth.clear();
+  const CircleCauses naive = FitCircleCauses({&smooth}, without_terms);
   EXPECT_GT(std::abs(Find(naive, "reversal_spike", "X").value), 0.5e-6);
 }
 
@@ -256,7 +258,9 @@ TEST(CircleCauses, CyclicErrorsAtAKnownPitch) {
     const double x = 0.03 + kRadius * std::cos(point.angle);
     point.first += 0.5e-6 * std::sin(2 * kPi * x / 0.002);
   }
-  const CircleCauses found = FitCircleCauses({&run}, {{{'X', 0.002}, {'Y', 0.002}}});
+  CauseOptions options;
+  options.pitch = {{'X', 0.002}, {'Y', 0.002}};
+  const CircleCauses found = FitCircleCauses({&run}, options);
   EXPECT_NEAR(Find(found, "cyclic_sin", "X").value, 0.5e-6, 2e-9);
   EXPECT_NEAR(Find(found, "cyclic_cos", "X").value, 0.0, 2e-9);
   EXPECT_NEAR(Find(found, "cyclic_sin", "Y").value, 0.0, 2e-9);

@@ -63,9 +63,8 @@ TEST(SteppingTest, EachAxisHasItsLine) {
   }
 }
 
-// Rows scatter by +-1 um in turn along x alone: the standard deviation of one coordinate is
-// 1 um / sqrt(3) over the three. Fifteen settled rows a visit: of the first stop two visits, of the
-// third too.
+// Rows scatter by +-1 um in turn along x alone. A stop has 21 rows, of which 16 count, the last one
+// 20 and 15; first and third stop are visited twice.
 TEST(SteppingTest, UncertaintyFollowsTheScatter) {
   std::vector<Vector3d> path = Line(1, Vector3d::Zero());
   int row = 0;
@@ -73,9 +72,10 @@ TEST(SteppingTest, UncertaintyFollowsTheScatter) {
     return p + Vector3d(++row % 2 == 0 ? 1e-6 : -1e-6, 0.0, 0.0);
   }));
   const SteppingStop& stop = lines.front().stops[2];
-  // The mean square of 15 readings of +-1 um about their mean of 1/15 um, by 14.
-  const double variance = (15.0 - 1.0 / 15.0) / 14.0 * 1e-12 / 3.0 / 15.0;
-  EXPECT_NEAR(stop.u, std::sqrt(variance / 2.0 + variance / 2.0), 1e-3 * stop.u);
+  // Of one coordinate, the mean of three; 15 readings have a mean of 1/15 um.
+  const double of_16 = 1e-12 * 16.0 / 15.0 / 3.0 / 16.0;
+  const double of_15 = 1e-12 * (15.0 - 1.0 / 15.0) / 14.0 / 3.0 / 15.0;
+  EXPECT_NEAR(stop.u, std::sqrt((2.0 * of_16 + of_16 + of_15) / 4.0), 1e-6 * stop.u);
 }
 
 TEST(SteppingTest, RefusesAPathThatNeverStops) {
