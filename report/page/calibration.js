@@ -1,5 +1,5 @@
-// The section of a calibration of the linkage: how far off it is before and after, pose by pose, its
-// parameters, what the data could not see, and the cells of a mapping.
+// The section of a calibration of the linkage: how far off it is before and after, pose by pose,
+// its parameters, what the data could not see, and the cells of a mapping.
 
 const DISTANCES = [
   ['before', 'Nominal linkage, displacements'],
@@ -8,8 +8,7 @@ const DISTANCES = [
 ];
 const CALIBRATION_SHOWN = 8;  // rows of a list that may be long before it is folded
 
-const length3 = (vector) =>
-    vector?.every(isNumber) ? Math.hypot(...vector) : null;
+const length3 = (vector) => vector?.every(isNumber) ? Math.hypot(...vector) : null;
 
 function calibrationSummary(result) {
   const {before, after, held_out: held, combinations, combinations_seen: seen} = result;
@@ -17,7 +16,8 @@ function calibrationSummary(result) {
   const now = isNumber(held?.rms_um) ? held : after;
   if (isNumber(before?.rms_um) && isNumber(now?.rms_um)) {
     sentences.push(
-        `The linkage was off by ${micrometres(before.rms_um)} (rms in space); calibrated it is off ` +
+        `The linkage was off by ${
+            micrometres(before.rms_um)} (rms in space); calibrated it is off ` +
         `by ${micrometres(now.rms_um)}` + (now === held ? ' at poses that took no part.' : '.'));
   }
   if (isNumber(seen)) {
@@ -34,9 +34,9 @@ function distanceTable(result) {
     caption: 'Distance of the ball from the reference, in space',
     columns: [{head: 'Linkage'}, numeric('Root mean square'), numeric('Largest')],
     rows: DISTANCES.filter(([key]) => isNumber(result[key]?.rms_um))
-              .map(
-                  ([key, name]) =>
-                      [name, significant(result[key].rms_um), significant(result[key].max_um)]),
+              .map(([
+                     key, name
+                   ]) => [name, significant(result[key].rms_um), significant(result[key].max_um)]),
   });
 }
 
@@ -49,12 +49,18 @@ function residualPanel(name, about, curves, result) {
     height: 240,
     about,
     draw: (colours, shown) => ({
-      data: curves.filter(([key]) => key === 'before_um' || shown.has(key)).map(([key, label, colour]) => lineTrace(
-          label, poses, result.residuals.map((one) => length3(one[key])), colours[colour],
-          '\u00b5m', {
-            mode: 'markers',
-            marker: {size: 4, color: colours[colour], symbol: key === 'held_out_um' ? 'diamond-open' : 'circle'}
-          })),
+      data: curves.filter(([key]) => key === 'before_um' || shown.has(key))
+                .map(
+                    ([key, label, colour]) => lineTrace(
+                        label, poses, result.residuals.map((one) => length3(one[key])),
+                        colours[colour], '\u00b5m', {
+                          mode: 'markers',
+                          marker: {
+                            size: 4,
+                            color: colours[colour],
+                            symbol: key === 'held_out_um' ? 'diamond-open' : 'circle'
+                          }
+                        })),
       layout: figureLayout(colours, {x: 'Pose', yaxis: {rangemode: 'tozero'}}),
     }),
     values: () => ({
@@ -65,7 +71,8 @@ function residualPanel(name, about, curves, result) {
       ],
       rows: result.residuals.map(
           (one) =>
-              [one.recording.split('/').at(-1), String(one.row), ...one.position_mm.map((at) => fixed(at, 3)),
+              [one.recording.split('/').at(-1), String(one.row),
+               ...one.position_mm.map((at) => fixed(at, 3)),
                ...curves.map(([key]) => fixed(length3(one[key]), 3))]),
     }),
   };
@@ -90,7 +97,8 @@ function residualGroup(result) {
   ];
   return figureGroup({
     title: 'Residuals, pose by pose',
-    intro: 'Distances in space. Before: the nominal linkage with its base registered. Held out: the ' +
+    intro:
+        'Distances in space. Before: the nominal linkage with its base registered. Held out: the ' +
         'pose and its neighbours in time took no part, so this is what a measurement may expect.',
     items: known,
     panels: result.residuals.some((one) => length3(one.before_um) !== null) ? panels :
@@ -115,8 +123,8 @@ function parameterTable(caption, parameters) {
     columns: parameterColumns,
     rows: parameters.map(
         ({name, value, uncertainty, unit, nominal, prior}) =>
-            [code(name), quantity(value, COVERAGE * uncertainty), micro(unit), positionText(nominal),
-             isNumber(prior) ? significant(prior, 2) : 'free']),
+            [code(name), quantity(value, COVERAGE * uncertainty), micro(unit),
+             positionText(nominal), isNumber(prior) ? significant(prior, 2) : 'free']),
   });
 }
 
@@ -126,11 +134,10 @@ function parameterTables(result) {
   const rest = all.filter((one) => one.seen_by !== 'data');
   return [
     parameterTable('Parameters told by the data, with their expanded uncertainty', told),
-    rest.length ?
-        folded(
-            rest, `${rest.length} parameters that their tolerance holds`,
-            parameterTable('Parameters held by their tolerance', rest)) :
-        null,
+    rest.length ? folded(
+                      rest, `${rest.length} parameters that their tolerance holds`,
+                      parameterTable('Parameters held by their tolerance', rest)) :
+                  null,
   ];
 }
 
@@ -141,7 +148,8 @@ function unseenTable(result) {
     caption: 'What the data could not see: combinations in units of the tolerances',
     columns: [{head: 'Combination'}, {head: 'Left of its tolerance', unit: '%', numeric: true}],
     rows: unseen.map(
-        ({words, share_of_prior: share}) => [words, isNumber(share) ? fixed(100 * share, 0) : null]),
+        ({words,
+          share_of_prior: share}) => [words, isNumber(share) ? fixed(100 * share, 0) : null]),
   });
   return folded(unseen, `${unseen.length} combinations that the data could not see`, content);
 }
@@ -177,19 +185,28 @@ function cellGroup(result) {
     name: 'Cells',
     unit: '\u00b5m',
     height: 460,
-    about: 'The centres of the mapping cells in space, each with the shift of the ball by its own ' +
+    about:
+        'The centres of the mapping cells in space, each with the shift of the ball by its own ' +
         'parameters, magnified; the values follow as a table.',
     draw: (colours, shown, amount) => {
       const [x, y] = isometric(lists(centres));
-      const tips = centres.map((at, i) => at.map((one, axis) => one + amount * shifts[i][axis] * 1e-3));
+      const tips =
+          centres.map((at, i) => at.map((one, axis) => one + amount * shifts[i][axis] * 1e-3));
       const [tx, ty] = isometric(lists(tips));
       const stems = (from, to) => from.flatMap((at, i) => [at, to[i], null]);
       return {
         data: [
-          {...lineTrace('box', ...isometric(lists(boxEdges(grid))), colours.line, ''),
-           line: {color: colours.line, width: 1}, hoverinfo: 'skip', hovertemplate: null},
-          {...lineTrace('shift', stems(x, tx), stems(y, ty), colours.mean, ''), hoverinfo: 'skip',
-           hovertemplate: null},
+          {
+            ...lineTrace('box', ...isometric(lists(boxEdges(grid))), colours.line, ''),
+            line: {color: colours.line, width: 1},
+            hoverinfo: 'skip',
+            hovertemplate: null
+          },
+          {
+            ...lineTrace('shift', stems(x, tx), stems(y, ty), colours.mean, ''),
+            hoverinfo: 'skip',
+            hovertemplate: null
+          },
           {
             ...lineTrace('cell', x, y, colours.axis, ''),
             mode: 'markers',
@@ -198,8 +215,8 @@ function cellGroup(result) {
             hovertemplate: '%{text}',
           },
         ],
-        layout: squareLayout(
-            colours, span, {annotations: spaceAxes(['X', 'Y', 'Z'], span, colours)}),
+        layout:
+            squareLayout(colours, span, {annotations: spaceAxes(['X', 'Y', 'Z'], span, colours)}),
       };
     },
     values: () => ({
@@ -213,7 +230,8 @@ function cellGroup(result) {
   };
   return figureGroup({
     title: 'Mapping cells',
-    intro: `${result.mapped.cells} cells have parameters of their own. A line is how far they put ` +
+    intro:
+        `${result.mapped.cells} cells have parameters of their own. A line is how far they put ` +
         'the ball from where one set for all puts it, magnified: large ones show what the model ' +
         'leaves out, or noise.',
     slider: magnifierFor(size * 1e-3, most * 1e-6),
@@ -229,12 +247,14 @@ function modelTable(result) {
     caption: 'Error models side by side, distances in space',
     columns: [
       {head: 'Model'}, {head: 'Parameters free', numeric: true}, numeric('Calibrated, rms'),
-      numeric('Held out, rms'), numeric('Held out, largest'), {head: 'Boelens (2006), largest, \u00b5m'}
+      numeric('Held out, rms'), numeric('Held out, largest'),
+      {head: 'Boelens (2006), largest, \u00b5m'}
     ],
     rows: result.models.map(
         ({name, parameters, after, held_out: held, published, why_not: why}) =>
-            [capital(name), String(parameters), why ? 'contradicts its priors' : text(after?.rms_um),
-             text(held?.rms_um), text(held?.max_um), published || null]),
+            [capital(name), String(parameters),
+             why ? 'contradicts its priors' : text(after?.rms_um), text(held?.rms_um),
+             text(held?.max_um), published || null]),
   });
 }
 
@@ -243,12 +263,13 @@ function outlierTable(result) {
   return table({
     caption: 'Poses that lie far off and hardly count',
     columns: [
-      {head: 'Recording'}, {head: 'Row', numeric: true}, {head: 'Off by', unit: '\u00b5m', numeric: true},
-      {head: 'Standard deviations', numeric: true}
+      {head: 'Recording'}, {head: 'Row', numeric: true},
+      {head: 'Off by', unit: '\u00b5m', numeric: true}, {head: 'Standard deviations', numeric: true}
     ],
     rows: result.outliers.map(
         ({recording, row, gap_um: gap, normalised}) =>
-            [recording.split('/').at(-1), String(row), significant(length3(gap)), significant(normalised, 2)]),
+            [recording.split('/').at(-1), String(row), significant(length3(gap)),
+             significant(normalised, 2)]),
   });
 }
 
@@ -257,18 +278,19 @@ registerSection({
   title: () => 'Calibration of the linkage',
   short: () => 'Linkage',
   summary: calibrationSummary,
-  facts: (result) =>
-      [['Error model', capital(result.model ?? '')], ['Poses', isNumber(result.poses) ? String(result.poses) : null],
-       ['Form', result.displacement ? 'displacements' : 'absolute'],
-       [
-         'Residuals over noise',
-         isNumber(result.residuals_over_noise) ? significant(result.residuals_over_noise, 2) : null
-       ],
-       ['Recordings', (result.recordings ?? []).join(', ')]],
-  body: (result) =>
-      [distanceTable(result), residualGroup(result), ...parameterTables(result), unseenTable(result),
-       cellGroup(result), modelTable(result), outlierTable(result)]
-          .filter(Boolean),
+  facts: (result) => [
+      ['Error model', capital(result.model ?? '')],
+      ['Poses', isNumber(result.poses) ? String(result.poses) : null],
+      ['Form', result.displacement ? 'displacements' : 'absolute'],
+      [
+        'Residuals over noise',
+        isNumber(result.residuals_over_noise) ? significant(result.residuals_over_noise, 2) : null
+      ],
+      ['Recordings', (result.recordings ?? []).join(', ')]],
+  body:
+      (result) => [distanceTable(result), residualGroup(result), ...parameterTables(result),
+                   unseenTable(result), cellGroup(result), modelTable(result), outlierTable(result)]
+                      .filter(Boolean),
   overview: {
     title: 'Calibration of the linkage',
     columns: [
@@ -281,6 +303,8 @@ registerSection({
         [capital(result.model ?? ''), String(result.poses ?? ''),
          ...['before', 'after', 'held_out'].map(
              (key) => isNumber(result[key]?.rms_um) ? significant(result[key].rms_um) : null),
-         isNumber(result.combinations_seen) ? `${result.combinations_seen} of ${result.combinations}` : null],
+         isNumber(result.combinations_seen) ?
+             `${result.combinations_seen} of ${result.combinations}` :
+             null],
   },
 });

@@ -204,7 +204,7 @@ class Circle(ProgramCase):
         self.refuse(plane, "--plane", "YZ", saying=["ref_z_mm", "--plane"])
         text = pathlib.Path(recording).read_text().replace("pivot_1_rad", "spare")
         (self.path / "spare.csv").write_text(text)
-        self.refuse(self.path / "spare.csv", "--machine", MACHINE, saying=["neither encoder angles"])
+        self.refuse(self.path / "spare.csv", "--machine", MACHINE, saying=["spare.csv", "pivot_1_rad: is missing"])
 
 
 if __name__ == "__main__":

@@ -77,12 +77,10 @@ test(
     () => withPage({}, async (page) => {
       const titles = await page.locator('main section.result > h2').allTextContents();
       assert.equal(titles.length, sample_names.length);
-      assert.deepEqual(
-          titles,
-          [
-            'X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning',
-            'Circular test, XY plane', 'Square path', 'Calibration of the linkage', 'rig-compare \u00b7 X'
-          ]);
+      assert.deepEqual(titles, [
+        'X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning', 'Circular test, XY plane',
+        'Square path', 'Calibration of the linkage', 'rig-compare \u00b7 X'
+      ]);
       assert.equal(await page.title(), 'Geometric errors of demo-mill');
       assert.equal(await page.locator('nav a').count(), sample_names.length + 1);
       await page.screenshot({path: join(screenshots, 'desktop_light.png'), fullPage: true});
@@ -217,7 +215,8 @@ test(
       assert.match(await unseen.textContent(), /not seen/);
       assert.equal(await unseen.locator('.quantity').count(), 0);
       assert.match(
-          await section.locator('tr', {hasText: 'Backlash'}).first().textContent(), /4\.000.*0\.060/);
+          await section.locator('tr', {hasText: 'Backlash'}).first().textContent(),
+          /4\.000.*0\.060/);
     }));
 
 test(

@@ -234,8 +234,8 @@ export function referenceResult(axis) {
   };
 }
 
-// X moves by half the backlash against its motion, the squareness shears the circle, and the plane is
-// warped twice a turn: the radial deviation in closed form.
+// X moves by half the backlash against its motion, the squareness shears the circle, and the plane
+// is warped twice a turn: the radial deviation in closed form.
 export const BACKLASH = 4e-6;
 const SHEAR = 2e-6;
 const WARP = 1.5e-6;
@@ -270,8 +270,24 @@ export function circleResult() {
   };
   const causes = [
     {cause: 'backlash', object: 'X', value: BACKLASH, unit: 'm', u: 3e-8, effect_um: 2, seen: true},
-    {cause: 'squareness', object: 'XY', value: 2e-4, unit: 'rad', u: 2e-6, effect_um: 1, seen: true},
-    {cause: 'servo_lag_squared', object: 'XY', value: 0, unit: 's2', u: 1, effect_um: 0, seen: false},
+    {
+      cause: 'squareness',
+      object: 'XY',
+      value: 2e-4,
+      unit: 'rad',
+      u: 2e-6,
+      effect_um: 1,
+      seen: true
+    },
+    {
+      cause: 'servo_lag_squared',
+      object: 'XY',
+      value: 0,
+      unit: 's2',
+      u: 1,
+      effect_um: 0,
+      seen: false
+    },
   ];
   const circle = {plane: 'XY', radius_mm: 10, filter_undulations: 0, runs: [run], causes};
   return {
@@ -325,19 +341,20 @@ export function squareResult() {
   };
 }
 
-// A linkage that was off by 100 um along X and is off by 0.3 um, in a wave from pose to pose; two of
-// its five parameters are told, and the cells of a mapping lift the ball by 2 um where x is large.
+// A linkage that was off by 100 um along X and is off by 0.3 um, in a wave from pose to pose; two
+// of its five parameters are told, and the cells of a mapping lift the ball by 2 um where x is
+// large.
 export function calibrationResult() {
   const place = (index) => [index % 4, Math.floor(index / 4) % 4, Math.floor(index / 16)];
   const residuals = Array.from({length: 64}, (unused, index) => ({
-    recording: 'cube.csv',
-    row: index + 1,
-    position_mm: place(index).map((at) => 10 * at),
-    before_um: [100, 0, 0],
-    gap_um: [0, 0.3 * Math.sin(index), 0],
-    held_out_um: [0, 0.4 * Math.sin(index), 0],
-    normalised: 1
-  }));
+                                               recording: 'cube.csv',
+                                               row: index + 1,
+                                               position_mm: place(index).map((at) => 10 * at),
+                                               before_um: [100, 0, 0],
+                                               gap_um: [0, 0.3 * Math.sin(index), 0],
+                                               held_out_um: [0, 0.4 * Math.sin(index), 0],
+                                               normalised: 1
+                                             }));
   const parameter = (name, unit, value, uncertainty, seen_by) =>
       ({name, unit, value, uncertainty, nominal: 0, prior: 100, seen_by});
   const centres = [0.01, 0.02];
