@@ -199,7 +199,6 @@ ordered_json ComparisonJson(const std::vector<fusion::ComparedModel>& rows) {
                       {"after", Json(row.after)},
                       {"held_out", Json(row.held_out)},
                       {"published", Published(row.name)}});
-    if (!row.why_not.empty()) models.back()["why_not"] = row.why_not;
   }
   return models;
 }
@@ -208,10 +207,6 @@ std::string ComparisonTable(const std::vector<fusion::ComparedModel>& rows) {
   std::string text = fmt::format("\n{:<34}{:>6}{:>12}{:>12}{:>14}  {}\n", "model, 3D in um", "free",
                                  "rms", "held out", "held out max", "Boelens 2006, largest");
   for (const auto& row : rows) {
-    if (!row.why_not.empty()) {
-      text += fmt::format("{:<34}{:>6}  {}\n", row.name, row.parameters, row.why_not);
-      continue;
-    }
     text += fmt::format("{:<34}{:>6}{:>12.3f}{:>12.3f}{:>14.3f}  {}\n", row.name, row.parameters,
                         row.after.rms / kMicro, row.held_out.rms / kMicro,
                         row.held_out.max / kMicro, Published(row.name));

@@ -1,8 +1,6 @@
 #include "fusion/model_comparison.h"
 
 #include <array>
-#include <limits>
-#include <utility>
 
 #include "failure/failure.h"
 
@@ -25,9 +23,6 @@ constexpr std::array<Candidate, 7> kCandidates{{
     {ErrorModel::kComplete, true},
 }};
 
-constexpr Distances kNone{std::numeric_limits<double>::quiet_NaN(),
-                          std::numeric_limits<double>::quiet_NaN()};
-
 }  // namespace
 
 std::vector<ComparedModel> CompareModels(const machine::Chain& chain,
@@ -35,26 +30,17 @@ std::vector<ComparedModel> CompareModels(const machine::Chain& chain,
                                          const simulation::LinkageRun& run,
                                          CalibrateOptions options) {
   std::vector<ComparedModel> rows;
-  Distances nominal = kNone;
   for (const Candidate& candidate : kCandidates) {
     options.model = candidate.model;
     options.mapped = candidate.mapped;
     if (settings.segments.empty() && candidate.model != ErrorModel::kComplete) continue;
     if (!settings.pivots && candidate.model == ErrorModel::kPivots) continue;
+    const CalibrationReport report = Calibrate(chain, settings, {run}, options);
+    if (rows.empty()) rows.push_back({"nominal", 0, report.before, report.before});
     const auto model = relm::MakeLinkageModel(settings, candidate.model);
-    ComparedModel row{
-        model.name() + (candidate.mapped ? ", mapped" : ""), model.parameters(), kNone, kNone, {}};
-    try {
-      const CalibrationReport report = Calibrate(chain, settings, {run}, options);
-      row.after = report.after;
-      row.held_out = report.held_out;
-      nominal = report.before;
-    } catch (const InputError& error) {
-      row.why_not = error.what();
-    }
-    rows.push_back(std::move(row));
+    rows.push_back({model.name() + (candidate.mapped ? ", mapped" : ""), model.parameters(),
+                    report.after, report.held_out});
   }
-  rows.insert(rows.begin(), {"nominal", 0, nominal, nominal, {}});
   return rows;
 }
 

@@ -4,9 +4,8 @@
 //
 // Rows: the nominal linkage, then for each model the calibrated linkage, global and, where the
 // poses form a grid, mapped. `options.model` and `options.mapped` are not looked at.
-// A model that leaves so much out that its estimates contradict the priors has no distances, and says
-// why not. Units: m. Failure: NumericalError of Calibrate; a model that this form of linkage does not
-// have is left out. Source of the order: Boelens (2006), see fusion/mapping.h; the complete model is beyond it.
+// Units: m. Failure: that of Calibrate; a model that this form of linkage does not have is left
+// out. Source of the order: Boelens (2006), see fusion/mapping.h; the complete model is beyond it.
 #pragma once
 
 #include <string>
@@ -21,7 +20,6 @@ struct ComparedModel {
   Eigen::Index parameters = 0;  // of the model, of each cell where mapped
   Distances after;              // of the poses that it was calibrated with
   Distances held_out;           // of poses that took no part
-  std::string why_not;          // empty: calibrated
 };
 
 std::vector<ComparedModel> CompareModels(const machine::Chain& chain,

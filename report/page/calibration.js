@@ -41,7 +41,7 @@ function distanceTable(result) {
 }
 
 // Distances at each pose, in the order of time.
-function residualPanel(name, about, curves, result) {
+function poseResidualPanel(name, about, curves, result) {
   const poses = result.residuals.map((unused, index) => index + 1);
   return {
     name,
@@ -78,7 +78,7 @@ function residualPanel(name, about, curves, result) {
   };
 }
 
-function residualGroup(result) {
+function poseResidualGroup(result) {
   if (!result.residuals?.length) return null;
   const items = [
     {key: 'gap_um', label: 'Calibrated', swatch: 'mean'},
@@ -86,10 +86,10 @@ function residualGroup(result) {
   ];
   const known = items.filter(({key}) => result.residuals.some((one) => length3(one[key]) !== null));
   const panels = [
-    residualPanel(
+    poseResidualPanel(
         'Before', 'Distance of the ball from the reference at each pose, nominal linkage.',
         [['before_um', 'before', 'muted']], result),
-    residualPanel(
+    poseResidualPanel(
         'After',
         'Distance of the ball from the reference at each pose, calibrated, and where the pose took ' +
             'no part.',
@@ -251,9 +251,8 @@ function modelTable(result) {
       {head: 'Boelens (2006), largest, \u00b5m'}
     ],
     rows: result.models.map(
-        ({name, parameters, after, held_out: held, published, why_not: why}) =>
-            [capital(name), String(parameters),
-             why ? 'contradicts its priors' : text(after?.rms_um), text(held?.rms_um),
+        ({name, parameters, after, held_out: held, published}) =>
+            [capital(name), String(parameters), text(after?.rms_um), text(held?.rms_um),
              text(held?.max_um), published || null]),
   });
 }
@@ -288,7 +287,7 @@ registerSection({
       ],
       ['Recordings', (result.recordings ?? []).join(', ')]],
   body:
-      (result) => [distanceTable(result), residualGroup(result), ...parameterTables(result),
+      (result) => [distanceTable(result), poseResidualGroup(result), ...parameterTables(result),
                    unseenTable(result), cellGroup(result), modelTable(result), outlierTable(result)]
                       .filter(Boolean),
   overview: {
