@@ -77,7 +77,8 @@ Eigen::MatrixXd Waves(const CircleRun& run, std::size_t orders) {
   for (Eigen::Index i = 0; i < waves.rows(); ++i) {
     const double t = run.points[static_cast<std::size_t>(i)].angle;
     for (Eigen::Index k = 0; k < waves.cols(); k += 2) {
-      const double phase = static_cast<double>(kFirstHarmonic + k / 2) * t;
+      const Eigen::Index order = kFirstHarmonic + k / 2;
+      const double phase = static_cast<double>(order) * t;
       waves(i, k) = std::cos(phase);
       waves(i, k + 1) = std::sin(phase);
     }

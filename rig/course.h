@@ -65,7 +65,7 @@ Course LineCourse(const std::vector<Eigen::Vector3d>& points, double feed, doubl
 
 struct CourseState {
   double time;
-  Eigen::Vector3d command, position, velocity;  // of the axes; velocity of the command
+  Eigen::Vector3d command, position, velocity;  // of the axes
   int pass, direction;
   double feed;
   bool standing;  // the command has arrived and the axes are within 0.1 um of it
