@@ -75,9 +75,11 @@ Circle Evaluate(Runs runs, const std::vector<const Runs*>& shifted, const Measur
     for (const relm::CircleRun& run : *one) options.shifted.back().push_back(&run);
   }
   std::vector<const relm::CircleRun*> all;
+  all.reserve(circle.runs.size());
   for (std::size_t i = 0; i < circle.runs.size(); ++i) {
     const relm::CircleRun& run = circle.runs[i];
     std::vector<const relm::CircleRun*> others;
+    others.reserve(shifted.size());
     for (const Runs* one : shifted) others.push_back(&(*one)[i]);
     circle.figures.push_back(relm::EvaluateCircle(run, {.cutoff = command.filter}));
     circle.uncertainties.push_back(
@@ -97,6 +99,7 @@ std::vector<Circle> Circles(const MeasuredPaths& paths, const CircleCommand& com
   std::vector<Circle> circles;
   for (Runs& group : Grouped(relm::CircleRuns(paths.All(), options))) {
     std::vector<const Runs*> others;
+    others.reserve(shifted.size());
     if (group.front().instrument == "linkage") {
       for (const auto& one : shifted) others.push_back(&one[circles.size()]);
     }
