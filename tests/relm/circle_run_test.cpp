@@ -30,6 +30,7 @@ MeasuredPath Arc(double from_deg, double to_deg, const std::function<double(doub
     const double t = (from_deg + (to_deg - from_deg) * (i + 0.5) / count) * kDegree;
     return Vector3d(kRadius * std::cos(t), kRadius * std::sin(t), 0.0);
   };
+  way.reserve(2 * static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) way.push_back(at(i));
   for (int i = count - 1; i >= 0; --i) way.push_back(at(i));
   MeasuredPath path = HandMade(way, [&](const Vector3d& p) -> Vector3d {

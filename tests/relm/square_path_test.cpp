@@ -91,6 +91,7 @@ TEST(SquarePath, RefusesWhatIsNoSquare) {
   open.resize(3000);  // without its last side
   EXPECT_THAT(refusal(open), HasSubstr("made.csv: 0 pieces of the side along Y at X = 5.000 mm"));
   std::vector<Vector3d> circle;
+  circle.reserve(720);
   for (int i = 0; i < 720; ++i) {
     circle.emplace_back(0.02 * std::cos(i * 0.00873), 0.02 * std::sin(i * 0.00873), 0.0);
   }
