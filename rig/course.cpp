@@ -129,7 +129,6 @@ Course LineCourse(const std::vector<Vector3d>& points, double feed, double dwell
 CourseRun::CourseRun(const Course& course, const Dynamics& dynamics, double step)
     : course_(course), dynamics_(dynamics), step_(step) {
   state_.command = state_.position = course.start;
-  state_.velocity.setZero();
   Begin();
 }
 
