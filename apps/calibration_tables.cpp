@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "fusion/calibration_file.h"
 
@@ -31,6 +32,7 @@ ordered_json Json(const fusion::PoseResidual& residual,
   return {{"recording", runs[residual.run].name},
           {"row", residual.row + 1},
           {"position_mm", {at.x() / kMilli, at.y() / kMilli, at.z() / kMilli}},
+          {"before_um", InMicrometres(residual.before)},
           {"gap_um", InMicrometres(residual.gap)},
           {"held_out_um", InMicrometres(residual.held_out)},
           {"normalised", residual.normalised}};
@@ -118,7 +120,14 @@ ordered_json CalibrationJson(const fusion::CalibrationReport& report,
   ordered_json residuals = ordered_json::array(), outliers = ordered_json::array();
   for (const auto& residual : report.residuals) residuals.push_back(Json(residual, runs));
   for (const auto& outlier : report.outliers) outliers.push_back(Json(outlier, runs));
-  ordered_json result{{"kind", "calibration"},
+  ordered_json recordings = ordered_json::array();
+  for (const auto& run : runs) {
+    recordings.push_back(std::filesystem::path(run.name).filename().string());
+  }
+  ordered_json result{{"abbe", ABBE_VERSION},
+                      {"command", "calibrate"},
+                      {"kind", "calibration"},
+                      {"recordings", recordings},
                       {"machine", report.calibration.machine},
                       {"model", fusion::ErrorModelName(report.calibration.model)},
                       {"displacement", report.calibration.displacement},
@@ -139,6 +148,9 @@ ordered_json CalibrationJson(const fusion::CalibrationReport& report,
     const auto& centres = report.calibration.mapped->centres;
     result["mapped"] = {{"cells", report.calibration.mapped->values.size()},
                         {"centres_m", {centres[0], centres[1], centres[2]}}};
+    for (const auto& shift : report.cell_shifts.colwise()) {
+      result["mapped"]["shifts_um"].push_back(InMicrometres(shift));
+    }
   }
   return result;
 }

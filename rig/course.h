@@ -65,9 +65,9 @@ Course LineCourse(const std::vector<Eigen::Vector3d>& points, double feed, doubl
 
 struct CourseState {
   double time = 0.0;
-  Eigen::Vector3d command = Eigen::Vector3d::Zero();   // of the axes
+  Eigen::Vector3d command = Eigen::Vector3d::Zero();   // where the axes are sent
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // where they are
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // of the command
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // of the axes
   int pass = 0, direction = 0;
   double feed = 0.0;
   bool standing = false;  // the command has arrived and the axes are within 0.1 um of it
