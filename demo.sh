@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds abbe, measures the three axes of a virtual machine with the five-probe
-# head over Modbus TCP, and writes the report. Can be run again at any time.
+# head over Modbus TCP, calibrates its linkage, measures circles with it, and writes the report. Can be run
+# again at any time.
 set -euo pipefail
 cd "$(dirname "$0")"
 speed=20 # the virtual machine runs this many times faster than a real one
@@ -11,7 +12,8 @@ abbe=build/release/apps/abbe
 
 rm -rf "$out"
 mkdir -p "$out/rig"
-"$abbe" rig --machine machines/demo_mill.toml --seed "${ABBE_DEMO_SEED:-$(date +%Y%m%d)}" --port 0 --speed "$speed" \
+seed=${ABBE_DEMO_SEED:-$(date +%Y%m%d)}
+"$abbe" rig --machine machines/demo_mill.toml --seed "$seed" --port 0 --speed "$speed" \
   --ready-file "$out/rig/port" --truth "$out/rig/truth.json" >"$out/rig/log" 2>&1 &
 rig=$!
 trap 'kill "$rig" 2>/dev/null || true' EXIT
@@ -25,5 +27,36 @@ sed "s/^port = .*/port = $(cat "$out/rig/port")/" machines/demo_mill.toml >"$out
 for axis in X Y Z; do
   "$abbe" sweep --axis "$axis" --machine "$out/machine.toml" --clock-speed "$speed" --out "$out"
 done
+
+# The linkage: a grid of places beside a grid encoder, then circles at two feeds.
+course() { # FILE MACHINE OPTIONS...
+  "$abbe" rig record --seed "$seed" --out "$1" --machine "$2" "${@:3}" >"$out/rig/log"
+}
+demo=machines/demo_mill.toml
+course "$out/cube.csv" "$demo" --course cube --size 45 --points 5,5,5 --dwell 0.2 --feed 2000 --reference
+course "$out/circle.csv" "$demo" --course circle --feed 300
+course "$out/circle_fast.csv" "$demo" --course circle --feed 2000
+"$abbe" calibrate "$out/cube.csv" --machine "$demo" -o "$out/linkage.toml" --json "$out/linkage.json" --quiet
+"$abbe" circle "$out"/circle{,_fast}.csv --machine "$demo" --calibration "$out/linkage.toml" --filter 50 --out "$out"
+
+# What the rig knows: the same circle by a grid encoder without noise.
+sed 's/^reference_um = .*/reference_um = 0.0001/' "$demo" >"$out/rig/exact.toml"
+course "$out/rig/circle.csv" "$out/rig/exact.toml" --course circle --feed 300 --kind reference
+"$abbe" circle "$out/rig/circle.csv" --filter 50 --json "$out/rig/circle.json" --quiet
+
+number() { # FILE KEY: of the top level; OBJECT.KEY: one level down, in um
+  case $2 in
+    *.*) sed -n "/^ \"${2%%.*}\": {/,/^ }/s/^  \"${2#*.}\": \([-0-9.e]*\).*/\1/p" "$1" ;;
+    *) sed -n "s/^ \"$2\": \([-0-9.e]*\).*/\1/p" "$1" ;;
+  esac
+}
+echo
 "$abbe" rig compare "$out/rig/truth.json" "$out"/sweep_{X,Y,Z}.json
+LC_ALL=C printf 'linkage: off by %.1f um (rms in space), calibrated %.2f um at poses that took no part\n' \
+  "$(number "$out/linkage.json" before.rms_um)" "$(number "$out/linkage.json" held_out.rms_um)"
+for figure in G_b F_max F_min D; do
+  LC_ALL=C printf 'circle %-5s by the linkage %6.2f um, standard uncertainty %.2f um; the truth %6.2f um\n' "$figure" \
+    "$(number "$out/circle_circle.json" "${figure}_um")" "$(number "$out/circle_circle.json" "u.${figure}_um")" \
+    "$(number "$out/rig/circle.json" "${figure}_um")"
+done
 "$abbe" report "$out" --out "$out/report.html"

@@ -26,13 +26,15 @@ struct CalibrateArguments {
   std::vector<fs::path> recordings, checks;
   fs::path machine, out, json;
   std::string model;
+  std::vector<double> volume_mm;
   bool displacement = false, mapped = false, compare = false, study = false, quiet = false;
   int poses = 0;
   int folds = 5;
 };
 
 constexpr std::array<Index, 10> kCounts{6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
-constexpr int kPlanPoints = 9;  // along each side of the travel, to choose from
+const Eigen::Vector3i kCubePoints(7, 7, 12);  // Boelens (2006), his cube
+constexpr int kPlanPoints = 9;                // along each side of the travel, to choose from
 
 class Calibration {
  public:
@@ -53,6 +55,8 @@ class Calibration {
   int Run() {
     if (arguments_.study) {
       Show(VolumeTable(fusion::StudyVolumes(Simulation(), Travel())));
+    } else if (!arguments_.volume_mm.empty()) {
+      WhatIsSeen();
     } else if (!arguments_.recordings.empty() && arguments_.compare) {
       Compare();
     } else if (!arguments_.recordings.empty()) {
@@ -62,7 +66,7 @@ class Calibration {
     } else {
       throw InputError(
           "nothing to calibrate with; name recordings of kind linkage, or ask for a plan with "
-          "--poses N or --study");
+          "--poses N, --study or --volume X,Y,Z");
     }
     return kDone;
   }
@@ -106,6 +110,19 @@ class Calibration {
     Show(CalibrationTable(report, runs));
     if (!arguments_.out.empty()) fusion::WriteCalibration(report.calibration, arguments_.out);
     if (!arguments_.json.empty()) WriteResult(CalibrationJson(report, runs), arguments_.json);
+  }
+
+  // Of poses in a box, before anything is measured.
+  void WhatIsSeen() {
+    const auto simulation = Simulation();
+    const Eigen::Vector3d mm(arguments_.volume_mm.data());
+    auto run = simulation::RunAt(fusion::GridIn(Travel(), 1e-3 * mm, kCubePoints), *file_.linkage);
+    run.readings.angles = simulation.Readings(run, simulation.Values());
+    const auto problem = fusion::MakeLinkageProblem(simulation, {run}, options_.problem);
+    const auto seen = fusion::Observe(problem, fusion::SolveLinkage(problem));
+    Show(fmt::format("{} poses in {:g} x {:g} x {:g} mm, model \"{}\".\n", run.poses(), mm.x(),
+                     mm.y(), mm.z(), fusion::ErrorModelName(options_.model)));
+    Show(SeenTable(seen));
   }
 
   // The poses of one recording that make the best calibration.
@@ -194,6 +211,12 @@ void AddCalibrate(CLI::App& program, int& exit_code) {
   command
       ->add_option("--poses", arguments->poses,
                    "Use the best N poses; without recordings: plan them")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--volume", arguments->volume_mm,
+                   "X,Y,Z in mm: what poses in such a box would see of the parameters, in words")
+      ->delimiter(',')
+      ->expected(3)
       ->check(CLI::PositiveNumber);
   command->add_flag("--study", arguments->study, "Which calibration volume and spacing");
   command->add_option("--folds", arguments->folds, "Blocks held out in turn; 1: none")

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "apps/parameters_json.h"
 #include "fusion/calibration_file.h"
@@ -32,6 +33,7 @@ ordered_json Json(const fusion::PoseResidual& residual,
   return {{"recording", runs[residual.run].name},
           {"row", residual.row + 1},
           {"position_mm", {at.x() / kMilli, at.y() / kMilli, at.z() / kMilli}},
+          {"before_um", InMicrometres(residual.before)},
           {"gap_um", InMicrometres(residual.gap)},
           {"held_out_um", InMicrometres(residual.held_out)},
           {"normalised", residual.normalised}};
@@ -54,19 +56,6 @@ std::string ParameterTable(const estimation::Result& fit) {
                           printed(entry.nominal), printed(entry.prior_sd), block.unit.name,
                           estimation::Name(fit.Seen(block.FullName(i))));
     }
-  }
-  return text;
-}
-
-std::string UnseenList(const fusion::Observability& seen) {
-  std::string text = fmt::format(
-      "\nThe data see {} of {} combinations of parameters; scaled condition {:.3g}, noise "
-      "amplification index {:.3g}.\n",
-      seen.rank, seen.parameters, seen.condition, seen.noise_amplification);
-  if (seen.unseen.empty()) return text;
-  text += "Not seen (in units of the priors; the share of the prior's deviation that is left):\n";
-  for (const auto& weak : seen.unseen) {
-    text += fmt::format("  {:4.0f} %  {}\n", 100.0 * weak.ratio, weak.words);
   }
   return text;
 }
@@ -114,7 +103,14 @@ ordered_json CalibrationJson(const fusion::CalibrationReport& report,
   ordered_json residuals = ordered_json::array(), outliers = ordered_json::array();
   for (const auto& residual : report.residuals) residuals.push_back(Json(residual, runs));
   for (const auto& outlier : report.outliers) outliers.push_back(Json(outlier, runs));
-  ordered_json result{{"kind", "calibration"},
+  ordered_json recordings = ordered_json::array();
+  for (const auto& run : runs) {
+    recordings.push_back(std::filesystem::path(run.name).filename().string());
+  }
+  ordered_json result{{"abbe", ABBE_VERSION},
+                      {"command", "calibrate"},
+                      {"kind", "calibration"},
+                      {"recordings", recordings},
                       {"machine", report.calibration.machine},
                       {"model", fusion::ErrorModelName(report.calibration.model)},
                       {"displacement", report.calibration.displacement},
@@ -135,6 +131,9 @@ ordered_json CalibrationJson(const fusion::CalibrationReport& report,
     const auto& centres = report.calibration.mapped->centres;
     result["mapped"] = {{"cells", report.calibration.mapped->values.size()},
                         {"centres_m", {centres[0], centres[1], centres[2]}}};
+    for (const auto& shift : report.cell_shifts.colwise()) {
+      result["mapped"]["shifts_um"].push_back(InMicrometres(shift));
+    }
   }
   return result;
 }
@@ -153,7 +152,7 @@ std::string CalibrationTable(const fusion::CalibrationReport& report,
   if (report.calibration.mapped) {
     text += fmt::format("  mapped with {} cells\n", report.calibration.mapped->values.size());
   }
-  text += ParameterTable(report.fit) + UnseenList(report.seen) + Outliers(report, runs);
+  text += ParameterTable(report.fit) + "\n" + SeenTable(report.seen) + Outliers(report, runs);
   if (report.excess > kNoticed) {
     text += fmt::format(
         "\nThe residuals are {:.1f} times the stated noise: the reference or the model is worse "
@@ -166,6 +165,19 @@ std::string CalibrationTable(const fusion::CalibrationReport& report,
         "\n{}: no reference instrument in every direction: errors of the machine itself went into "
         "the parameters.\n",
         run.name);
+  }
+  return text;
+}
+
+std::string SeenTable(const fusion::Observability& seen) {
+  std::string text = fmt::format(
+      "The data see {} of {} combinations of parameters; scaled condition {:.3g}, noise "
+      "amplification index {:.3g}.\n",
+      seen.rank, seen.parameters, seen.condition, seen.noise_amplification);
+  if (seen.unseen.empty()) return text;
+  text += "Not seen (in units of the priors; the share of the prior's deviation that is left):\n";
+  for (const auto& weak : seen.unseen) {
+    text += fmt::format("  {:4.0f} %  {}\n", 100.0 * weak.ratio, weak.words);
   }
   return text;
 }

@@ -18,6 +18,9 @@ nlohmann::ordered_json CalibrationJson(const fusion::CalibrationReport& report,
 std::string CalibrationTable(const fusion::CalibrationReport& report,
                              const std::vector<simulation::LinkageRun>& runs);
 
+// How many combinations the data see, and in words which they do not.
+std::string SeenTable(const fusion::Observability& seen);
+
 nlohmann::ordered_json ComparisonJson(const std::vector<fusion::ComparedModel>& rows);
 // With the figures that Boelens (2006) gives, where he has the row.
 std::string ComparisonTable(const std::vector<fusion::ComparedModel>& rows);

@@ -28,7 +28,7 @@ struct CircleCommand {
   bool quiet = false;
 };
 
-constexpr double kSameRadius = 10e-6;  // m
+constexpr double kSameRadius = 0.01;  // of the radius: lag makes a fast circle smaller
 
 fusion::CauseOptions CausesOf(const CircleCommand& command) {
   fusion::CauseOptions options;
@@ -46,31 +46,64 @@ fusion::CauseOptions CausesOf(const CircleCommand& command) {
   return options;
 }
 
+using Runs = std::vector<relm::CircleRun>;
+
 // Runs of one instrument, plane and radius together; the linkage first.
-std::vector<Circle> Circles(const MeasuredPaths& paths, const CircleCommand& command) {
-  std::vector<Circle> circles;
-  for (relm::CircleRun& run :
-       relm::CircleRuns(paths.All(), {command.plane, command.radius_mm * settings::kMillimetre})) {
-    const auto same = std::ranges::find_if(circles, [&run](const Circle& circle) {
-      const relm::CircleRun& one = circle.runs.front();
+std::vector<Runs> Grouped(Runs&& all) {
+  std::vector<Runs> groups;
+  for (relm::CircleRun& run : all) {
+    const auto same = std::ranges::find_if(groups, [&run](const Runs& group) {
+      const relm::CircleRun& one = group.front();
       return one.instrument == run.instrument && one.plane.name == run.plane.name &&
-             std::abs(one.radius - run.radius) < kSameRadius && !run.plane.Inclined();
+             std::abs(one.radius - run.radius) < kSameRadius * run.radius && !run.plane.Inclined();
     });
-    if (same == circles.end()) {
-      circles.push_back({{std::move(run)}, {}, {}, command.filter});
-    } else {
-      same->runs.push_back(std::move(run));
-    }
+    (same == groups.end() ? groups.emplace_back() : *same).push_back(std::move(run));
   }
-  for (Circle& circle : circles) {
-    std::vector<const relm::CircleRun*> runs;
-    for (const relm::CircleRun& run : circle.runs) {
-      circle.figures.push_back(relm::EvaluateCircle(run, {.cutoff = command.filter}));
-      runs.push_back(&run);
+  return groups;
+}
+
+// The runs of one circle, evaluated. `shifted`: of each error of the calibration.
+Circle Evaluate(Runs runs, const std::vector<const Runs*>& shifted, const MeasuredPaths& paths,
+                const CircleCommand& command) {
+  Circle circle{std::move(runs), {}, {}, {}, command.filter};
+  fusion::CauseOptions options = CausesOf(command);
+  if (paths.machine) {
+    options.smooth = fusion::SmoothHarmonics(*paths.machine, circle.runs.front());
+  }
+  for (const Runs* one : shifted) {
+    options.shifted.emplace_back();
+    for (const relm::CircleRun& run : *one) options.shifted.back().push_back(&run);
+  }
+  std::vector<const relm::CircleRun*> all;
+  all.reserve(circle.runs.size());
+  for (std::size_t i = 0; i < circle.runs.size(); ++i) {
+    const relm::CircleRun& run = circle.runs[i];
+    std::vector<const relm::CircleRun*> others;
+    others.reserve(shifted.size());
+    for (const Runs* one : shifted) others.push_back(&(*one)[i]);
+    circle.figures.push_back(relm::EvaluateCircle(run, {.cutoff = command.filter}));
+    circle.uncertainties.push_back(
+        UncertaintiesOf(run, others, circle.figures.back(), {.cutoff = command.filter}));
+    all.push_back(&run);
+  }
+  if (!all.front()->plane.Inclined()) circle.causes = fusion::FitCircleCauses(all, options);
+  return circle;
+}
+
+std::vector<Circle> Circles(const MeasuredPaths& paths, const CircleCommand& command) {
+  const relm::CircleOptions options{command.plane, command.radius_mm * settings::kMillimetre};
+  std::vector<std::vector<Runs>> shifted;
+  for (std::size_t error = 0; error < paths.errors.size(); ++error) {
+    shifted.push_back(Grouped(relm::CircleRuns(paths.WithError(error), options)));
+  }
+  std::vector<Circle> circles;
+  for (Runs& group : Grouped(relm::CircleRuns(paths.All(), options))) {
+    std::vector<const Runs*> others;
+    others.reserve(shifted.size());
+    if (group.front().instrument == "linkage") {
+      for (const auto& one : shifted) others.push_back(&one[circles.size()]);
     }
-    if (!runs.front()->plane.Inclined()) {
-      circle.causes = fusion::FitCircleCauses(runs, CausesOf(command));
-    }
+    circles.push_back(Evaluate(std::move(group), others, paths, command));
   }
   return circles;
 }
@@ -83,7 +116,7 @@ nlohmann::ordered_json Result(const MeasuredPaths& paths, const std::vector<Circ
   const nlohmann::ordered_json& first = list.front();
   for (const char* key : {"plane", "radius_mm"}) result[key] = first[key];
   for (const auto& [key, value] : first["runs"].front().items()) {
-    if (value.is_number_float()) result[key] = value;
+    if (value.is_number_float() || key == "u" || key == "partial") result[key] = value;
   }
   if (first.contains("causes")) result["causes"] = first["causes"];
   result["circles"] = std::move(list);

@@ -12,6 +12,7 @@
 
 #include "settings/unit.h"
 #include "standards/circle.h"
+#include "standards/coverage.h"
 
 namespace abbe::apps {
 namespace {
@@ -28,47 +29,6 @@ double Um(double metres) { return metres / settings::kMicrometre; }
 double Mm(double metres) { return metres / settings::kMillimetre; }
 double MmPerMin(double speed) { return Mm(speed) * 60.0; }
 double Degrees(double angle) { return angle * 360.0 / kTurn; }
-
-using Figure = std::optional<double>;  // m
-
-struct FigureName {
-  const char* key;  // in the data, in um
-  const char* text;
-  Figure (*of)(const CircleFigures&);
-};
-
-const std::array<FigureName, 14> kFigures{{
-    {"G_ccw_um", "G(ccw) circular deviation",
-     [](const CircleFigures& f) { return f.iso.ccw ? Figure(f.iso.ccw->G) : Figure(); }},
-    {"G_cw_um", "G(cw) circular deviation",
-     [](const CircleFigures& f) { return f.iso.cw ? Figure(f.iso.cw->G) : Figure(); }},
-    {"G_b_um", "G(b) both senses",
-     [](const CircleFigures& f) { return f.iso.both ? Figure(f.iso.both->G) : Figure(); }},
-    {"G_ccw_ls_um", "G(ccw) about the least-squares centre",
-     [](const CircleFigures& f) { return f.iso.ccw ? Figure(f.iso.ccw->G_ls) : Figure(); }},
-    {"G_cw_ls_um", "G(cw) about the least-squares centre",
-     [](const CircleFigures& f) { return f.iso.cw ? Figure(f.iso.cw->G_ls) : Figure(); }},
-    {"G_b_ls_um", "G(b) about the least-squares centre",
-     [](const CircleFigures& f) { return f.iso.both ? Figure(f.iso.both->G_ls) : Figure(); }},
-    {"F_max_um", "F max, set-up centre",
-     [](const CircleFigures& f) { return Figure(f.iso.F_max); }},
-    {"F_min_um", "F min, set-up centre",
-     [](const CircleFigures& f) { return Figure(f.iso.F_min); }},
-    {"F_max_ls_um", "F max, least-squares centre",
-     [](const CircleFigures& f) { return Figure(f.iso.F_max_ls); }},
-    {"F_min_ls_um", "F min, least-squares centre",
-     [](const CircleFigures& f) { return Figure(f.iso.F_min_ls); }},
-    {"D_um", "D mean bidirectional radial deviation",
-     [](const CircleFigures& f) { return f.iso.D; }},
-    {"rms_ccw_um", "harmonics left out (ccw), rms",
-     [](const CircleFigures& f) { return f.ccw ? Figure(f.ccw->rms) : Figure(); }},
-    {"rms_cw_um", "harmonics left out (cw), rms",
-     [](const CircleFigures& f) { return f.cw ? Figure(f.cw->rms) : Figure(); }},
-    {"out_of_plane_um", "out of plane, range",
-     [](const CircleFigures& f) {
-       return f.out_of_plane > 0.0 ? Figure(f.out_of_plane) : Figure();
-     }},
-}};
 
 ordered_json HarmonicData(const std::optional<standards::HarmonicFit>& fit) {
   ordered_json list = ordered_json::array();
@@ -120,16 +80,26 @@ standards::Circle Centre(const CircleFigures& figures) {
 }
 
 ordered_json RunData(const CircleRun& run, const CircleFigures& figures,
-                     const std::vector<double>* residuals) {
+                     const FigureUncertainties& u, const std::vector<double>* residuals) {
   ordered_json data{{"feed_mm_min", MmPerMin(run.feed)},
                     {"points", run.points.size()},
                     {"left_out_rows", run.left_out}};
   for (const std::string& recording : run.recordings) {
     data["recordings"].push_back(std::filesystem::path(recording).filename().string());
   }
-  for (const FigureName& figure : kFigures) {
-    if (const Figure value = figure.of(figures)) data[figure.key] = Um(*value);
+  ordered_json calibration, noise;
+  for (std::size_t i = 0; i < kCircleFigures.size(); ++i) {
+    const CircleFigure& figure = kCircleFigures[i];
+    const Figure value = figure.of(figures);
+    if (!value) continue;
+    data[figure.key] = Um(*value);
+    data["u"][figure.key] = Um(u[i].Total());
+    calibration[figure.key] = Um(u[i].calibration);
+    noise[figure.key] = Um(u[i].noise);
   }
+  data["u_calibration"] = std::move(calibration);
+  data["u_noise"] = std::move(noise);
+  data["partial"] = run.Partial();
   const standards::Circle centre = Centre(figures);
   data["setup_offset_um"] = {Um(centre.x), Um(centre.y)};
   data["covered_deg"] = {{"cw", Degrees(run.Covered(-1))}, {"ccw", Degrees(run.Covered(1))}};
@@ -162,16 +132,25 @@ std::string CauseTable(const fusion::CircleCauses& causes) {
     const std::string name = one.cause + " " + one.object;
     if (!one.seen) {
       text += fmt::format("  {:<28}{:>12}{:>10.2f}{:>7}{:>16}\n", name, "not seen",
-                          1.96 * one.u / shown.si, shown.unit, "-");
+                          standards::kCoverage * one.u / shown.si, shown.unit, "-");
       continue;
     }
-    text += fmt::format("  {:<28}{:>12.2f}{:>10.2f}{:>7}{:>13.2f} um{}\n", name,
-                        one.value / shown.si, 1.96 * one.u / shown.si, shown.unit, Um(one.effect),
-                        std::abs(one.value) > 1.96 * one.u ? " *" : "");
+    text +=
+        fmt::format("  {:<28}{:>12.2f}{:>10.2f}{:>7}{:>13.2f} um{}\n", name, one.value / shown.si,
+                    standards::kCoverage * one.u / shown.si, shown.unit, Um(one.effect),
+                    std::abs(one.value) > standards::kCoverage * one.u ? " *" : "");
   }
-  text += fmt::format("  rms of the radius {:.2f} um, unexplained {:.2f} um; * beyond its U95\n",
-                      Um(causes.rms_before), Um(causes.rms_after));
+  text += fmt::format(
+      "  rms of the radius {:.2f} um, smooth errors of no cause {:.2f} um, unexplained {:.2f} um; "
+      "* "
+      "beyond its U95\n",
+      Um(causes.rms_before), Um(causes.rms_smooth), Um(causes.rms_after));
   return text;
+}
+
+std::string FigureText(double value, double U) {
+  if (U == 0.0) return fmt::format("{:.2f}", Um(value));
+  return fmt::format("{:.2f} +- {:.2f}", Um(value), Um(U));
 }
 
 }  // namespace
@@ -188,7 +167,7 @@ ordered_json CircleJson(const Circle& circle) {
     data["normal"] = {first.plane.third.x(), first.plane.third.y(), first.plane.third.z()};
   }
   for (std::size_t i = 0; i < circle.runs.size(); ++i) {
-    data["runs"].push_back(RunData(circle.runs[i], circle.figures[i],
+    data["runs"].push_back(RunData(circle.runs[i], circle.figures[i], circle.uncertainties[i],
                                    circle.causes ? &circle.causes->residuals[i] : nullptr));
   }
   if (!circle.causes) return data;
@@ -202,33 +181,40 @@ ordered_json CircleJson(const Circle& circle) {
                               {"seen", one.seen}});
   }
   data["rms_before_um"] = Um(circle.causes->rms_before);
+  data["rms_smooth_um"] = Um(circle.causes->rms_smooth);
   data["rms_after_um"] = Um(circle.causes->rms_after);
   data["weak_directions"] = circle.causes->weak_directions;
   return data;
 }
 
 std::string CircleTable(const std::vector<Circle>& circles) {
-  std::string instruments, feeds;
+  std::string instruments, feeds, covered;
+  bool partial = false;
   for (const Circle& circle : circles) {
     for (const CircleRun& run : circle.runs) {
-      instruments += fmt::format("{:>16}", run.instrument + " " + run.plane.name);
+      instruments += fmt::format("{:>20}", run.instrument + " " + run.plane.name);
       feeds +=
-          fmt::format("{:>16}", fmt::format("R{:.4g} F{:.4g}", Mm(run.radius), MmPerMin(run.feed)));
+          fmt::format("{:>20}", fmt::format("R{:.4g} F{:.4g}", Mm(run.radius), MmPerMin(run.feed)));
+      covered += fmt::format("{:>20}", fmt::format("{:.0f}, {:.0f}", Degrees(run.Covered(1)),
+                                                   Degrees(run.Covered(-1))));
+      partial = partial || run.Partial();
     }
   }
-  std::string text = fmt::format("{:<40}{}\n{:<40}{}\n", "ISO 230-4, um", instruments,
+  std::string text = fmt::format("{:<40}{}\n{:<40}{}\n", "ISO 230-4, um, +- U95", instruments,
                                  "radius mm, feed mm/min", feeds);
-  for (const FigureName& figure : kFigures) {
+  if (partial) text += fmt::format("{:<40}{}\n", "PART OF THE CIRCLE, degrees ccw, cw", covered);
+  for (std::size_t i = 0; i < kCircleFigures.size(); ++i) {
     std::string line;
     bool any = false;
     for (const Circle& circle : circles) {
-      for (const CircleFigures& figures : circle.figures) {
-        const Figure value = figure.of(figures);
+      for (std::size_t run = 0; run < circle.runs.size(); ++run) {
+        const Figure value = kCircleFigures[i].of(circle.figures[run]);
         any = any || value.has_value();
-        line += value ? fmt::format("{:>16.2f}", Um(*value)) : fmt::format("{:>16}", "-");
+        const double U = standards::kCoverage * circle.uncertainties[run][i].Total();
+        line += fmt::format("{:>20}", value ? FigureText(*value, U) : "-");
       }
     }
-    if (any) text += fmt::format("{:<40}{}\n", figure.text, line);
+    if (any) text += fmt::format("{:<40}{}\n", kCircleFigures[i].text, line);
   }
   for (const Circle& circle : circles) {
     if (!circle.causes) continue;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/circle_figures.h"
 #include "fusion/circle_causes.h"
 #include "relm/circle_run.h"
 
@@ -15,7 +16,9 @@ namespace abbe::apps {
 // All runs of one instrument, plane and radius: one feed each, and the causes of all together.
 struct Circle {
   std::vector<relm::CircleRun> runs;
-  std::vector<relm::CircleFigures> figures;  // of each run
+  // Of each run.
+  std::vector<relm::CircleFigures> figures;
+  std::vector<FigureUncertainties> uncertainties;
   std::optional<fusion::CircleCauses> causes;
   double cutoff = 0.0;  // of the filter of the figures; 0: none
 };

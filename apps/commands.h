@@ -16,12 +16,15 @@ void AddPath(CLI::App& program, int& exit_code);
 void AddCalibrate(CLI::App& program, int& exit_code);
 void AddFuse(CLI::App& program, int& exit_code);
 void AddHarmonics(CLI::App& program, int& exit_code);
+void AddExport(CLI::App& program, int& exit_code);
+void AddCorrect(CLI::App& program, int& exit_code);
+void AddSimulate(CLI::App& program, int& exit_code);
 void AddConvert(CLI::App& program, int& exit_code);
 void AddSensitivity(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 
-inline constexpr auto kCommands =
-    std::to_array<AddCommand>({AddRig, AddSweep, AddRecord, AddReduce, AddCalibrate, AddCircle,
-                               AddPath, AddHarmonics, AddFuse, AddConvert, AddSensitivity, AddReport});
+inline constexpr auto kCommands = std::to_array<AddCommand>(
+    {AddRig, AddSweep, AddRecord, AddReduce, AddCalibrate, AddCircle, AddPath, AddHarmonics,
+     AddFuse, AddExport, AddCorrect, AddSimulate, AddConvert, AddSensitivity, AddReport});
 
 }  // namespace abbe::apps

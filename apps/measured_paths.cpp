@@ -2,47 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <memory>
-#include <optional>
-
-#include "apps/machine_file.h"
-#include "machine/machine.h"
+#include "apps/linkage_reader.h"
 #include "recording/recording_file.h"
-#include "relm/tip_path.h"
 
 namespace abbe::apps {
 namespace {
 
 using recording::Recording;
-
-// Turns encoder angles into ball positions with what the machine file says of the linkage.
-class LinkageReader {
- public:
-  explicit LinkageReader(const PathSources& sources)
-      : file_(ReadMachineFile(sources.machine)),
-        machine_(machine::ReadMachine(file_.document.Root())) {
-    if (!file_.linkage) {
-      throw InputError(fmt::format(
-          "{}: has no table [linkage]; add one with the form and the lengths of the linkage",
-          sources.machine.string()));
-    }
-    model_ = relm::MakeLinkageModel(*file_.linkage, relm::ErrorModel::kComplete);
-  }
-
-  const machine::Machine& machine() const { return machine_; }
-
-  relm::MeasuredPath Path(const Recording& recording) const {
-    const relm::TipPath tips =
-        relm::EvaluateTipPath(recording, *file_.linkage, *model_, model_->Values());
-    return relm::LinkagePath(recording, machine_.chain, tips.rows,
-                             relm::InFrame(file_.linkage->X_MB, tips.tips));
-  }
-
- private:
-  MachineFile file_;
-  machine::Machine machine_;
-  std::optional<relm::LinkageModel> model_;
-};
 
 Recording ReadWithWarnings(const std::filesystem::path& path) {
   Recording recording = recording::Read(path);
@@ -61,6 +27,45 @@ void RefuseOtherMachine(const Recording& recording, const std::string& machine) 
       recording.name, *named, machine));
 }
 
+// The machine file of a reference alone needs no linkage.
+struct Machine {
+  explicit Machine(const PathSources& sources) : calibration(sources.calibration) {
+    if (!sources.machine.empty()) file = ReadMachineFile(sources.machine);
+  }
+
+  LinkageReader& Reader(const Recording& recording) {
+    if (!file) {
+      throw InputError(fmt::format(
+          "{}: a recording of the linkage is evaluated with its machine file; add --machine FILE",
+          recording.name));
+    }
+    if (!reader) reader.emplace(*file, calibration);
+    return *reader;
+  }
+
+  std::filesystem::path calibration;
+  std::optional<MachineFile> file;
+  std::optional<LinkageReader> reader;
+};
+
+void Add(const Recording& recording, Machine& machine, MeasuredPaths& paths) {
+  const bool angles = recording.Find("pivot_1_rad").has_value();
+  const bool reference = relm::HasReference(recording);
+  if (!angles && !reference) {
+    throw InputError(
+        fmt::format("{}: has neither encoder angles (pivot_1_rad ...) nor reference positions "
+                    "(ref_x_mm ...): no path to evaluate",
+                    recording.name));
+  }
+  if (machine.file) RefuseOtherMachine(recording, machine.file->sweep_setup.machine.name);
+  if (angles) paths.linkage.push_back(machine.Reader(recording).Path(recording));
+  if (reference) paths.reference.push_back(relm::ReferencePath(recording));
+  for (const char* key : {"machine", "started"}) {
+    const auto text = recording.HeaderText(key);
+    if (text && !paths.head.contains(key)) paths.head[key] = *text;
+  }
+}
+
 }  // namespace
 
 void AddPathSources(CLI::App& command, PathSources& sources) {
@@ -69,6 +74,8 @@ void AddPathSources(CLI::App& command, PathSources& sources) {
                   "Recordings of kind linkage or reference, any number")
       ->required();
   command.add_option("--machine", sources.machine, "Machine file; the linkage needs it");
+  command.add_option("--calibration", sources.calibration,
+                     "What abbe calibrate wrote (default: nominal parameters)");
 }
 
 std::vector<relm::MeasuredPath> MeasuredPaths::All() const {
@@ -77,50 +84,38 @@ std::vector<relm::MeasuredPath> MeasuredPaths::All() const {
   return all;
 }
 
+std::vector<relm::MeasuredPath> MeasuredPaths::WithError(std::size_t error) const {
+  std::vector<relm::MeasuredPath> all = All();
+  for (std::size_t i = 0; i < linkage.size(); ++i) all[i].measured += errors[error][i];
+  return all;
+}
+
 MeasuredPaths ReadMeasuredPaths(const PathSources& sources) {
-  std::optional<LinkageReader> reader;
-  if (!sources.machine.empty()) reader.emplace(sources);
+  Machine machine(sources);
   MeasuredPaths paths;
   for (const std::filesystem::path& file : sources.recordings) {
-    const Recording recording = ReadWithWarnings(file);
-    const bool angles = recording.Find("pivot_1_rad").has_value();
-    const bool reference = relm::HasReference(recording);
-    if (!angles && !reference) {
-      throw InputError(
-          fmt::format("{}: has neither encoder angles (pivot_1_rad ...) nor reference positions "
-                      "(ref_x_mm ...): no path to evaluate",
-                      recording.name));
-    }
-    if (angles && !reader) {
-      throw InputError(fmt::format(
-          "{}: a recording of the linkage is evaluated with its machine file; add --machine FILE",
-          recording.name));
-    }
-    if (reader) RefuseOtherMachine(recording, reader->machine().name);
-    if (angles) paths.linkage.push_back(reader->Path(recording));
-    if (reference) paths.reference.push_back(relm::ReferencePath(recording));
-    if (paths.started.empty()) paths.started = recording.HeaderText("started").value_or("");
-    if (!reader && paths.machine.empty()) {
-      paths.machine = recording.HeaderText("machine").value_or("");
-    }
+    Add(ReadWithWarnings(file), machine, paths);
   }
-  if (reader) {
-    paths.machine = reader->machine().name;
-    paths.chain = reader->machine().chain.Text();
+  if (machine.file) {
+    paths.machine = machine.file->sweep_setup.machine;
+    paths.head["machine"] = paths.machine->name;
+    paths.head["chain"] = paths.machine->chain.Text();
   }
-  if (!paths.linkage.empty()) {
-    paths.notes.push_back(
-        "the linkage is evaluated with its nominal parameters: positions are off by its tolerances "
-        "until it is calibrated");
+  if (machine.reader) {
+    paths.errors = machine.reader->IndependentErrors();
+    paths.head["linkage"] = machine.reader->Data();
+    paths.notes = machine.reader->Notes();
+  } else if (!sources.calibration.empty()) {
+    throw InputError(fmt::format(
+        "--calibration {}: none of the recordings is of the linkage; leave the option out",
+        sources.calibration.string()));
   }
   return paths;
 }
 
 nlohmann::ordered_json ResultHead(const std::string& command, const MeasuredPaths& paths) {
   nlohmann::ordered_json head{{"abbe", ABBE_VERSION}, {"command", command}};
-  if (!paths.machine.empty()) head["machine"] = paths.machine;
-  if (!paths.chain.empty()) head["chain"] = paths.chain;
-  if (!paths.started.empty()) head["started"] = paths.started;
+  head.update(paths.head);
   return head;
 }
 

@@ -5,16 +5,18 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "machine/machine.h"
 #include "relm/measured_path.h"
 
 namespace abbe::apps {
 
 struct PathSources {
   std::vector<std::filesystem::path> recordings;
-  std::filesystem::path machine;
+  std::filesystem::path machine, calibration;
 };
 
 // The arguments that both commands take.
@@ -22,16 +24,24 @@ void AddPathSources(CLI::App& command, PathSources& sources);
 
 struct MeasuredPaths {
   std::vector<relm::MeasuredPath> linkage, reference;
-  std::string machine, chain, started;  // of the machine file and the first recording
+  // How each independent error of the calibration moves the paths of the linkage, as large as its
+  // standard deviation: [error][path], 3 x poses, m.
+  std::vector<std::vector<Eigen::Matrix3Xd>> errors;
+  std::optional<machine::Machine> machine;  // of the machine file
+  // What a result begins with, but for its command.
+  nlohmann::ordered_json head = nlohmann::ordered_json::object();
   std::vector<std::string> notes;
 
   // Those of the linkage, then those of the reference.
   std::vector<relm::MeasuredPath> All() const;
+  // The same as they would be with an error of the calibration.
+  std::vector<relm::MeasuredPath> WithError(std::size_t error) const;
 };
 
 // A recording with encoder angles gives a path of the linkage, one with reference positions a path
 // of the reference, one with both gives both. Warnings of a file go to standard error. InputError
-// for a recording with neither, a linkage without --machine, or a machine file of another machine.
+// for a recording with neither, a linkage without --machine, a calibration without a linkage, or a
+// machine file of another machine.
 MeasuredPaths ReadMeasuredPaths(const PathSources& sources);
 
 // What results of both commands begin with.

@@ -1,6 +1,7 @@
 // abbe path: tests along other paths than circles, by the linkage or a reference.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -11,9 +12,11 @@
 #include "apps/commands.h"
 #include "apps/measured_paths.h"
 #include "apps/path_result.h"
+#include "apps/path_uncertainty.h"
 #include "apps/result_file.h"
 #include "recording/recording_file.h"
 #include "relm/nominal_path.h"
+#include "settings/unit.h"
 
 namespace abbe::apps {
 namespace {
@@ -41,6 +44,18 @@ std::vector<relm::CapGauge> Gauges(const PathCommand& command) {
   return gauges;
 }
 
+constexpr double kOneSeat = 1e-3;  // m
+
+void RefuseMotion(const relm::MeasuredPath& path) {
+  const Eigen::Vector3d moved =
+      path.commanded.rowwise().maxCoeff() - path.commanded.rowwise().minCoeff();
+  if (moved.maxCoeff() < kOneSeat) return;
+  throw InputError(fmt::format(
+      "{}: the commanded position moves by {:.3g} mm: single-point articulation keeps the ball in "
+      "one seat while the linkage takes many poses, one pass each",
+      path.recording, moved.maxCoeff() / settings::kMillimetre));
+}
+
 // One pose each: the mean of the rows of a pass, or each row where all passes are one.
 Eigen::Matrix3Xd Poses(const relm::MeasuredPath& path) {
   std::map<int, std::vector<Eigen::Index>> passes;
@@ -62,6 +77,7 @@ TestResult Deviation(const relm::MeasuredPath& path, const Eigen::Matrix3Xd& nom
 // The figures of a test with, for a path that is followed, its deviation in space.
 TestResult Evaluate(const PathCommand& command, const relm::MeasuredPath& path) {
   if (command.test == "articulation") {
+    RefuseMotion(path);
     return ArticulationResult(standards::EvaluateArticulation(Poses(path)));
   }
   if (command.test == "stepping") return SteppingResult(relm::EvaluateStepping(path));
@@ -91,8 +107,18 @@ class PathTests {
       if (!IsNamed(command_.test)) {
         result_["nominal"] = std::filesystem::path(command_.test).filename().string();
       }
-      for (const relm::MeasuredPath& path : paths.All()) {
-        Keep(path.recording, path.instrument, Evaluate(command_, path));
+      const std::vector<relm::MeasuredPath> all = paths.All();
+      std::vector<std::vector<TestResult>> shifted(all.size());
+      for (std::size_t error = 0; error < paths.errors.size(); ++error) {
+        const std::vector<relm::MeasuredPath> moved = paths.WithError(error);
+        for (std::size_t i = 0; i < paths.linkage.size(); ++i) {
+          shifted[i].push_back(Evaluate(command_, moved[i]));
+        }
+      }
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        TestResult test = Evaluate(command_, all[i]);
+        AddCalibrationUncertainty(shifted[i], test);
+        Keep(all[i].recording, all[i].instrument, test);
       }
       Note(paths.notes);
     }
@@ -106,17 +132,28 @@ class PathTests {
   }
 
  private:
+  // By gauges or a reference; with a calibration by the linkage beside the reference.
   void Cap() {
-    result_ = {{"abbe", ABBE_VERSION}, {"command", "path"}, {"kind", "cap"}};
+    const bool linkage = !command_.sources.calibration.empty();
+    const MeasuredPaths paths = linkage ? ReadMeasuredPaths(command_.sources) : MeasuredPaths{};
+    result_ = ResultHead("path", paths);
+    result_["kind"] = "cap";
     const std::vector<relm::CapGauge> gauges = Gauges(command_);
     for (const std::filesystem::path& file : command_.sources.recordings) {
       const recording::Recording recording = recording::Read(file);
       if (!result_.contains("machine")) {
         result_["machine"] = recording.HeaderText("machine").value_or("");
       }
-      Keep(recording.name, gauges.empty() ? "reference" : "gauges",
-           CapResult(relm::EvaluateCap(recording, gauges)));
+      const auto ball =
+          std::ranges::find(paths.linkage, recording.name, &relm::MeasuredPath::recording);
+      if (gauges.empty() && ball != paths.linkage.end()) {
+        Keep(recording.name, "linkage - reference", CapResult(relm::EvaluateCap(recording, *ball)));
+      } else {
+        Keep(recording.name, gauges.empty() ? "reference" : "gauges",
+             CapResult(relm::EvaluateCap(recording, gauges)));
+      }
     }
+    Note(paths.notes);
   }
 
   void Keep(const std::string& recording, const std::string& instrument, const TestResult& test) {
@@ -151,7 +188,7 @@ void AddPath(CLI::App& program, int& exit_code) {
       ->required();
   command->add_option("--gauge", options->gauges,
                       "cap: axis and column of a gauge on the cap, X=probe_d_um (default: the "
-                      "reference columns)");
+                      "reference columns; with --calibration the linkage beside them)");
   command->add_option("-o,--out", options->out, "Folder for the result (RECORDING_TEST.json)");
   command->add_option("--json", options->json, "File for the result");
   command->add_flag("--quiet", options->quiet, "No table");

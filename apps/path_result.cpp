@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "settings/unit.h"
+#include "standards/coverage.h"
 
 namespace abbe::apps {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr Eigen::Index kShownPoses = 1000;  // of a path in the result: enough for a figure
-constexpr double kNormal = 1.96;
 
 double Um(double metres) { return metres / settings::kMicrometre; }
 double Mm(double metres) { return metres / settings::kMillimetre; }
@@ -42,7 +42,7 @@ TestResult SteppingResult(const std::vector<relm::SteppingLine>& lines) {
       result.table +=
           fmt::format("  {:>12.4f}{:>12.2f}{:>12.2f}{:>12.2f}{:>10.2f}{:>8}\n", Mm(stop.commanded),
                       Um(stop.deviation.x()), Um(stop.deviation.y()), Um(stop.deviation.z()),
-                      Um(kNormal * stop.u), stop.visits);
+                      Um(standards::kCoverage * stop.u), stop.visits);
       stops.push_back({{"commanded_mm", Mm(stop.commanded)},
                        {"deviation_um", Vector(stop.deviation, Um)},
                        {"u_um", Um(stop.u)},
@@ -110,8 +110,8 @@ TestResult CapResult(const std::vector<relm::CapDisplacement>& displacements) {
   for (const relm::CapDisplacement& one : displacements) {
     result.table += fmt::format("  {:>10}{:>14.0f}{:>26.3f}{:>10.3f}{:>13.3f}{:>9}\n",
                                 std::isfinite(one.force) ? fmt::format("{:.2f}", one.force) : "-",
-                                Mm(one.feed) * 60.0, Um(one.displacement), Um(kNormal * one.u),
-                                Um(one.scatter), one.rows);
+                                Mm(one.feed) * 60.0, Um(one.displacement),
+                                Um(standards::kCoverage * one.u), Um(one.scatter), one.rows);
     ordered_json entry{{"feed_mm_min", Mm(one.feed) * 60.0},
                        {"displacement_um", Um(one.displacement)},
                        {"u_um", Um(one.u)},

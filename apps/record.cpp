@@ -2,9 +2,14 @@
 // clock.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "apps/command.h"
 #include "apps/commands.h"
@@ -23,14 +28,49 @@ struct RecordCommand {
   std::filesystem::path out;
   double seconds = std::numeric_limits<double>::infinity();
   double clock_speed = 1.0;
+  std::vector<std::string> devices;  // empty: all
+  std::optional<int> program;
+  bool passes_only = false;
   bool quiet = false;
 };
+
+// Leaves the devices that were asked for.
+void Select(const RecordCommand& options, hal::DevicesSettings& devices) {
+  if (options.devices.empty()) return;
+  std::set<std::string> unknown(options.devices.begin(), options.devices.end());
+  const auto unwanted = [&](const auto& device) {
+    unknown.erase(device.name);
+    return std::ranges::find(options.devices, device.name) == options.devices.end();
+  };
+  std::erase_if(devices.devices, unwanted);
+  std::erase_if(devices.canopen, unwanted);
+  if (unknown.empty()) return;
+  throw InputError(fmt::format("--devices: {} has no table [devices.{}]; name one that it has",
+                               options.machine, *unknown.begin()));
+}
 
 hal::RecordAbout AboutOf(const MachineFile& file) {
   hal::RecordAbout about{file.sweep_setup.machine.name, hal::UtcNow(), {}};
   for (const auto& device : file.devices.devices) about.transport[device.name] = "modbus";
   for (const auto& device : file.devices.canopen) about.transport[device.name] = "canopen";
   return about;
+}
+
+void RequireForOptions(const RecordCommand& options, const hal::OpenedDevices& devices) {
+  if (options.program && !devices.start_cycle) {
+    throw InputError(fmt::format(
+        "--start: no device of {} that is recorded has a cycle_start register; add it or start the "
+        "machine's program by hand",
+        options.machine));
+  }
+  const auto& channels = devices.source->channels();
+  if (options.passes_only &&
+      std::ranges::find(channels, "pass", &hal::Channel::name) == channels.end()) {
+    throw InputError(fmt::format(
+        "--passes-only: no device of {} that is recorded has a channel \"pass\"; add it or record "
+        "all rows",
+        options.machine));
+  }
 }
 
 hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile& file) {
@@ -42,6 +82,7 @@ hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile
       });
   opened = true;
   const auto& channels = devices.source->channels();
+  RequireForOptions(options, devices);
   const auto writer = recording::Writer::Create(
       options.out, hal::RecordHeader(AboutOf(file), channels), hal::RecordColumns(channels));
   const bool endless = std::isinf(options.seconds);
@@ -49,6 +90,7 @@ hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile
   hal::RecordOptions record;
   record.rate = file.devices.rate;
   record.seconds = options.seconds;
+  record.passes_only = options.passes_only;
   record.stopped = [] { return InterruptFlag().load(); };
   if (!endless) {
     const auto total = static_cast<std::size_t>(std::ceil(options.seconds));
@@ -58,11 +100,13 @@ hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile
   } else if (!options.quiet) {
     fmt::print(stderr, "recording until Ctrl-C\n");
   }
+  if (options.program) devices.start_cycle(*options.program);
   return hal::Record(*devices.source, clock, *writer, record);
 }
 
 int Record(const RecordCommand& options) {
-  const MachineFile file = ReadMachineFile(options.machine);
+  MachineFile file = ReadMachineFile(options.machine);
+  Select(options, file.devices);
   if (file.devices.devices.empty() && file.devices.canopen.empty()) {
     throw InputError(fmt::format("{}: has no table [devices.NAME]; describe the devices to record",
                                  options.machine));
@@ -98,8 +142,19 @@ void AddRecord(CLI::App& program, int& exit_code) {
       ->add_option("--clock-speed", options->clock_speed,
                    "for a virtual machine that runs this much faster")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--devices", options->devices,
+                   "only these tables [devices.NAME] (default: all): --devices machine,linkage")
+      ->delimiter(',');
+  command
+      ->add_option("--start", options->program,
+                   "write this number to the machine's cycle_start register when all answer")
+      ->check(CLI::Range(1, 65535));
+  command->add_flag("--passes-only", options->passes_only,
+                    "no rows while the channel `pass` is 0: the way to the path and back");
   command->add_flag("--quiet", options->quiet, "print nothing but problems");
-  command->footer("Example: abbe record mill.toml --seconds 60 -o circle.csv");
+  command->footer(
+      "Example: abbe record mill.toml --devices machine,linkage --seconds 60 -o circle.csv");
   command->callback([options, &exit_code] { exit_code = Record(*options); });
 }
 

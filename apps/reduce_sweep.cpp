@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "standards/coverage.h"
+
 namespace abbe::apps {
 namespace {
 
@@ -210,11 +212,10 @@ ordered_json SquarenessJson(const probes::SquarenessResult& result) {
 }
 
 std::string SquarenessLine(const probes::SquarenessResult& result) {
-  constexpr double kNormal = 1.96;
   return fmt::format(
       "squareness {}: {:.2f} +- {:.2f} urad (least-squares lines; U95, of it the target {:.2f})\n",
-      result.name, result.value * kToMicro, kNormal * result.u * kToMicro,
-      kNormal * result.u_target * kToMicro);
+      result.name, result.value * kToMicro, standards::kCoverage * result.u * kToMicro,
+      standards::kCoverage * result.u_target * kToMicro);
 }
 
 }  // namespace abbe::apps

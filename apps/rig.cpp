@@ -17,10 +17,12 @@
 #include "apps/interrupt.h"
 #include "apps/result_file.h"
 #include "apps/rig_course.h"
+#include "hal/can_socket.h"
 #include "hal/device_settings.h"
 #include "hal/sweep_recorder.h"
 #include "recording/recording_file.h"
 #include "rig/campaign.h"
+#include "rig/encoder_server.h"
 #include "rig/length_campaign.h"
 #include "rig/linkage_campaign.h"
 #include "rig/register_server.h"
@@ -34,7 +36,8 @@ struct RigOptions {
   std::uint64_t seed = 1;
   std::optional<int> port;
   double speed = 1.0;
-  std::vector<std::string> rtu;  // DEVICE=LINK
+  std::vector<std::string> rtu;    // DEVICE=LINK
+  std::optional<std::string> can;  // the interface; empty: those of the machine file
   std::filesystem::path truth, ready_file, out;
   std::string start, axis, length, mounting;
   CourseRequest course;
@@ -66,7 +69,6 @@ struct Rig {
 
 rig::ServerOptions PlaceToListen(const Rig& rig, const RigOptions& options) {
   rig::ServerOptions server;
-  server.speed = options.speed;
   for (const hal::DeviceSettings& device : rig.devices.devices) {
     if (device.transport != hal::Transport::kModbusTcp) continue;
     server.host = device.host;
@@ -105,33 +107,97 @@ void WriteReadyFile(const std::filesystem::path& path, int port) {
   std::filesystem::rename(unfinished, path);
 }
 
+// The machine of the rig with its program, on the wires that were asked for.
+class Served {
+ public:
+  Served(const Rig& rig, const RigOptions& options)
+      : place_(PlaceToListen(rig, options)),
+        machine_(rig.world, rig::SimulatedTime(options.speed),
+                 rig.linkage ? &*rig.linkage : nullptr, CourseToRun(rig, options),
+                 options.course.cap_force_n),
+        registers_(machine_, rig.devices, place_) {
+    for (const std::string& text : options.rtu) links_.emplace_back(ServeRtu(registers_, text));
+    if (options.can) ServeCan(rig, options);
+    if (!options.start.empty()) Start(options);
+  }
+  ~Served() {
+    std::error_code ignored;
+    for (const auto& link : links_) std::filesystem::remove(link, ignored);
+  }
+  Served(const Served&) = delete;
+  Served& operator=(const Served&) = delete;
+
+  int port() const { return registers_.port(); }
+  std::uint64_t requests() const { return registers_.requests(); }
+  std::string MapText() const {
+    std::string text =
+        fmt::format("listening on {} port {}\n{}", place_.host, port(), registers_.MapText());
+    for (const auto& link : links_) text += fmt::format("  RTU on {}\n", link.string());
+    for (const auto& encoders : encoders_) text += encoders->MapText();
+    return text;
+  }
+  std::uint64_t syncs() const {
+    std::uint64_t sum = 0;
+    for (const auto& encoders : encoders_) sum += encoders->syncs();
+    return sum;
+  }
+
+ private:
+  static std::optional<rig::Course> CourseToRun(const Rig& rig, const RigOptions& options) {
+    if (options.course.course.empty()) return {};
+    return CourseOf(options.course, rig.world.settings());
+  }
+
+  void ServeCan(const Rig& rig, const RigOptions& options) {
+    if (rig.devices.canopen.empty()) {
+      throw InputError(
+          fmt::format("--can: {} has no encoders; add a table [devices.NAME] with "
+                      "transport = \"canopen\"",
+                      options.machine));
+    }
+    for (hal::CanopenSettings device : rig.devices.canopen) {
+      if (!options.can->empty()) device.interface = *options.can;
+      auto bus = std::make_unique<hal::CanSocket>(device.interface, clock_,
+                                                  rig::LinkageEncoders::HeardIds(device));
+      encoders_.push_back(
+          std::make_unique<rig::EncoderServer>(machine_, device, std::move(bus), clock_));
+    }
+  }
+
+  void Start(const RigOptions& options) {
+    const bool course = options.start == "course";
+    const int program = course ? rig::kCourseProgram : rig::AxisNumber(options.start.front());
+    if (machine_.Start(program) == rig::StartOutcome::kStarted) return;
+    throw InputError(
+        course ? "--start course: which one? Add --course circle, or another"
+               : fmt::format("--start {}: no sweep of this axis is programmed in {}; add a table "
+                             "[sweep.{}]",
+                             options.start, options.machine, options.start));
+  }
+
+  hal::SteadyClock clock_;
+  rig::ServerOptions place_;
+  rig::LiveMachine machine_;
+  rig::RegisterServer registers_;
+  std::vector<std::unique_ptr<rig::EncoderServer>> encoders_;
+  std::vector<std::filesystem::path> links_;
+};
+
 int Serve(const RigOptions& options) {
   if (options.machine.empty()) {
     throw InputError("rig: --machine FILE is missing, such as --machine machines/demo_mill.toml");
   }
   const auto& interrupted = InterruptFlag();
   const Rig rig(options);
-  const rig::ServerOptions place = PlaceToListen(rig, options);
-  rig::RegisterServer server(rig.world, rig.devices, place);
-  std::vector<std::filesystem::path> links;
-  for (const std::string& text : options.rtu) links.emplace_back(ServeRtu(server, text));
-  if (!options.start.empty() &&
-      server.Start(rig::AxisNumber(options.start.front())) != hal::Answer::kOk) {
-    throw InputError(
-        fmt::format("--start {}: no sweep of this axis is programmed in {}; add a table "
-                    "[sweep.{}]",
-                    options.start, options.machine, options.start));
-  }
-  fmt::print("rig of {}, seed {}: listening on {} port {}, {:g} times real time\n{}",
-             rig.world.settings().name, options.seed, place.host, server.port(), options.speed,
-             server.MapText());
-  for (const auto& link : links) fmt::print("  RTU on {}\n", link.string());
-  fmt::print("Ctrl-C ends it.\n");
+  const Served served(rig, options);
+  fmt::print("rig of {}, seed {}, {:g} times real time: {}Ctrl-C ends it.\n",
+             rig.world.settings().name, options.seed, options.speed, served.MapText());
   std::fflush(stdout);
-  if (!options.ready_file.empty()) WriteReadyFile(options.ready_file, server.port());
+  if (!options.ready_file.empty()) WriteReadyFile(options.ready_file, served.port());
   while (!interrupted) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  for (const auto& link : links) std::filesystem::remove(link);
-  fmt::print("rig: answered {} requests\n", server.requests());
+  fmt::print("rig: answered {} requests", served.requests());
+  if (options.can) fmt::print(" and {} SYNCs", served.syncs());
+  fmt::print("\n");
   return kDone;
 }
 
@@ -216,10 +282,18 @@ void AddRig(CLI::App& program, int& exit_code) {
       ->capture_default_str();
   rig->add_option("--rtu", options->rtu,
                   "Serve a device over RTU too: DEVICE=LINK to the terminal");
-  rig->add_option("--start", options->start, "Sweep this axis at once")->check(axis);
+  rig->add_option("--can", options->can,
+                  "Serve the linkage's encoders on this CAN interface (default: the machine "
+                  "file's)")
+      ->expected(0, 1)
+      ->default_str("");
+  AddCourseOptions(*rig, options->course);
+  rig->add_option("--start", options->start, "Sweep this axis, or run the course, at once")
+      ->check(CLI::IsMember({"X", "Y", "Z", "course"}));
   rig->add_option("--ready-file", options->ready_file, "Write the port here when listening");
   rig->footer(
-      "Example: abbe rig --machine machines/demo_mill.toml --seed 7 --port 1502 --speed 10");
+      "Example: abbe rig --machine machines/demo_mill.toml --seed 7 --port 1502 --speed 10\n"
+      "Example: abbe rig --machine machines/demo_mill.toml --can vcan0 --course circle");
   rig->callback([rig, options, &exit_code] {
     if (rig->get_subcommands().empty()) exit_code = Serve(*options);
   });
@@ -233,6 +307,7 @@ void AddRig(CLI::App& program, int& exit_code) {
       ->check(axis);
   record->add_option("--mounting", options->mounting, "For the header of a sweep");
   AddCourseOptions(*record, options->course);
+  AddRecordingOptions(*record, options->course);
   record->add_option("--out", options->out, "Recording (.csv, .h5)")->required();
   record->add_option("--rate", options->rate, "Rows in a second")->capture_default_str();
   record->footer(

@@ -64,7 +64,7 @@ rig::Course FromFile(const CourseRequest& request, double feed) {
   return rig::LineCourse(points, feed, 0.0, 1);
 }
 
-rig::Course CourseOf(const CourseRequest& request, const rig::RigSettings& machine) {
+rig::Course Planned(const CourseRequest& request, const rig::RigSettings& machine) {
   const Vector3d centre = CentreOf(request, machine);
   const double feed = request.feed_mm_min * kMillimetreAMinute;
   const char normal = NormalOf(request.plane);
@@ -115,6 +115,12 @@ void RefuseBeyondTravels(const rig::Course& course, const rig::RigSettings& mach
 
 }  // namespace
 
+rig::Course CourseOf(const CourseRequest& request, const rig::RigSettings& machine) {
+  rig::Course course = Planned(request, machine);
+  RefuseBeyondTravels(course, machine, request.course);
+  return course;
+}
+
 void AddCourseOptions(CLI::App& command, CourseRequest& request) {
   command.add_option("--course", request.course,
                      "Of the linkage: cube, circle, stepping, square, or a CSV file of points");
@@ -146,24 +152,25 @@ void AddCourseOptions(CLI::App& command, CourseRequest& request) {
   command.add_option("--passes", request.passes, "Of circle or square, in each sense")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command.add_option("--cap-force", request.cap_force_n, "Of the magnet in the tool cap, N")
+      ->check(CLI::PositiveNumber);
+}
+
+void AddRecordingOptions(CLI::App& command, CourseRequest& request) {
   command.add_option("--kind", request.kind, "Linkage or grid encoder")
       ->check(CLI::IsMember({"linkage", "reference"}))
       ->capture_default_str();
   command.add_flag("--reference", request.reference,
                    "The grid encoder beside the linkage, in one recording");
-  command.add_option("--cap-force", request.cap_force_n, "Of the magnet in the tool cap, N")
-      ->check(CLI::PositiveNumber);
   command.add_option("--run", request.run, "Another number gives other noise")
       ->capture_default_str();
 }
 
 recording::Recording RecordCourse(const rig::LinkageRig& rig, const CourseRequest& request,
                                   double rate, const std::string& started) {
-  const rig::RigSettings& machine = rig.world().settings();
-  const rig::Course course = CourseOf(request, machine);
-  RefuseBeyondTravels(course, machine, request.course);
   return rig.Record(
-      course, {request.kind, request.reference, rate, request.cap_force_n, request.run, started});
+      CourseOf(request, rig.world().settings()),
+      {request.kind, request.reference, rate, request.cap_force_n, request.run, started});
 }
 
 }  // namespace abbe::apps

@@ -1,4 +1,5 @@
-// `abbe rig record --course`: which path the machine under the linkage runs, from the command line.
+// `abbe rig --course`, `abbe rig record --course`: which path the machine under the linkage runs,
+// from the command line.
 //
 // A course is the name of a standard one or a file that relm/nominal_path.h reads. Without a centre
 // it lies in the middle of the travels. Failure: InputError in one line for an unknown course, a
@@ -28,7 +29,11 @@ struct CourseRequest {
   std::uint64_t run = 1;
 };
 
+// What describes the path, and what a recording of it holds.
 void AddCourseOptions(CLI::App& command, CourseRequest& request);
+void AddRecordingOptions(CLI::App& command, CourseRequest& request);
+
+rig::Course CourseOf(const CourseRequest& request, const rig::RigSettings& machine);
 
 recording::Recording RecordCourse(const rig::LinkageRig& rig, const CourseRequest& request,
                                   double rate, const std::string& started);

@@ -93,7 +93,7 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
   if (operator_asks) {
     sweep.prompt = [&](const hal::Visit& visit) { return AskOperator(plan, visit); };
   } else if (devices.start_cycle) {
-    devices.start_cycle(plan.axis);
+    devices.start_cycle(plan.axis - 'X' + 1);
   } else if (!options.quiet) {
     fmt::print("start the machine's program for {} now\n", plan.axis);
   }

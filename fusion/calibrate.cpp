@@ -109,13 +109,19 @@ class CalibrationJob {
     if (!options_.contradict) RefuseContradiction(report.fit, report.excess);
     report.seen = Observe(problem, report.fit);
     report.calibration = From(report.fit, runs_);
-    report.before = DistancesOf(All(BeforeCalibration()));
+    if (options_.mapped) {
+      report.cell_shifts =
+          CellShifts(simulation_, runs_[0], ParametersOf(report.fit.blocks, runs_[0].mounting),
+                     *report.calibration.mapped);
+    }
+    const auto before = BeforeCalibration();
+    report.before = DistancesOf(All(before));
     const auto gaps = Gaps(report.calibration, runs_);
     report.after = DistancesOf(All(gaps));
     const auto held_out = HeldOut();
     report.held_out = DistancesOf(All(held_out));
     report.calibration.held_out_rms = report.held_out.rms;
-    ListResiduals(gaps, held_out, report);
+    ListResiduals(before, gaps, held_out, report);
     return report;
   }
 
@@ -213,14 +219,15 @@ class CalibrationJob {
     return all;
   }
 
-  void ListResiduals(const PerRun& gaps, const PerRun& held_out, CalibrationReport& report) const {
+  void ListResiduals(const PerRun& before, const PerRun& gaps, const PerRun& held_out,
+                     CalibrationReport& report) const {
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       const Matrix3Xd noise = simulation_.GapNoise(runs_[r]);
       for (Index pose = 0; pose < runs_[r].poses(); ++pose) {
         const Eigen::Matrix3d factor = noise.middleCols<3>(3 * pose);
         const Vector3d white = factor.triangularView<Eigen::Lower>().solve(gaps[r].col(pose));
         report.residuals.push_back({r, pose, runs_[r].rows[static_cast<std::size_t>(pose)],
-                                    gaps[r].col(pose), held_out[r].col(pose),
+                                    before[r].col(pose), gaps[r].col(pose), held_out[r].col(pose),
                                     white.cwiseAbs().maxCoeff()});
       }
     }

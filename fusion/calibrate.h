@@ -47,6 +47,7 @@ struct PoseResidual {
   std::size_t run;
   Eigen::Index pose;
   std::size_t row;           // of the recording, from 0
+  Eigen::Vector3d before;    // m, in M: nominal linkage, its base registered
   Eigen::Vector3d gap;       // m, in M
   Eigen::Vector3d held_out;  // m: when the pose took no part; NaN without folds
   double normalised;         // largest of the three whitened rows
@@ -61,6 +62,7 @@ struct CalibrationReport {
   Distances held_out;                   // NaN without folds
   std::vector<PoseResidual> residuals;  // in the order of runs and poses
   std::vector<PoseResidual> outliers;   // beyond estimation::kOutlierAt, worst first
+  Eigen::Matrix3Xd cell_shifts;         // m, of the cells of a mapped one: fusion/mapping.h
   // Residuals over the noise that was stated; beyond 1 the uncertainties are too small by it.
   double excess = 1.0;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
@@ -19,6 +20,12 @@ using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kNegligible = 1e-9;  // m
+
+}  // namespace
 
 CalibratedLinkage::CalibratedLinkage(const relm::LinkageSettings& settings, Calibration calibration)
     : calibration_(std::move(calibration)),
@@ -65,10 +72,12 @@ Matrix3Xd CalibratedLinkage::Tips(const relm::LinkageReadings& readings,
   return relm::InFrame(X_MB, p_BT);
 }
 
-Matrix3Xd CalibratedLinkage::StandardUncertainties(const relm::LinkageReadings& readings,
-                                                   const std::string& mounting) const {
-  const VectorXd& x = x_[IndexOf(mounting, true)];
-  const auto columns = ColumnsOf(calibration_.blocks, mounting, calibration_.names);
+MatrixXd CalibratedLinkage::JacobianByFree(const relm::LinkageReadings& readings,
+                                           const std::string& mounting, bool strict) const {
+  const std::size_t index = IndexOf(mounting, strict);
+  const VectorXd& x = x_[index];
+  const auto columns =
+      ColumnsOf(calibration_.blocks, calibration_.mountings[index], calibration_.names);
   Matrix3Xd p_BT;
   estimation::RowMatrix J_tip_x, J;
   model_.Tips(readings, x.tail(model_.parameters()), p_BT, &J_tip_x);
@@ -77,8 +86,42 @@ Matrix3Xd CalibratedLinkage::StandardUncertainties(const relm::LinkageReadings& 
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (columns[i] >= 0) J_free.col(columns[i]) = J.col(static_cast<Index>(i));
   }
-  const VectorXd variance = (J_free * calibration_.covariance).cwiseProduct(J_free).rowwise().sum();
+  return J_free;
+}
+
+Matrix3Xd CalibratedLinkage::StandardUncertainties(const relm::LinkageReadings& readings,
+                                                   const std::string& mounting) const {
+  const MatrixXd J = JacobianByFree(readings, mounting, /*strict=*/true);
+  const VectorXd variance = (J * calibration_.covariance).cwiseProduct(J).rowwise().sum();
   return variance.cwiseSqrt().reshaped(3, readings.poses());
+}
+
+std::vector<std::vector<Matrix3Xd>> CalibratedLinkage::IndependentErrors(
+    const std::vector<const relm::LinkageReadings*>& readings,
+    const std::vector<std::string>& mountings) const {
+  // covariance = L L'; the eigenvectors V of L' (sum of J' J) L turn L into directions whose
+  // effects on the tips are orthogonal: with L V instead of L the product stays the same.
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> root(calibration_.covariance);
+  const MatrixXd L =
+      root.eigenvectors() * root.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  std::vector<MatrixXd> moved;
+  MatrixXd squares = MatrixXd::Zero(L.cols(), L.cols());
+  double poses = 0.0;
+  for (std::size_t set = 0; set < readings.size(); ++set) {
+    moved.emplace_back(JacobianByFree(*readings[set], mountings[set], /*strict=*/false) * L);
+    squares += moved.back().transpose() * moved.back();
+    poses += static_cast<double>(readings[set]->poses());
+  }
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> turned(squares);
+  std::vector<std::vector<Matrix3Xd>> errors;
+  for (Index k = L.cols() - 1; k >= 0; --k) {
+    if (turned.eigenvalues()[k] < kNegligible * kNegligible * poses) break;
+    std::vector<Matrix3Xd>& direction = errors.emplace_back();
+    for (const MatrixXd& one : moved) {
+      direction.emplace_back((one * turned.eigenvectors().col(k)).reshaped(3, one.rows() / 3));
+    }
+  }
+  return errors;
 }
 
 }  // namespace abbe::fusion

@@ -65,8 +65,17 @@ class CalibratedLinkage {
   // the readings.
   Eigen::Matrix3Xd StandardUncertainties(const relm::LinkageReadings& readings,
                                          const std::string& mounting = "") const;
+  // What the same uncertainty does to several sets of readings together: [direction][set] holds how
+  // one independent error of the calibration, as large as its standard deviation, moves the tips.
+  // Largest first; directions that move them by less than 1 nm (rms) are left out.
+  std::vector<std::vector<Eigen::Matrix3Xd>> IndependentErrors(
+      const std::vector<const relm::LinkageReadings*>& readings,
+      const std::vector<std::string>& mountings) const;
 
  private:
+  // d(x, y, z of each pose) / d(free parameters).
+  Eigen::MatrixXd JacobianByFree(const relm::LinkageReadings& readings, const std::string& mounting,
+                                 bool strict) const;
   std::size_t IndexOf(const std::string& mounting, bool strict) const;
 
   Calibration calibration_;

@@ -158,10 +158,12 @@ ErrorModel ErrorModelNamed(const std::string& name) {
 void WriteCalibration(const Calibration& calibration, const std::filesystem::path& path) {
   std::string text = fmt::format(
       "# A calibration of the linkage, written by abbe calibrate.\nformat = {}\nmachine = {}\n"
-      "model = {}\ndisplacement = {}\nmountings = {}\nheld_out_rms_um = {}\n",
+      "model = {}\ndisplacement = {}\nmountings = {}\n",
       kFormat, Quoted(calibration.machine), Quoted(ErrorModelName(calibration.model)),
-      calibration.displacement, QuotedList(calibration.mountings),
-      Float(calibration.held_out_rms / 1e-6));
+      calibration.displacement, QuotedList(calibration.mountings));
+  if (std::isfinite(calibration.held_out_rms)) {
+    text += fmt::format("held_out_rms_um = {}\n", Float(calibration.held_out_rms / 1e-6));
+  }
   for (const ParameterBlock& block : calibration.blocks) {
     for (std::size_t i = 0; i < block.entries.size(); ++i) text += ParameterText(block, i);
   }
@@ -193,7 +195,7 @@ Calibration ReadCalibration(const std::filesystem::path& path,
   calibration.model = ErrorModelNamed(root.Text("model"));
   calibration.displacement = root.Truth("displacement", false);
   calibration.mountings = root.Texts("mountings", 0);
-  calibration.held_out_rms = root.Quantity("held_out_rms_um");
+  if (root.Has("held_out_rms_um")) calibration.held_out_rms = root.Quantity("held_out_rms_um");
   for (const std::string& mounting : calibration.mountings) {
     auto base = simulation::BaseBlocks(settings);
     base[0].name = simulation::BaseBlock(mounting);

@@ -6,7 +6,7 @@
 //   model = "complete"            # "pivots", "published", "published with bearing", "complete"
 //   displacement = false
 //   mountings = [""]
-//   held_out_rms_um = 0.74
+//   held_out_rms_um = 0.74        # where poses were held out
 //   [[parameter]]                 # every parameter in the order of the model, the bases first
 //   name = "tilt.pivot_1_u"
 //   value = 312.4                 # in `unit`, so is all of this table

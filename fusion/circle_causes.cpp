@@ -10,7 +10,6 @@
 
 #include "estimation/problem.h"
 #include "failure/failure.h"
-#include "standards/circle.h"
 #include "standards/circle_signatures.h"
 
 namespace abbe::fusion {
@@ -26,8 +25,8 @@ constexpr std::size_t kSectors = 36;  // whose means tell what neighbouring rows
 // m: the first guess of the noise, so small that the priors do not pull; no instrument of a
 // machine shop has less.
 constexpr double kLeastNoise = 10e-9;
-constexpr double kSameRadius = 10e-6;
-constexpr double kLargePart = 0.3;  // of a weak direction of length 1
+constexpr double kSameRadius = 0.01;  // of the radius: lag makes a fast circle smaller
+constexpr double kLargePart = 0.3;    // of a weak direction of length 1
 
 bool IsCentre(const Signature& signature) { return signature.cause == "centre"; }
 
@@ -43,7 +42,7 @@ void CheckRuns(const Runs& runs) {
     }
     if (run->plane.name != runs.front()->plane.name ||
         run->instrument != runs.front()->instrument ||
-        std::abs(run->radius - runs.front()->radius) > kSameRadius) {
+        std::abs(run->radius - runs.front()->radius) > kSameRadius * run->radius) {
       throw InputError(
           fmt::format("{} and {}: circles of another plane, radius or instrument: fit each alone",
                       runs.front()->recordings.front(), run->recordings.front()));
@@ -64,11 +63,28 @@ double Radial(const CirclePoint& point, double radius) {
   return std::hypot(point.first, point.second) - radius;
 }
 
-// Radial deviations of a run, and the derivatives by the centre and by each cause.
+// Radial deviations of a run, and the derivatives by the centre, by each cause, by the waves of
+// smooth errors and by the errors of the instrument.
 struct Equations {
-  Eigen::MatrixXd centre, causes;
+  Eigen::MatrixXd centre, causes, smooth, instrument;
   Eigen::VectorXd radial;
 };
+
+// cos, sin of each order, the same in both senses and at any feed.
+Eigen::MatrixXd Waves(const CircleRun& run, std::size_t orders) {
+  Eigen::MatrixXd waves(static_cast<Eigen::Index>(run.points.size()),
+                        static_cast<Eigen::Index>(2 * orders));
+  for (Eigen::Index i = 0; i < waves.rows(); ++i) {
+    const double t = run.points[static_cast<std::size_t>(i)].angle;
+    for (Eigen::Index k = 0; k < waves.cols(); k += 2) {
+      const Eigen::Index order = kFirstHarmonic + k / 2;
+      const double phase = static_cast<double>(order) * t;
+      waves(i, k) = std::cos(phase);
+      waves(i, k + 1) = std::sin(phase);
+    }
+  }
+  return waves;
+}
 
 Equations EquationsOf(const CircleRun& run, const CauseOptions& options) {
   const std::vector<Signature> table = SignaturesOf(run, options);
@@ -76,6 +92,8 @@ Equations EquationsOf(const CircleRun& run, const CauseOptions& options) {
   const auto centres = std::ranges::count_if(table, IsCentre);
   Equations equations{Eigen::MatrixXd(n, centres),
                       Eigen::MatrixXd(n, static_cast<Eigen::Index>(table.size()) - centres),
+                      Waves(run, options.smooth.size()),
+                      Eigen::MatrixXd(n, static_cast<Eigen::Index>(options.shifted.size())),
                       Eigen::VectorXd(n)};
   for (Eigen::Index i = 0; i < n; ++i) {
     const CirclePoint& point = run.points[static_cast<std::size_t>(i)];
@@ -93,54 +111,92 @@ Equations EquationsOf(const CircleRun& run, const CauseOptions& options) {
   return equations;
 }
 
-// About the least-squares centre instead of the set-up centre, so that the centre's offset stays
-// small and its square does not matter.
-CircleRun Centred(const CircleRun& run) {
-  std::vector<double> x, y;
-  for (const CirclePoint& point : run.points) {
-    x.push_back(point.first);
-    y.push_back(point.second);
-  }
-  const auto circle = standards::ReferenceCircle(standards::CircleKind::kLeastSquares, x, y);
+// About `middle` instead of the set-up centre, so that the centre's offset stays small and its
+// square does not matter.
+CircleRun About(const Eigen::Vector2d& middle, const CircleRun& run) {
   CircleRun centred = run;
   for (CirclePoint& point : centred.points) {
-    point.first -= circle.x;
-    point.second -= circle.y;
+    point.first -= middle.x();
+    point.second -= middle.y();
   }
   return centred;
 }
 
+// Of run number `at`.
+Equations CentredEquations(const Runs& runs, std::size_t at, const CauseOptions& options) {
+  const Eigen::Vector2d middle = runs[at]->middle;
+  Equations equations = EquationsOf(About(middle, *runs[at]), options);
+  for (std::size_t k = 0; k < options.shifted.size(); ++k) {
+    const CircleRun shifted = About(middle, *options.shifted[k][at]);
+    for (Eigen::Index i = 0; i < equations.radial.size(); ++i) {
+      equations.instrument(i, static_cast<Eigen::Index>(k)) =
+          Radial(shifted.points[static_cast<std::size_t>(i)], shifted.radius) - equations.radial[i];
+    }
+  }
+  return equations;
+}
+
 struct Fit {
   estimation::Result result;
-  std::vector<Eigen::VectorXd> residuals;  // of each run
+  // Of each run: what the causes leave, what of it is smooth or of the instrument, and the rest.
+  std::vector<Eigen::VectorXd> unexplained, smooth, noise;
 };
 
+estimation::ParameterBlock SmoothBlock(const std::vector<double>& deviations) {
+  estimation::ParameterBlock block{"smooth", {"um", 1e-6}, {}};
+  for (std::size_t k = 0; k < deviations.size(); ++k) {
+    const std::size_t order = kFirstHarmonic + k;
+    block.entries.push_back({fmt::format("cos_{}", order), 0.0, deviations[k], 0.0});
+    block.entries.push_back({fmt::format("sin_{}", order), 0.0, deviations[k], 0.0});
+  }
+  return block;
+}
+
+// Each in units of its own standard deviation.
+estimation::ParameterBlock InstrumentBlock(std::size_t directions) {
+  estimation::ParameterBlock block{"instrument", {"", 1.0}, {}};
+  for (std::size_t k = 0; k < directions; ++k) {
+    block.entries.push_back({fmt::format("error_{}", k + 1), 0.0, 1.0, 0.0});
+  }
+  return block;
+}
+
 Fit Solve(const std::vector<Equations>& equations, const std::vector<Signature>& causes,
-          double deviation) {
+          const CauseOptions& options, double deviation) {
   Problem problem;
-  std::vector<estimation::Parameter> entries;
-  entries.reserve(causes.size());
+  estimation::ParameterBlock named{"cause", {"", 1.0}, {}};
   for (const Signature& cause : causes) {
-    entries.push_back({Name(cause), 0.0, cause.usual, 0.0});
+    named.entries.push_back({Name(cause), 0.0, cause.usual, 0.0});
   }
-  const auto block = problem.Add({"cause", {"", 1.0}, entries});
+  std::vector<estimation::Input> shared{problem.Add(std::move(named))};
+  if (!options.smooth.empty()) shared.emplace_back(problem.Add(SmoothBlock(options.smooth)));
+  if (!options.shifted.empty()) {
+    shared.emplace_back(problem.Add(InstrumentBlock(options.shifted.size())));
+  }
   for (std::size_t run = 0; run < equations.size(); ++run) {
     const Equations& one = equations[run];
-    const auto centre =
-        problem.Add({fmt::format("centre_{}", run), {"um", 1e-6}, {{"first"}, {"second"}}});
-    Eigen::MatrixXd A(one.radial.size(), one.causes.cols() + one.centre.cols());
-    A << one.causes, one.centre;
+    std::vector<estimation::Input> inputs = shared;
+    inputs.emplace_back(
+        problem.Add({fmt::format("centre_{}", run), {"um", 1e-6}, {{"first"}, {"second"}}}));
+    Eigen::MatrixXd A(one.radial.size(), one.causes.cols() + one.smooth.cols() +
+                                             one.instrument.cols() + one.centre.cols());
+    A << one.causes, one.smooth, one.instrument, one.centre;
     problem.Add(problem.AddSource(fmt::format("run {}", run + 1)),
-                std::make_shared<estimation::LinearResidual>(std::move(A), one.radial),
-                {block, centre}, deviation);
+                std::make_shared<estimation::LinearResidual>(std::move(A), one.radial), inputs,
+                deviation);
   }
-  Fit fit{problem.Solve(), {}};
+  Fit fit{problem.Solve(), {}, {}, {}};
   if (!fit.result.Usable()) throw NumericalError(fit.result.WhyNotUsable());
-  const Eigen::VectorXd x = fit.result.Block("cause").Values();
+  const auto part = [&fit](const Eigen::MatrixXd& columns, const std::string& block) {
+    return columns.cols() == 0 ? Eigen::VectorXd::Zero(columns.rows()).eval()
+                               : (columns * fit.result.Block(block).Values()).eval();
+  };
   for (std::size_t run = 0; run < equations.size(); ++run) {
     const Equations& one = equations[run];
-    const Eigen::VectorXd c = fit.result.Block(fmt::format("centre_{}", run)).Values();
-    fit.residuals.emplace_back(one.radial - one.causes * x - one.centre * c);
+    fit.unexplained.emplace_back(one.radial - part(one.causes, "cause") -
+                                 part(one.centre, fmt::format("centre_{}", run)));
+    fit.smooth.emplace_back(part(one.smooth, "smooth") + part(one.instrument, "instrument"));
+    fit.noise.emplace_back(fit.unexplained.back() - fit.smooth.back());
   }
   return fit;
 }
@@ -188,6 +244,13 @@ bool SeenByData(const estimation::Result& result, const std::string& name) {
   });
 }
 
+// A cause has the largest part in it; what the data leave open of the instrument is known anyway.
+bool IsOfCauses(const estimation::Result& result, const estimation::WeakDirection& weak) {
+  Eigen::Index most = 0;
+  weak.coefficients.cwiseAbs().maxCoeff(&most);
+  return result.names[static_cast<std::size_t>(most)].starts_with("cause.");
+}
+
 }  // namespace
 
 CircleCauses FitCircleCauses(const Runs& runs, const CauseOptions& options) {
@@ -197,17 +260,18 @@ CircleCauses FitCircleCauses(const Runs& runs, const CauseOptions& options) {
   std::vector<Equations> equations;
   CircleCauses found;
   std::vector<Eigen::VectorXd> before;
-  for (const CircleRun* run : runs) {
-    equations.push_back(EquationsOf(Centred(*run), options));
+  for (std::size_t run = 0; run < runs.size(); ++run) {
+    equations.push_back(CentredEquations(runs, run, options));
     const Eigen::VectorXd& radial = equations.back().radial;
     before.emplace_back(radial.array() - radial.mean());
   }
   found.rms_before = Rms(before);
-  const Fit first = Solve(equations, table, kLeastNoise);
-  const double rms = std::max(Rms(first.residuals), kLeastNoise);
-  found.correlated = Correlated(runs, first.residuals, rms);
-  const Fit fit = Solve(equations, table, rms * found.correlated);
-  found.rms_after = Rms(fit.residuals);
+  const Fit first = Solve(equations, table, options, kLeastNoise);
+  const double rms = std::max(Rms(first.noise), kLeastNoise);
+  found.correlated = Correlated(runs, first.noise, rms);
+  const Fit fit = Solve(equations, table, options, rms * found.correlated);
+  found.rms_smooth = Rms(fit.smooth);
+  found.rms_after = Rms(fit.noise);
   found.covariance = fit.result.Covariance("cause", "cause");
   for (std::size_t i = 0; i < table.size(); ++i) {
     const std::string name = "cause." + Name(table[i]);
@@ -221,8 +285,10 @@ CircleCauses FitCircleCauses(const Runs& runs, const CauseOptions& options) {
     estimate.seen = SeenByData(fit.result, name);
     found.causes.push_back(std::move(estimate));
   }
-  for (const auto& weak : fit.result.weak_directions) found.weak_directions.push_back(weak.words);
-  for (const Eigen::VectorXd& one : fit.residuals) {
+  for (const auto& weak : fit.result.weak_directions) {
+    if (IsOfCauses(fit.result, weak)) found.weak_directions.push_back(weak.words);
+  }
+  for (const Eigen::VectorXd& one : fit.unexplained) {
     found.residuals.emplace_back(one.begin(), one.end());
   }
   return found;

@@ -129,6 +129,31 @@ MappedParameters MapParameters(const LinkageSimulation& simulation, const Linkag
   return mapped;
 }
 
+Matrix3Xd CellShifts(const LinkageSimulation& simulation, const LinkageRun& run, const VectorXd& x,
+                     const MappedParameters& mapped) {
+  const Matrix3Xd balls = simulation.Ball(run);
+  const auto& [xs, ys, zs] = mapped.centres;
+  const auto X_MB = simulation::BaseAt(simulation.settings().X_MB, x.head<6>());
+  Matrix3Xd shifts(3, static_cast<Index>(mapped.values.size()));
+  Index cell = 0;
+  for (const double at_x : xs) {
+    for (const double at_y : ys) {
+      for (const double at_z : zs) {
+        Index pose = 0;
+        (balls.colwise() - Eigen::Vector3d(at_x, at_y, at_z)).colwise().norm().minCoeff(&pose);
+        const double warmth = run.readings.warmth.size() == 0 ? 0.0 : run.readings.warmth[pose];
+        const auto tip = [&](const VectorXd& values) {
+          return simulation.model().Tip(run.readings.angles.col(pose), warmth, values);
+        };
+        shifts.col(cell) = X_MB.R * (tip(mapped.values[static_cast<std::size_t>(cell)]) -
+                                     tip(x.tail(simulation.model().parameters())));
+        ++cell;
+      }
+    }
+  }
+  return shifts;
+}
+
 Matrix3Xd BlendedTips(const relm::LinkageModel& model, const geometry::Transform<double>& X_MB,
                       const VectorXd& values, const MappedParameters& mapped,
                       const relm::LinkageReadings& readings) {

@@ -36,6 +36,12 @@ inline constexpr double kSameLevel = 50e-6;  // m: positions closer than this ar
 MappedParameters MapParameters(const simulation::LinkageSimulation& simulation,
                                const simulation::LinkageRun& run, const Eigen::VectorXd& x);
 
+// Where the parameters of each cell put the ball of the pose nearest to its centre, minus where
+// the global ones put it; in M. `x` as above.
+Eigen::Matrix3Xd CellShifts(const simulation::LinkageSimulation& simulation,
+                            const simulation::LinkageRun& run, const Eigen::VectorXd& x,
+                            const MappedParameters& mapped);
+
 // p_MT of each pose; `values` are the global parameters of the model.
 Eigen::Matrix3Xd BlendedTips(const relm::LinkageModel& model,
                              const geometry::Transform<double>& X_MB, const Eigen::VectorXd& values,

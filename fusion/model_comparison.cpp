@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "failure/failure.h"
 #include "fusion/mapping.h"
 #include "standards/circle.h"
 
@@ -132,12 +133,16 @@ double CircleDeviation(const Matrix3Xd& path) {
   const Matrix3Xd::ConstRowXpr first = path.row((still + 1) % 3),
                                second = path.row((still + 2) % 3);
   const std::vector<double> x(first.begin(), first.end()), y(second.begin(), second.end());
-  const auto circle = standards::ReferenceCircle(standards::CircleKind::kLeastSquares, x, y);
-  double largest = 0.0;
-  for (const double each : standards::RadialDeviations(circle, x, y)) {
-    largest = std::max(largest, std::abs(each));
+  try {
+    const auto circle = standards::ReferenceCircle(standards::CircleKind::kLeastSquares, x, y);
+    double largest = 0.0;
+    for (const double each : standards::RadialDeviations(circle, x, y)) {
+      largest = std::max(largest, std::abs(each));
+    }
+    return largest < kNoCircle * circle.radius ? largest : kNotANumber;
+  } catch (const NumericalError&) {
+    return kNotANumber;  // so far from a circle that none settles
   }
-  return largest < kNoCircle * circle.radius ? largest : kNotANumber;
 }
 
 std::vector<ComparedModel> CompareModels(const machine::Chain& chain,

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -51,10 +52,32 @@ CanFrame FromWire(const can_frame& wire) {
   return frame;
 }
 
+constexpr std::size_t kBatch = 8;  // frames fetched by one system call
+
 }  // namespace
 
-CanSocket::CanSocket(std::string interface, Clock& clock, int buffer)
-    : interface_(std::move(interface)), clock_(clock), buffer_(buffer), last_s_(clock.Now()) {
+// A frame as the kernel hands it over.
+struct CanSocket::Letter {
+  can_frame wire;
+  iovec part;
+  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t))];
+  msghdr header;
+  std::size_t size;
+};
+
+struct CanSocket::Batch {
+  std::array<Letter, kBatch> letters;
+  double calendar_s, clock_s;  // when they were fetched
+};
+
+CanSocket::CanSocket(std::string interface, Clock& clock, std::vector<std::uint32_t> only,
+                     int buffer)
+    : interface_(std::move(interface)),
+      clock_(clock),
+      only_(std::move(only)),
+      buffer_(buffer),
+      last_s_(clock.Now()),
+      batch_(std::make_unique<Batch>()) {
   Open();
 }
 
@@ -63,6 +86,7 @@ CanSocket::~CanSocket() { Close(); }
 void CanSocket::Close() {
   if (socket_ >= 0) close(socket_);
   socket_ = -1;
+  next_ = fetched_ = 0;
 }
 
 void CanSocket::Open() {
@@ -75,11 +99,20 @@ void CanSocket::Open() {
   }
   Set(socket_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, 1);
   Set(socket_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, can_err_mask_t{CAN_ERR_MASK});
+  if (!only_.empty()) {
+    std::vector<can_filter> filters;
+    for (const std::uint32_t id : only_) {
+      filters.push_back({id, CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
+    }
+    setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
+               static_cast<socklen_t>(filters.size() * sizeof(can_filter)));
+  }
   Set(socket_, SOL_SOCKET, SO_TIMESTAMPNS, 1);
   Set(socket_, SOL_SOCKET, SO_RXQ_OVFL, 1);
   Set(socket_, SOL_SOCKET, SO_RCVBUF, buffer_);
   Set(socket_, SOL_SOCKET, SO_RCVBUFFORCE, buffer_);
   overflow_ = 0;
+  drained_ = false;
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = static_cast<int>(if_nametoindex(interface_.c_str()));
@@ -127,21 +160,20 @@ bool CanSocket::Send(const CanFrame& frame) {
 
 std::optional<CanReceived> CanSocket::Receive(double until_s) {
   if (!Works(state_)) Recover();
-  while (socket_ >= 0) {
-    CanReceived received;
-    switch (Fetch(received)) {
-      case Got::kFrame:
-        return received;
-      case Got::kError:
-        continue;
-      case Got::kNothing:
-        if (!Works(state_) || !Wait(until_s)) return {};
+  while (true) {
+    while (next_ < fetched_) {
+      CanReceived received;
+      if (Understand(batch_->letters[next_++], received)) return received;
     }
+    if (socket_ < 0) return {};
+    const bool in_time = !drained_ || !Works(state_) || Wait(until_s);
+    Fetch();
+    if (fetched_ == 0 && (!in_time || !Works(state_))) return {};
   }
-  return {};
 }
 
 bool CanSocket::Wait(double until_s) {
+  if (until_s <= last_s_) return false;
   const double left = (until_s - clock_.Now()) / clock_.speed();
   if (left <= 0.0) return false;
   timespec span{};
@@ -152,28 +184,41 @@ bool CanSocket::Wait(double until_s) {
   return true;
 }
 
-CanSocket::Got CanSocket::Fetch(CanReceived& received) {
-  can_frame wire{};
-  iovec part{&wire, sizeof(wire)};
-  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t))];
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof(control);
-  const ssize_t size = recvmsg(socket_, &message, 0);
-  if (size < 0) {
-    if (errno != EAGAIN && errno != EINTR) Fail(errno);
-    return Got::kNothing;
+void CanSocket::Fetch() {
+  std::array<mmsghdr, kBatch> messages{};
+  for (std::size_t i = 0; i < kBatch; ++i) {
+    Letter& letter = batch_->letters[i];
+    letter.part = {&letter.wire, sizeof(letter.wire)};
+    messages[i].msg_hdr.msg_iov = &letter.part;
+    messages[i].msg_hdr.msg_iovlen = 1;
+    messages[i].msg_hdr.msg_control = letter.control;
+    messages[i].msg_hdr.msg_controllen = sizeof(letter.control);
   }
-  if (size != static_cast<ssize_t>(sizeof(wire))) return Got::kError;
+  const int count = recvmmsg(socket_, messages.data(), kBatch, 0, nullptr);
+  next_ = 0;
+  fetched_ = count < 0 ? 0 : static_cast<std::size_t>(count);
+  drained_ = fetched_ < kBatch;
+  if (count < 0 && errno != EAGAIN && errno != EINTR) return Fail(errno);
+  if (fetched_ == 0) return;
+  for (std::size_t i = 0; i < fetched_; ++i) {
+    batch_->letters[i].header = messages[i].msg_hdr;
+    batch_->letters[i].size = messages[i].msg_len;
+  }
+  batch_->calendar_s = RealTimeNow();
+  batch_->clock_s = clock_.Now();
+}
+
+bool CanSocket::Understand(Letter& letter, CanReceived& received) {
+  const can_frame& wire = letter.wire;
+  if (letter.size != sizeof(wire)) return false;
   double age_s = 0.0;
-  for (cmsghdr* at = CMSG_FIRSTHDR(&message); at != nullptr; at = CMSG_NXTHDR(&message, at)) {
+  for (cmsghdr* at = CMSG_FIRSTHDR(&letter.header); at != nullptr;
+       at = CMSG_NXTHDR(&letter.header, at)) {
     if (at->cmsg_level != SOL_SOCKET) continue;
     if (at->cmsg_type == SO_TIMESTAMPNS) {
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(at), sizeof(stamp));
-      age_s = RealTimeNow() - static_cast<double>(stamp.tv_sec) -
+      age_s = batch_->calendar_s - static_cast<double>(stamp.tv_sec) -
               1e-9 * static_cast<double>(stamp.tv_nsec);
     } else if (at->cmsg_type == SO_RXQ_OVFL) {
       std::uint32_t overflow = 0;
@@ -184,16 +229,16 @@ CanSocket::Got CanSocket::Fetch(CanReceived& received) {
   }
   if ((wire.can_id & CAN_ERR_FLAG) != 0) {
     HearErrorFrame(wire.can_id, wire.data);
-    return Got::kError;
+    return false;
   }
   if (state_ == CanState::kBusOff) state_ = CanState::kActive;
-  received = {FromWire(wire), TimeOf(age_s), (message.msg_flags & MSG_CONFIRM) != 0};
-  return Got::kFrame;
+  received = {FromWire(wire), TimeOf(age_s), (letter.header.msg_flags & MSG_CONFIRM) != 0};
+  return true;
 }
 
 // Within what is possible, whatever has been done to the computer's calendar meanwhile.
 double CanSocket::TimeOf(double age_s) {
-  const double now = clock_.Now();
+  const double now = batch_->clock_s;
   last_s_ = std::clamp(now - age_s * clock_.speed(), std::min(last_s_, now), now);
   return last_s_;
 }

@@ -1,12 +1,15 @@
 // A SocketCAN interface as a bus.
 //
 // Frames are stamped by the kernel when they pass the interface; the stamp comes with the frame, in
-// the same system call, and is turned into the measurement's clock by its age. Error frames set
-// state() and are not handed over. An interface that is switched off or removed is awaited: each
-// call of Receive() looks whether it is back, at most every 50 ms.
+// the same system call (which fetches all that have come), and is turned into the measurement's
+// clock by its age. Error frames set state() and are not handed over. An interface that is switched
+// off or removed is awaited: each call of Receive() looks whether it is back, at most every 50 ms.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "hal/can_bus.h"
 #include "hal/clock.h"
@@ -16,8 +19,10 @@ namespace abbe::hal {
 class CanSocket : public CanBus {
  public:
   // Never throws for an interface that is not there: state() and Fault() say so. `clock` must
-  // outlive the bus. `buffer` in bytes; the kernel may grant less without the right to force it.
-  CanSocket(std::string interface, Clock& clock, int buffer = 4 << 20);
+  // outlive the bus. `only`: the identifiers (11 bits) to receive, the others are left to the
+  // kernel; empty: all. `buffer` in bytes; the kernel may grant less without the right to force it.
+  CanSocket(std::string interface, Clock& clock, std::vector<std::uint32_t> only = {},
+            int buffer = 4 << 20);
   ~CanSocket() override;
   CanSocket(const CanSocket&) = delete;
   CanSocket& operator=(const CanSocket&) = delete;
@@ -30,20 +35,24 @@ class CanSocket : public CanBus {
   std::uint64_t errors() const override { return errors_; }
 
  private:
-  enum class Got { kFrame, kNothing, kError };
+  struct Letter;
+  struct Batch;
 
   void Open();
   void Close();
   void Recover();        // looks whether the interface is back
   void Fail(int error);  // of a system call
   bool InterfaceUp() const;
-  Got Fetch(CanReceived& received);
+  void Fetch();  // into the batch
+  // False when it is no frame to hand over.
+  bool Understand(Letter& letter, CanReceived& received);
   void HearErrorFrame(std::uint32_t id, const std::uint8_t* data);
   double TimeOf(double age_s);
   bool Wait(double until_s);  // false: the time has come
 
   const std::string interface_;
   Clock& clock_;
+  const std::vector<std::uint32_t> only_;
   const int buffer_;
   int socket_ = -1;
   CanState state_ = CanState::kGone;
@@ -53,6 +62,9 @@ class CanSocket : public CanBus {
   std::uint32_t overflow_ = 0;  // of the kernel's counter
   std::uint64_t lost_ = 0;
   std::uint64_t errors_ = 0;
+  std::unique_ptr<Batch> batch_;
+  std::size_t next_ = 0, fetched_ = 0;  // of the batch
+  bool drained_ = false;                // the kernel had no more
 };
 
 }  // namespace abbe::hal

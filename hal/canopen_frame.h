@@ -1,5 +1,5 @@
 // CANopen as frames: what a master sends, what a node says, and numbers in the bits of a PDO; no
-// bus, no clock. Masters, nodes of the virtual rig and tests speak with it.
+// bus, no clock. Masters and tests speak with it; the virtual rig has its own.
 //
 //   bus.Send(NmtFrame(NmtCommand::kStart, 2));
 //   if (const auto reply = SdoReplyOf(frame)) use(reply->node, reply->value);

@@ -28,6 +28,10 @@ bool CanopenNode::Alive(double now_s) const {
   return heard_s_ && now_s - *heard_s_ <= times_.heartbeat * speed_;
 }
 
+bool CanopenNode::Starting(double now_s) const {
+  return !started_s_ && described() && !overdue_ && Alive(now_s);
+}
+
 bool CanopenNode::HearState(NmtState state) {
   const bool anew = state == NmtState::kBootUp
                         ? started_s_.has_value()

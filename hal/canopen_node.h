@@ -25,12 +25,16 @@ class CanopenNode {
 
   // Any frame of the bus but PDOs. True when it means that the node has started anew.
   bool Hear(const CanReceived& received);
+  // A PDO of the node: only an operational one sends it.
+  void HearPdo() { state_ = NmtState::kOperational; }
   // Sends what is due: the next question, or the command to start. `silent`: it has not answered
   // the last SYNC.
   void Act(CanBus& bus, double now_s, bool silent);
 
   // Started, and not known to be away: its answer to a SYNC is worth waiting for.
   bool Answers(double now_s) const { return started_s_.has_value() && Alive(now_s); }
+  // There, and answering what it is asked before it is started.
+  bool Starting(double now_s) const;
   bool described() const { return mismatch_.empty(); }
   bool in_emergency() const { return emergency_.has_value(); }
   // What is wrong, in one line: "node 2: no heartbeat for 500 ms"; empty when all is well.

@@ -3,7 +3,7 @@
 // default, is in docs/devices.md.
 //
 // An encoder's number is a count that wraps at `range`. angle = sense * (count - zero) * Step().
-// The virtual rig encodes with the same settings: CountOf() is the inverse.
+// CountOf() is the inverse.
 #pragma once
 
 #include <cstdint>

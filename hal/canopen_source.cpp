@@ -106,38 +106,47 @@ void CanopenSource::AwaitLateAnswers() {
 
 void CanopenSource::Command() {
   if (!Works(bus_->state())) return;
-  for (Encoder& encoder : encoders_) encoder.node.Act(*bus_, clock_.Now(), encoder.silent);
-  if (!produces()) return;
   const double now = clock_.Now();
-  if (std::none_of(encoders_.begin(), encoders_.end(),
-                   [now](const Encoder& encoder) { return encoder.node.Answers(now); })) {
-    return;
+  for (Encoder& encoder : encoders_) encoder.node.Act(*bus_, now, encoder.silent);
+  if (!produces()) return;
+  const auto answers = [now](const Encoder& encoder) { return encoder.node.Answers(now); };
+  if (std::none_of(encoders_.begin(), encoders_.end(), answers)) return;
+  // The first SYNC is for all that are there.
+  const auto starting = [now](const Encoder& encoder) { return encoder.node.Starting(now); };
+  if (!sync_heard_ && std::any_of(encoders_.begin(), encoders_.end(), starting)) return;
+  const double due_s = sent_s_ + settings_.times.sync;
+  sent_s_ = now;
+  if (now < due_s) {
+    Listen(due_s);
+    sent_s_ = clock_.Now();
   }
-  Listen(sent_s_ + settings_.times.sync);
-  sent_s_ = clock_.Now();
   sync_due_ = bus_->Send(SyncFrame());
 }
 
-bool CanopenSource::Complete() const {
-  const double now = clock_.Now();
+bool CanopenSource::Complete(double now_s) const {
   bool any = false;
   for (const Encoder& encoder : encoders_) {
     any = any || encoder.answer;
-    if (!encoder.answer && encoder.node.Answers(now)) return false;
+    if (!encoder.answer && encoder.node.Answers(now_s)) return false;
   }
   return any;
 }
 
 void CanopenSource::Collect() {
-  constexpr double kBetweenCycles = 1.0;  // s, that a listener waits for the next one
+  constexpr double kBetweenCycles = 1.0;      // s, that a listener waits for the next one
+  constexpr double kBetweenQuestions = 0.01;  // s, while no node has been started
   const double answer = Span(settings_.times.answer);
-  double until = clock_.Now() + (produces() ? answer : Span(kBetweenCycles));
+  double now = sync_due_ ? sent_s_ : clock_.Now();
+  double until = now + (sync_due_    ? answer
+                        : produces() ? Span(kBetweenQuestions)
+                                     : Span(kBetweenCycles));
   bool begun = produces();
-  while (!Complete() && Works(bus_->state())) {
+  while (!Complete(now) && Works(bus_->state())) {
     std::optional<CanReceived> received;
     std::swap(received, ahead_);
     if (!received) received = bus_->Receive(until);
     if (!received) break;
+    now = received->time_s;
     if (Hear(*received) == Heard::kNextCycle) {
       ahead_ = received;
       break;
@@ -184,6 +193,7 @@ CanopenSource::Heard CanopenSource::HearSync(const CanReceived& received) {
 }
 
 CanopenSource::Heard CanopenSource::HearPdo(Encoder& encoder, const CanReceived& received) {
+  encoder.node.HearPdo();
   const bool follows_sync = produces() || sync_heard_;
   if (!follows_sync && encoder.answer) return Heard::kNextCycle;
   if (encoder.answer || (follows_sync && !sync_s_)) {

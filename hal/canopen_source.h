@@ -79,7 +79,7 @@ class CanopenSource : public SampleSource {
   void AwaitLateAnswers();
   void Command();  // sends what nodes are owed, then the SYNC
   void Collect();
-  bool Complete() const;
+  bool Complete(double now_s) const;
   Sample SampleOf(Encoder& encoder, bool torn, double now_s);
   std::string FaultNow(double now_s) const;
   DeviceError Error(const std::string& fault) const;

@@ -55,8 +55,8 @@ OpenedDevices OpenDevices(const DevicesSettings& devices, Clock& clock, Presence
     auto source = std::make_unique<ModbusSource>(device, devices.stale, clock, log);
     if (presence == Presence::kRequired) source->Require();
     if (device.cycle_start) {
-      opened.start_cycle = [it = source.get()](char axis) {
-        it->StartCycle(static_cast<std::uint16_t>(axis - 'X' + 1));
+      opened.start_cycle = [it = source.get()](int program) {
+        it->StartCycle(static_cast<std::uint16_t>(program));
       };
     }
     parts.push_back(std::move(source));

@@ -40,9 +40,9 @@ class CombinedSource : public SampleSource {
 // The devices of a machine file as one source.
 struct OpenedDevices {
   std::unique_ptr<SampleSource> source;
-  // Starts the machine's program for an axis by its cycle_start register; empty when no device has
-  // one. DeviceError when the device does not take it.
-  std::function<void(char axis)> start_cycle;
+  // Starts a program of the machine by its cycle_start register: 1, 2, 3 are the sweeps of X, Y, Z;
+  // empty when no device has one. DeviceError when the device does not take it.
+  std::function<void(int program)> start_cycle;
   // Believes encoders again that have lost their reference (CanopenSource::ConfirmReference);
   // empty when there are none.
   std::function<void()> confirm_reference;

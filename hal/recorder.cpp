@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "hal/sample_row.h"
 
@@ -14,6 +15,13 @@ std::vector<std::size_t> ColumnsOf(const SampleSource& source) {
   return columns;
 }
 
+// Where the source says which pass is under way.
+std::optional<std::size_t> PassOf(const SampleSource& source) {
+  const auto pass = std::ranges::find(source.channels(), "pass", &Channel::name);
+  if (pass == source.channels().end()) return {};
+  return static_cast<std::size_t>(pass - source.channels().begin());
+}
+
 }  // namespace
 
 RecordOutcome Record(SampleSource& source, Clock& clock, recording::Writer& writer,
@@ -21,16 +29,19 @@ RecordOutcome Record(SampleSource& source, Clock& clock, recording::Writer& writ
   SampleRow samples(source.channels(), ColumnsOf(source));
   std::vector<double> row(source.channels().size() + 3);
   RecordOutcome outcome;
+  const auto pass = options.passes_only ? PassOf(source) : std::nullopt;
   const double start_s = clock.Now();
   double next_s = start_s, row_s = -1.0, skews_s = 0.0;
   try {
     while (!(options.stopped && options.stopped()) && !source.Ended()) {
       clock.SleepUntil(next_s);
-      if (clock.Now() - start_s >= options.seconds) break;
-      next_s = std::max(next_s + 1.0 / options.rate, clock.Now());
+      const double now_s = clock.Now();
+      if (now_s - start_s >= options.seconds) break;
+      next_s = std::max(next_s + 1.0 / options.rate, now_s);
       const SampleSet set = source.Read();
       const double set_s = set.time_s - start_s;
       if (!(set_s > row_s)) continue;  // the very same set again is no new row
+      if (pass && set.samples[*pass].value == 0.0) continue;
       row[0] = row_s = set_s;
       row.back() = samples.Fill(set, row);
       row[row.size() - 2] = 1e3 * set.skew_s;

@@ -5,8 +5,9 @@
 //   const RecordOutcome outcome = Record(source, clock, *writer, {.rate = 200.0, .seconds = 60.0});
 //
 // The columns are time_s, the channels in their order, skew_ms (the time between the earliest and
-// the latest sample of the row) and flags. A device that is away costs flagged rows, not the
-// recording. Memory does not grow with its length.
+// the latest sample of the row) and flags. What a controller says of its program (channels "pass",
+// "direction", "feed_mm_min") is recorded as it says it. A device that is away costs flagged rows,
+// not the recording. Memory does not grow with its length.
 #pragma once
 
 #include <functional>
@@ -39,7 +40,8 @@ std::string RecordHeader(const RecordAbout& about, const std::vector<Channel>& c
 struct RecordOptions {
   double rate = 200.0;                                       // Hz of the clock, readings wanted
   double seconds = std::numeric_limits<double>::infinity();  // of the clock
-  std::function<bool()> stopped = {};                        // true: end cleanly now
+  bool passes_only = false;            // no rows while a channel "pass" says 0
+  std::function<bool()> stopped = {};  // true: end cleanly now
   // After each row: seconds so far, and the fault of the source.
   std::function<void(double elapsed_s, const std::string& fault)> progress = {};
 };

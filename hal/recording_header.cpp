@@ -15,9 +15,9 @@ namespace {
 using settings::kMicrometre;
 using settings::kMillimetre;
 
-bool IsPosition(const std::string& name) {
-  return name == "x_mm" || name == "y_mm" || name == "z_mm";
-}
+// Columns that every sweep has, whatever the devices give.
+const std::vector<std::string> kOfSweep = {"time_s", "x_mm",      "y_mm",       "z_mm",
+                                           "pass",   "direction", "feed_mm_min"};
 
 // A text as TOML writes it.
 std::string Quoted(const std::string& text) {
@@ -51,10 +51,11 @@ std::string UtcNow() {
 }
 
 std::vector<std::string> SweepColumns(const std::vector<Channel>& channels) {
-  std::vector<std::string> columns = {"time_s", "x_mm",      "y_mm",       "z_mm",
-                                      "pass",   "direction", "feed_mm_min"};
+  std::vector<std::string> columns = kOfSweep;
   for (const Channel& channel : channels) {
-    if (!IsPosition(channel.name)) columns.push_back(channel.name);
+    if (std::ranges::find(kOfSweep, channel.name) == kOfSweep.end()) {
+      columns.push_back(channel.name);
+    }
   }
   columns.push_back("flags");
   return columns;

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <string_view>
 
 #include "hal/sample_row.h"
 #include "hal/sweep_follower.h"
@@ -16,12 +18,19 @@ namespace {
 using settings::kMillimetre;
 
 constexpr std::size_t kTime = 0, kX = 1, kPass = 4, kDirection = 5, kFeed = 6, kFirstReading = 7;
+constexpr std::array<std::string_view, 3> kOwn = {"pass", "direction", "feed_mm_min"};
 
 // The column of each channel.
 std::vector<std::size_t> ColumnsOf(const std::vector<Channel>& channels) {
   std::vector<std::size_t> columns;
   std::size_t column = kFirstReading;
   for (const Channel& channel : channels) {
+    // What the controller says of its program: the follower knows better (Write()).
+    const auto own = std::ranges::find(kOwn, channel.name);
+    if (own != kOwn.end()) {
+      columns.push_back(kPass + static_cast<std::size_t>(own - kOwn.begin()));
+      continue;
+    }
     const char axis = channel.name[0];
     const bool position = channel.name.substr(1) == "_mm" && axis >= 'x' && axis <= 'z';
     columns.push_back(position ? kX + static_cast<std::size_t>(axis - 'x') : column++);
@@ -43,7 +52,6 @@ class SweepRecorder {
         row_(SweepColumns(source.channels()).size()),
         samples_(source.channels(), ColumnsOf(source.channels())) {
     for (std::size_t i = 0; i < 3; ++i) row_[kX + i] = options.rest[i] / kMillimetre;
-    row_[kFeed] = plan.feed / settings::UnitOf("feed_mm_min").si;
     swept_ = kX + static_cast<std::size_t>(plan.axis - 'X');
     const auto columns = ColumnsOf(source.channels());
     has_position_ = std::find(columns.begin(), columns.end(), swept_) != columns.end();
@@ -80,6 +88,7 @@ class SweepRecorder {
     row_[kTime] = row_s_ = set_s_;
     row_[kPass] = pass;
     row_[kDirection] = direction;
+    row_[kFeed] = plan_.feed / settings::UnitOf("feed_mm_min").si;
     row_.back() = flags;
     writer_.Append(row_);
     ++outcome_.rows;

@@ -44,6 +44,12 @@ std::string ErrorName(int error) {
   return std::array{"A0Z", "B0Z", "C0Y"}[static_cast<std::size_t>(error - motions)];
 }
 
+int ErrorNamed(std::string_view name) {
+  int error = kErrors - 1;
+  while (error >= 0 && ErrorName(error) != name) --error;
+  return error;
+}
+
 ErrorMap::ErrorMap(MapOrigin origin, machine::VolumetricModel model, Eigen::MatrixXd cov_pp)
     : origin_(std::move(origin)), model_(std::move(model)), cov_pp_(std::move(cov_pp)) {
   if (!model_.Parameters().allFinite() || !origin_.reference.allFinite() ||

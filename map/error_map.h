@@ -34,6 +34,8 @@ inline constexpr std::array<std::string_view, 6> kSourceNames = {
 // The 21 errors: 18 motions in the order of error_motion.h, then A0Z, B0Z, C0Y.
 inline constexpr int kErrors = machine::kAxes * machine::kMotions + 3;
 std::string ErrorName(int error);
+// -1 for a name that is none of the 21.
+int ErrorNamed(std::string_view name);
 
 // Where a map comes from.
 struct MapOrigin {

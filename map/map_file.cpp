@@ -149,9 +149,9 @@ machine::VolumetricModel ReadFrame(const Table& root) {
 void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin& origin,
                   std::array<bool, kErrors>& seen) {
   const std::string name = table.Text("name");
-  int error = 0;
-  while (error < kErrors - 3 && ErrorName(error) != name) ++error;
-  if (error == kErrors - 3) throw table.Error("name", "is no error motion; write EXX ... ECZ");
+  const int error = ErrorNamed(name);
+  if (error < 0 || error >= kErrors - 3)
+    throw table.Error("name", "is no error motion; write EXX ... ECZ");
   if (std::exchange(seen[static_cast<std::size_t>(error)], true)) {
     throw table.Error("name", name + " stands twice");
   }

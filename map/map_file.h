@@ -15,7 +15,7 @@
 //   name = "EXX"
 //   from = "sweep"                              # sweep, linkage, reference, plate, length, prior
 //   form = "b-spline"                           # machine/form_of_shape.h
-//   degree = 3
+//   degree = [3.0]
 //   knots_m = [...]
 //   coefficients = [...]                        # m or rad
 //   [covariance]                                # left out: the map states no uncertainty

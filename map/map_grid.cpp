@@ -79,25 +79,30 @@ Vector3d MapGrid::Position(Index point) const {
 }
 
 Vector3d MapGrid::Error(const Vector3d& position) const {
-  std::array<Index, 3> cell;
-  Vector3d within;
+  Index corner = 0, stride = 3;
+  std::array<Index, 3> strides;
+  std::array<double, 3> within;
   for (int k = 0; k < 3; ++k) {
-    const GridAxis& axis = axes_[static_cast<std::size_t>(k)];
-    const double inside = machine::InTravel({axis.first, axis.last}, k, position[k]);
+    const auto at = static_cast<std::size_t>(k);
+    const GridAxis& axis = axes_[at];
+    double inside = position[k];
+    if (!(inside >= axis.first && inside <= axis.last)) {  // the rounding of an end, or refused
+      inside = machine::InTravel({axis.first, axis.last}, k, inside);
+    }
     const double steps = (inside - first_[k]) * per_step_[k];
-    const Index at = std::clamp<Index>(static_cast<Index>(steps), 0, axis.count - 2);
-    cell[static_cast<std::size_t>(k)] = at;
-    within[k] = steps - static_cast<double>(at);
+    const Index cell = std::min(static_cast<Index>(steps), axis.count - 2);
+    within[at] = steps - static_cast<double>(cell);
+    corner += stride * cell;
+    strides[at] = stride;
+    stride *= axis.count;
   }
-  const Index row = axes_[0].count, layer = row * axes_[1].count;
-  const double* corner = error_.data() + 3 * (cell[0] + row * cell[1] + layer * cell[2]);
-  const double x = within[0], y = within[1], z = within[2];
-  const double weights[4] = {(1 - y) * (1 - z), y * (1 - z), (1 - y) * z, y * z};
-  const Index offsets[4] = {0, 3 * row, 3 * layer, 3 * (row + layer)};
+  const auto [x, y, z] = within;
+  const std::array<double, 4> weights = {(1 - y) * (1 - z), y * (1 - z), (1 - y) * z, y * z};
+  const std::array<Index, 4> edges = {0, strides[1], strides[2], strides[1] + strides[2]};
   Vector3d sum = Vector3d::Zero();
-  for (int i = 0; i < 4; ++i) {
-    const double* at = corner + offsets[i];
-    const double low = weights[i] * (1 - x), high = weights[i] * x;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const double* at = error_.data() + corner + edges[i];
+    const double high = weights[i] * x, low = weights[i] - high;
     for (int k = 0; k < 3; ++k) sum[k] += low * at[k] + high * at[3 + k];
   }
   return sum;

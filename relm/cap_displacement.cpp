@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "failure/failure.h"
-#include "relm/measured_path.h"
 #include "settings/unit.h"
 
 namespace abbe::relm {
@@ -40,7 +39,9 @@ Eigen::VectorXd At(std::span<const double> column, const std::vector<std::size_t
   return values;
 }
 
-Readings FromReference(const MeasuredPath& path) {
+// What was seen less where it should be, along the axes that the reference has.
+Readings Beside(const MeasuredPath& path, const Eigen::Matrix3Xd& seen,
+                const Eigen::Matrix3Xd& expected) {
   Readings readings;
   for (int axis = 0; axis < 3; ++axis) {
     if (path.seen[static_cast<std::size_t>(axis)]) readings.axes.push_back("XYZ"[axis]);
@@ -48,7 +49,7 @@ Readings FromReference(const MeasuredPath& path) {
   readings.displacement.resize(path.poses(), static_cast<Eigen::Index>(readings.axes.size()));
   for (Eigen::Index k = 0; k < readings.displacement.cols(); ++k) {
     const int axis = readings.axes[static_cast<std::size_t>(k)] - 'X';
-    readings.displacement.col(k) = (path.measured.row(axis) - path.commanded.row(axis)).transpose();
+    readings.displacement.col(k) = (seen.row(axis) - expected.row(axis)).transpose();
   }
   return readings;
 }
@@ -164,19 +165,8 @@ CapDisplacement Evaluate(const Readings& readings, const std::vector<Eigen::Inde
   return result;
 }
 
-}  // namespace
-
-std::vector<CapDisplacement> EvaluateCap(const Recording& recording,
-                                         const std::vector<CapGauge>& gauges) {
-  if (gauges.empty() && !HasReference(recording)) {
-    throw InputError(fmt::format(
-        "{}: neither gauges nor reference positions: say which column reads the ball, for example "
-        "--gauge X=probe_d_um",
-        recording.name));
-  }
-  const MeasuredPath motion = Motion(recording);
-  Readings readings =
-      gauges.empty() ? FromReference(motion) : FromGauges(recording, motion.rows, gauges);
+std::vector<CapDisplacement> Displacements(const Recording& recording, const MeasuredPath& motion,
+                                           Readings readings) {
   readings.commanded = motion.commanded;
   readings.time = motion.time;
   readings.feed = motion.feed;
@@ -203,6 +193,33 @@ std::vector<CapDisplacement> EvaluateCap(const Recording& recording,
                     recording.name));
   }
   return results;
+}
+
+}  // namespace
+
+std::vector<CapDisplacement> EvaluateCap(const Recording& recording,
+                                         const std::vector<CapGauge>& gauges) {
+  if (gauges.empty() && !HasReference(recording)) {
+    throw InputError(fmt::format(
+        "{}: neither gauges nor reference positions: say which column reads the ball, for example "
+        "--gauge X=probe_d_um",
+        recording.name));
+  }
+  const MeasuredPath motion = Motion(recording);
+  return Displacements(recording, motion,
+                       gauges.empty() ? Beside(motion, motion.measured, motion.commanded)
+                                      : FromGauges(recording, motion.rows, gauges));
+}
+
+std::vector<CapDisplacement> EvaluateCap(const Recording& recording, const MeasuredPath& ball) {
+  if (!HasReference(recording)) {
+    throw InputError(fmt::format(
+        "{}: the linkage alone cannot tell the ball from the tool: record a reference beside it, "
+        "or name a gauge on the cap, for example --gauge X=probe_d_um",
+        recording.name));
+  }
+  const MeasuredPath tool = ReferencePath(recording);
+  return Displacements(recording, tool, Beside(tool, ball.measured, tool.measured));
 }
 
 }  // namespace abbe::relm

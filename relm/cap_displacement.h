@@ -2,9 +2,10 @@
 // a function of feed and magnetic force.
 //
 // While the cap moves with velocity v, friction holds the ball back: it is displaced from its place
-// in the cap by e against the motion. Gauges on the cap, or a reference that sees the ball beside
-// the commanded position of the cap, read a displacement d along their axes; all moving rows of one
-// force and feed give, by least squares,
+// in the cap by e against the motion. Gauges on the cap, a reference that sees the ball beside the
+// commanded position of the cap, or the linkage, which sees the ball, beside a reference that sees
+// the tool, read a displacement d along their axes; all moving rows of one force and feed give, by
+// least squares,
 //
 //   d_axis = offset_axis - e v_axis / |v|
 //
@@ -21,6 +22,7 @@
 #include <vector>
 
 #include "recording/recording.h"
+#include "relm/measured_path.h"
 
 namespace abbe::relm {
 
@@ -43,5 +45,8 @@ struct CapDisplacement {
 
 std::vector<CapDisplacement> EvaluateCap(const recording::Recording& recording,
                                          const std::vector<CapGauge>& gauges);
+// `ball`: the path of the calibrated linkage in the same recording, whose reference sees the tool.
+std::vector<CapDisplacement> EvaluateCap(const recording::Recording& recording,
+                                         const MeasuredPath& ball);
 
 }  // namespace abbe::relm

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <bitset>
@@ -25,8 +26,9 @@ constexpr double kLeastTurn = 0.1;
 // Two runs are one when radius and centre agree to this, m, and the feed to this part.
 constexpr double kSameCircle = 10e-6;
 constexpr double kSameFeed = 0.01;
-// Of a turn: less is no whole turn.
-constexpr double kLeastCovered = 0.95;
+// Of a turn: less is a part of the circle, and still less tells no circle from another.
+constexpr double kWhole = 0.95;
+constexpr double kLeastCovered = 0.25;
 
 CirclePlane NamedPlane(const std::string& name, const std::string& recording) {
   const auto axis = [&](std::size_t i) {
@@ -228,30 +230,63 @@ InPlane Coordinates(const CircleRun& run, int sense) {
   return path;
 }
 
+void SetMiddle(CircleRun& run, const Eigen::Vector2d& middle) {
+  run.middle = middle;
+  for (CirclePoint& point : run.points) {
+    point.angle = std::atan2(point.second - middle.y(), point.first - middle.x());
+  }
+}
+
+// The middle of an arc of the nominal radius: the radius of an arc is badly told, and with it where
+// its own circle has its centre.
+void CentreArc(CircleRun& run) {
+  constexpr int kRounds = 4;  // each squares what is off, as a part of the radius
+  SetMiddle(run, Eigen::Vector2d::Zero());
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    for (const CirclePoint& point : run.points) {
+      const Eigen::Vector2d out(std::cos(point.angle), std::sin(point.angle));
+      const double radius =
+          (Eigen::Vector2d(point.first, point.second) - run.middle).norm() - run.radius;
+      normal += out * out.transpose();
+      right += out * radius;
+    }
+    SetMiddle(run, run.middle + normal.ldlt().solve(right));
+  }
+}
+
+// Covered angles count from the middle, so it comes first; an arc is then centred as such.
 void FillAngles(CircleRun& run) {
   const InPlane all = Coordinates(run, 0);
   const standards::Circle circle =
       standards::ReferenceCircle(standards::CircleKind::kLeastSquares, all.first, all.second);
-  for (CirclePoint& point : run.points) {
-    point.angle = std::atan2(point.second - circle.y, point.first - circle.x);
-  }
+  SetMiddle(run, {circle.x, circle.y});
+  if (run.Partial()) CentreArc(run);
 }
 
-// Figures, harmonics and causes are of whole turns.
-void RefusePart(const CircleRun& run) {
+void RefuseBit(const CircleRun& run) {
   for (const int sense : {1, -1}) {
-    const auto points = std::ranges::count(run.points, sense, &CirclePoint::sense);
     const double covered = run.Covered(sense);
-    if (points == 0 || covered > kLeastCovered * kTurn) continue;
+    if (!run.Has(sense) || covered >= kLeastCovered * kTurn) continue;
     throw InputError(fmt::format(
-        "{}: {} points {} are on {:.0f} of 360 degrees, counted in steps of 5; measure whole turns "
-        "with a point every few degrees",
-        run.recordings.front(), points, sense > 0 ? "counter-clockwise" : "clockwise",
-        covered * 360.0 / kTurn));
+        "{}: {} points {} are on {:.0f} of 360 degrees, counted in steps of 5; measure a quarter "
+        "turn at least, better whole turns, with a point every few degrees",
+        run.recordings.front(), std::ranges::count(run.points, sense, &CirclePoint::sense),
+        sense > 0 ? "counter-clockwise" : "clockwise", covered * 360.0 / kTurn));
   }
 }
 
 }  // namespace
+
+bool CircleRun::Has(int sense) const {
+  return std::ranges::count(points, sense, &CirclePoint::sense) > 0;
+}
+
+bool CircleRun::Partial() const {
+  const auto part = [this](int sense) { return Has(sense) && Covered(sense) < kWhole * kTurn; };
+  return part(1) || part(-1);
+}
 
 double CircleRun::Covered(int sense) const {
   constexpr std::size_t kBins = 72;
@@ -276,7 +311,7 @@ std::vector<CircleRun> CircleRuns(const std::vector<MeasuredPath>& paths,
   }
   for (CircleRun& run : runs) {
     FillAngles(run);
-    RefusePart(run);
+    RefuseBit(run);
   }
   return runs;
 }
@@ -317,9 +352,10 @@ CircleFigures EvaluateCircle(const CircleRun& run, const FigureOptions& options)
   } catch (const Failure& failure) {
     throw InputError(fmt::format("{}: {}", run.recordings.front(), failure.what()));
   }
+  if (run.Partial()) figures.iso.D.reset();
   for (const int sense : {-1, 1}) {
     const InPlane path = Coordinates(run, sense);
-    if (path.first.empty()) continue;
+    if (path.first.empty() || run.Partial()) continue;
     const auto& circle = (sense < 0 ? figures.iso.cw : figures.iso.ccw)->least_squares;
     std::vector<double> angles;
     for (std::size_t i = 0; i < path.first.size(); ++i) {

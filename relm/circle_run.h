@@ -10,10 +10,11 @@
 // do not lie on the commanded circle (run-in and run-out), and rests (direction 0).
 // Frames: `first`, `second` and `third` are coordinates from the commanded centre, along the axes
 // of the plane and its normal. Units: m, rad, m/s. Shapes: one entry a point.
-// Failure: InputError with the recording for a path that is no circle, a sense with less than whole
-// turns, a plane that is not two axes, or coordinates that the instrument lacks. Source: ISO 230-4.
-// Validity: the nominal radius is that of the commanded positions (least squares), unless the
-// options name one.
+// Failure: InputError with the recording for a path that is no circle, a sense with less than a
+// quarter of it, a plane that is not two axes, or coordinates that the instrument lacks. Source:
+// ISO 230-4. Validity: the nominal radius is that of the commanded positions (least squares),
+// unless the options name one. Of a part of the circle (Partial) the figures are those of the arc;
+// D, which is a mean of whole turns, and harmonics are left out.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,7 +36,7 @@ struct CirclePlane {
 
 struct CirclePoint {
   double first, second, third;  // m, from the commanded centre
-  double angle;                 // rad, about the least-squares centre of the measured run
+  double angle;                 // rad, about the middle of the measured run
   int sense;                    // +1 counter-clockwise
   int pass;
 };
@@ -50,8 +51,13 @@ struct CircleRun {
   bool third_seen = false;
   std::vector<CirclePoint> points;  // in the order of time, recording after recording
   std::size_t left_out = 0;         // rows off the circle, at rest, or with a flag
+  // m: where the measured circle has its centre, from the commanded one: least squares, for a part
+  // of the circle with the nominal radius.
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
 
-  double Covered(int sense) const;  // rad of the circle that has points
+  double Covered(int sense) const;  // rad of the circle that has points, counted in steps of 5 deg
+  bool Has(int sense) const;
+  bool Partial() const;  // a sense that was measured is not all around
 };
 
 struct CircleOptions {

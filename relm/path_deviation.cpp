@@ -14,9 +14,11 @@ namespace abbe::relm {
 namespace {
 
 constexpr double kSamePoint = 1e-9;  // m: nominal points nearer than this are one
-// Pieces before and behind the last nearest one that are tried first; when the nearest of them is
-// the outmost one, the whole path is searched.
+// Pieces before and behind the last nearest one that are tried first. The whole path is searched
+// when the nearest of them is at either end of these, or is farther off than it should be.
 constexpr Eigen::Index kNeighbours = 20;
+constexpr double kFarther = 1.5;     // of the distance before
+constexpr double kFartherBy = 1e-6;  // m, in addition
 
 struct Chain {
   Eigen::Matrix3Xd points;
@@ -56,8 +58,7 @@ struct Nearest {
 Nearest NearestOn(const Chain& chain, const Eigen::Vector3d& p, Eigen::Index first,
                   Eigen::Index last) {
   Nearest best;
-  for (Eigen::Index i = std::max<Eigen::Index>(0, first);
-       i < std::min<Eigen::Index>(last, chain.points.cols() - 1); ++i) {
+  for (Eigen::Index i = first; i < last; ++i) {
     const Eigen::Vector3d start = chain.points.col(i), piece = chain.points.col(i + 1) - start;
     const double part = std::clamp((p - start).dot(piece) / piece.squaredNorm(), 0.0, 1.0);
     const Eigen::Vector3d point = start + part * piece;
@@ -96,9 +97,12 @@ PathDeviation DeviationFrom(const MeasuredPath& path, const DeviationOptions& op
   Nearest last;
   for (Eigen::Index i = 0; i < path.poses(); ++i) {
     const Eigen::Vector3d p = result.measured.col(i);
-    Nearest nearest = NearestOn(chain, p, last.piece - kNeighbours, last.piece + kNeighbours + 1);
-    if (i == 0 || std::abs(nearest.piece - last.piece) == kNeighbours) {
-      nearest = NearestOn(chain, p, 0, chain.points.cols());
+    const Eigen::Index first = std::max<Eigen::Index>(0, last.piece - kNeighbours);
+    const Eigen::Index end = std::min(chain.points.cols() - 1, last.piece + kNeighbours + 1);
+    Nearest nearest = NearestOn(chain, p, first, end);
+    if (i == 0 || nearest.piece == first || nearest.piece == end - 1 ||
+        nearest.distance > kFarther * last.distance + kFartherBy) {
+      nearest = NearestOn(chain, p, 0, chain.points.cols() - 1);
     }
     result.deviation.col(i) = p - nearest.point;
     result.along[i] = nearest.along;

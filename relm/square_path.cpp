@@ -11,14 +11,34 @@
 namespace abbe::relm {
 namespace {
 
-constexpr double kOnSide = 20e-6;  // m: what a commanded position may be off its side
-constexpr double kCorner = 0.02;   // of a side, left out at each end: the axes change there
-constexpr int kPieces = 100;       // of a side, averaged each
+constexpr double kOnSide = 20e-6;      // m: what a commanded position may be off its side
+constexpr double kCorner = 0.02;       // of a side, left out at each end: the axes change there
+constexpr double kLeastOnSides = 0.5;  // of the rows
+constexpr int kPieces = 100;           // of a side, averaged each
 
 struct Rectangle {
   int first, second;          // axes
   Eigen::Vector3d low, high;  // corners
 };
+
+// A circle touches the rectangle around it too.
+void RefuseOffSides(const MeasuredPath& path, const Rectangle& box) {
+  Eigen::Index on = 0;
+  for (Eigen::Index i = 0; i < path.poses(); ++i) {
+    double off = kOnSide;
+    for (const int axis : {box.first, box.second}) {
+      const double place = path.commanded(axis, i);
+      off = std::min({off, place - box.low[axis], box.high[axis] - place});
+    }
+    if (off < kOnSide) ++on;
+  }
+  const double part = static_cast<double>(on) / static_cast<double>(path.poses());
+  if (part >= kLeastOnSides) return;
+  throw InputError(fmt::format(
+      "{}: {:.0f} % of the rows lie on the sides of the rectangle around the commanded path: a "
+      "square path runs along them; abbe circle takes circles, --test FILE any other path",
+      path.recording, 100.0 * part));
+}
 
 Rectangle CommandedRectangle(const MeasuredPath& path) {
   Rectangle rectangle{0, 1, path.commanded.rowwise().minCoeff(),
@@ -34,6 +54,7 @@ Rectangle CommandedRectangle(const MeasuredPath& path) {
         "and no third",
         path.recording, size.x() * 1e3, size.y() * 1e3, size.z() * 1e3));
   }
+  RefuseOffSides(path, rectangle);
   return rectangle;
 }
 

@@ -129,7 +129,6 @@ Course LineCourse(const std::vector<Vector3d>& points, double feed, double dwell
 CourseRun::CourseRun(const Course& course, const Dynamics& dynamics, double step)
     : course_(course), dynamics_(dynamics), step_(step) {
   state_.command = state_.position = course.start;
-  state_.velocity.setZero();
   Begin();
 }
 
@@ -181,10 +180,11 @@ bool CourseRun::Next() {
   const double distance = DistanceAt(since_);
   const Vector3d command = PointAt(distance);
   // x' = (c - x) / lag with c straight from one step to the next: x trails by lag * velocity.
-  state_.velocity = (command - state_.command) / step_;
-  const Vector3d trailing = dynamics_.lag * state_.velocity;
+  const Vector3d before = state_.position;
+  const Vector3d trailing = dynamics_.lag * (command - state_.command) / step_;
   const double kept = std::exp(-step_ / dynamics_.lag);
-  state_.position = command - trailing + kept * (state_.position - state_.command + trailing);
+  state_.position = command - trailing + kept * (before - state_.command + trailing);
+  state_.velocity = (state_.position - before) / step_;
   state_.command = command;
   state_.standing = since_ > 2.0 * ramp_ + cruise_ && (state_.position - command).norm() < kArrived;
   state_.pass = move.pass;

@@ -64,12 +64,14 @@ std::vector<Eigen::Vector3d> GridPlaces(const Eigen::Vector3d& centre, const Eig
 Course LineCourse(const std::vector<Eigen::Vector3d>& points, double feed, double dwell, int pass);
 
 struct CourseState {
-  double time;
-  Eigen::Vector3d command, position, velocity;  // of the axes; velocity of the command
-  int pass, direction;
-  double feed;
-  bool standing;  // the command has arrived and the axes are within 0.1 um of it
-  bool counts;    // to be recorded
+  double time = 0.0;
+  Eigen::Vector3d command = Eigen::Vector3d::Zero();   // where the axes are sent
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // where they are
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // of the axes
+  int pass = 0, direction = 0;
+  double feed = 0.0;
+  bool standing = false;  // the command has arrived and the axes are within 0.1 um of it
+  bool counts = false;    // to be recorded
 };
 
 class CourseRun {
@@ -91,7 +93,7 @@ class CourseRun {
   const Course& course_;
   Dynamics dynamics_;
   double step_;
-  CourseState state_{};
+  CourseState state_;
   std::size_t move_ = 0, segment_ = 0;
   double since_ = 0.0;                             // s, of the move
   std::vector<Eigen::Vector3d> way_;               // with its first point

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "failure/failure.h"
-#include "random/counter_random.h"
 #include "rig/noise.h"
 #include "rig/streams.h"
 
@@ -18,26 +17,6 @@ using nlohmann::ordered_json;
 
 constexpr double kMillimetre = 1e-3;
 constexpr double kMetrePerSecond = 60e3;  // in mm/min
-
-// White noise of three channels, a function of the row.
-class WhiteNoise {
- public:
-  WhiteNoise(std::uint64_t seed, std::uint64_t stream, double deviation)
-      : seed_(seed), stream_(stream), deviation_(deviation) {}
-
-  Vector3d At(std::uint64_t row) const {
-    Vector3d noise;
-    for (std::uint64_t i = 0; i < 3; ++i) {
-      noise[static_cast<Eigen::Index>(i)] =
-          deviation_ * random::CounterRandom(seed_, stream_ + i).Normal(row);
-    }
-    return noise;
-  }
-
- private:
-  std::uint64_t seed_, stream_;
-  double deviation_;
-};
 
 // The rows of one recording as they are made.
 class CourseMaker {

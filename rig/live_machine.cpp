@@ -1,62 +1,192 @@
 #include "rig/live_machine.h"
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
+#include <utility>
 
+#include "failure/failure.h"
 #include "rig/rig_channel.h"
+#include "rig/streams.h"
 
 namespace abbe::rig {
-LiveMachine::LiveMachine(const World& world)
-    : world_(world), noise_(world.settings(), world.seed(), 0) {}
+namespace {
 
-bool LiveMachine::Start(int axis, double time) {
-  const RigSettings& settings = world_.settings();
-  if (StateAt(time) == ProgramState::kRunning || !settings.sweeps[axis]) return false;
-  axis_ = axis;
-  started_ = time;
-  motion_.emplace(*settings.sweeps[axis], Dynamics{settings.acceleration, settings.lag},
-                  settings.travels[axis].first);
-  latest_.reset();
-  return true;
+using Eigen::Vector3d;
+
+constexpr double kRapid = 0.05;  // m/s, to a course and back
+
+Vector3d RestOf(const RigSettings& settings) {
+  return {settings.travels[0].first, settings.travels[1].first, settings.travels[2].first};
 }
 
-ProgramState LiveMachine::StateAt(double time) const {
-  if (!motion_) return ProgramState::kIdle;
-  return time < started_ + motion_->duration() ? ProgramState::kRunning : ProgramState::kDone;
+CourseState StandingAt(const Vector3d& place) {
+  CourseState state;
+  state.command = state.position = place;
+  return state;
 }
 
-LiveMachine::Snapshot LiveMachine::Take(std::uint64_t tick) {
-  const RigSettings& settings = world_.settings();
-  Snapshot snapshot{tick, static_cast<double>(tick) / settings.update_rate, {}, {}};
-  for (int axis = 0; axis < kAxes; ++axis) snapshot.position[axis] = settings.travels[axis].first;
-  if (motion_) snapshot.position[axis_] = motion_->At(snapshot.time - started_).position;
-  snapshot.gaps = world_.ReadingsAt(axis_, snapshot.position);
-  for (int probe = 0; probe < kProbes; ++probe) {
-    snapshot.gaps[probe] += noise_.OfProbe(probe, tick, snapshot.time);
+Course FromRestAndBack(Course course, const Vector3d& rest) {
+  course.moves.insert(course.moves.begin(), {{course.start}, kRapid});
+  course.moves.push_back({{rest}, kRapid});
+  course.start = rest;
+  return course;
+}
+
+// A point every 0.5 mm or more will do, and the last of each move.
+void RequireReach(const LinkageRig& linkage, const Course& course) {
+  constexpr double kStep = 0.5e-3;
+  const double temperature = linkage.world().settings().temperature;
+  Vector3d checked = Vector3d::Constant(1e9);
+  for (const Move& move : course.moves) {
+    for (const Vector3d& point : move.points) {
+      if ((point - checked).norm() < kStep && &point != &move.points.back()) continue;
+      linkage.linkage().EncodersFor(linkage.ToolAt(point), temperature);
+      checked = point;
+    }
   }
-  return snapshot;
 }
 
-std::optional<double> LiveMachine::ReadingOf(std::string_view channel, double time) {
+}  // namespace
+
+std::function<double()> SimulatedTime(double speed) {
+  const auto start = std::chrono::steady_clock::now();
+  return [start, speed] {
+    return speed * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+}
+
+LiveMachine::LiveMachine(const World& world, std::function<double()> time,
+                         const LinkageRig* linkage, std::optional<Course> course, double cap_force)
+    : world_(world),
+      time_(std::move(time)),
+      linkage_(linkage),
+      cap_force_(cap_force > 0.0 ? cap_force : world.settings().cap_force),
+      noise_(world.settings(), world.seed(), 0),
+      encoder_noise_(world.seed(), kEncoderNoiseStream,
+                     linkage != nullptr ? linkage->linkage().settings().encoder_noise : 0.0) {
+  latest_.axes = StandingAt(RestOf(world.settings()));
+  if (linkage_ != nullptr) temperatures_ = {linkage_->linkage().settings().temperature};
+  if (!course) return;
+  if (linkage_ != nullptr) RequireReach(*linkage_, *course);
+  course_ = FromRestAndBack(std::move(*course), latest_.axes.position);
+}
+
+StartOutcome LiveMachine::Start(int program) {
+  const RigSettings& settings = world_.settings();
+  const std::lock_guard lock(mutex_);
+  if (Latest().state == ProgramState::kRunning) return StartOutcome::kBusy;
+  const Dynamics dynamics{settings.acceleration, settings.lag};
+  motion_.reset();
+  run_.reset();
+  if (program == kCourseProgram && course_) {
+    run_.emplace(*course_, CourseRun::Dynamics{dynamics.acceleration, dynamics.lag},
+                 1.0 / settings.update_rate);
+    run_ticks_ = 0;
+  } else if (program >= 0 && program < kAxes && settings.sweeps[program]) {
+    motion_.emplace(*settings.sweeps[program], dynamics, settings.travels[program].first);
+    head_axis_ = program;
+  } else {
+    return StartOutcome::kNoSuchProgram;
+  }
+  latest_.program = program;
+  latest_.state = ProgramState::kRunning;
+  started_ = latest_.tick;
+  gaps_tick_.reset();
+  return StartOutcome::kStarted;
+}
+
+Moment LiveMachine::Now() {
+  const std::lock_guard lock(mutex_);
+  return Latest();
+}
+
+const Moment& LiveMachine::Latest() {
+  const double ticks = std::max(0.0, time_()) * world_.settings().update_rate;
+  const auto tick = static_cast<std::uint64_t>(ticks);
+  if (tick > latest_.tick) {
+    latest_.tick = tick;
+    if (latest_.state == ProgramState::kRunning) Advance(latest_);
+    latest_.axes.time = static_cast<double>(latest_.tick) / world_.settings().update_rate;
+  }
+  return latest_;
+}
+
+void LiveMachine::Advance(Moment& moment) {
+  const std::uint64_t since = moment.tick - started_;
+  bool done = false;
+  if (run_) {
+    for (; run_ticks_ < since && !done; ++run_ticks_) done = !run_->Next();
+    moment.axes = run_->state();
+  } else {
+    const RigSettings& settings = world_.settings();
+    const MotionState state = motion_->At(static_cast<double>(since) / settings.update_rate);
+    moment.axes.position[moment.program] = state.position;
+    moment.axes.command[moment.program] = state.command;
+    moment.axes.pass = state.pass;
+    moment.axes.direction = state.direction;
+    moment.axes.feed = settings.sweeps[moment.program]->feed;
+    moment.axes.counts = state.pass > 0;
+    done = state.done;
+  }
+  if (!done) return;
+  moment.state = ProgramState::kDone;
+  moment.axes = StandingAt(RestOf(world_.settings()));
+}
+
+std::optional<double> LiveMachine::ReadingOf(std::string_view channel, const Moment& moment) {
+  using Quantity = RigChannel::Quantity;
   const std::optional<RigChannel> parsed = ParseChannel(channel);
   if (!parsed) return std::nullopt;
-  const double rate = world_.settings().update_rate;
-  const auto tick = static_cast<std::uint64_t>(std::max(0.0, time) * rate);
-  if (!latest_ || latest_->tick != tick) latest_ = Take(tick);
-  if (parsed->quantity == RigChannel::Quantity::kPosition) {
-    return latest_->position[parsed->index] / parsed->unit;
+  const CourseState& axes = moment.axes;
+  const std::lock_guard lock(mutex_);
+  switch (parsed->quantity) {
+    case Quantity::kPosition:
+      return axes.position[parsed->index] / parsed->unit;
+    case Quantity::kPass:
+      return axes.counts ? axes.pass : 0;
+    case Quantity::kDirection:
+      return axes.counts ? axes.direction : 0;
+    case Quantity::kFeed:
+      return axes.counts ? axes.feed / parsed->unit : 0.0;
+    case Quantity::kTemperature:
+      return TemperatureOf(channel, axes.time);
+    case Quantity::kGap:
+      break;
   }
-  if (parsed->quantity == RigChannel::Quantity::kGap) {
-    const double gap = latest_->gaps[parsed->index];
-    if (gap < 0.0 || gap > world_.settings().probes[parsed->index].range) return std::nullopt;
-    return gap / parsed->unit;
+  const double gap = GapsAt(moment)[parsed->index];
+  if (gap < 0.0 || gap > world_.settings().probes[parsed->index].range) return std::nullopt;
+  return gap / parsed->unit;
+}
+
+const Readings& LiveMachine::GapsAt(const Moment& moment) {
+  if (gaps_tick_ == moment.tick) return gaps_;
+  gaps_ = world_.ReadingsAt(head_axis_, moment.axes.position);
+  for (int probe = 0; probe < kProbes; ++probe) {
+    gaps_[probe] += noise_.OfProbe(probe, moment.tick, moment.axes.time);
   }
+  gaps_tick_ = moment.tick;
+  return gaps_;
+}
+
+double LiveMachine::TemperatureOf(std::string_view channel, double time) {
   auto found = std::find(temperatures_.begin(), temperatures_.end(), channel);
   if (found == temperatures_.end()) {
     found = temperatures_.insert(temperatures_.end(), std::string(channel));
   }
   const auto sensor = static_cast<std::size_t>(found - temperatures_.begin());
-  return world_.settings().temperature + noise_.OfTemperature(sensor, latest_->time);
+  return world_.settings().temperature + noise_.OfTemperature(sensor, time);
+}
+
+std::optional<Vector3d> LiveMachine::EncodersNow() {
+  if (linkage_ == nullptr) return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  const Moment& now = Latest();
+  const double temperature = TemperatureOf(temperatures_.front(), now.axes.time);
+  try {
+    return linkage_->EncodersAt(now.axes, temperature, cap_force_) + encoder_noise_.At(now.tick);
+  } catch (const Failure&) {
+    return std::nullopt;  // out of reach
+  }
 }
 
 }  // namespace abbe::rig

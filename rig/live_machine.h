@@ -1,17 +1,28 @@
-// The rig's machine as it runs: at rest, or performing the sweep of an axis since it was started.
+// The rig's machine as it runs: at rest, or performing a program since it was started. Programs 0,
+// 1, 2 are the sweeps of X, Y, Z, program 3 is the course that it was given.
 //
-// The sensors take a new reading `update_rate` times a second; between two updates they show the
-// same values. The axis that was started last has the head installed for its sweep (X before the
-// first). Time is simulated time since the rig was switched on, s, and must not go back by more
-// than a sweep. Not safe for several threads: register_server.h locks.
+//   LiveMachine machine(world, SimulatedTime(20.0), &linkage, CircleCourse({...}));
+//   machine.Start(kCourseProgram);
+//   const Moment now = machine.Now();
+//   use(machine.ReadingOf("x_mm", now), machine.EncodersNow());
+//
+// Axes and sensors take a new state `update_rate` times a second; between two updates they show the
+// same one. Every program begins and ends at rest, the first ends of the travels; the way from
+// there to a course and back is no part of it (pass 0). The head stands as installed for the sweep
+// that was started last (X before the first). Time is simulated time since the rig was switched on,
+// s. Safe for several threads; time that goes back is taken as the latest moment.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "rig/course.h"
+#include "rig/linkage_campaign.h"
 #include "rig/motion.h"
 #include "rig/noise.h"
 #include "rig/world.h"
@@ -19,38 +30,63 @@
 namespace abbe::rig {
 
 enum class ProgramState : std::uint16_t { kIdle = 0, kRunning = 1, kDone = 2 };
+enum class StartOutcome { kStarted, kBusy, kNoSuchProgram };
+
+inline constexpr int kCourseProgram = kAxes;
+
+// The machine at one update.
+struct Moment {
+  std::uint64_t tick = 0;
+  int program = 0;  // started last
+  ProgramState state = ProgramState::kIdle;
+  CourseState axes;  // its time is that of the update
+};
+
+// Simulated seconds since the call, `speed` of them in a second of the computer.
+std::function<double()> SimulatedTime(double speed);
 
 class LiveMachine {
  public:
-  explicit LiveMachine(const World& world);
+  // `world` and `linkage` must outlive the machine. `cap_force` as in CourseOptions. InputError
+  // when a place of the course is out of the linkage's reach.
+  LiveMachine(const World& world, std::function<double()> time, const LinkageRig* linkage = nullptr,
+              std::optional<Course> course = {}, double cap_force = 0.0);
 
-  // Starts the programmed sweep of axis 0, 1, 2. False when one is running or none is programmed.
-  bool Start(int axis, double time);
+  StartOutcome Start(int program);
+  Moment Now();
 
-  ProgramState StateAt(double time) const;
-  int axis() const { return axis_; }  // started last
+  // What a channel (rig_channel.h) reads, in the unit of its name. Empty: the gap is out of the
+  // probe's range, 0 to `range`, or the rig has no such channel.
+  std::optional<double> ReadingOf(std::string_view channel, const Moment& moment);
 
-  // What a channel (rig_channel.h) reads, in the unit of its name, at the latest update. Empty: the
-  // gap is out of the probe's range, 0 to `range`, or the rig has no such channel.
-  std::optional<double> ReadingOf(std::string_view channel, double time);
+  bool has_linkage() const { return linkage_ != nullptr; }
+  bool has_course() const { return course_.has_value(); }
+  // What the linkage's encoders show, rad, with noise. Empty: the ball is out of reach.
+  std::optional<Eigen::Vector3d> EncodersNow();
 
  private:
-  struct Snapshot {
-    std::uint64_t tick = 0;
-    double time = 0.0;
-    Eigen::Vector3d position;
-    Readings gaps{};
-  };
-
-  Snapshot Take(std::uint64_t tick);
+  const Moment& Latest();  // moves on to it
+  void Advance(Moment& moment);
+  double TemperatureOf(std::string_view channel, double time);
+  const Readings& GapsAt(const Moment& moment);
 
   const World& world_;
+  const std::function<double()> time_;
+  const LinkageRig* linkage_;
+  std::optional<Course> course_;
+  const double cap_force_;
+  std::mutex mutex_;
   SensorNoise noise_;
-  int axis_ = 0;
-  double started_ = 0.0;
+  WhiteNoise encoder_noise_;
+  int head_axis_ = 0;
+  Moment latest_;
+  std::uint64_t started_ = 0;  // tick
   std::optional<SweepMotion> motion_;
-  std::optional<Snapshot> latest_;
-  std::vector<std::string> temperatures_;  // in the order of their first reading
+  std::optional<CourseRun> run_;
+  std::uint64_t run_ticks_ = 0;
+  std::optional<std::uint64_t> gaps_tick_;
+  Readings gaps_{};
+  std::vector<std::string> temperatures_;  // the linkage's, then in the order of first reading
 };
 
 }  // namespace abbe::rig

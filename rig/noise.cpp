@@ -32,6 +32,15 @@ double SlowDrift::At(double time) {
   return (1.0 - share) * grid_[before] + share * grid_[before + 1];
 }
 
+Eigen::Vector3d WhiteNoise::At(std::uint64_t number) const {
+  Eigen::Vector3d noise;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    noise[static_cast<Eigen::Index>(i)] =
+        deviation_ * random::CounterRandom(seed_, stream_ + i).Normal(number);
+  }
+  return noise;
+}
+
 SensorNoise::SensorNoise(const RigSettings& settings, std::uint64_t seed, std::uint64_t run)
     : seed_(seed),
       first_stream_(kRunStreams * run),

@@ -8,6 +8,7 @@
 // so it does not matter when or how often a sensor is read.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
@@ -29,6 +30,20 @@ class SlowDrift {
   double step_;
   double kept_;  // share of the old value in the next one
   std::vector<double> grid_;
+};
+
+// White noise of three channels, normal with this deviation: a function of the number of a row or
+// an update. Takes three streams from `stream` on.
+class WhiteNoise {
+ public:
+  WhiteNoise(std::uint64_t seed, std::uint64_t stream, double deviation)
+      : seed_(seed), stream_(stream), deviation_(deviation) {}
+
+  Eigen::Vector3d At(std::uint64_t number) const;
+
+ private:
+  std::uint64_t seed_, stream_;
+  double deviation_;
 };
 
 // The noise of the five probes and of temperatures in one run. Two runs of one seed are

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -17,13 +16,6 @@ using hal::ChannelSettings;
 using hal::DeviceSettings;
 using hal::RegisterTable;
 using hal::WordType;
-
-std::function<double()> ComputerClock(double speed) {
-  const auto start = std::chrono::steady_clock::now();
-  return [start, speed] {
-    return speed * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
-}
 
 // The raw number that says "no value".
 double SentinelOf(const ChannelSettings& channel) {
@@ -49,7 +41,7 @@ void CheckChannels(const hal::DevicesSettings& devices) {
         if (ParseChannel(channel.name)) continue;
         throw InputError(
             fmt::format("devices.{}: the rig has no channel \"{}\"; it serves x_mm, y_mm, z_mm, "
-                        "probe_a_um to probe_e_um and temp_NAME_c",
+                        "probe_a_um to probe_e_um, temp_NAME_c, pass, direction and feed_mm_min",
                         device.name, channel.name));
       }
     }
@@ -58,11 +50,9 @@ void CheckChannels(const hal::DevicesSettings& devices) {
 
 }  // namespace
 
-RegisterServer::RegisterServer(const World& world, const hal::DevicesSettings& devices,
+RegisterServer::RegisterServer(LiveMachine& machine, const hal::DevicesSettings& devices,
                                const ServerOptions& options)
-    : devices_(devices),
-      clock_(options.clock ? options.clock : ComputerClock(options.speed)),
-      machine_(world) {
+    : devices_(devices), machine_(machine) {
   CheckChannels(devices_);
   for (const DeviceSettings& device : devices_.devices) {
     const auto claim = [&](RegisterTable table, int address, int count) {
@@ -98,13 +88,6 @@ std::string RegisterServer::OpenRtu(const std::string& device_name) {
                   device_name));
 }
 
-Answer RegisterServer::Start(int axis) {
-  const std::lock_guard lock(mutex_);
-  const double time = clock_();
-  if (machine_.StateAt(time) == ProgramState::kRunning) return Answer::kBusy;
-  return machine_.Start(axis, time) ? Answer::kOk : Answer::kIllegalValue;
-}
-
 Answer RegisterServer::Read(int unit, RegisterTable table, int address,
                             std::span<std::uint16_t> words) {
   const std::lock_guard lock(mutex_);
@@ -117,7 +100,7 @@ Answer RegisterServer::Read(int unit, RegisterTable table, int address,
     const Place place{unit, table, address + static_cast<int>(i)};
     if (found == registers_.end() || found->first != place) return Answer::kIllegalAddress;
   }
-  Refresh(clock_());
+  Refresh();
   found = begin;
   for (std::uint16_t& word : words) word = (found++)->second;
   return Answer::kOk;
@@ -128,31 +111,33 @@ Answer RegisterServer::Write(int unit, int address, std::span<const std::uint16_
     if (device.unit != unit || !device.cycle_start || device.cycle_start->address != address) {
       continue;
     }
-    if (words.size() != 1 || words[0] < 1 || words[0] > kAxes) return Answer::kIllegalValue;
-    return Start(words[0] - 1);
+    if (words.size() != 1) return Answer::kIllegalValue;
+    const StartOutcome outcome = machine_.Start(words[0] - 1);
+    if (outcome == StartOutcome::kBusy) return Answer::kBusy;
+    return outcome == StartOutcome::kStarted ? Answer::kOk : Answer::kIllegalValue;
   }
   return Answer::kIllegalAddress;
 }
 
-void RegisterServer::Refresh(double time) {
+void RegisterServer::Refresh() {
+  const Moment now = machine_.Now();
   for (const DeviceSettings& device : devices_.devices) {
-    for (const BlockSettings& block : device.blocks) RefreshBlock(device, block, time);
+    for (const BlockSettings& block : device.blocks) RefreshBlock(device, block, now);
     if (!device.cycle_start) continue;
-    const ProgramState state = machine_.StateAt(time);
     const int address = device.cycle_start->address;
     registers_[{device.unit, RegisterTable::kHolding, address}] =
-        static_cast<std::uint16_t>(state == ProgramState::kRunning ? machine_.axis() + 1 : 0);
+        static_cast<std::uint16_t>(now.state == ProgramState::kRunning ? now.program + 1 : 0);
     registers_[{device.unit, RegisterTable::kHolding, address + 1}] =
-        static_cast<std::uint16_t>(state);
+        static_cast<std::uint16_t>(now.state);
   }
-  RefreshStatus(time);
+  RefreshStatus(now);
 }
 
 void RegisterServer::RefreshBlock(const DeviceSettings& device, const BlockSettings& block,
-                                  double time) {
+                                  const Moment& now) {
   std::vector<std::uint16_t> words(static_cast<std::size_t>(block.count));
   for (const ChannelSettings& channel : block.channels) {
-    const std::optional<double> value = machine_.ReadingOf(channel.name, time);
+    const std::optional<double> value = machine_.ReadingOf(channel.name, now);
     if (value) {
       hal::StoreValue(channel, *value, words);
     } else {
@@ -165,12 +150,12 @@ void RegisterServer::RefreshBlock(const DeviceSettings& device, const BlockSetti
 }
 
 // A register that several channels share is bad when one of them is.
-void RegisterServer::RefreshStatus(double time) {
+void RegisterServer::RefreshStatus(const Moment& now) {
   for (const bool good : {true, false}) {
     for (const DeviceSettings& device : devices_.devices) {
       for (const BlockSettings& block : device.blocks) {
         for (const ChannelSettings& channel : block.channels) {
-          if (!channel.status || machine_.ReadingOf(channel.name, time).has_value() != good)
+          if (!channel.status || machine_.ReadingOf(channel.name, now).has_value() != good)
             continue;
           const auto& [address, table, mask, ok] = *channel.status;
           const std::uint16_t first_ok = ok.empty() ? 0 : ok.front();
@@ -195,9 +180,10 @@ std::string RegisterServer::MapText() const {
     }
     if (!device.cycle_start) continue;
     text += fmt::format(
-        "  unit {} holding register {}: write 1, 2, 3 to sweep X, Y, Z; {}: 0 idle, 1 running, "
+        "  unit {} holding register {}: write 1, 2, 3 to sweep X, Y, Z{}; {}: 0 idle, 1 running, "
         "2 done\n",
-        device.unit, device.cycle_start->address, device.cycle_start->address + 1);
+        device.unit, device.cycle_start->address,
+        machine_.has_course() ? ", 4 to run the course" : "", device.cycle_start->address + 1);
   }
   return text;
 }

@@ -1,20 +1,20 @@
 // The rig on the wire: serves the live machine over Modbus TCP, and single devices over RTU on a
 // pseudo terminal, by the channel maps of the machine file.
 //
-//   RegisterServer rig(world, devices, {.port = 0, .speed = 20.0});
+//   RegisterServer rig(machine, devices, {.port = 0});
 //   use(rig.port());
 //
 // Registers: those of the blocks of [devices.*]; a register of a block without a channel reads 0. A
 // gap out of range reads the channel's first sentinel, without sentinels all ones (NaN for
 // float32), as an amplifier does, and its status register, if it has one, is not `ok`. Otherwise a
 // status register shows the first `ok`. Where a device has `cycle_start`, writing 1, 2 or 3 there
-// starts the sweep of X, Y or Z (busy, exception 6, while one runs; illegal value, 3, when none is
-// programmed), and the register after it shows the program: 0 idle, 1 running, 2 done.
+// starts the sweep of X, Y or Z, writing 4 the machine's course (busy, exception 6, while one runs;
+// illegal value, 3, when none is programmed), and the register after it shows the program: 0 idle,
+// 1 running, 2 done.
 //
 // All TCP devices of the file are served on one address, each by its unit.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -31,16 +31,14 @@ namespace abbe::rig {
 
 struct ServerOptions {
   std::string host = "127.0.0.1";
-  int port = 0;                        // 0: a free one
-  double speed = 1.0;                  // simulated seconds in a second
-  std::function<double()> clock = {};  // simulated time, s; for tests, instead of the computer's
+  int port = 0;  // 0: a free one
 };
 
 class RegisterServer : private hal::RegisterBank {
  public:
   // Listens when it returns. DeviceError when the address is taken; InputError when a channel is
-  // none of the rig's, or when two devices claim a register of one unit.
-  RegisterServer(const World& world, const hal::DevicesSettings& devices,
+  // none of the rig's, or when two devices claim a register of one unit. `machine` must outlive it.
+  RegisterServer(LiveMachine& machine, const hal::DevicesSettings& devices,
                  const ServerOptions& options);
 
   int port() const { return tcp_->port(); }
@@ -49,9 +47,6 @@ class RegisterServer : private hal::RegisterBank {
   // Serves a device of the file over RTU too; returns the terminal a client opens. InputError for
   // an unknown device.
   std::string OpenRtu(const std::string& device);
-
-  // Starts the sweep of axis 0, 1, 2 as a write to the cycle start does.
-  hal::Answer Start(int axis);
 
   // A few lines for a person: which unit, function and registers hold which channels.
   std::string MapText() const;
@@ -62,15 +57,14 @@ class RegisterServer : private hal::RegisterBank {
   hal::Answer Read(int unit, hal::RegisterTable table, int address,
                    std::span<std::uint16_t> words) override;
   hal::Answer Write(int unit, int address, std::span<const std::uint16_t> words) override;
-  void Refresh(double time);
+  void Refresh();
   void RefreshBlock(const hal::DeviceSettings& device, const hal::BlockSettings& block,
-                    double time);
-  void RefreshStatus(double time);
+                    const Moment& now);
+  void RefreshStatus(const Moment& now);
 
   hal::DevicesSettings devices_;
-  std::function<double()> clock_;
-  mutable std::mutex mutex_;
-  LiveMachine machine_;
+  LiveMachine& machine_;
+  std::mutex mutex_;  // of the registers
   std::map<Place, std::uint16_t> registers_;
   std::vector<std::unique_ptr<hal::ModbusServer>> rtu_;
   std::unique_ptr<hal::ModbusServer> tcp_;  // last: stops before the rest goes

@@ -1,4 +1,5 @@
-// The channels that the rig can give, by their names: "x_mm", "probe_a_um", "temp_NAME_c".
+// The channels that the rig can give, by their names: "x_mm", "probe_a_um", "temp_NAME_c", and what
+// its controller says of its program: "pass", "direction", "feed_mm_min".
 #pragma once
 
 #include <optional>
@@ -10,9 +11,9 @@
 namespace abbe::rig {
 
 struct RigChannel {
-  enum class Quantity { kPosition, kGap, kTemperature };
+  enum class Quantity { kPosition, kGap, kTemperature, kPass, kDirection, kFeed };
   Quantity quantity;
-  int index;    // of the axis or the probe; 0 for temperatures
+  int index;    // of the axis or the probe, else 0
   double unit;  // SI value of the unit in the name
 };
 
@@ -20,6 +21,9 @@ struct RigChannel {
 inline std::optional<RigChannel> ParseChannel(std::string_view name) {
   using Quantity = RigChannel::Quantity;
   const double unit = settings::UnitOf(name).si;
+  if (name == "pass") return RigChannel{Quantity::kPass, 0, unit};
+  if (name == "direction") return RigChannel{Quantity::kDirection, 0, unit};
+  if (name == "feed_mm_min") return RigChannel{Quantity::kFeed, 0, unit};
   if (name.ends_with("_c")) {
     if (name.starts_with("temp_")) return RigChannel{Quantity::kTemperature, 0, unit};
     return std::nullopt;

@@ -1,8 +1,11 @@
-// The section of a circular test: figures of ISO 230-4, the circle with its deviation magnified, the
-// path in space, harmonics, and what made the circle as it is.
+// The section of a circular test: figures of ISO 230-4, the circle with its deviation magnified,
+// the path in space, harmonics, and what made the circle as it is.
 
 const CIRCLE_FIGURES = [
-  ['G_ccw_um', 'G(ccw)', 'Circular deviation, counter-clockwise: the narrowest ring around the path'],
+  [
+    'G_ccw_um', 'G(ccw)',
+    'Circular deviation, counter-clockwise: the narrowest ring around the path'
+  ],
   ['G_cw_um', 'G(cw)', 'Circular deviation, clockwise'],
   ['G_b_um', 'G(b)', 'The ring around both senses together'],
   ['F_max_um', 'F max', 'Largest radius less the nominal one, about the set-up centre'],
@@ -37,10 +40,13 @@ const runsOf = (result) =>
 
 function circleSummary(result) {
   const sentences = (result.circles ?? []).flatMap((circle) => {
-    const widths = numbers((circle.runs ?? []).map((run) => run.G_b_um ?? run.G_ccw_um ?? run.G_cw_um));
+    const widths =
+        numbers((circle.runs ?? []).map((run) => run.G_b_um ?? run.G_ccw_um ?? run.G_cw_um));
     if (!widths.length) return [];
-    return [`${circle.instrument} ${circle.plane}: the path lies in a ring ` +
-            `${micrometres(Math.max(...widths))} wide`];
+    return [
+      `${circle.instrument} ${circle.plane}: the path lies in a ring ` +
+      `${micrometres(Math.max(...widths))} wide`
+    ];
   });
   const found = (result.causes ?? [])
                     .filter(isFound)
@@ -55,6 +61,10 @@ const signatureName = ({cause, object}) => `${SIGNATURE_NAMES[cause] ?? cause} $
 // Seen by the data, and beyond its U95.
 const isFound = ({seen, value, u}) => seen && Math.abs(value) > COVERAGE * u;
 
+// With its expanded uncertainty, where that is known.
+const circleFigure = (run, key) =>
+    isNumber(run[key]) ? quantity(run[key], COVERAGE * (run.u?.[key] ?? 0)) : null;
+
 function circleFigureTable(result) {
   const runs = runsOf(result);
   return table({
@@ -65,12 +75,10 @@ function circleFigureTable(result) {
           ({circle, run}) => ({head: runName(circle, run), unit: '\u00b5m', numeric: true})),
       {head: 'Meaning'}
     ],
-    rows: CIRCLE_FIGURES.filter(([key]) => runs.some(({run}) => isNumber(run[key])))
-              .map(
-                  ([key, symbol, meaning]) =>
-                      [symbol,
-                       ...runs.map(({run}) => isNumber(run[key]) ? significant(run[key]) : null),
-                       meaning]),
+    rows:
+        CIRCLE_FIGURES.filter(([key]) => runs.some(({run}) => isNumber(run[key])))
+            .map(([key, symbol,
+                   meaning]) => [symbol, ...runs.map(({run}) => circleFigure(run, key)), meaning]),
   });
 }
 
@@ -88,7 +96,9 @@ function signatureTable(circle) {
             [signatureName(one),
              one.seen ? quantity(one.value * scale, COVERAGE * one.u * scale) : null,
              SIGNATURE_UNITS[one.unit] ?? one.unit, one.seen ? significant(one.effect_um) : null,
-             isFound(one) ? 'yes' : one.seen ? 'below its uncertainty' : 'not seen']),
+             isFound(one) ? 'yes' :
+                 one.seen ? 'below its uncertainty' :
+                            'not seen']),
   });
 }
 
@@ -101,29 +111,41 @@ function roundNumber(value) {
 const circleDeviation = (run) =>
     Math.max(1e-9, ...SENSES.map(([sense]) => largest(run.profile?.[sense]?.radial)));
 
-// Magnifications from 10 to 100 000 in steps of 1, 2, 5; the first shown makes the largest deviation
-// a fifth of `size`.
+// Magnifications from 10 to 100 000 in steps of 1, 2, 5; the first shown makes the largest
+// deviation a fifth of `size`.
 function magnifierFor(size, deviation) {
   const values = [1, 2, 3, 4].flatMap((power) => [1, 2, 5].map((one) => one * 10 ** power));
   values.push(1e5);
   const best = roundNumber(Math.min(1e5, Math.max(10, 0.2 * size / deviation)));
-  return {label: 'Magnification', values, at: Math.max(0, values.indexOf(best)),
-          text: (value) => `${grouped(value)}\u00a0\u00d7`};
+  return {
+    label: 'Magnification',
+    values,
+    at: Math.max(0, values.indexOf(best)),
+    text: (value) => `${grouped(value)}\u00a0\u00d7`
+  };
 }
 
-// Lists closed, so that the last point meets the first.
-const closed = (list) => list?.length ? [...list, list[0]] : [];
+const ARC_GAP = 0.3;  // rad between neighbours: the path was not measured there
+
+// Lists along a circle, closed where the circle is, with a gap (NaN) where nothing was measured.
+const ringOf = (angle) => (list) => {
+  if (!list?.length) return [];
+  const ring =
+      list.flatMap((one, i) => i && angle[i] - angle[i - 1] > ARC_GAP ? [NaN, one] : [one]);
+  return angle[0] + 2 * Math.PI - angle.at(-1) > ARC_GAP ? ring : [...ring, list[0]];
+};
 
 function circleTrace(name, radius, {angle, radial}, amount, line) {
   const r = radial.map((one) => radius + amount * one * 1e3);
+  const ring = ringOf(angle);
   return {
     ...lineTrace(
-        name, closed(angle.map((at, index) => r[index] * Math.cos(at))),
-        closed(angle.map((at, index) => r[index] * Math.sin(at))), line.color, ''),
+        name, ring(angle.map((at, index) => r[index] * Math.cos(at))),
+        ring(angle.map((at, index) => r[index] * Math.sin(at))), line.color, ''),
     line,
-    text: closed(
-        radial.map((one, index) => `${fixed(angle[index] * 180 / Math.PI, 0)}\u00b0: ` +
-                       `${fixed(one * 1e6, 2)}\u00a0\u00b5m`)),
+    text: ring(radial.map(
+        (one, index) => `${fixed(angle[index] * 180 / Math.PI, 0)}\u00b0: ` +
+            `${fixed(one * 1e6, 2)}\u00a0\u00b5m`)),
     hovertemplate: '%{text}',
   };
 }
@@ -146,7 +168,8 @@ function circleRings(radius, amount, colours) {
       label: {
         x: r * Math.SQRT1_2,
         y: r * Math.SQRT1_2,
-        text: at ? `${at > 0 ? '+' : MINUS}${fixed(Math.abs(at), step < 1 ? 3 : 0)}\u00a0\u00b5m` : '0',
+        text: at ? `${at > 0 ? '+' : MINUS}${fixed(Math.abs(at), step < 1 ? 3 : 0)}\u00a0\u00b5m` :
+                   '0',
         showarrow: false,
         font: {size: 11, color: colours.muted},
         bgcolor: colours.surface,
@@ -217,7 +240,8 @@ function polarGroup(result) {
   if (!runs.length) return null;
   return figureGroup({
     title: 'The circle, its deviation magnified',
-    intro: 'About the least-squares centre of both senses: what the set-up put off centre is gone. ' +
+    intro:
+        'About the least-squares centre of both senses: what the set-up put off centre is gone. ' +
         'Dotted: what the causes of the joint fit explain.',
     items: [
       {key: 'ccw', label: 'Counter-clockwise', swatch: 'forward'},
@@ -234,7 +258,8 @@ function polarGroup(result) {
 // The circle in its own frame: first, second, out of plane; position and deviation in m.
 function circleInSpace(circle, profile) {
   const radius = circle.radius_mm * 1e-3;
-  const [angle, radial, axial] = [profile.angle, profile.radial, profile.axial].map(closed);
+  const [angle, radial, axial] =
+      [profile.angle, profile.radial, profile.axial].map(ringOf(profile.angle));
   const [cos, sin] = [angle.map(Math.cos), angle.map(Math.sin)];
   return {
     position: [cos.map((one) => radius * one), sin.map((one) => radius * one), angle.map(() => 0)],
@@ -243,8 +268,8 @@ function circleInSpace(circle, profile) {
 }
 
 function circleSpaceGroup(result) {
-  const runs = runsOf(result).filter(
-      ({run}) => SENSES.some(([sense]) => run.profile?.[sense]?.axial));
+  const runs =
+      runsOf(result).filter(({run}) => SENSES.some(([sense]) => run.profile?.[sense]?.axial));
   return spaceGroup(
       runs.map(({circle, run}) => {
         const known = SENSES.filter(([sense]) => run.profile[sense]?.axial);
@@ -271,14 +296,15 @@ function harmonicPanel(circle, run) {
     about: `Amplitude of the harmonics of the radius, ${circle.plane} circle, ` +
         `${circle.instrument}, both senses; the values follow as a table.`,
     draw: (colours, shown) => ({
-      data: known.filter(([sense]) => shown.has(sense)).map(([sense, name, colour]) => ({
-        type: 'bar',
-        name,
-        x: run.harmonics[sense].map(({order}) => order),
-        y: run.harmonics[sense].map(({amplitude_um}) => amplitude_um),
-        marker: {color: colours[colour]},
-        hovertemplate: '%{y:.3f}\u00a0\u00b5m',
-      })),
+      data: known.filter(([sense]) => shown.has(sense))
+                .map(([sense, name, colour]) => ({
+                       type: 'bar',
+                       name,
+                       x: run.harmonics[sense].map(({order}) => order),
+                       y: run.harmonics[sense].map(({amplitude_um}) => amplitude_um),
+                       marker: {color: colours[colour]},
+                       hovertemplate: '%{y:.3f}\u00a0\u00b5m',
+                     })),
       layout: figureLayout(
           colours, {x: 'Undulations a turn', xaxis: {dtick: 1}, bargap: 0.35, bargroupgap: 0.1}),
     }),
@@ -290,15 +316,16 @@ function harmonicPanel(circle, run) {
       ],
       rows: known.flatMap(
           ([sense, name]) => run.harmonics[sense].map(
-              ({order, amplitude_um, phase_deg}) =>
-                  [String(order), name, fixed(amplitude_um, 3), fixed(phase_deg, 1)])),
+              ({order,
+                amplitude_um,
+                phase_deg}) => [String(order), name, fixed(amplitude_um, 3), fixed(phase_deg, 1)])),
     }),
   };
 }
 
 function harmonicGroup(result) {
-  const runs = runsOf(result).filter(
-      ({run}) => SENSES.some(([sense]) => run.harmonics?.[sense]?.length));
+  const runs =
+      runsOf(result).filter(({run}) => SENSES.some(([sense]) => run.harmonics?.[sense]?.length));
   if (!runs.length) return null;
   return figureGroup({
     title: 'Harmonics of the radius',
@@ -309,25 +336,49 @@ function harmonicGroup(result) {
   });
 }
 
+// How the encoders became positions: {parameters, file, model, mapped, held_out_rms_um}.
+function linkageText(linkage) {
+  if (!linkage) return null;
+  if (linkage.parameters !== 'calibrated') return 'its nominal parameters';
+  const rms = linkage.held_out_rms_um;
+  return `${linkage.file}, model ${linkage.model}${linkage.mapped ? ', mapped' : ''}` +
+      (isNumber(rms) ? `, held-out rms ${micrometres(rms)}` : '');
+}
+
+// Only of a part of the circle: "240 degrees counter-clockwise, 120 clockwise".
+function coveredText(result) {
+  const part = runsOf(result).map(({run}) => run).find((run) => run.partial);
+  if (!part) return null;
+  return SENSES.filter(([sense]) => part.covered_deg?.[sense] > 0)
+      .map(([sense, name]) => `${fixed(part.covered_deg[sense], 0)}\u00b0 ${name}`)
+      .join(', ');
+}
+
 registerSection({
   command: 'circle',
-  title: (result) => `Circular test, ${result.plane} plane`,
+  title: (result) =>
+      `${result.partial ? 'Part of a circle' : 'Circular test'}, ${result.plane} plane`,
   short: (result) => `Circle ${result.plane}`,
   summary: circleSummary,
-  facts: (result) =>
-      [['Radius', isNumber(result.radius_mm) ? `${positionText(result.radius_mm)}\u00a0mm` : null],
-       [
-         'Filter',
-         result.circles?.[0]?.filter_undulations ?
-             `${positionText(result.circles[0].filter_undulations)} undulations a turn` :
-             'none'
-       ],
-       ['Recordings', [...new Set(runsOf(result).flatMap(({run}) => run.recordings))].join(', ')]],
-  body: (result) =>
-      [circleFigureTable(result), polarGroup(result), circleSpaceGroup(result),
-       harmonicGroup(result), ...(result.circles ?? []).map(signatureTable),
-       notesBlock('Notes', result.notes)]
-          .filter(Boolean),
+  facts: (result) => [
+      [
+        'Radius',
+        isNumber(result.radius_mm) ?
+            `${positionText(Number(result.radius_mm.toFixed(2)))}\u00a0mm` :
+            null
+      ],
+      [
+        'Filter',
+        result.circles?.[0]?.filter_undulations ?
+            `${positionText(result.circles[0].filter_undulations)} undulations a turn` :
+            'none'
+      ],
+      ['Linkage read with', linkageText(result.linkage)], ['Covered', coveredText(result)],
+      ['Recordings', [...new Set(runsOf(result).flatMap(({run}) => run.recordings))].join(', ')]],
+  body: (result) => [circleFigureTable(result), polarGroup(result), circleSpaceGroup(result),
+                     harmonicGroup(result), ...(result.circles ?? []).map(signatureTable),
+                     notesBlock('Notes', result.notes)]
+                        .filter(Boolean),
   overview: {
     title: 'Circular tests (ISO\u00a0230-4)',
     columns: [
@@ -336,6 +387,6 @@ registerSection({
     ],
     row: (result) =>
         [result.plane, result.circles?.[0]?.instrument,
-         ...CIRCLE_FIGURES.map(([key]) => isNumber(result[key]) ? significant(result[key]) : null)],
+         ...CIRCLE_FIGURES.map(([key]) => circleFigure(result, key))],
   },
 });

@@ -28,12 +28,15 @@ function pathFigureTable(result) {
     caption: `Figures of the ${pathName(result).toLowerCase()}`,
     columns: [
       {head: 'Figure'},
-      ...tests.map(
-          ({instrument}) => ({head: capital(instrument), unit: '\u00b5m', numeric: true}))
+      ...tests.map(({instrument}) => ({head: capital(instrument), unit: '\u00b5m', numeric: true}))
     ],
     rows: rows.map(
         ([key, name]) =>
-            [name, ...tests.map((test) => isNumber(test[key]) ? significant(test[key]) : null)]),
+            [name,
+             ...tests.map(
+                 (test) => isNumber(test[key]) ?
+                     quantity(test[key], COVERAGE * (test.u_calibration?.[key] ?? 0)) :
+                     null)]),
   });
 }
 
@@ -65,18 +68,22 @@ function pathLists(test) {
 }
 
 function pathSpaceGroup(result) {
-  const seen = pathTests(result).filter(({path}) => path).map(({instrument, path}) => ({
-    name: capital(instrument),
-    axes: ['X', 'Y', 'Z'],
-    paths: [{
-      key: 'measured',
-      name: 'measured',
-      colour: 'mean',
-      // What is kept is the measured path and its deviation: the nominal one is their difference.
-      position: ['x', 'y', 'z'].map((axis) => path[axis].map((at, i) => at - path[`d${axis}`][i])),
-      deviation: ['dx', 'dy', 'dz'].map((axis) => path[axis]),
-    }],
-  }));
+  const seen = pathTests(result)
+                   .filter(({path}) => path)
+                   .map(({instrument, path}) => ({
+                          name: capital(instrument),
+                          axes: ['X', 'Y', 'Z'],
+                          paths: [{
+                            key: 'measured',
+                            name: 'measured',
+                            colour: 'mean',
+                            // What is kept is the measured path and its deviation: the nominal one
+                            // is their difference.
+                            position: ['x', 'y', 'z'].map(
+                                (axis) => path[axis].map((at, i) => at - path[`d${axis}`][i])),
+                            deviation: ['dx', 'dy', 'dz'].map((axis) => path[axis]),
+                          }],
+                        }));
   return spaceGroup(seen, [{key: 'measured', label: 'Measured', swatch: 'mean'}]);
 }
 
@@ -87,14 +94,13 @@ registerSection({
   summary: (result) => capital(
       pathTests(result)
           .filter(({largest_um}) => isNumber(largest_um))
-          .map(
-              ({instrument, largest_um}) =>
-                  `${instrument}: at most ${micrometres(largest_um)} from the path`)
+          .map(({instrument,
+                 largest_um}) => `${instrument}: at most ${micrometres(largest_um)} from the path`)
           .join('; ')),
-  facts: (result) =>
-      [['Recordings', [...new Set(pathTests(result).map(({recording}) => recording))].join(', ')]],
-  body: (result) =>
-      [pathFigureTable(result), pathSpaceGroup(result), ...pathTests(result).flatMap(pathLists),
-       notesBlock('Notes', result.notes)]
-          .filter(Boolean),
+  facts: (result) => [
+      ['Linkage read with', linkageText(result.linkage)],
+      ['Recordings', [...new Set(pathTests(result).map(({recording}) => recording))].join(', ')]],
+  body: (result) => [pathFigureTable(result), pathSpaceGroup(result),
+                     ...pathTests(result).flatMap(pathLists), notesBlock('Notes', result.notes)]
+                        .filter(Boolean),
 });

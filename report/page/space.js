@@ -12,7 +12,7 @@ const isometric = (lists) => [0, 1].map(
 // The middle of the nominal path, and the largest distance to it, in m.
 function spaceExtent(paths) {
   const ends = [0, 1, 2].map((axis) => {
-    const all = paths.flatMap(({position}) => position[axis]);
+    const all = numbers(paths.flatMap(({position}) => position[axis]));
     return [Math.min(...all), Math.max(...all)];
   });
   return {
@@ -23,8 +23,8 @@ function spaceExtent(paths) {
 
 function spacePath({name, position, deviation}, middle, amount, line) {
   const [x, y] = isometric(position.map(
-      (list, axis) => list.map(
-          (at, i) => (at - middle[axis] + amount * (deviation[axis][i] ?? 0)) * 1e3)));
+      (list, axis) =>
+          list.map((at, i) => (at - middle[axis] + amount * (deviation[axis][i] ?? 0)) * 1e3)));
   const vector = (i) => deviation.map((list) => fixed(list[i] * 1e6, 2)).join(', ');
   return {
     ...lineTrace(name, x, y, line.color, ''),
@@ -38,18 +38,19 @@ function spacePath({name, position, deviation}, middle, amount, line) {
 // Three short arrows that say where the axes point.
 function spaceAxes(axes, span, colours) {
   const [ax, ay] = [-0.8 * span, -0.8 * span];
-  return axes.map((name, axis) => ({
-                    x: ax + 0.16 * span * ISOMETRIC[axis][0],
-                    y: ay + 0.16 * span * ISOMETRIC[axis][1],
-                    ax,
-                    ay,
-                    axref: 'x',
-                    ayref: 'y',
-                    text: '',
-                    arrowcolor: colours.axis,
-                    arrowwidth: 1.2,
-                    arrowsize: 0.8,
-                  }))
+  return axes
+      .map((name, axis) => ({
+             x: ax + 0.16 * span * ISOMETRIC[axis][0],
+             y: ay + 0.16 * span * ISOMETRIC[axis][1],
+             ax,
+             ay,
+             axref: 'x',
+             ayref: 'y',
+             text: '',
+             arrowcolor: colours.axis,
+             arrowwidth: 1.2,
+             arrowsize: 0.8,
+           }))
       .concat(axes.map((name, axis) => ({
                          x: ax + 0.23 * span * ISOMETRIC[axis][0],
                          y: ay + 0.23 * span * ISOMETRIC[axis][1],
@@ -70,10 +71,14 @@ function spacePanel({name, axes, paths}) {
     about: `${name}: the path in space with its deviation magnified, beside the nominal path; ` +
         'the values follow as a table.',
     draw: (colours, shown, amount) => ({
-      data: paths.filter(({key}) => shown.has(key)).flatMap((path) => [
-        spacePath({...path, name: 'nominal'}, middle, 0, {color: colours.axis, width: 1}),
-        spacePath(path, middle, amount, {color: colours[path.colour], width: 1.6}),
-      ]),
+      data:
+          paths.filter(({key}) => shown.has(key))
+              .flatMap(
+                  (path) =>
+                      [spacePath(
+                           {...path, name: 'nominal'}, middle, 0, {color: colours.axis, width: 1}),
+                       spacePath(path, middle, amount, {color: colours[path.colour], width: 1.6}),
+  ]),
       layout: squareLayout(colours, span, {annotations: spaceAxes(axes, span, colours)}),
     }),
     values: () => ({
@@ -83,8 +88,9 @@ function spacePanel({name, axes, paths}) {
       ],
       rows: paths.flatMap(
           ({position, deviation}) => position[0].map(
-              (unused, i) => [...position.map((list) => fixed(list[i] * 1e3, 3)),
-                              ...deviation.map((list) => fixed(list[i] * 1e6, 3))])),
+              (unused, i) =>
+                  [...position.map((list) => fixed(list[i] * 1e3, 3)),
+                   ...deviation.map((list) => fixed(list[i] * 1e6, 3))])),
     }),
   };
 }

@@ -106,6 +106,27 @@ class Calibrate(unittest.TestCase):
         self.assertLess(result["held_out"]["rms_um"], 1.5)
         self.assertGreater(result["before"]["rms_um"], 50)
 
+    def test_cube_of_the_document_is_reported_before_it_is_measured(self):
+        measured, _ = self.result(self.record(n=(7, 7, 12)), "--model", "published with bearing")
+        run = self.run_program("--model", "published with bearing", "--volume", "25,25,50")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("588 poses in 25 x 25 x 50 mm", run.stdout)
+        seen = int(run.stdout.split("The data see ")[1].split(" of 30 ")[0])
+        self.assertLessEqual(abs(seen - measured["combinations_seen"]), 1)  # one may stand on the limit
+        self.assertIn("radial_angle.pivot_1", run.stdout)
+
+    def test_models_are_compared_on_a_recording_that_took_no_part(self):
+        check = pathlib.Path(self.record(n=(3, 3, 3))).rename(self.path / "check.csv")
+        cube = self.record(n=(5, 5, 5))
+        run = self.run_program(cube, "--compare", "--check", check, "--folds", 1, "--json", self.path / "models.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        models = {row["name"]: row for row in json.loads((self.path / "models.json").read_text())["models"]}
+        largest = {name: row["checks"][0]["distance"]["max_um"] for name, row in models.items() if name != "reference"}
+        self.assertGreater(largest["nominal"], 50)
+        self.assertLess(largest["complete"], 3)
+        self.assertGreater(largest["complete, one cell"], largest["complete"])
+        self.assertIn("5.10 (3D), circle 5.29 (2D)", run.stdout)
+
     def test_calibration_file_is_written(self):
         run = self.run_program(self.record(), "-o", self.path / "linkage.toml")
         self.assertEqual(run.returncode, 0, run.stderr)

@@ -1,16 +1,11 @@
 """`abbe circle` as a user runs it, on circles whose errors are known."""
-import json
 import math
-import os
 import pathlib
-import subprocess
-import tempfile
 import unittest
 
 import linkage_runs
+from program_case import MACHINE, ProgramCase
 
-PROGRAM = os.environ["ABBE"]
-MACHINE = os.environ["ABBE_MACHINE"]
 CENTRE = (30.0, 30.0, 30.0)
 
 
@@ -50,29 +45,8 @@ def worn(x, y, vx, vy):
     return x - y * 200e-6, y
 
 
-class Circle(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.path = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def run_program(self, *arguments):
-        return subprocess.run([PROGRAM, "circle", *map(str, arguments)], capture_output=True,
-                              text=True, timeout=60)
-
-    def result(self, *arguments):
-        done = self.run_program(*arguments, "--json", self.path / "result.json")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads((self.path / "result.json").read_text())
-
-    def refuse(self, *arguments, saying):
-        done = self.run_program(*arguments)
-        self.assertEqual(done.returncode, 2, done.stdout)
-        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
-        for text in saying:
-            self.assertIn(text, done.stderr)
+class Circle(ProgramCase):
+    command = "circle"
 
     def test_perfect_circle_in_every_plane(self):
         for plane in ("XY", "YZ", "ZX"):
@@ -134,6 +108,69 @@ class Circle(unittest.TestCase):
         self.assertLess(result["G_b_um"], 1e-6)
         self.assertNotIn("causes", result)
 
+    def test_part_of_a_circle(self):
+        """Half a turn in each sense: its figures, stated as partial, and what one arc cannot tell."""
+        rows = circle(worn)
+        half = linkage_runs.write(self.path / "half.csv", rows[:360] + rows[1080:], reference=True,
+                                  linkage=False)
+        self.assertIn("PART OF THE CIRCLE, degrees ccw, cw", self.done(half))
+        result = self.result(half)
+        self.assertTrue(result["partial"])
+        self.assertNotIn("D_um", result)
+        whole = self.result(linkage_runs.write(self.path / "whole.csv", rows, reference=True, linkage=False))
+        self.assertFalse(whole["partial"])
+        self.assertLess(result["G_ccw_um"], whole["G_ccw_um"])
+        # About the set-up centre the arc is what it is: 0 to 180 degrees hold the largest radius of
+        # the circle, where the backlash of 2 um a side and the scale of Y are.
+        self.assertAlmostEqual(result["F_max_um"], whole["F_max_um"], delta=1e-3)
+
+    def test_with_a_calibration_the_figures_are_those_of_the_machine(self):
+        """The rig's linkage with encoder noise, calibrated on the rig; the truth is a grid encoder
+        without noise. Without the calibration the figures are far off."""
+        exact = self.path / "exact.toml"
+        exact.write_text(pathlib.Path(MACHINE).read_text().replace("reference_um = 0.3", "reference_um = 0.0001"))
+        good = wrong = judged = 0
+        for seed in (7, 8):
+            cube = self.rig_record("cube.csv", "--course", "cube", "--size", "45,45,45", "--points", "5,5,5",
+                                   "--dwell", 0.2, "--feed", 2000, "--reference", seed=seed)
+            linkage = self.path / "linkage.toml"
+            self.done(cube, "--machine", MACHINE, "-o", linkage, "--quiet", "--folds", 1, command="calibrate")
+            for plane in ("XY", "ZX"):
+                run = self.rig_record("circle.csv", "--course", "circle", "--plane", plane, "--feed", 1200,
+                                      "--reference", machine=exact, seed=seed)
+                with_it = self.result(run, "--machine", MACHINE, "--filter", 50, "--calibration", linkage)
+                self.assertEqual(with_it["linkage"]["file"], "linkage.toml")
+                without = self.result(run, "--machine", MACHINE, "--filter", 50)
+                truth = with_it["circles"][1]["runs"][0]
+                measured = with_it["circles"][0]["runs"][0]
+                nominal = without["circles"][0]["runs"][0]
+                for key in ("G_ccw_um", "G_cw_um", "G_b_um", "F_max_um", "F_min_um", "D_um"):
+                    judged += 1
+                    U = 2 * measured["u"][key]
+                    self.assertLess(U, 1.0, key)
+                    good += abs(measured[key] - truth[key]) < U
+                    # Its own uncertainty says nothing of tolerances: ten times that of the calibrated.
+                    wrong += abs(nominal[key] - truth[key]) > 10 * U
+                    self.assertLess(abs(measured[key] - truth[key]), 2 * U, (seed, plane, key))
+        self.assertGreaterEqual(good, 0.85 * judged, (good, judged))
+        self.assertGreaterEqual(wrong, 0.85 * judged, (wrong, judged))
+
+    def test_refuses_a_calibration_that_does_not_fit(self):
+        recording = linkage_runs.write(self.path / "good.csv", circle(perfect), reference=True)
+        missing = self.path / "none.toml"
+        self.refuse(recording, "--machine", MACHINE, "--calibration", missing, saying=["none.toml"])
+        cube = self.rig_record("cube.csv", "--course", "cube", "--points", "3,3,3", "--dwell", 0.1, "--reference")
+        linkage = self.path / "linkage.toml"
+        self.done(cube, "--machine", MACHINE, "-o", linkage, "--quiet", "--folds", 1, command="calibrate")
+        reference = linkage_runs.write(self.path / "grid.csv", circle(perfect), reference=True, linkage=False)
+        self.refuse(reference, "--machine", MACHINE, "--calibration", linkage, saying=["none of the recordings"])
+        self.refuse(recording, "--calibration", linkage, saying=["good.csv", "--machine FILE"])
+        text = linkage.read_text()
+        linkage.write_text(text.replace('machine = "demo-mill"', 'machine = "another"'))
+        self.refuse(recording, "--machine", MACHINE, "--calibration", linkage, saying=['"another"', '"demo-mill"'])
+        linkage.write_text(text[:len(text) // 2])
+        self.refuse(recording, "--machine", MACHINE, "--calibration", linkage, saying=["linkage.toml"])
+
     def test_limit(self):
         recording = linkage_runs.write(self.path / "worn.csv", circle(worn), reference=True,
                                        linkage=False)
@@ -151,9 +188,9 @@ class Circle(unittest.TestCase):
         line = [((x / 10, 0, 0), (x / 10, 0, 0), 1, 1, 100) for x in range(100)]
         self.refuse(linkage_runs.write(self.path / "line.csv", line), "--machine", MACHINE,
                     saying=["line.csv", "no circle"])
-        half = linkage_runs.write(self.path / "half.csv", rows[:360] + rows[720:])
-        self.refuse(half, "--machine", MACHINE,
-                    saying=["half.csv", "360 points counter-clockwise", "180 of 360", "whole turns"])
+        bit = linkage_runs.write(self.path / "bit.csv", rows[:144] + rows[720:])
+        self.refuse(bit, "--machine", MACHINE,
+                    saying=["bit.csv", "144 points counter-clockwise", "75 of 360", "a quarter turn"])
         few = linkage_runs.write(self.path / "few.csv", circle(perfect, points=8))
         self.refuse(few, "--machine", MACHINE, saying=["few.csv", "8 points", "40 of 360"])
         self.refuse(recording, "--machine", MACHINE, "--plane", "YZ",
@@ -165,6 +202,9 @@ class Circle(unittest.TestCase):
         text = pathlib.Path(plane).read_text().replace("ref_z_mm", "spare")
         (self.path / "grid.csv").write_text(text)
         self.refuse(plane, "--plane", "YZ", saying=["ref_z_mm", "--plane"])
+        text = pathlib.Path(recording).read_text().replace("pivot_1_rad", "spare")
+        (self.path / "spare.csv").write_text(text)
+        self.refuse(self.path / "spare.csv", "--machine", MACHINE, saying=["spare.csv", "pivot_1_rad: is missing"])
 
 
 if __name__ == "__main__":

@@ -74,7 +74,7 @@ class Machine:
             image = []
             for position in (self.position(), 15.0, 40.0):
                 image += struct.unpack(">HH", struct.pack(">i", round(position * 100000)))
-            image += [2012, 2034]
+            image += [2012, 2034, 1, 1, 600]
         else:
             return None
         return image[address : address + count] if address + count <= len(image) else None

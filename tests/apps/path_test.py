@@ -1,41 +1,14 @@
 """`abbe path` as a user runs it, on paths whose errors are known."""
-import json
 import math
-import os
 import pathlib
-import subprocess
-import tempfile
 import unittest
 
 import linkage_runs
-
-PROGRAM = os.environ["ABBE"]
-MACHINE = os.environ["ABBE_MACHINE"]
+from program_case import MACHINE, ProgramCase
 
 
-class PathTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.path = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def run_program(self, *arguments):
-        return subprocess.run([PROGRAM, "path", *map(str, arguments)], capture_output=True,
-                              text=True, timeout=60)
-
-    def result(self, *arguments):
-        done = self.run_program(*arguments, "--json", self.path / "result.json")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads((self.path / "result.json").read_text())
-
-    def refuse(self, *arguments, saying):
-        done = self.run_program(*arguments)
-        self.assertEqual(done.returncode, 2, done.stdout)
-        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
-        for text in saying:
-            self.assertIn(text, done.stderr)
+class PathTest(ProgramCase):
+    command = "path"
 
     def test_stepping(self):
         """0, 5, ... 25 mm along X, Y and Z; X is 100 ppm too long and rolls 1 um of Z in 25 mm."""
@@ -176,6 +149,56 @@ class PathTest(unittest.TestCase):
         self.assertAlmostEqual(test["largest_um"], 1.0, delta=1e-6)
         self.assertAlmostEqual(test["two_sigma_um"], 2 * math.sqrt(4 / 4), delta=1e-6)
 
+    def test_on_the_rig_with_a_calibration(self):
+        """Each course of the rig, by the calibrated linkage beside a grid encoder without noise."""
+        exact = self.path / "exact.toml"
+        exact.write_text(pathlib.Path(MACHINE).read_text().replace("reference_um = 0.3", "reference_um = 0.0001"))
+        cube = self.rig_record("cube.csv", "--course", "cube", "--size", "45,45,45", "--points", "5,5,5",
+                               "--dwell", 0.2, "--feed", 2000, "--reference")
+        linkage = self.path / "linkage.toml"
+        self.done(cube, "--machine", MACHINE, "-o", linkage, "--quiet", "--folds", 1, command="calibrate")
+        (self.path / "way.csv").write_text("x_mm,y_mm,z_mm\n10,10,10\n20,10,10\n40,30,25\n")
+
+        def tests(course, test, *options):
+            run = self.rig_record("run.csv", "--course", course, "--reference", "--feed", 1200, *options,
+                                  machine=exact)
+            return self.result(run, "--test", test, "--machine", MACHINE, "--calibration", linkage)["tests"]
+
+        seen, true = tests("stepping", "stepping")
+        for line, expected, u in zip(seen["lines"], true["lines"], seen["u_calibration"]["lines"]):
+            self.assertEqual((line["axis"], len(line["stops"])), (expected["axis"], 6))
+            for stop, other, known in zip(line["stops"], expected["stops"], u["stops"]):
+                for one, truth, of in zip(stop["deviation_um"], other["deviation_um"], known["deviation_um"]):
+                    # Of 54 numbers none should be 3.5 standard uncertainties off.
+                    self.assertLess(abs(one - truth), 3.5 * math.hypot(of, stop["u_um"]))
+        seen, true = tests("square", "square")
+        for side, expected, u in zip(seen["sides"], true["sides"], seen["u_calibration"]["sides"]):
+            # Lines through 2000 rows of 0.5 um: 0.05 um at a corner.
+            self.assertLess(abs(side["length_error_um"] - expected["length_error_um"]),
+                            3 * math.hypot(u["length_error_um"], 0.05))
+        self.assertLess(true["aligned_largest_um"], true["largest_um"])
+        # The noise of a row, 0.5 um in each direction, four or five times.
+        self.assertLess(seen["aligned_largest_um"], true["aligned_largest_um"] + 3)
+        seen, true = tests(self.path / "way.csv", self.path / "way.csv")
+        self.assertLess(seen["largest_um"], true["largest_um"] + 3)
+        self.assertLess(true["largest_um"], 20)
+
+    def test_tool_cap_by_the_linkage(self):
+        """On the rig the ball trails by 1 um feed / (feed + 10 mm/min) at 8.5 N, more at less force."""
+        cube = self.rig_record("cube.csv", "--course", "cube", "--size", "45,45,45", "--points", "5,5,5",
+                               "--dwell", 0.2, "--feed", 2000, "--reference")
+        linkage = self.path / "linkage.toml"
+        self.done(cube, "--machine", MACHINE, "-o", linkage, "--quiet", "--folds", 1, command="calibrate")
+        for feed, force in ((100, 8.5), (500, 8.5), (500, 4.25)):
+            run = self.rig_record("cap.csv", "--course", "square", "--feed", feed, "--cap-force", force, "--reference")
+            one = self.result(run, "--test", "cap", "--machine", MACHINE, "--calibration",
+                              linkage)["tests"][0]["displacements"][0]
+            # A row has 0.6 um of noise, and there are thousands; the calibration errs alike to and fro.
+            self.assertAlmostEqual(one["displacement_um"], feed / (feed + 10) * 8.5 / force, delta=0.1)
+        alone = self.rig_record("alone.csv", "--course", "square")
+        self.refuse(alone, "--test", "cap", "--machine", MACHINE, "--calibration", linkage,
+                    saying=["alone.csv", "record a reference beside it"])
+
     def test_bad_input(self):
         rows = self.square(lambda x, y, z: (x, y, z))
         recording = linkage_runs.write(self.path / "square.csv", rows)
@@ -185,6 +208,11 @@ class PathTest(unittest.TestCase):
         self.refuse(recording, "--test", "square", saying=["--machine FILE"])
         self.refuse(recording, "--test", "cap", saying=["--gauge"])
         self.refuse(recording, "--test", "cap", "--gauge", "X=probe_z_um", saying=["probe_z_um"])
+        self.refuse(recording, "--test", "articulation", "--machine", MACHINE, saying=["moves by 50 mm", "one seat"])
+        turn = [((30 + 10 * math.cos(t / 50), 30 + 10 * math.sin(t / 50), 30),) * 2 + (1, 1, 100)
+                for t in range(314)]
+        self.refuse(linkage_runs.write(self.path / "turn.csv", turn), "--test", "square", "--machine", MACHINE,
+                    saying=["turn.csv", "% of the rows", "abbe circle"])
         (self.path / "bad.csv").write_text("x_mm,y_mm,z_mm\n1,2,3\n4,five,6\n")
         self.refuse(recording, "--test", self.path / "bad.csv", "--machine", MACHINE,
                     saying=["bad.csv:3", '"five"'])

@@ -21,13 +21,14 @@ ARROWS = {
     "hal": "failure settings recording",
     "machine": "failure settings geometry estimation",
     "map": "failure settings recording geometry estimation machine",
+    "compensation": "failure random standards geometry estimation machine map",
     "probes": "failure random settings recording geometry estimation standards machine",
     "relm": "failure random settings recording geometry estimation standards machine",
     "simulation": "failure settings recording geometry estimation machine probes relm",
     "fusion": "failure settings recording geometry estimation standards machine map probes relm simulation",
     "report": "failure",
     "rig": "failure random settings recording hal",
-    "apps": "failure random settings recording geometry estimation standards hal machine map probes relm simulation fusion report rig",
+    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes relm simulation fusion report rig",
 }
 
 # header of a library -> the files that may include it; everybody else goes through them.

@@ -20,7 +20,7 @@ struct Machine {
   double delay_x = 0, delay_y = 0, lag = 0;  // s
   double backlash_x = 0, backlash_y = 0;
   double bow_eyx = 0, bow_exy = 0;  // m at the radius
-  double lobes = 0;                 // m: a fifth harmonic, which no cause explains
+  double lobes = 0;                 // m: a fifth harmonic that turns with the sense
   double offset_x = 0, offset_y = 0;
   double noise = 0;
 };
@@ -52,8 +52,8 @@ relm::CircleRun Measure(const Machine& m, double feed, const std::vector<int>& s
       y += m.bow_eyx * cx * cx / (kRadius * kRadius);
       x += m.bow_exy * cy * cy / (kRadius * kRadius);
       x -= y * std::sin(m.squareness);
-      x += m.lobes * std::cos(5 * t) * std::cos(t);
-      y += m.lobes * std::cos(5 * t) * std::sin(t);
+      x += sense * m.lobes * std::cos(5 * t) * std::cos(t);
+      y += sense * m.lobes * std::cos(5 * t) * std::sin(t);
       x += m.offset_x + m.noise * noise.Normal(draw++);
       y += m.offset_y + m.noise * noise.Normal(draw++);
       run.points.push_back({x, y, 0, t, sense, 1});
@@ -191,7 +191,8 @@ TEST(CircleCauses, UncertaintiesAreTrue) {
   }
 }
 
-// What no cause explains makes the uncertainties larger, not the causes.
+// What no cause explains and no smooth error of the machine does makes the uncertainties larger,
+// not the causes.
 TEST(CircleCauses, UnexplainedLobesWidenTheUncertainty) {
   Machine m;
   m.noise = 0.2e-6;
@@ -204,13 +205,62 @@ TEST(CircleCauses, UnexplainedLobesWidenTheUncertainty) {
   EXPECT_LT(std::abs(Find(loud, "backlash", "X").value), 3 * Find(loud, "backlash", "X").u);
 }
 
+// A machine whose errors are smooth has harmonics of every order, the same in both senses: they are
+// no spikes and no backlash, and do not make the uncertainties larger.
+TEST(CircleCauses, SmoothErrorsAreNoSpikes) {
+  Machine m;
+  m.noise = 0.1e-6;
+  const auto plain = Measure(m, 0.002, {1, -1});
+  relm::CircleRun smooth = plain;
+  for (auto& point : smooth.points) {
+    const double wave = 2e-6 * std::cos(4 * point.angle + 0.3) + 1e-6 * std::sin(7 * point.angle);
+    point.first += wave * std::cos(point.angle);
+    point.second += wave * std::sin(point.angle);
+  }
+  const CircleCauses without = FitCircleCauses({&plain}), with = FitCircleCauses({&smooth});
+  for (const char* cause : {"backlash", "reversal_spike"}) {
+    for (const char* axis : {"X", "Y"}) {
+      const CauseEstimate& one = Find(with, cause, axis);
+      // Of what there is without the waves nothing changes but their square beside the radius.
+      EXPECT_NEAR(one.value, Find(without, cause, axis).value, 1e-9) << cause << axis;
+      EXPECT_NEAR(one.u / Find(without, cause, axis).u, 1.0, 0.01) << cause << axis;
+    }
+  }
+  EXPECT_NEAR(with.rms_smooth, std::sqrt((4.0 + 1.0) / 2.0) * 1e-6, 0.02e-6);
+  // What is left without these terms is what they are for.
+  CauseOptions without_terms;
+  without_terms.smooth.clear();
+  const CircleCauses naive = FitCircleCauses({&smooth}, without_terms);
+  EXPECT_GT(std::abs(Find(naive, "reversal_spike", "X").value), 0.5e-6);
+}
+
+// An instrument that may be out of square by 10 urad: that much, and no less, is not known of the
+// machine's squareness.
+TEST(CircleCauses, TheInstrumentsUncertaintyIsInThoseOfTheCauses) {
+  Machine m;
+  m.noise = 0.01e-6;
+  const auto seen = Measure(m, 0.002, {1, -1});
+  relm::CircleRun shifted = seen;
+  for (auto& point : shifted.points) point.first -= 10e-6 * point.second;
+  CauseOptions options;
+  options.shifted = {{&shifted}};
+  const CircleCauses found = FitCircleCauses({&seen}, options);
+  EXPECT_NEAR(Find(found, "squareness", "XY").u, 10e-6, 0.1e-6);
+  EXPECT_LT(Find(found, "backlash", "X").u, 0.01e-6);
+  for (const std::string& words : found.weak_directions) {
+    EXPECT_EQ(words.find("instrument"), std::string::npos) << words;
+  }
+}
+
 TEST(CircleCauses, CyclicErrorsAtAKnownPitch) {
   relm::CircleRun run = Measure({}, 0.002, {1, -1});
   for (auto& point : run.points) {
     const double x = 0.03 + kRadius * std::cos(point.angle);
     point.first += 0.5e-6 * std::sin(2 * kPi * x / 0.002);
   }
-  const CircleCauses found = FitCircleCauses({&run}, {{{'X', 0.002}, {'Y', 0.002}}});
+  CauseOptions options;
+  options.pitch = {{'X', 0.002}, {'Y', 0.002}};
+  const CircleCauses found = FitCircleCauses({&run}, options);
   EXPECT_NEAR(Find(found, "cyclic_sin", "X").value, 0.5e-6, 2e-9);
   EXPECT_NEAR(Find(found, "cyclic_cos", "X").value, 0.0, 2e-9);
   EXPECT_NEAR(Find(found, "cyclic_sin", "Y").value, 0.0, 2e-9);

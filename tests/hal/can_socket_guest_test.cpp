@@ -41,6 +41,17 @@ TEST_F(CanSocketGuest, HearsWhatCansendSends) {
 }
 
 // The stamp is that of the passage, however late it is fetched.
+TEST_F(CanSocketGuest, LeavesOtherIdentifiersToTheKernel) {
+  CanSocket bus("vcan0", clock_, {0x080, 0x602});
+  Run("cansend vcan0 181#00; cansend vcan0 00000080#00; cansend vcan0 602#01; cansend vcan0 080#");
+  const auto first = Await(bus, 0x602);
+  ASSERT_TRUE(first);
+  const auto second = bus.Receive(clock_.Now() + 5.0);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->frame.id, 0x080u);
+  EXPECT_FALSE(second->frame.extended);
+}
+
 TEST_F(CanSocketGuest, StampsAreOfThePassageNotOfTheFetching) {
   CanSocket bus("vcan0", clock_);
   const double before = clock_.Now();
@@ -85,7 +96,7 @@ TEST_F(CanSocketGuest, ReturnsAtItsDeadline) {
 
 // The kernel keeps the oldest frames and tells the number of the lost ones with the next frame.
 TEST_F(CanSocketGuest, CountsWhatTheQueueHadNoRoomFor) {
-  CanSocket bus("vcan0", clock_, 1);
+  CanSocket bus("vcan0", clock_, {}, 1);
   Run("cangen vcan0 -g 0 -n 2000 -I 123 -L 8 -D i");
   std::uint64_t heard = 0;
   while (bus.Receive(clock_.Now())) ++heard;

@@ -1,4 +1,5 @@
-// CANopen encoders that run on python-can, over SocketCAN in a guest: what the client makes of them
+// CANopen encoders that run on python-can, or on the npm packages canopen and socketcan, over
+// SocketCAN in a guest: what the client makes of them
 // when all is well, and when the bus or a node is not.
 #include <algorithm>
 #include <cmath>
@@ -31,9 +32,21 @@ CanopenSettings Linkage() {
   return settings;
 }
 
-class PythonEncoders {
+// Programs that are encoders: can_encoders.py or npm_encoders/encoders.js.
+std::vector<std::string> OnPython() {
+  return {"/usr/bin/python3", ABBE_SOURCE_DIR "/tests/hal/can_encoders.py"};
+}
+std::vector<std::string> OnNpm() {
+  return {"env", "NODE_PATH=" ABBE_NPM_ENCODERS, ABBE_NODE,
+          ABBE_SOURCE_DIR "/tests/hal/npm_encoders/encoders.js"};
+}
+
+class Encoders {
  public:
-  explicit PythonEncoders(std::vector<std::string> nodes) : command_(Command(std::move(nodes))) {
+  Encoders(std::vector<std::string> command, const std::vector<std::string>& nodes)
+      : command_(std::move(command)) {
+    command_.insert(command_.end(), {"vcan0", std::to_string(kPerTurn)});
+    command_.insert(command_.end(), nodes.begin(), nodes.end());
     Start();
   }
   void Start() {
@@ -43,13 +56,6 @@ class PythonEncoders {
   ChildProcess& process() { return *process_; }
 
  private:
-  static std::vector<std::string> Command(std::vector<std::string> nodes) {
-    std::vector<std::string> command{"/usr/bin/python3",
-                                     ABBE_SOURCE_DIR "/tests/hal/can_encoders.py", "vcan0",
-                                     std::to_string(kPerTurn)};
-    command.insert(command.end(), nodes.begin(), nodes.end());
-    return command;
-  }
   std::vector<std::string> command_;
   std::unique_ptr<ChildProcess> process_;
 };
@@ -59,10 +65,11 @@ class CanopenGuest : public CanGuest {
   void SetUp() override {
     CanGuest::SetUp();
     if (IsSkipped()) return;
-    two_ = std::make_unique<PythonEncoders>(std::vector<std::string>{"1", "2"});
-    third_ = std::make_unique<PythonEncoders>(std::vector<std::string>{"3"});
+    two_ = std::make_unique<Encoders>(Program(), std::vector<std::string>{"1", "2"});
+    third_ = std::make_unique<Encoders>(Program(), std::vector<std::string>{"3"});
     settings_ = Linkage();
   }
+  virtual std::vector<std::string> Program() { return OnPython(); }
   void Open() {
     source_ = std::make_unique<CanopenSource>(settings_, 1.0,
                                               std::make_unique<CanSocket>("vcan0", clock_), clock_);
@@ -108,12 +115,21 @@ class CanopenGuest : public CanGuest {
   }
 
   CanopenSettings settings_;
-  std::unique_ptr<PythonEncoders> two_, third_;
+  std::unique_ptr<Encoders> two_, third_;
   std::unique_ptr<CanopenSource> source_;
   long started_ = 0;  // SYNCs before the encoders counted
 };
 
-TEST_F(CanopenGuest, EveryGoodValueBelongsToItsSync) {
+// The two kinds of encoders differ: those on npm say no boot-up and answer questions without a
+// size.
+class CanopenPeers : public CanopenGuest, public testing::WithParamInterface<bool> {
+ protected:
+  std::vector<std::string> Program() override { return GetParam() ? OnNpm() : OnPython(); }
+};
+INSTANTIATE_TEST_SUITE_P(, CanopenPeers, testing::Bool(),
+                         [](const auto& peer) { return peer.param ? "Npm" : "Python"; });
+
+TEST_P(CanopenPeers, EveryGoodValueBelongsToItsSync) {
   Open();
   const SampleSet first = source_->Read();
   ASSERT_TRUE(first.AllGood());
@@ -171,7 +187,7 @@ TEST_F(CanopenGuest, ASilencedNodeIsNamedAndTheOthersGoOn) {
   EXPECT_TRUE(BecomesGood()) << source_->Fault();
 }
 
-TEST_F(CanopenGuest, AFrozenNodeIsLostAndComesBack) {
+TEST_P(CanopenPeers, AFrozenNodeIsLostAndComesBack) {
   Open();
   third_->process().Signal(SIGSTOP);
   EXPECT_TRUE(BecomesBad(2, Cause::kNoReply));
@@ -186,7 +202,7 @@ TEST_F(CanopenGuest, AFrozenNodeIsLostAndComesBack) {
   EXPECT_TRUE(BecomesGood()) << source_->Fault();
 }
 
-TEST_F(CanopenGuest, ARestartedNodeHasLostItsReference) {
+TEST_P(CanopenPeers, ARestartedNodeHasLostItsReference) {
   Open();
   third_->process().Kill();
   EXPECT_TRUE(BecomesBad(2, Cause::kNoReply));

@@ -176,6 +176,14 @@ TEST_P(Restarted, HasLostItsReferenceUntilItIsConfirmed) {
 
 INSTANTIATE_TEST_SUITE_P(WithOrWithoutABootUpFrame, Restarted, testing::Bool());
 
+// Before its first heartbeat as an operational node, and without a boot-up frame.
+TEST_F(ThreeEncoders, ANodeThatRestartsAtOnceHasLostItsReferenceToo) {
+  Open().Require();
+  nodes_[2]->Reboot(false);
+  for (int i = 0; i < 50; ++i) EXPECT_FALSE(Next().samples[2].good());
+  EXPECT_EQ(Next().samples[2].cause, Cause::kReferenceLost);
+}
+
 TEST_F(ThreeEncoders, ADoubledAnswerIsOneReading) {
   Open().Require();
   wire_.Inject({.kind = CanTrouble::Kind::kDoubled, .id = 0x182});

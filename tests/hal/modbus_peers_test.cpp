@@ -69,7 +69,7 @@ TEST(ModbusPeers, ReadsEveryTypeAndOrderFromPymodbus) {
   }
   EXPECT_EQ(set.samples[expected.size()].value, 0.0);
   EXPECT_NEAR(set.samples[expected.size() + 1].value, 22.1, 1e-9);
-  opened.start_cycle('Y');
+  opened.start_cycle(2);
   set = ReadWell(*opened.source);
   EXPECT_EQ(set.samples[expected.size()].value, 2.0);
 }

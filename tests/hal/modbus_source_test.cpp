@@ -229,10 +229,10 @@ TEST_F(ModbusSourceTest, StartsTheCycleWithTheNumberOfTheAxis) {
   all.devices = {device_};
   EXPECT_FALSE(OpenDevices(all, clock_, Presence::kRequired).start_cycle);
   all.devices[0].cycle_start = CycleStart{50};
-  OpenDevices(all, clock_, Presence::kRequired).start_cycle('Z');
+  OpenDevices(all, clock_, Presence::kRequired).start_cycle(3);
   EXPECT_EQ(image_.Get(1, RegisterTable::kHolding, 50), 3);
   all.devices[0].cycle_start = CycleStart{51};
-  EXPECT_THROW(OpenDevices(all, clock_, Presence::kRequired).start_cycle('X'), DeviceError);
+  EXPECT_THROW(OpenDevices(all, clock_, Presence::kRequired).start_cycle(1), DeviceError);
 }
 
 TEST_F(ModbusSourceTest, TwoUnitsOfOneServerAreOneCoherentSet) {

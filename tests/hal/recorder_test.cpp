@@ -88,6 +88,46 @@ TEST(Recorder, EndsWhenToldAndWhenTheSourceHasEnded) {
   EXPECT_EQ(Record(source, clock, writer, {}).rows, 3u);
 }
 
+// The controller says 0, 0, 1, 1, nothing, 2, 0 and so on.
+class Controller : public SampleSource {
+ public:
+  explicit Controller(Clock& clock) : clock_(clock) {}
+  const std::vector<Channel>& channels() const override { return channels_; }
+  SampleSet Read() override {
+    SampleSet set;
+    set.sequence = ++reads_;
+    const double pass = passes_[(reads_ - 1) % passes_.size()];
+    set.samples.push_back(Sample::Good(7.0, clock_.Now(), reads_));
+    set.samples.push_back(std::isnan(pass) ? Sample::Bad(Cause::kNoReply, clock_.Now(), reads_)
+                                           : Sample::Good(pass, clock_.Now(), reads_));
+    FinishSet(set, clock_.Now());
+    return set;
+  }
+  bool Ended() const override { return reads_ == 2 * passes_.size(); }
+
+ private:
+  Clock& clock_;
+  std::uint64_t reads_ = 0;
+  std::vector<double> passes_{0.0, 0.0, 1.0, 1.0, NAN, 2.0, 0.0};
+  std::vector<Channel> channels_{{"x_mm", "machine"}, {"pass", "machine"}};
+};
+
+// A row of which nobody knows whether it belongs to a pass is kept, with its flag.
+TEST(Recorder, LeavesOutTheWayBetweenPassesWhenAsked) {
+  for (const bool passes_only : {false, true}) {
+    HandClock clock;
+    Controller source(clock);
+    MemoryWriter writer;
+    const RecordOutcome outcome = Record(source, clock, writer, {.passes_only = passes_only});
+    ASSERT_EQ(outcome.rows, passes_only ? 8u : 14u);
+    EXPECT_EQ(outcome.flagged, 2u);
+    std::vector<double> passes;
+    for (const auto& row : writer.rows) passes.push_back(row.back() != 0.0 ? -1.0 : row[2]);
+    if (!passes_only) continue;
+    EXPECT_EQ(passes, (std::vector<double>{1.0, 1.0, -1.0, 2.0, 1.0, 1.0, -1.0, 2.0}));
+  }
+}
+
 TEST(Recorder, ClosesTheFileWhenTheDiskIsFull) {
   HandClock clock;
   ProbeAndEncoder source(clock);

@@ -321,6 +321,33 @@ TEST_F(SweepRecorderTest, MemoryDoesNotGrowWithTheLength) {
   EXPECT_LT(late, early + 4096);  // 99,000 rows of 9 numbers would be 7 MB
 }
 
+// What the controller says of its program is no part of a sweep: the sweep follows the axis.
+TEST_F(SweepRecorderTest, TellsPassDirectionAndFeedByItself) {
+  std::vector<ChannelSettings> channels = SweepChannels();
+  for (const char* name : {"feed_mm_min", "pass", "direction"}) {
+    ChannelSettings channel;
+    channel.name = name;
+    channel.may_freeze = true;
+    channels.insert(channels.begin() + 1, channel);
+  }
+  FakeSource source(
+      channels,
+      [this](const std::string& channel, double time_s) {
+        const bool own = channel == "pass" || channel == "direction" || channel == "feed_mm_min";
+        return own ? 7.0 : Truth()(channel, time_s);
+      },
+      1.0, clock_);
+  EXPECT_EQ(SweepColumns(source.channels()), SweepColumns(source_.channels()));
+  EXPECT_EQ(RecordSweep(source, plan_, clock_, writer_, {}).end, SweepEnd::kComplete);
+  ASSERT_FALSE(writer_.rows.empty());
+  for (const auto& row : writer_.rows) {
+    EXPECT_LE(row[kPass], plan_.passes);
+    EXPECT_EQ(std::abs(row[kDirection]), 1.0);
+    EXPECT_NEAR(row[kFeed], plan_.feed * 60e3, 1e-9);
+    EXPECT_NEAR(row[kProbe], 100.0, 1.01);
+  }
+}
+
 TEST(SweepHeader, IsTomlThatStatesThePlan) {
   const SweepPlan plan = SmallPlan();
   const std::string header =

@@ -77,12 +77,10 @@ test(
     () => withPage({}, async (page) => {
       const titles = await page.locator('main section.result > h2').allTextContents();
       assert.equal(titles.length, sample_names.length);
-      assert.deepEqual(
-          titles,
-          [
-            'X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning',
-            'Circular test, XY plane', 'Square path', 'rig-compare \u00b7 X'
-          ]);
+      assert.deepEqual(titles, [
+        'X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning', 'Circular test, XY plane',
+        'Square path', 'Calibration of the linkage', 'rig-compare \u00b7 X'
+      ]);
       assert.equal(await page.title(), 'Geometric errors of demo-mill');
       assert.equal(await page.locator('nav a').count(), sample_names.length + 1);
       await page.screenshot({path: join(screenshots, 'desktop_light.png'), fullPage: true});
@@ -114,8 +112,9 @@ test(
                 height: plot.getBoundingClientRect().height,
               })));
       // Three whole sweeps of 5 + 2 + 2 + 1 + 2 panels, one early one with its roll, one
-      // positioning test, polar plot, space and harmonics of two circles, one square.
-      assert.equal(figures.length, 3 * 12 + 1 + 1 + 2 * 3 + 1);
+      // positioning test, polar plot, space and harmonics of two circles, one square, residuals
+      // before and after and the cells of a calibration.
+      assert.equal(figures.length, 3 * 12 + 1 + 1 + 2 * 3 + 1 + 3);
       for (const {about, traces, drawn, height} of figures) {
         assert.ok(about.length > 20, about);
         assert.ok(traces > 0 && drawn >= traces, about);
@@ -216,7 +215,46 @@ test(
       assert.match(await unseen.textContent(), /not seen/);
       assert.equal(await unseen.locator('.quantity').count(), 0);
       assert.match(
-          await section.locator('tr', {hasText: 'Backlash'}).first().textContent(), /4\.000.*0\.060/);
+          await section.locator('tr', {hasText: 'Backlash'}).first().textContent(),
+          /4\.000.*0\.060/);
+    }));
+
+test(
+    'a figure of a circle has its uncertainty and says how the linkage was read',
+    () => withPage({}, async (page) => {
+      const section = page.locator('section.result', {hasText: 'Circular test'});
+      const row = section.locator('tr', {hasText: 'G(b)'}).first();
+      assert.match(await row.textContent(), /5\.62\u00b10\.20/);
+      assert.match(await section.locator('dl').textContent(), /linkage\.toml.*0\.200/);
+    }));
+
+test(
+    'a calibration tells what it found, pose by pose, and what it could not see',
+    () => withPage({}, async (page) => {
+      const section = page.locator('section.result', {hasText: 'Calibration of the linkage'});
+      assert.match(await section.locator('.summary').textContent(), /100.*0\.280.*2 of 5/);
+      // 312.4 um with u = 4.1 um: U95 = 8.2 um leaves one decimal.
+      assert.match(
+          await section.locator('tr', {hasText: 'link.link_1'}).textContent(), /312\.4\u00b18\.2/);
+      assert.match(
+          await section.locator('table', {hasText: 'could not see'}).textContent(), /run_out\.c/);
+      const [before, after] = await section.locator('.plot').evaluateAll(
+          (plots) => plots.slice(0, 2).map((plot) => plot.data.map(({y}) => Math.max(...y))));
+      assert.deepEqual(before, [100]);
+      assert.ok(after[0] <= 0.3 && after[1] > 0.39 && after[1] <= 0.4, String(after));
+    }));
+
+test(
+    'the slider of the mapping cells magnifies their shift',
+    () => withPage({}, async (page) => {
+      const group = page.locator('section.group', {hasText: 'Mapping cells'});
+      const slider = group.getByRole('slider', {name: 'Magnification'});
+      await slider.fill('6');  // 1000
+      const stems = await group.locator('.plot').evaluate(
+          (div) => div.data.find((trace) => trace.name === 'shift').y);
+      // Pairs of ends and a gap; the last cell is lifted by 2 um, which points up.
+      assert.ok(Math.abs(stems.at(-2) - stems.at(-3) - 2) < 1e-9, String(stems.slice(-3)));
+      assert.ok(Math.abs(stems[1] - stems[0]) < 1e-9);
     }));
 
 test(

@@ -234,8 +234,8 @@ export function referenceResult(axis) {
   };
 }
 
-// X moves by half the backlash against its motion, the squareness shears the circle, and the plane is
-// warped twice a turn: the radial deviation in closed form.
+// X moves by half the backlash against its motion, the squareness shears the circle, and the plane
+// is warped twice a turn: the radial deviation in closed form.
 export const BACKLASH = 4e-6;
 const SHEAR = 2e-6;
 const WARP = 1.5e-6;
@@ -263,13 +263,31 @@ export function circleResult() {
     F_max_um: 2.9,
     F_min_um: -2.9,
     D_um: 0.02,
+    u: {G_ccw_um: 0.1, G_cw_um: 0.1, G_b_um: 0.1, F_max_um: 0.05, F_min_um: 0.05, D_um: 0.01},
+    partial: false,
     harmonics: {cw: harmonics, ccw: harmonics},
     profile: {ccw: profile(1), cw: profile(-1)},
   };
   const causes = [
     {cause: 'backlash', object: 'X', value: BACKLASH, unit: 'm', u: 3e-8, effect_um: 2, seen: true},
-    {cause: 'squareness', object: 'XY', value: 2e-4, unit: 'rad', u: 2e-6, effect_um: 1, seen: true},
-    {cause: 'servo_lag_squared', object: 'XY', value: 0, unit: 's2', u: 1, effect_um: 0, seen: false},
+    {
+      cause: 'squareness',
+      object: 'XY',
+      value: 2e-4,
+      unit: 'rad',
+      u: 2e-6,
+      effect_um: 1,
+      seen: true
+    },
+    {
+      cause: 'servo_lag_squared',
+      object: 'XY',
+      value: 0,
+      unit: 's2',
+      u: 1,
+      effect_um: 0,
+      seen: false
+    },
   ];
   const circle = {plane: 'XY', radius_mm: 10, filter_undulations: 0, runs: [run], causes};
   return {
@@ -279,6 +297,13 @@ export function circleResult() {
     started: '2026-11-21T09:00:00Z',
     plane: 'XY',
     radius_mm: 10,
+    linkage: {
+      parameters: 'calibrated',
+      file: 'linkage.toml',
+      model: 'complete',
+      mapped: false,
+      held_out_rms_um: 0.2
+    },
     G_b_um: 5.62,
     causes,
     circles: [{instrument: 'linkage', ...circle}, {instrument: 'reference', ...circle}],
@@ -316,6 +341,57 @@ export function squareResult() {
   };
 }
 
+// A linkage that was off by 100 um along X and is off by 0.3 um, in a wave from pose to pose; two
+// of its five parameters are told, and the cells of a mapping lift the ball by 2 um where x is
+// large.
+export function calibrationResult() {
+  const place = (index) => [index % 4, Math.floor(index / 4) % 4, Math.floor(index / 16)];
+  const residuals = Array.from({length: 64}, (unused, index) => ({
+                                               recording: 'cube.csv',
+                                               row: index + 1,
+                                               position_mm: place(index).map((at) => 10 * at),
+                                               before_um: [100, 0, 0],
+                                               gap_um: [0, 0.3 * Math.sin(index), 0],
+                                               held_out_um: [0, 0.4 * Math.sin(index), 0],
+                                               normalised: 1
+                                             }));
+  const parameter = (name, unit, value, uncertainty, seen_by) =>
+      ({name, unit, value, uncertainty, nominal: 0, prior: 100, seen_by});
+  const centres = [0.01, 0.02];
+  return {
+    abbe: '0.1.0',
+    command: 'calibrate',
+    kind: 'calibration',
+    recordings: ['cube.csv'],
+    machine: 'demo-mill',
+    model: 'complete',
+    displacement: false,
+    poses: 64,
+    before: {rms_um: 100, max_um: 100},
+    after: {rms_um: 0.21, max_um: 0.3},
+    held_out: {rms_um: 0.28, max_um: 0.4},
+    residuals_over_noise: 1,
+    combinations: 5,
+    combinations_seen: 2,
+    scaled_condition: null,
+    noise_amplification_index: 0.1,
+    parameters: [
+      parameter('link.link_1', 'um', 312.4, 4.1, 'data'),
+      parameter('tilt.pivot_1_u', 'urad', -40, 2, 'data'),
+      ...['a', 'b', 'c'].map((name) => parameter(`run_out.${name}`, 'um', 0, 99, 'prior')),
+    ],
+    unseen: ['a', 'b', 'c'].map(
+        (name) => ({words: `1.00 run_out.${name} and 1 smaller`, share_of_prior: 0.99})),
+    residuals,
+    outliers: [],
+    mapped: {
+      cells: 8,
+      centres_m: [centres, centres, centres],
+      shifts_um: Array.from({length: 8}, (unused, cell) => [0, 0, cell < 4 ? 0 : 2])
+    },
+  };
+}
+
 export function writeSamples(folder) {
   mkdirSync(folder, {recursive: true});
   const write = (name, content) => writeFileSync(join(folder, name), content);
@@ -326,6 +402,7 @@ export function writeSamples(folder) {
     'positioning_X.json': referenceResult('X'),
     'circle.json': circleResult(),
     'square.json': squareResult(),
+    'linkage.json': calibrationResult(),
     // A result of a later version: no section of its own, and text that tries to leave its element.
     'compare_X.json': {
       abbe: '0.1.0',

@@ -25,7 +25,8 @@ class Served {
   explicit Served(const RigSettings& settings, std::uint64_t seed = 7)
       : world(settings, seed),
         devices(hal::ReadDevices(DemoMill().Root().Child("devices"))),
-        server(world, devices, {.port = 0, .speed = 1.0, .clock = [this] { return now.load(); }}),
+        live(world, [this] { return now.load(); }),
+        server(live, devices, {}),
         head(At(0)),
         machine(At(1)) {}
 
@@ -46,6 +47,7 @@ class Served {
   std::atomic<double> now{0.0};
   World world;
   hal::DevicesSettings devices;
+  LiveMachine live;
   RegisterServer server;
   ModbusClient head, machine;
 };
@@ -141,9 +143,10 @@ TEST(RegisterServer, ShowsAllOnesWhenAGapIsOutOfRange) {
 
 TEST(RegisterServer, RefusesAChannelThatTheRigHasNot) {
   const World world(DemoRig(), 1);
+  LiveMachine machine(world, [] { return 0.0; });
   auto devices = hal::ReadDevices(DemoMill().Root().Child("devices"));
   devices.devices[0].blocks[0].channels[0].name = "force_n";
-  EXPECT_THROW(RegisterServer(world, devices, {}), InputError);
+  EXPECT_THROW(RegisterServer(machine, devices, {}), InputError);
 }
 
 TEST(RegisterServer, ServesADeviceOverRtu) {

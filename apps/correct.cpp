@@ -1,0 +1,146 @@
+// abbe correct: measured coordinates, or an NC program, corrected by an error map.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <system_error>
+
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/map_option.h"
+#include "apps/result_file.h"
+#include "compensation/corrected_table.h"
+#include "compensation/nc_correction.h"
+#include "failure/failure.h"
+#include "map/text_file.h"
+
+namespace abbe::apps {
+namespace {
+
+struct CorrectCommand {
+  MapOption map;
+  std::filesystem::path from, out;
+  std::vector<double> work_offset_mm = {0.0, 0.0, 0.0};
+  std::vector<double> start_mm;
+  double chord_um = 1.0;
+  double length_mm = 0.0;  // 0: from the map
+  bool quiet = false;
+};
+
+// How far a line of commands may stray from the corrected line where its length is not given.
+constexpr double kLineTolerance = 0.1e-6;
+constexpr std::size_t kBuffer = 1 << 20;
+
+std::filesystem::path OutOf(const CorrectCommand& options) {
+  if (!options.out.empty()) return options.out;
+  std::filesystem::path out = options.from;
+  out.replace_filename(
+      fmt::format("{}_corrected{}", out.stem().string(), out.extension().string()));
+  return out;
+}
+
+void CorrectCsv(const CorrectCommand& options, const compensation::Corrector& corrector) {
+  const auto table =
+      compensation::CorrectTable(map::ReadWhole(options.from), options.from.string(), corrector);
+  WriteText(table.text, OutOf(options));
+  if (options.quiet) return;
+  fmt::print("{}: {} positions, corrected by up to {:.3g} um\n", OutOf(options).string(),
+             table.rows, table.largest * 1e6);
+}
+
+// Line by line, so that a program may be larger than the memory.
+void StreamProgram(const CorrectCommand& options, compensation::NcCorrection& correction) {
+  std::ifstream in(options.from, std::ios::binary);
+  if (!in) throw InputError(options.from.string() + ": cannot be read; check the path");
+  const std::filesystem::path unfinished = OutOf(options).string() + ".part";
+  std::ofstream out(unfinished, std::ios::binary);
+  std::string line, text;
+  try {
+    while (std::getline(in, line)) {
+      correction.Take(line, text);
+      if (text.size() < kBuffer) continue;
+      out << text;
+      text.clear();
+    }
+  } catch (const InputError& failure) {
+    out.close();
+    std::error_code error;
+    std::filesystem::remove(unfinished, error);
+    throw InputError(fmt::format("{}: {}", options.from.string(), failure.what()));
+  }
+  out << text;
+  out.close();
+  if (!out) {
+    throw InputError(OutOf(options).string() +
+                     ": cannot be written; choose another place with --out");
+  }
+  std::filesystem::rename(unfinished, OutOf(options));
+}
+
+void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
+                    const compensation::Corrector& corrector) {
+  compensation::NcOptions nc;
+  nc.limits.chord = options.chord_um * 1e-6;
+  nc.limits.length = options.length_mm > 0.0 ? options.length_mm * 1e-3
+                                             : LineLength(corrector, map.model(), kLineTolerance);
+  nc.work_offset = VectorOf(options.work_offset_mm);
+  if (!options.start_mm.empty()) nc.start = VectorOf(options.start_mm);
+  compensation::NcCorrection correction(corrector, nc);
+  StreamProgram(options, correction);
+  if (options.quiet) return;
+  const auto& counts = correction.counts();
+  fmt::print("{}: {} lines, {} moves written as {}, corrected by up to {:.3g} um\n",
+             OutOf(options).string(), counts.lines, counts.moves, counts.corrected,
+             counts.largest * 1e6);
+  fmt::print("lines up to {:.3g} mm, arcs in chords within {:.3g} um\n", nc.limits.length * 1e3,
+             nc.limits.chord * 1e6);
+}
+
+int Correct(const CorrectCommand& options) {
+  const map::ErrorMap map = options.map.Read();
+  const compensation::Corrector corrector(map, options.map.Tool(map));
+  if (OutOf(options) == options.from) {
+    throw InputError(options.from.string() + ": would be overwritten; choose another --out");
+  }
+  if (options.from.extension() == ".csv") {
+    CorrectCsv(options, corrector);
+  } else {
+    CorrectProgram(options, map, corrector);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddCorrect(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<CorrectCommand>();
+  CLI::App* command = program.add_subcommand(
+      "correct", "Corrects measured coordinates (.csv) or an NC program by an error map");
+  options->map.AddTo(*command);
+  command
+      ->add_option("file", options->from, "A table with x_mm, y_mm, z_mm (.csv), or an NC program")
+      ->required();
+  command->add_option("--out", options->out, "The corrected file (NAME_corrected beside it)");
+  command
+      ->add_option("--work-offset", options->work_offset_mm,
+                   "Programs: axis positions of the program's zero, x,y,z in mm (0,0,0)")
+      ->delimiter(',')
+      ->expected(3);
+  command
+      ->add_option("--start", options->start_mm,
+                   "Programs: where the machine stands at the start, x,y,z in mm of the program")
+      ->delimiter(',')
+      ->expected(3);
+  command->add_option("--chord-um", options->chord_um, "Arcs: largest distance of a chord (1)")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--length-mm", options->length_mm,
+                   "Longest line (so that it strays from the map by at most 0.1 um)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--quiet", options->quiet, "Print nothing but warnings");
+  command->footer("Example: abbe correct out/map.toml part.ngc --work-offset 30,30,20");
+  command->callback([options, &exit_code] { exit_code = Correct(*options); });
+}
+
+}  // namespace abbe::apps

@@ -1,0 +1,50 @@
+#include "apps/map_option.h"
+
+#include <fmt/format.h>
+
+#include "failure/failure.h"
+#include "map/exporter.h"
+
+namespace abbe::apps {
+
+void MapOption::AddTo(CLI::App& command) {
+  command.add_option("map", path, "The error map: map.toml of abbe fuse, an ISG or an Etalon file")
+      ->required();
+  command.add_option("--chain", chain,
+                     "For an imported map that does not say it: \"[w X Y b Z t]\"");
+  command
+      .add_option("--tool", tool_mm,
+                  "Tool point from the reference point, x,y,z in mm (the map's own)")
+      ->delimiter(',')
+      ->expected(3);
+}
+
+map::ErrorMap MapOption::Read() const {
+  const map::ImportedMap read = map::ReadAnyMap(path, chain);
+  for (const std::string& note : read.notes)
+    fmt::print(stderr, "abbe: {}: {}\n", path.string(), note);
+  if (!read.map.origin().scale_is_calibrated) {
+    fmt::print(
+        stderr,
+        "abbe: {}: scale: prior only; no calibrated length went into this map, so lengths in "
+        "all directions at once may be wrong\n",
+        path.string());
+  }
+  return read.map;
+}
+
+Eigen::Vector3d MapOption::Tool(const map::ErrorMap& map) const {
+  return tool_mm.empty() ? map.origin().tool : VectorOf(tool_mm);
+}
+
+std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given) {
+  if (given.size() == 1) return {given[0], given[0], given[0]};
+  if (given.size() == 3) return {given[0], given[1], given[2]};
+  throw InputError("--points takes one number or three, of X, Y and Z");
+}
+
+Eigen::Vector3d VectorOf(const std::vector<double>& mm) {
+  return 1e-3 * Eigen::Vector3d(mm.at(0), mm.at(1), mm.at(2));
+}
+
+}  // namespace abbe::apps

@@ -1,0 +1,128 @@
+// abbe simulate: what a machine with the errors of a map makes of a test piece.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/map_option.h"
+#include "apps/result_file.h"
+#include "compensation/performance.h"
+#include "failure/failure.h"
+#include "map/text_file.h"
+#include "map/words.h"
+
+namespace abbe::apps {
+namespace {
+
+using compensation::Figure;
+
+struct SimulateCommand {
+  MapOption map;
+  std::string test;
+  std::filesystem::path path, json;
+  double radius_mm = 0.0;
+  bool corrected = false, quiet = false;
+  int draws = 200;
+  std::uint64_t seed = 1;
+};
+
+// The columns x_mm, y_mm, z_mm of a CSV.
+Eigen::Matrix3Xd ReadPath(const std::filesystem::path& file) {
+  const std::string text = map::ReadWhole(file);
+  map::Lines lines(text, file.string());
+  std::vector<std::string_view> names;
+  std::vector<double> values;
+  for (std::string_view line; lines.Next(line);) {
+    if (line.empty() || line.starts_with('#')) continue;
+    const auto words = map::PartsOf(line, ',');
+    if (names.empty()) names = words;
+    if (words.size() != names.size()) {
+      throw InputError(
+          fmt::format("{}: {} values under {} columns", lines.Where(), words.size(), names.size()));
+    }
+    for (const std::string_view column : {"x_mm", "y_mm", "z_mm"}) {
+      const auto at = std::find(names.begin(), names.end(), column);
+      if (at == names.end()) {
+        throw InputError(fmt::format("{}: there is no column {}", lines.Where(), column));
+      }
+      if (words == names) continue;
+      values.push_back(
+          1e-3 * map::NumberOf(words[static_cast<std::size_t>(at - names.begin())], lines.Where()));
+    }
+  }
+  return Eigen::Map<const Eigen::Matrix3Xd>(values.data(), 3,
+                                            static_cast<Eigen::Index>(values.size() / 3));
+}
+
+nlohmann::ordered_json FiguresOf(const std::vector<Figure>& figures) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const Figure& figure : figures) {
+    json[fmt::format("{} {}", figure.name, figure.unit)] = figure.value * 1e6;
+  }
+  return json;
+}
+
+void Print(const std::vector<Figure>& before, const std::vector<Figure>& after) {
+  fmt::print("{:<24}{:>12}{}\n", "", "as it is", after.empty() ? "" : "   corrected (95 %)");
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    fmt::print("{:<24}{:>12.2f}", before[i].name, before[i].value * 1e6);
+    if (!after.empty()) fmt::print("{:>19.2f}", after[i].value * 1e6);
+    fmt::print(" {}\n", before[i].unit);
+  }
+}
+
+int Simulate(const SimulateCommand& options) {
+  const map::ErrorMap map = options.map.Read();
+  const Eigen::Vector3d tool = options.map.Tool(map);
+  compensation::TestSize size;
+  size.radius = options.radius_mm * 1e-3;
+  if (!options.path.empty()) size.path = ReadPath(options.path);
+  const auto test = compensation::MakeTest(options.test, map, size);
+  const auto before = test.evaluate(compensation::MadeBy(map.model(), tool, test.wanted));
+  std::vector<Figure> after;
+  if (options.corrected) {
+    after = compensation::AfterCorrection(map, tool, test, options.draws, options.seed);
+  }
+  if (!options.quiet) {
+    fmt::print("{} on {} {}\n", options.test, map.origin().machine, map.model().chain().Text());
+    Print(before, after);
+  }
+  if (!options.json.empty()) {
+    nlohmann::ordered_json result = {{"test", options.test}, {"as_is", FiguresOf(before)}};
+    if (options.corrected) result["corrected_95"] = FiguresOf(after);
+    WriteResult(result, options.json);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddSimulate(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<SimulateCommand>();
+  CLI::App* command = program.add_subcommand(
+      "simulate", "What a machine with the errors of a map makes of a test piece");
+  options->map.AddTo(*command);
+  command
+      ->add_option("--test", options->test,
+                   fmt::format("{}", fmt::join(compensation::TestNames(), ", ")))
+      ->required();
+  command->add_option("--path", options->path, "freeform: a table with x_mm, y_mm, z_mm");
+  command
+      ->add_option("--radius-mm", options->radius_mm,
+                   "Of the circle and the cylinder, half the square's side (0.39 of a travel)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--corrected", options->corrected,
+                    "Also what remains when the map corrects: the map's own uncertainty");
+  command->add_option("--draws", options->draws, "Machines drawn for that (200)");
+  command->add_option("--seed", options->seed, "Of the draws (1)");
+  command->add_option("--json", options->json, "The figures as data");
+  command->add_flag("--quiet", options->quiet, "Print nothing but warnings");
+  command->footer("Example: abbe simulate out/map.toml --test circle --corrected");
+  command->callback([options, &exit_code] { exit_code = Simulate(*options); });
+}
+
+}  // namespace abbe::apps

@@ -1,0 +1,70 @@
+#include "compensation/corrector.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "failure/failure.h"
+
+namespace abbe::compensation {
+namespace {
+
+using Eigen::Vector3d;
+
+// m. The last step leaves the change times the slope of the error, 1e-3 and less: 1e-15.
+constexpr double kSettled = 1e-12;
+constexpr int kMostSteps = 50;
+
+}  // namespace
+
+Corrector::Corrector(const machine::VolumetricModel& model, const Vector3d& p_TQ)
+    : model_(model), p_TQ_(p_TQ), signs_(map::AxisSigns(model.chain())) {}
+
+Vector3d Corrector::Command(const Vector3d& wanted) const {
+  Vector3d command = wanted - Offset(wanted);
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Vector3d next = wanted - Offset(command);
+    const double change = (next - command).cwiseAbs().maxCoeff();
+    command = next;
+    if (change < kSettled) return command;
+  }
+  throw NumericalError(fmt::format(
+      "no command found for X {:.6g} Y {:.6g} Z {:.6g} mm after {} steps; the errors of "
+      "this map grow as fast as the position: check its units",
+      1e3 * wanted.x(), 1e3 * wanted.y(), 1e3 * wanted.z(), kMostSteps));
+}
+
+double LineLength(const Corrector& corrector, const machine::VolumetricModel& model,
+                  double tolerance) {
+  constexpr int kStations = 60;
+  Vector3d first, size;
+  for (int k = 0; k < 3; ++k) {
+    const machine::Travel& travel = model.travels()[static_cast<std::size_t>(k)];
+    first[k] = travel.first;
+    size[k] = travel.last - travel.first;
+  }
+  const std::vector<std::pair<Vector3d, Vector3d>> lines = {
+      {{0, .5, .5}, {1, .5, .5}}, {{.5, 0, .5}, {.5, 1, .5}}, {{.5, .5, 0}, {.5, .5, 1}},
+      {{0, 0, 0}, {1, 1, 1}},     {{1, 0, 0}, {0, 1, 1}},     {{0, 1, 0}, {1, 0, 1}},
+      {{0, 0, 1}, {1, 1, 0}}};
+  double curvature = 0.0;
+  for (const auto& [from, to] : lines) {
+    const Vector3d a = first + size.cwiseProduct(from), b = first + size.cwiseProduct(to);
+    const double h = (b - a).norm() / kStations;
+    const auto offset = [&](int i) {
+      const Vector3d p = a + (b - a) * (static_cast<double>(i) / kStations);
+      return Vector3d(corrector.Made(p) - p);
+    };
+    for (int i = 1; i < kStations; ++i) {
+      const Vector3d bend = offset(i - 1) - 2 * offset(i) + offset(i + 1);
+      curvature = std::max(curvature, bend.norm() / (h * h));
+    }
+  }
+  const double longest = size.maxCoeff();
+  return curvature > 0.0 ? std::min(longest, std::sqrt(8 * tolerance / curvature)) : longest;
+}
+
+}  // namespace abbe::compensation

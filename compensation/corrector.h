@@ -1,0 +1,54 @@
+// What to command so that the tool gets where it should, and where it was when it was commanded
+// somewhere.
+//
+//   const Corrector corrector(map, p_TQ);
+//   const Eigen::Vector3d command = corrector.Command(wanted);
+//   corrector.Made(command) == wanted                               // to rounding
+//
+// Frames: positions are axis positions [X Y Z] as commanded and read off the scales. What holds is
+// the place of the tool in the workpiece: `wanted` is where the axes of a perfect machine would
+// stand for it. An axis that carries the workpiece moves the tool the other way, so its correction
+// has the other sign (AxisSigns, error_map.h):
+//
+//   Made(c) = c + S E(c)        Command(d): c = d - S E(c), by fixed point      S = diag(signs)
+//
+// Units: m. Failure: InputError where a position, or the command that is needed, lies outside the
+// travels; NumericalError for a map whose errors grow as fast as the position, which has no
+// inverse.
+// Source: Ha and Khanh (2011) take the first step of the iteration, X - E(X); it leaves the error
+// times its slope, 0.01 um for 100 um that grow by 100 um/m. Validity: slopes of the error well
+// below 1.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "map/error_map.h"
+
+namespace abbe::compensation {
+
+class Corrector {
+ public:
+  Corrector(const map::ErrorMap& map, const Eigen::Vector3d& p_TQ) : Corrector(map.model(), p_TQ) {}
+  Corrector(const machine::VolumetricModel& model, const Eigen::Vector3d& p_TQ);
+
+  Eigen::Vector3d Made(const Eigen::Vector3d& position) const {
+    return position + Offset(position);
+  }
+  Eigen::Vector3d Command(const Eigen::Vector3d& wanted) const;
+
+ private:
+  Eigen::Vector3d Offset(const Eigen::Vector3d& position) const {
+    return signs_.cwiseProduct(model_.Error(position, p_TQ_));
+  }
+
+  machine::VolumetricModel model_;
+  Eigen::Vector3d p_TQ_, signs_;
+};
+
+// The length over which a straight line of commands between two corrected points strays from the
+// corrected line by at most `tolerance`, m: sqrt(8 tolerance / curvature), with the largest
+// curvature of the correction along the axes and the diagonals of the volume.
+double LineLength(const Corrector& corrector, const machine::VolumetricModel& model,
+                  double tolerance);
+
+}  // namespace abbe::compensation

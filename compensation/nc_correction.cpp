@@ -1,0 +1,333 @@
+#include "compensation/nc_correction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "failure/failure.h"
+
+namespace abbe::compensation {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kMillimetre = 1e-3, kInch = 25.4e-3;
+
+int Times10(double value) { return static_cast<int>(std::lround(value * 10)); }
+
+bool IsStop(const NcWord& word) {
+  const int code = Times10(word.value);
+  return word.letter == 'M' &&
+         (code == 0 || code == 10 || code == 20 || code == 300 || code == 600);
+}
+
+bool IsMotionWord(const NcWord& word) {
+  return word.letter == 'G' && word.value >= 0.0 && Times10(word.value) <= 30 &&
+         Times10(word.value) % 10 == 0;
+}
+
+// Words that a corrected move is written without: its own.
+bool IsOfMove(const NcWord& word) {
+  return (word.letter >= 'X' && word.letter <= 'Z') || (word.letter >= 'I' && word.letter <= 'K') ||
+         word.letter == 'R' || IsMotionWord(word);
+}
+
+std::string_view WhyNot(int code_times_10) {
+  switch (code_times_10) {
+    case 410:
+    case 411:
+    case 420:
+    case 421:
+      return "cutter compensation moves the tool off the programmed path; let the CAM system write "
+             "tool centre paths";
+    case 430:
+    case 431:
+    case 432:
+      return "a tool length offset changes the tool vector; program the tool point and give its "
+             "place with --tool";
+    case 930:
+      return "inverse time feed depends on the length of the line, which is split; use G94";
+    default:
+      return "it cannot be corrected; take it out or replace it";
+  }
+}
+
+// Between words, not at the start of a line.
+void AppendBlank(std::string& out) {
+  if (!out.empty() && out.back() != '\n') out += ' ';
+}
+
+// `units` of 10^-decimals, e.g. 12500000 with 6 decimals as "12.5".
+void AppendFixed(std::int64_t units, int decimals, std::string& out) {
+  if (units < 0) out += '-';
+  const auto digits = static_cast<std::uint64_t>(units < 0 ? -units : units);
+  std::uint64_t scale = 1;
+  for (int i = 0; i < decimals; ++i) scale *= 10;
+  std::array<char, 24> whole;
+  const auto end = std::to_chars(whole.data(), whole.data() + whole.size(), digits / scale).ptr;
+  out.append(whole.data(), end);
+  std::uint64_t rest = digits % scale;
+  if (rest == 0) return;
+  out += '.';
+  for (scale /= 10; rest != 0; scale /= 10) {
+    out += static_cast<char>('0' + rest / scale);
+    rest %= scale;
+  }
+}
+
+}  // namespace
+
+NcCorrection::NcCorrection(const Corrector& corrector, const NcOptions& options)
+    : corrector_(corrector), options_(options) {
+  if (!(options_.limits.chord > 0.0) || !(options_.limits.length > 0.0)) {
+    throw InputError("the chord tolerance and the length of a line must be above 0");
+  }
+  if (!options_.start) return;
+  place_ = out_ = *options_.start;
+  is_known_.fill(true);
+}
+
+void NcCorrection::TakeG(int code, Asked& asked) {
+  switch (code) {
+    case 0:
+    case 10:
+    case 20:
+    case 30:
+      motion_ = code / 10;
+      return;
+    case 800:
+      motion_ = -1;
+      return;
+    case 40:
+      asked.dwells = true;
+      return;
+    case 170:
+    case 180:
+    case 190:
+      plane_ = code / 10;
+      return;
+    case 200:
+    case 210:
+      is_inch_ = code == 200;
+      return;
+    case 900:
+    case 910:
+      is_relative_ = code == 910;
+      return;
+    case 901:
+    case 911:
+      centre_is_absolute_ = code == 901;
+      return;
+    case 400:
+    case 490:
+    case 540:
+    case 610:
+    case 640:
+    case 940:
+    case 970:
+      return;
+    default:
+      RefuseLine(counts_.lines,
+                 fmt::format("G{:g} is not supported: {}", code / 10.0, WhyNot(code)));
+  }
+}
+
+NcCorrection::Asked NcCorrection::Understand() {
+  Asked asked;
+  bool has_tolerance = false;
+  for (const NcWord& word : words_) {
+    const double exact = word.value * 10;
+    switch (word.letter) {
+      case 'X':
+      case 'Y':
+      case 'Z':
+        if (asked.axes[word.letter - 'X']) RefuseLine(counts_.lines, "an axis stands twice");
+        asked.axes[word.letter - 'X'] = word.value;
+        break;
+      case 'I':
+      case 'J':
+      case 'K':
+        asked.centre[word.letter - 'I'] = word.value;
+        break;
+      case 'R':
+        asked.radius = word.value;
+        break;
+      case 'P':
+        asked.has_p = true;
+        break;
+      case '(':
+      case 'N':
+      case 'F':
+      case 'S':
+      case 'T':
+        break;
+      case 'G':
+        if (std::abs(exact - std::round(exact)) > 1e-6) {
+          RefuseLine(counts_.lines, fmt::format("{} is not supported", word.text));
+        }
+        has_tolerance = has_tolerance || Times10(word.value) == 640;
+        TakeG(Times10(word.value), asked);
+        break;
+      case 'M': {
+        const int code = static_cast<int>(word.value);
+        const bool is_plain = code == word.value;
+        if (!is_plain ||
+            !((code >= 0 && code <= 9) || code == 30 || code == 48 || code == 49 || code == 60)) {
+          RefuseLine(counts_.lines,
+                     fmt::format("{} is not supported: what it does to the machine is "
+                                 "not known; take it out",
+                                 word.text));
+        }
+        break;
+      }
+      default:
+        RefuseLine(counts_.lines,
+                   fmt::format("{} is not supported: it cannot be corrected; take it "
+                               "out",
+                               word.text));
+    }
+  }
+  const auto has_any = [](const auto& values) {
+    return std::any_of(values.begin(), values.end(), [](const auto& v) { return v.has_value(); });
+  };
+  asked.is_move = has_any(asked.axes) || (motion_ >= 2 && has_any(asked.centre));
+  if (asked.has_p && !asked.dwells && !has_tolerance)
+    RefuseLine(counts_.lines, "P is not supported here");
+  RefuseLooseWords(asked);
+  return asked;
+}
+
+void NcCorrection::RefuseLooseWords(const Asked& asked) {
+  const bool has_centre = asked.centre[0] || asked.centre[1] || asked.centre[2];
+  if (asked.is_move && asked.dwells) RefuseLine(counts_.lines, "a dwell together with a move");
+  if (asked.is_move && motion_ < 0) {
+    RefuseLine(counts_.lines, "axis words without G0, G1, G2 or G3 in force");
+  }
+  if ((has_centre || asked.radius) && (motion_ < 2 || !asked.is_move)) {
+    RefuseLine(counts_.lines, "I, J, K and R belong to an arc");
+  }
+}
+
+Vector3d NcCorrection::Target(const Asked& asked) {
+  const double unit = is_inch_ ? kInch : kMillimetre;
+  Vector3d target = place_;
+  for (int k = 0; k < 3; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    if (!asked.axes[at]) continue;
+    target[k] = unit * *asked.axes[at] + (is_relative_ ? place_[k] : 0.0);
+    if (!is_relative_) is_known_[at] = true;
+  }
+  return target;
+}
+
+Arc NcCorrection::ArcOf(const Asked& asked) const {
+  const double unit = is_inch_ ? kInch : kMillimetre;
+  Arc arc{plane_, motion_ == 2, place_, {}};
+  const auto [u, v, w] = AxesOfPlane(plane_);
+  if (asked.centre[static_cast<std::size_t>(w)]) {
+    RefuseLine(counts_.lines, fmt::format("{} does not belong to an arc in G{}", "IJK"[w], plane_));
+  }
+  const bool has_centre =
+      asked.centre[static_cast<std::size_t>(u)] || asked.centre[static_cast<std::size_t>(v)];
+  if (has_centre == asked.radius.has_value()) {
+    RefuseLine(counts_.lines, "an arc takes I, J, K or R, and one of both");
+  }
+  if (asked.radius) {
+    arc.radius = unit * *asked.radius;
+    return arc;
+  }
+  for (const int k : {u, v}) {
+    const auto& given = asked.centre[static_cast<std::size_t>(k)];
+    if (centre_is_absolute_ && !given) {
+      RefuseLine(counts_.lines, "an arc in G90.1 takes both coordinates of its centre");
+    }
+    if (given) arc.centre[k] = unit * *given + (centre_is_absolute_ ? 0.0 : place_[k]);
+  }
+  return arc;
+}
+
+void NcCorrection::WritePoint(const Vector3d& wanted, std::string& out) {
+  const Vector3d position = wanted + options_.work_offset;
+  const Vector3d command = corrector_.Command(position);
+  counts_.largest = std::max(counts_.largest, (command - position).norm());
+  const int decimals = is_inch_ ? 7 : 6;
+  const double unit = is_inch_ ? kInch * 1e-7 : kMillimetre * 1e-6;
+  for (int k = 0; k < 3; ++k) {
+    const double to = command[k] - options_.work_offset[k];
+    const std::int64_t units = std::llround((is_relative_ ? to - out_[k] : to) / unit);
+    const double written = static_cast<double>(units) * unit;
+    out_[k] = is_relative_ ? out_[k] + written : written;
+    AppendBlank(out);
+    out += "XYZ"[k];
+    AppendFixed(units, decimals, out);
+  }
+  out += '\n';
+  ++counts_.corrected;
+}
+
+void NcCorrection::Move(const Asked& asked, std::string& out) {
+  const bool was_known = is_known_[0] && is_known_[1] && is_known_[2];
+  const Vector3d target = Target(asked);
+  const bool is_known = is_known_[0] && is_known_[1] && is_known_[2];
+  if (!is_known || (!was_known && motion_ != 0)) {
+    RefuseLine(counts_.lines,
+               "moves while it is not known where the machine stands; begin with G0 to "
+               "X, Y and Z in G90, or give the start with --start x,y,z");
+  }
+  points_.clear();
+  if (motion_ == 0) {
+    points_.push_back(target);
+  } else if (motion_ == 1) {
+    AddLine(place_, target, options_.limits, points_);
+  } else {
+    AddArc(place_, target, ArcOf(asked), options_.limits, counts_.lines, points_);
+  }
+  place_ = target;
+  for (const NcWord& word : words_) {
+    if (IsOfMove(word) || IsStop(word) || word.text.starts_with(';')) continue;
+    AppendBlank(out);
+    out += word.text;
+  }
+  const int motion = motion_ == 0 ? 0 : 1;
+  if (motion_out_ != motion) {
+    AppendBlank(out);
+    out += motion == 0 ? "G0" : "G1";
+    motion_out_ = motion;
+  }
+  for (const Vector3d& point : points_) WritePoint(point, out);
+  out.pop_back();  // what acts after the move, and what ends the line
+  for (const NcWord& word : words_) {
+    if (!IsStop(word) && !word.text.starts_with(';')) continue;
+    out += ' ';
+    out += word.text;
+  }
+  out += '\n';
+  ++counts_.moves;
+}
+
+void NcCorrection::Take(std::string_view line, std::string& out) {
+  ++counts_.lines;
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  ReadBlock(line, counts_.lines, words_);
+  const Asked asked = Understand();
+  if (!asked.is_move) {
+    for (const NcWord& word : words_) {
+      if (IsMotionWord(word)) motion_out_ = Times10(word.value) / 10;
+      if (word.letter == 'G' && Times10(word.value) == 800) motion_out_ = -1;
+    }
+    out.append(line) += '\n';
+    return;
+  }
+  try {
+    Move(asked, out);
+  } catch (const InputError& failure) {
+    const std::string_view what = failure.what();
+    if (what.starts_with("line ")) throw;
+    RefuseLine(counts_.lines, std::string(what));
+  }
+}
+
+}  // namespace abbe::compensation

@@ -1,0 +1,94 @@
+#include "compensation/nc_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "compensation/nc_block.h"
+
+namespace abbe::compensation {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// By how much the two ends of an arc may differ in radius: as LinuxCNC allows for millimetres.
+constexpr double kRadiusAbsolute = 0.5e-6, kRadiusRelative = 1e-3;
+
+Vector2d CentreOfRadius(const Vector2d& a, const Vector2d& b, double radius, bool is_clockwise,
+                        std::size_t line_number) {
+  const Vector2d chord = b - a;
+  const double half = chord.norm() / 2;
+  if (half == 0.0) RefuseLine(line_number, "an arc with R whose ends are one; give I, J or K");
+  double height_square = radius * radius - half * half;
+  if (height_square < 0.0) {
+    // Ends that rounding has put a little beyond the diameter.
+    if (half - std::abs(radius) > kRadiusAbsolute + kRadiusRelative * half) {
+      RefuseLine(line_number,
+                 fmt::format("R {:.6g} mm cannot reach over {:.6g} mm", 1e3 * radius, 2e3 * half));
+    }
+    height_square = 0.0;
+  }
+  const bool is_left = (radius > 0.0) != is_clockwise;
+  const Vector2d left(-chord.y(), chord.x());
+  return a + chord / 2 + (is_left ? 1 : -1) * std::sqrt(height_square) / (2 * half) * left;
+}
+
+int Count(double pieces) { return std::max(1, static_cast<int>(std::ceil(pieces - 1e-9))); }
+
+}  // namespace
+
+std::array<int, 3> AxesOfPlane(int plane) {
+  if (plane == 18) return {2, 0, 1};
+  if (plane == 19) return {1, 2, 0};
+  return {0, 1, 2};
+}
+
+void AddLine(const Vector3d& from, const Vector3d& to, const PathLimits& limits,
+             std::vector<Vector3d>& points) {
+  const int count = Count((to - from).norm() / limits.length);
+  for (int i = 1; i < count; ++i) {
+    points.push_back(from + (to - from) * (static_cast<double>(i) / count));
+  }
+  points.push_back(to);
+}
+
+void AddArc(const Vector3d& from, const Vector3d& to, const Arc& arc, const PathLimits& limits,
+            std::size_t line_number, std::vector<Vector3d>& points) {
+  const auto [u, v, w] = AxesOfPlane(arc.plane);
+  const Vector2d a(from[u], from[v]), b(to[u], to[v]);
+  const Vector2d centre = arc.radius
+                              ? CentreOfRadius(a, b, *arc.radius, arc.is_clockwise, line_number)
+                              : Vector2d(arc.centre[u], arc.centre[v]);
+  const double r_a = (a - centre).norm(), r_b = (b - centre).norm();
+  if (r_a == 0.0) RefuseLine(line_number, "an arc around its own start");
+  if (std::abs(r_a - r_b) > kRadiusAbsolute + kRadiusRelative * std::max(r_a, r_b)) {
+    RefuseLine(line_number,
+               fmt::format("the arc starts {:.6g} mm from its centre and ends {:.6g} mm "
+                           "from it",
+                           1e3 * r_a, 1e3 * r_b));
+  }
+  const double start = std::atan2(a.y() - centre.y(), a.x() - centre.x());
+  double sweep = std::atan2(b.y() - centre.y(), b.x() - centre.x()) - start;
+  constexpr double kTurn = 2 * std::numbers::pi;
+  if (arc.is_clockwise && (sweep >= 0.0 || a == b)) sweep -= kTurn;
+  if (!arc.is_clockwise && (sweep <= 0.0 || a == b)) sweep += kTurn;
+  const double rise = to[w] - from[w];
+  const double step = 2 * std::acos(std::clamp(1 - limits.chord / std::max(r_a, r_b), 0.0, 1.0));
+  const int count =
+      Count(std::max(std::abs(sweep) / step, std::hypot(sweep * r_a, rise) / limits.length));
+  for (int i = 1; i < count; ++i) {
+    const double part = static_cast<double>(i) / count;
+    const double angle = start + part * sweep, radius = r_a + part * (r_b - r_a);
+    Vector3d point;
+    point[u] = centre.x() + radius * std::cos(angle);
+    point[v] = centre.y() + radius * std::sin(angle);
+    point[w] = from[w] + part * rise;
+    points.push_back(point);
+  }
+  points.push_back(to);
+}
+
+}  // namespace abbe::compensation

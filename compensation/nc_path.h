@@ -1,0 +1,42 @@
+// The places that a straight move or an arc of an NC program passes, one after the other.
+//
+// Frames: positions in the program's coordinates, m. Planes: G17 XY, G18 ZX, G19 YZ; from the
+// positive third axis the first turns towards the second counter-clockwise (G3).
+// Failure: InputError with the line for an arc that cannot be.
+// Source: RS 274/NGC (NIST IR 6556), 3.5.3, arcs in centre and in radius form.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace abbe::compensation {
+
+struct PathLimits {
+  double chord = 1e-6;  // an arc and its chord, m
+  double length = 0.0;  // of one line, m
+};
+
+// Appends the points after `from` up to and with `to`.
+void AddLine(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const PathLimits& limits,
+             std::vector<Eigen::Vector3d>& points);
+
+struct Arc {
+  int plane = 17;
+  bool is_clockwise = false;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // its two coordinates in the plane
+  std::optional<double> radius;                      // instead of the centre; below 0: over 180 deg
+};
+
+// A helix where the third coordinate changes. `to` equal to `from` is a full circle, which needs
+// a centre.
+void AddArc(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Arc& arc,
+            const PathLimits& limits, std::size_t line_number,
+            std::vector<Eigen::Vector3d>& points);
+
+// The first, second and third axis of a plane: G18 has Z, X, Y.
+std::array<int, 3> AxesOfPlane(int plane);
+
+}  // namespace abbe::compensation

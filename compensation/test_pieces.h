@@ -1,0 +1,25 @@
+// The test pieces of a performance simulation (performance.h): the places that each asks for and
+// the figures of what was made.
+//
+// To add one: a maker here, in a file of its own where it is long, and a line in performance.cpp.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "compensation/performance.h"
+
+namespace abbe::compensation {
+
+// The box that pieces may use: middle -+ half.
+struct Volume {
+  Eigen::Vector3d middle, half;  // m
+};
+
+PerformanceTest Lengths(const Volume& volume, const TestSize& size);
+PerformanceTest Circles(const Volume& volume, const TestSize& size);
+PerformanceTest Squares(const Volume& volume, const TestSize& size);
+PerformanceTest Cylinder(const Volume& volume, const TestSize& size);
+PerformanceTest Freeform(const Volume& volume, const TestSize& size);
+PerformanceTest Diagonals(const Volume& volume, const TestSize& size);
+
+}  // namespace abbe::compensation

@@ -1,0 +1,80 @@
+// The rig on the CAN bus: the encoders of its linkage as CANopen nodes, one for each
+// [[devices.NAME.node]] of a device of the machine file.
+//
+//   const hal::CanopenSettings& device = devices.canopen[0];
+//   auto bus = std::make_unique<hal::CanSocket>("vcan0", clock, LinkageEncoders::HeardIds(device));
+//   EncoderServer encoders(machine, device, std::move(bus), clock);
+//
+// At each SYNC all nodes look at the machine at the same moment. A machine that stands out of the
+// linkage's reach makes them say an emergency.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "hal/can_bus.h"
+#include "hal/canopen_settings.h"
+#include "hal/clock.h"
+#include "rig/encoder_node.h"
+#include "rig/live_machine.h"
+
+namespace abbe::rig {
+
+// The nodes of one device; whoever has them lets them hear and beat.
+class LinkageEncoders {
+ public:
+  // `machine` must outlive them. InputError when a node is no pivot of the rig's linkage, or the
+  // machine has no linkage.
+  LinkageEncoders(LiveMachine& machine, const hal::CanopenSettings& device,
+                  const EncoderNode::Send& send);
+
+  void Boot();
+  void Beat();
+  void Hear(const hal::CanFrame& frame);
+
+  // The identifiers that they listen to: NMT, SYNC, and the questions to each.
+  static std::vector<std::uint32_t> HeardIds(const hal::CanopenSettings& device);
+
+  std::uint64_t syncs() const { return syncs_; }  // heard so far; from any thread
+
+ private:
+  struct Encoder {
+    EncoderNode node;
+    Eigen::Index pivot;
+  };
+
+  LiveMachine& machine_;
+  std::vector<Encoder> encoders_;
+  std::atomic<std::uint64_t> syncs_{0};
+};
+
+// A thread that serves them on a bus: heartbeats every 100 ms; a bus that goes down is waited for.
+class EncoderServer {
+ public:
+  // Serves when it returns. The bus is on `clock`, which must outlive the server. DeviceError when
+  // the bus does not work.
+  EncoderServer(LiveMachine& machine, const hal::CanopenSettings& device,
+                std::unique_ptr<hal::CanBus> bus, hal::Clock& clock);
+  ~EncoderServer();
+  EncoderServer(const EncoderServer&) = delete;
+  EncoderServer& operator=(const EncoderServer&) = delete;
+
+  std::uint64_t syncs() const { return encoders_.syncs(); }
+  // A line for each node, for a person.
+  std::string MapText() const;
+
+ private:
+  void Serve();
+
+  const hal::CanopenSettings device_;
+  std::unique_ptr<hal::CanBus> bus_;
+  hal::Clock& clock_;
+  LinkageEncoders encoders_;
+  std::atomic<bool> stopped_{false};
+  std::thread thread_;
+};
+
+}  // namespace abbe::rig

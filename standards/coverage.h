@@ -1,0 +1,9 @@
+// The coverage factor of every expanded uncertainty that is not stated otherwise: U95 = 2 u, as the
+// GUM suggests for normal errors (95.45 %).
+#pragma once
+
+namespace abbe::standards {
+
+inline constexpr double kCoverage = 2.0;
+
+}  // namespace abbe::standards

@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""`abbe correct`: LinuxCNC's interpreter reads the program and the corrected program, and the moves of
+the second, made by a machine with the errors (NumPy, map_machine.py), are the moves of the first.
+
+    ABBE=path/to/abbe correct_test.py
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+
+from map_machine import MapMachine
+
+ABBE = os.environ["ABBE"]
+NUMBER = r"(-?\d+\.\d+)"
+MOVE = re.compile(rf"USE_LENGTH_UNITS\((\w+)\)|(STRAIGHT_TRAVERSE|STRAIGHT_FEED)\({NUMBER}, {NUMBER}, {NUMBER}")
+PROGRAM = """%
+(pocket)
+N10 G21 G90 G17 G40 G49 G80
+N20 T1 M6
+N30 G0 X5 Y5 Z10
+M3 S8000
+G1 Z8 F200
+X25 F600 (long line)
+Y20.5
+G3 X20 Y25.5 I-5
+G1 X10
+G2 X5 Y20.5 R5
+G91 G1 X0 Y-15.5
+X1.2345 Y0.001
+G90 G20
+G1 X0.5 Y0.3 Z0.35
+G21 G18 G2 X18.7 Z12.89 I3 K2
+G19 G3 Y12 Z15 R8
+G17 G2 I4 J0 Z18
+G4 P0.1
+M5
+G0 Z25
+M30
+%
+"""
+
+
+class CorrectTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def correct(self, machine, name, *options):
+        return subprocess.run([ABBE, "correct", machine.write(self.folder / "map.toml"), self.folder / name, *options],
+                              capture_output=True, text=True)
+
+    def canonical(self, name):
+        """What LinuxCNC would do: kind, end in mm and printed resolution in mm of every straight move."""
+        done = subprocess.run(["rs274", "-g", self.folder / name], capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, env={**os.environ, "HOME": str(self.folder)}, cwd=self.folder)
+        self.assertEqual(done.stderr.strip(), "executing")  # and nothing else: no complaint
+        unit, moves = 1.0, []
+        for units, kind, *point in MOVE.findall(done.stdout):
+            if units:
+                unit = 25.4 if units == "CANON_UNITS_INCHES" else 1.0
+            else:
+                moves.append((kind, unit * np.array(list(map(float, point))), unit * 1e-4))
+        return done.stdout, moves
+
+    @unittest.skipUnless(shutil.which("rs274"), "linuxcnc-uspace is not installed")
+    def test_the_machine_makes_what_linuxcnc_reads_in_the_original(self):
+        for chain in ("[w X Y b Z t]", "[w Y b X Z t]"):
+            machine = MapMachine(11, chain, size=3.0)
+            (self.folder / "part.ngc").write_text(PROGRAM)
+            done = self.correct(machine, "part.ngc", "--work-offset", "8,9,7")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            before, asked = self.canonical("part.ngc")
+            after, commanded = self.canonical("part_corrected.ngc")
+            offset = np.array([8.0, 9.0, 7.0])
+            # Every end of a straight move of the original is made, in order, as far as rs274 prints digits.
+            made = [(kind, 1e3 * machine.made(1e-3 * (p + offset)) - offset) for kind, p, _ in commanded]
+            at, largest = 0, 0.0
+            for kind, point, digit in asked:
+                while at < len(made) and (made[at][0] != kind or np.abs(made[at][1] - point).max() > 1.5 * digit):
+                    at += 1
+                self.assertLess(at, len(made), f"{chain}: {kind} to {point} is not made")
+                largest = max(largest, np.abs(commanded[at][1] - point).max())
+            self.assertGreater(largest, 5e-3)
+            self.assertGreater(len(made), 5 * len(asked))
+            # The rest is the same: spindle, tool, feed, dwell, comment, end.
+            def others(text):
+                kept = re.findall(r"(?:START_SPINDLE\w*|STOP_SPINDLE\w*|SET_SPINDLE_SPEED|SET_FEED_RATE|DWELL|COMMENT|"
+                                  r"CHANGE_TOOL|SELECT_TOOL|USE_LENGTH_UNITS|SELECT_PLANE|PROGRAM_END)\([^)]*\)", text)
+                return kept
+            self.assertEqual(others(after), others(before))
+            self.assertIn('COMMENT("long line")', after)
+            self.assertNotIn("ARC_FEED", after)
+            self.assertIn("ARC_FEED", before)
+
+    def test_coordinates_are_corrected_to_rounding(self):
+        machine = MapMachine(3)
+        points = np.random.default_rng(1).uniform(1, 59, (50, 3))
+        rows = [f"{i},{x},{y},{z},ok" for i, (x, y, z) in enumerate(points)]
+        (self.folder / "cmm.csv").write_text("\n".join(["point,x_mm,y_mm,z_mm,flag", *rows]) + "\n")
+        done = self.correct(machine, "cmm.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("50 positions, corrected by up to", done.stdout)
+        lines = (self.folder / "cmm_corrected.csv").read_text().splitlines()
+        self.assertEqual(lines[0], "point,x_mm,y_mm,z_mm,flag")
+        for line, point in zip(lines[1:], points):
+            words = line.split(",")
+            self.assertEqual(words[4], "ok")
+            np.testing.assert_allclose([float(w) for w in words[1:4]], 1e3 * machine.made(1e-3 * point), atol=1e-11)
+
+    def test_a_corrected_program_is_made_to_its_last_digit(self):
+        machine = MapMachine(5)
+        (self.folder / "a.nc").write_text("G0 X10 Y20 Z30\nG1 X50 Y40 Z35 F100\n")
+        done = self.correct(machine, "a.nc")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        last = (self.folder / "a_corrected.nc").read_text().splitlines()[-1]
+        command = np.array([float(word[1:]) for word in last.split()])
+        self.assertLess(np.abs(1e3 * machine.made(1e-3 * command) - (50, 40, 35)).max(), 0.6e-6)
+
+    def test_what_cannot_be_corrected_leaves_no_file(self):
+        machine = MapMachine(5)
+        for text, words in (("G0 X1 Y1 Z1\nG41 D1 X5\n", "part.ngc: line 2: G41"),
+                            ("G0 X1 Y1 Z1\nG28\n", "line 2: G28"),
+                            ("G0 X1 Y1 Z99\n", "line 1: Z = 99 mm lies outside")):
+            (self.folder / "part.ngc").write_text(text)
+            done = self.correct(machine, "part.ngc")
+            self.assertEqual(done.returncode, 2)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertIn(words, done.stderr)
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["map.toml", "part.ngc"])
+
+
+if __name__ == "__main__":
+    unittest.main()

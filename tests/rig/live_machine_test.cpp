@@ -1,0 +1,84 @@
+#include "rig/live_machine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/rig/demo_rig.h"
+
+namespace abbe::rig {
+namespace {
+
+const Eigen::Vector3d kCentre = Eigen::Vector3d::Constant(0.03);
+
+class Running : public testing::Test {
+ protected:
+  double now_ = 0.0;
+  const World world_{DemoRig(), 3};
+  const Course course_ = CircleCourse({.centre = kCentre, .radius = 0.01, .feed = 0.02});
+  LiveMachine machine_{world_, [this] { return now_; }, nullptr, course_};
+};
+
+// Every 1 ms from rest: the axes never jump, the passes are the full turns of both senses.
+TEST_F(Running, ACourseGoesFromRestRoundBothWaysAndBackToRest) {
+  ASSERT_EQ(machine_.Start(kCourseProgram), StartOutcome::kStarted);
+  EXPECT_EQ(machine_.Start(0), StartOutcome::kBusy);
+  Eigen::Vector3d before = machine_.Now().axes.position;
+  EXPECT_EQ(before, Eigen::Vector3d::Zero());
+  double turned[2] = {};
+  Moment moment = machine_.Now();
+  for (; moment.state == ProgramState::kRunning && now_ < 60.0; moment = machine_.Now()) {
+    const Eigen::Vector3d& position = moment.axes.position;
+    ASSERT_LT((position - before).norm(), 0.06e-3);  // rapid: 50 mm/s
+    const double pass = *machine_.ReadingOf("pass", moment);
+    const double direction = *machine_.ReadingOf("direction", moment);
+    EXPECT_EQ(pass, std::abs(direction));
+    EXPECT_NEAR(*machine_.ReadingOf("feed_mm_min", moment), pass * 1200.0, 1e-9);
+    if (pass == 1.0) {
+      // Its own radius is smaller by the lag: R / sqrt(1 + (v lag / R)^2).
+      const Eigen::Vector3d arm = position - kCentre, arm_before = before - kCentre;
+      EXPECT_NEAR(arm.norm(), 0.01 / std::hypot(1.0, 0.02 * 0.015 / 0.01), 0.1e-6);
+      turned[direction > 0.0 ? 0 : 1] += std::atan2(arm_before.cross(arm).z(), arm_before.dot(arm));
+    }
+    before = position;
+    now_ += 1e-3;
+  }
+  // A full turn of each sense, but for one step.
+  EXPECT_NEAR(turned[0], 2.0 * M_PI, 0.003);
+  EXPECT_NEAR(turned[1], -2.0 * M_PI, 0.003);
+  EXPECT_EQ(moment.state, ProgramState::kDone);
+  EXPECT_EQ(moment.axes.position, Eigen::Vector3d::Zero());
+  EXPECT_LT(before.norm(), 1e-6);
+  EXPECT_EQ(machine_.Start(kCourseProgram), StartOutcome::kStarted);
+}
+
+TEST_F(Running, ASensorShowsTheSameUntilItsNextUpdate) {
+  ASSERT_EQ(machine_.Start(kCourseProgram), StartOutcome::kStarted);
+  now_ = 0.7001;
+  const Moment first = machine_.Now();
+  now_ = 0.7009;
+  EXPECT_EQ(machine_.Now().axes.position, first.axes.position);
+  now_ = 0.7011;
+  EXPECT_NE(machine_.Now().axes.position, first.axes.position);
+  now_ = 0.2;  // another reader was quicker
+  EXPECT_EQ(machine_.Now().tick, 701u);
+}
+
+TEST_F(Running, WithoutACourseThereIsNoFourthProgram) {
+  LiveMachine machine(world_, [] { return 0.0; });
+  EXPECT_EQ(machine.Start(kCourseProgram), StartOutcome::kNoSuchProgram);
+  EXPECT_EQ(machine.Start(-1), StartOutcome::kNoSuchProgram);
+  EXPECT_FALSE(machine.EncodersNow());
+}
+
+TEST_F(Running, ACourseOutOfTheLinkagesReachIsRefused) {
+  LinkageSettings far = ReadLinkage(DemoMill().Root());
+  far.base_position.x() -= 0.3;
+  const LinkageRig linkage(world_, Linkage(far, 3));
+  EXPECT_THROW(LiveMachine(
+                   world_, [] { return 0.0; }, &linkage, course_),
+               InputError);
+}
+
+}  // namespace
+}  // namespace abbe::rig
