@@ -53,9 +53,15 @@ estimation::Problem MakeMachineProblem(const machine::Machine& machine,
   for (std::size_t r = 0; r < runs.size(); ++r) {
     std::vector<estimation::Input> inputs;
     for (const ParameterBlock& block : runs[r].blocks) {
-      const auto at = known.find(block.name);
-      inputs.emplace_back(at != known.end() ? at->second
-                                            : (known[block.name] = problem.Add(block)));
+      auto at = known.find(block.name);
+      if (at == known.end()) at = known.emplace(block.name, problem.Add(block)).first;
+      if (problem.Block(at->second).size() != block.size()) {
+        throw InputError(
+            fmt::format("{}: was simulated with another machine model: {} has {} "
+                        "coefficients here, {} there",
+                        runs[r].name, block.name, block.size(), problem.Block(at->second).size()));
+      }
+      inputs.emplace_back(at->second);
     }
     const auto same = [&](const simulation::SimulatedRun& other) {
       return other.name == runs[r].name;

@@ -83,7 +83,11 @@ TEST_F(FuseOfRig, ChoosesTheSmoothnessOfThePopulation) {
   EXPECT_NEAR(All().chosen_smoothness, 0.015, 1e-9);
   const settings::Document wrong =
       CampaignMachine({{"smoothness_mm = 15.0", "smoothness_mm = 7.5"}});
-  const FuseReport report = Fuse(machine::ReadMachine(wrong.Root()), Sweeps(), {});
+  Campaign mistaken = World();
+  mistaken.machine = machine::ReadMachine(wrong.Root());
+  mistaken.model = UnknownMachine(mistaken.machine);
+  const FuseReport report =
+      Fuse(mistaken.machine, {mistaken.Sweep('X'), mistaken.Sweep('Y'), mistaken.Sweep('Z')}, {});
   EXPECT_NEAR(report.chosen_smoothness, 0.015, 1e-9);
 }
 
@@ -128,8 +132,8 @@ TEST_F(FuseOfRig, NamesASweepWithAnotherMounting) {
   EXPECT_EQ(report.runs[static_cast<std::size_t>(report.contradicting)].name, "sweep Y");
 }
 
-// Calibrated on a machine that is taken as perfect, the linkage learns much of the machine's errors,
-// even where these change within 15 mm and the cube is 25 x 25 x 50 mm.
+// Calibrated on a machine that is taken as perfect, the linkage learns much of the machine's
+// errors, even where these change within 15 mm and the cube is 25 x 25 x 50 mm.
 TEST_F(FuseOfRig, ShowsThatALinkageAloneSwallowsTheMachine) {
   const auto course = rig::DwellCourse(
       rig::GridPlaces(Vector3d::Constant(0.030), {0.025, 0.025, 0.050}, {5, 5, 7}), 0.1, 0.1, 1);
@@ -148,6 +152,10 @@ TEST_F(FuseOfRig, ShowsThatALinkageAloneSwallowsTheMachine) {
 TEST_F(FuseOfRig, RefusesNoRunsAndPlacesOutside) {
   EXPECT_THAT([] { Fuse(World().machine, {}, {}); },
               ThrowsMessage<InputError>(HasSubstr("name at least one")));
+  machine::Machine rougher = World().machine;
+  rougher.population.smoothness = 0.005;
+  EXPECT_THAT([&] { Fuse(rougher, Sweeps(), {}); },
+              ThrowsMessage<InputError>(HasSubstr("another machine model")));
   auto recording = World().LengthRecording('Y');
   recording.columns[2].values[3] = 80.0;
   EXPECT_THAT([&] { simulation::SimulateLengths(World().model, World().reference, recording); },
