@@ -56,7 +56,6 @@ struct ValueRule {
 
 bool Any(double) { return true; }
 bool NotNegative(double value) { return value >= 0.0; }
-bool Positive(double value) { return value > 0.0; }
 bool Count(double value) { return value >= 0.0 && value == std::floor(value); }
 bool Sign(double value) { return value == -1.0 || value == 0.0 || value == 1.0; }
 
@@ -71,7 +70,7 @@ constexpr std::array<ValueRule, 16> kValueRules{{
     {"pivot_", "_rad", Any, ""},
     {"cap_force_n", "cap_force_n", Any, ""},
     {"ref_", "_mm", Any, ""},
-    {"length_mm", "length_mm", Positive, "above 0"},
+    {"length_mm", "length_mm", NotNegative, "0 or above"},
     {"u_", "_um", NotNegative, "0 or above"},
     {"setup", "setup", Count, "a whole number from 0"},
     {"hole", "hole", Count, "a whole number from 0"},

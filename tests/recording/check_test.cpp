@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Broken{"probe_a_um", -0.001, false}, Broken{"probe_e_um", kNan, false},
                     Broken{"probe_a_um", kInfinity, false}, Broken{"x_mm", kNan, false},
                     Broken{"feed_mm_min", -1.0, false}, Broken{"pivot_12_rad", kNan, false},
-                    Broken{"ref_y_mm", kNan, false}, Broken{"length_mm", 0.0, false},
+                    Broken{"ref_y_mm", kNan, false}, Broken{"length_mm", -1.0, false},
                     Broken{"u_length_um", -0.1, false}, Broken{"setup", 0.5, false},
                     Broken{"hole", -1.0, false}, Broken{"plate_x_mm", kNan, false},
                     Broken{"temp_bed_c", kNan, false}, Broken{"cap_force_n", kNan, false}));
