@@ -77,8 +77,9 @@ TEST(MapAccuracy, StatesTrueUncertaintiesAndGainsFromTheOtherInstrument) {
     SCOPED_TRACE(set.name);
     set.pulls.ExpectTrueUncertainties();
   }
-  const double best_alone = std::min(sets[0].square.mean(), sets[1].square.mean());
-  EXPECT_GT(std::sqrt(best_alone / sets[3].square.mean()), 3.0);
+  // Stated, and held to be true above: the scatter of few worlds is larger than the margin.
+  const double best_alone = std::min(sets[0].variance.mean(), sets[1].variance.mean());
+  EXPECT_GT(std::sqrt(best_alone / sets[3].variance.mean()), 3.0);
 }
 
 }  // namespace

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""`abbe fuse` as a script sees it: recordings of the virtual rig become one map, held against the rig's truth.
+
+    ABBE=path/to/abbe ABBE_MACHINE=machine.toml fuse_test.py
+"""
+import json
+import pathlib
+import unittest
+
+from program_case import MACHINE, ProgramCase
+
+
+class FuseTest(ProgramCase):
+    command = "fuse"
+
+    def record(self):
+        """A small campaign: sweeps at 5 mm, the linkage at 125 places, one line of lengths."""
+        text = pathlib.Path(MACHINE).read_text().replace("step_mm = 1.0", "step_mm = 5.0")
+        text = text.replace("passes = 5", "passes = 2")
+        self.machine = self.path / "machine.toml"
+        self.machine.write_text(text)
+        make = lambda name, *arguments: self.rig_record(name, *arguments, machine=self.machine)
+        sweeps = [make(f"{axis}.csv", "--axis", axis, "--mounting", "A", "--rate", 50, "--truth",
+                       self.path / "truth.json") for axis in "XYZ"]
+        volume = make("volume.csv", "--course", "cube", "--size", "58,58,58", "--points", "5,5,5",
+                      "--dwell", 0.1, "--feed", 6000)
+        return [*sweeps, volume, make("line.csv", "--length", "X")]
+
+    def test_a_campaign_becomes_a_map(self):
+        runs = self.record()
+        map_file = self.path / "map.toml"
+        json_file = self.path / "fuse.json"
+        text = self.done(*runs, "--machine", self.machine, "-o", map_file, "--json", json_file)
+        self.assertIn("calibrated", text)
+        self.assertNotIn("PRIOR ONLY", text)
+        result = json.loads(json_file.read_text())
+        self.assertEqual(result["contradictions"], [])
+        self.assertEqual([run["kind"] for run in result["chi2"]], 3 * ["sweep"] + ["linkage", "length"])
+        self.assertEqual(len(result["observability"]), 21)
+        truth = json.loads((self.path / "truth.json").read_text())
+        for parameter in result["parameters"]:
+            block, _, name = parameter["name"].partition(".")
+            if block != "squareness":
+                continue
+            off = parameter["value"] - 1e6 * truth["squareness"][name]
+            self.assertLess(abs(off), 4 * parameter["uncertainty"], parameter)
+            self.assertLess(parameter["uncertainty"], 4.0)  # 30 urad before the data
+        self.done(map_file, "--format", "csv", command="export")
+
+        without = self.path / "without.json"
+        text = self.done(*runs[:4], "--machine", self.machine, "-o", map_file, "--json", without)
+        self.assertIn("PRIOR ONLY; give a run of kind length", text)
+        self.assertEqual(json.loads(without.read_text())["scale"]["statement"], "prior only")
+
+    def test_refusals_take_one_line(self):
+        dwell = self.path / "dwell.csv"
+        dwell.write_text('# abbe-recording = 1\n# kind = "dwell"\ntime_s\n0\n1\n')
+        self.refuse(dwell, "--machine", MACHINE, saying=["dwell.csv", "fuse takes sweep, linkage"])
+        foreign = self.path / "foreign.csv"
+        foreign.write_text('# abbe-recording = 1\n# kind = "length"\n# machine = "other"\n'
+                           "x_mm,y_mm,z_mm,pass,length_mm,u_length_um\n0,0,0,1,0,0.1\n10,0,0,1,10,0.1\n")
+        self.refuse(foreign, "--machine", MACHINE, saying=['machine "other"', "give the file of that machine"])
+        header = '# abbe-recording = 1\n# kind = "length"\nx_mm,y_mm,z_mm,pass,length_mm,u_length_um\n'
+        for rows, saying in (("0,0,0,1,5,0.1\n9,0,0,1,10,0.1\n", "row 1: the first length of a pass must be 0"),
+                             ("0,0,0,1,0,0.1\n", "a pass of one row"),
+                             ("0,0,0,1,0,0.1\n9,0,0,1,9,0\n", "row 2: u_length_um must be above 0"),
+                             ("0,0,0,1,0,0.1\n0,0,0,1,9,0.1\n", "row 2: stands where the pass began"),
+                             ("0,0,0,1,0,0.1\n90,0,0,1,90,0.1\n", "row 2: x = 90.0000 mm lies outside")):
+            lengths = self.path / "lengths.csv"
+            lengths.write_text(header + rows)
+            self.refuse(lengths, "--machine", MACHINE, saying=["lengths.csv", saying])
+
+
+if __name__ == "__main__":
+    unittest.main()
