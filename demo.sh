@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds abbe, measures the three axes of a virtual machine with the five-probe
-# head over Modbus TCP, calibrates its linkage, measures circles with it, and writes the report. Can be run
-# again at any time.
+# head over Modbus TCP, calibrates its linkage, measures circles with it, fuses all into one error map, and writes
+# the report. Can be run again at any time.
 set -euo pipefail
 cd "$(dirname "$0")"
 speed=20 # the virtual machine runs this many times faster than a real one
@@ -25,7 +25,7 @@ done
 sed "s/^port = .*/port = $(cat "$out/rig/port")/" machines/demo_mill.toml >"$out/machine.toml"
 
 for axis in X Y Z; do
-  "$abbe" sweep --axis "$axis" --machine "$out/machine.toml" --clock-speed "$speed" --out "$out"
+  "$abbe" sweep --axis "$axis" --machine "$out/machine.toml" --clock-speed "$speed" --mounting demo --out "$out"
 done
 
 # The linkage: a grid of places beside a grid encoder, then circles at two feeds.
@@ -38,6 +38,12 @@ course "$out/circle.csv" "$demo" --course circle --feed 300
 course "$out/circle_fast.csv" "$demo" --course circle --feed 2000
 "$abbe" calibrate "$out/cube.csv" --machine "$demo" -o "$out/linkage.toml" --json "$out/linkage.json" --quiet
 "$abbe" circle "$out"/circle{,_fast}.csv --machine "$demo" --calibration "$out/linkage.toml" --filter 50 --out "$out"
+
+# All of it together, with the linkage over the volume and one line of lengths: the error map.
+course "$out/volume.csv" "$demo" --course cube --size 57 --points 6,6,6 --dwell 0.2 --feed 6000
+course "$out/line.csv" "$demo" --length X
+"$abbe" fuse "$out"/sweep_{X,Y,Z}.csv "$out"/{volume,line}.csv --machine "$demo" -o "$out/map.toml" --json "$out/fuse.json"
+for format in isg vtk; do "$abbe" export "$out/map.toml" --format "$format" --quiet; done
 
 # What the rig knows: the same circle by a grid encoder without noise.
 sed 's/^reference_um = .*/reference_um = 0.0001/' "$demo" >"$out/rig/exact.toml"
