@@ -66,10 +66,10 @@ std::vector<std::string> SweepColumns(const std::vector<Channel>& channels);
 
 struct SweepAbout {
   std::string machine;
-  std::string started;   // "2026-11-21T09:00:00Z"
-  std::string source;    // where the readings come from, "modbus"
-  std::string mounting;  // which set-up of head and target this is; empty: not stated
-  std::string more;      // further lines of TOML
+  std::string started;        // "2026-11-21T09:00:00Z"
+  std::string source;         // where the readings come from, "modbus"
+  std::string mounting = {};  // which set-up of head and target this is; empty: not stated
+  std::string more = {};      // further lines of TOML
 };
 
 // The present time as a header writes it.

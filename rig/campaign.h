@@ -27,10 +27,10 @@
 namespace abbe::rig {
 
 struct CampaignOptions {
-  double rate = 200.0;    // rows in a second; at most the sensors' update rate
-  bool moving = true;     // also write the rows between the stations
-  std::uint64_t run = 1;  // runs of one world differ in their noise only; 0 is the served rig's
-  std::string mounting;   // for the header; empty: not stated
+  double rate = 200.0;        // rows in a second; at most the sensors' update rate
+  bool moving = true;         // also write the rows between the stations
+  std::uint64_t run = 1;      // runs of one world differ in their noise only; 0 is the served rig's
+  std::string mounting = {};  // for the header; empty: not stated
   std::string started = "1970-01-01T00:00:00Z";  // for the header
 };
 

@@ -31,7 +31,7 @@ Distances Against(const CalibrationReport& report, const relm::LinkageSettings& 
 // The check that the RELM paper plans: angles by the inverse equations, calibrate, recover.
 TEST(Calibrate, RecoversAnErroneousLinkageFromExactAngles) {
   auto settings = WorldSettings();
-  settings.noise = {.encoder = 1e-9, .reference = 1e-10, .machine = 1e-10};
+  settings.noise = {.encoder = 1e-9, .reference = 1e-10, .machine = 1e-10, .repeatability = 0.0};
   const LinkageWorld world = LinkageWorld::Draw(1, false);
   const auto grid = WorldRun(world, settings, GridPositions({0.06, 0.06, 0.06}, {4, 4, 4}), 0, 1);
   const auto other = WorldRun(world, settings, RandomPositions({0.06, 0.06, 0.06}, 50, 2), 0, 1);
