@@ -7,10 +7,10 @@
 // Each function is a Gaussian process over its axis with the standard deviation of the population
 // in the machine file and covariance sd^2 exp(-(d / smoothness)^2 / 2); a positioning error has a
 // random slope (scale) besides. It is projected on a cubic B-spline with knots half a correlation
-// length apart, which keeps it to 0.01 % of sd; the gauge of machine/error_function.h then takes the
-// value at the reference and the slope of a straightness off. Units: SI. Shapes: covariance n x n
-// of the coefficients of a function. Failure: InputError for a correlation length that is not above
-// 0. Source: Rasmussen and Williams, Gaussian Processes (2006), 2.2 and 4.2.
+// length apart, which keeps it to 0.01 % of sd; the gauge of machine/error_function.h then takes
+// the value at the reference and the slope of a straightness off. Units: SI. Shapes: covariance n x
+// n of the coefficients of a function. Failure: InputError for a correlation length that is not
+// above 0. Source: Rasmussen and Williams, Gaussian Processes (2006), 2.2 and 4.2.
 #pragma once
 
 #include <Eigen/Core>

@@ -28,8 +28,8 @@ namespace abbe::map {
 
 // What determined an error; beyond the prior it names the best of the runs that saw it.
 enum class Source { kPrior, kSweep, kLinkage, kReference, kPlate, kLength };
-inline constexpr std::array<std::string_view, 6> kSourceNames = {
-    "prior", "sweep", "linkage", "reference", "plate", "length"};
+inline constexpr std::array<std::string_view, 6> kSourceNames = {"prior",     "sweep", "linkage",
+                                                                 "reference", "plate", "length"};
 
 // The 21 errors: 18 motions in the order of error_motion.h, then A0Z, B0Z, C0Y.
 inline constexpr int kErrors = machine::kAxes * machine::kMotions + 3;

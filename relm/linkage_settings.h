@@ -42,9 +42,9 @@ struct LinkageTolerance {
 };
 
 struct LinkageNoise {
-  double encoder;    // rad: standard deviation of one reading
-  double reference;  // m: of a position that a reference instrument gives, each direction
-  double machine;    // m: of a commanded position where it is the reference, each direction
+  double encoder;        // rad: standard deviation of one reading
+  double reference;      // m: of a position that a reference instrument gives, each direction
+  double machine;        // m: of a commanded position where it is the reference, each direction
   double repeatability;  // m: of the ball when a position is approached again, each direction
 };
 

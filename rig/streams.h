@@ -15,7 +15,7 @@ enum Stream : std::uint64_t {
   kTargetStream = 0x300,          // index: three angles, three squarenesses
   kFaceStream = 0x310,            // + face: -x +x -y +y -z +z
   kLinkageStream = 0x400,         // + pivot, and one for the links, the ball and the base
-  kLengthStream = 0x100a0,         // + kRunStreams * run; index: common scale, then each length
+  kLengthStream = 0x100a0,        // + kRunStreams * run; index: common scale, then each length
   kNoiseStream = 0x10000,         // + kRunStreams * run + probe
   kDriftStream = 0x10008,         // + kRunStreams * run + probe
   kTemperatureStream = 0x10010,   // + kRunStreams * run + sensor, up to 16

@@ -12,7 +12,7 @@ import unittest
 
 ABBE = os.environ["ABBE"]
 MACHINE = os.environ["ABBE_MACHINE"]
-MODELS = {"pivots": 11, "published": 12, "published-with-bearing": 24, "complete": 52}  # parameters
+MODELS = {"pivots": 11, "published": 12, "published-with-bearing": 24, "complete": 64}  # parameters
 BOUNDS = {"I": (1.01e-6, 0.0902e-6), "II": (1.5e-5, 0.6e-6)}  # rad, m; I to third order in the errors
 
 
