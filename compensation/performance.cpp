@@ -43,6 +43,7 @@ constexpr std::array<std::pair<std::string_view, MakePiece>, 6> kTests = {
 
 std::vector<std::string_view> TestNames() {
   std::vector<std::string_view> names;
+  names.reserve(kTests.size());
   for (const auto& [name, make] : kTests) names.push_back(name);
   return names;
 }
