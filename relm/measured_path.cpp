@@ -8,6 +8,7 @@
 #include <span>
 
 #include "failure/failure.h"
+#include "recording/good_rows.h"
 #include "settings/unit.h"
 
 namespace abbe::relm {
@@ -31,15 +32,6 @@ double Finite(const Recording& recording, std::span<const double> column, std::s
                   recording.name, row + 1, name));
 }
 
-Rows GoodRows(const Recording& recording) {
-  const Column flags = recording.Find("flags");
-  Rows rows;
-  for (std::size_t row = 0; row < recording.rows(); ++row) {
-    if (!flags || (*flags)[row] == 0.0) rows.push_back(row);
-  }
-  return rows;
-}
-
 // The column at the rows, times `si`; `fallback` where the recording lacks it.
 Eigen::VectorXd Values(const Recording& recording, const Rows& rows, const std::string& name,
                        double si, double fallback) {
@@ -55,10 +47,6 @@ Eigen::VectorXd Values(const Recording& recording, const Rows& rows, const std::
 
 // Everything but what the instrument measured.
 MeasuredPath Commanded(const Recording& recording, const Rows& rows) {
-  if (rows.empty()) {
-    throw InputError(fmt::format("{}: none of the {} rows is without a flag; nothing to evaluate",
-                                 recording.name, recording.rows()));
-  }
   MeasuredPath path;
   path.recording = recording.name;
   path.plane = recording.HeaderText("axis").value_or("");
@@ -93,7 +81,7 @@ MeasuredPath LinkagePath(const Recording& recording, const machine::Chain& chain
 }
 
 MeasuredPath ReferencePath(const Recording& recording) {
-  MeasuredPath path = Commanded(recording, GoodRows(recording));
+  MeasuredPath path = Commanded(recording, recording::GoodRows(recording));
   path.instrument = "reference";
   for (int axis = 0; axis < 3; ++axis) {
     if (!recording.Find(ReferenceName(axis))) continue;

@@ -13,8 +13,6 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kPullsNoMore = 3.0;  // standard deviations; costs normal data 0.1 %
-
 class LinkageOnMachine : public estimation::Residual {
  public:
   LinkageOnMachine(machine::VolumetricModel model, Vector3d ball, LinkageSimulation linkage,

@@ -21,7 +21,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double kSetUp = 10e-3;  // rad: how well an instrument is aligned by hand
-constexpr double kPullsNoMore = 3.0;
 
 struct Readings {
   std::vector<Index> axes;  // that the instrument shows
