@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,6 +26,7 @@
 #include "rig/encoder_server.h"
 #include "rig/length_campaign.h"
 #include "rig/linkage_campaign.h"
+#include "rig/measuring_campaign.h"
 #include "rig/register_server.h"
 #include "rig/truth.h"
 
@@ -39,7 +41,9 @@ struct RigOptions {
   std::vector<std::string> rtu;    // DEVICE=LINK
   std::optional<std::string> can;  // the interface; empty: those of the machine file
   std::filesystem::path truth, ready_file, out;
-  std::string start, axis, length, mounting;
+  std::string start, axis, length, mounting, campaign;
+  bool reduced = false;
+  std::vector<std::string> hide;
   CourseRequest course;
   double rate = 200.0;
   std::filesystem::path truth_to_compare;
@@ -50,18 +54,40 @@ struct RigOptions {
 struct Rig {
   explicit Rig(const RigOptions& options)
       : document(settings::Document::Read(options.machine)),
-        world(rig::ReadRigSettings(document.Root()), options.seed),
+        machine(rig::ReadCampaignMachine(document.Root())),
+        world(machine.rig, options.seed, Hidden(machine, options)),
         devices(hal::ReadDevices(document.Root().Child("devices"))) {
-    if (document.Root().Has("linkage")) {
-      linkage.emplace(world, rig::Linkage(rig::ReadLinkage(document.Root()), options.seed));
+    if (machine.linkage) {
+      linkage.emplace(world, rig::Linkage(*machine.linkage, options.seed, world.hidden()));
     }
+    WriteTruth(options, world.hidden());
+  }
+
+  // What --hide says; instants that it leaves open lie in the first ten minutes.
+  static rig::HiddenEffects Hidden(const rig::CampaignMachine& machine, const RigOptions& options) {
+    rig::HiddenEffects hidden = HiddenOf(machine, options);
+    rig::SetInTime(hidden, {{0.0, 600.0, true, true}});
+    return hidden;
+  }
+  static rig::HiddenEffects HiddenOf(const rig::CampaignMachine& machine,
+                                     const RigOptions& options) {
+    rig::HiddenEffects hidden;
+    for (const std::string& text : options.hide) {
+      hidden.push_back(rig::ParseHidden(text, options.seed, machine.sensors));
+    }
+    return hidden;
+  }
+
+  void WriteTruth(const RigOptions& options, const rig::HiddenEffects& hidden) const {
     if (options.truth.empty()) return;
     nlohmann::ordered_json truth = rig::TruthOf(world);
+    truth["hidden"] = rig::TruthOf(hidden);
     if (linkage) truth["linkage"] = linkage->Truth();
     WriteResult(truth, options.truth);
   }
 
   settings::Document document;
+  rig::CampaignMachine machine;
   rig::World world;
   hal::DevicesSettings devices;
   std::optional<rig::LinkageRig> linkage;
@@ -228,13 +254,38 @@ recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
   return RecordCourse(*rig.linkage, options.course, options.rate, hal::UtcNow());
 }
 
+int RecordTheCampaign(const RigOptions& options) {
+  static const std::map<std::string, rig::CampaignKind> kinds = {
+      {"minimal", rig::CampaignKind::kMinimal},
+      {"standard", rig::CampaignKind::kStandard},
+      {"full", rig::CampaignKind::kFull}};
+  const Rig rig(options);
+  const rig::Campaign campaign =
+      rig::RecordCampaign(rig.machine, options.seed, Rig::HiddenOf(rig.machine, options),
+                          {.kind = kinds.at(options.campaign), .reduced = options.reduced});
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error) {
+    throw InputError(fmt::format("--out {}: cannot be made: {}; choose another folder",
+                                 options.out.string(), error.message()));
+  }
+  for (const recording::Recording& recording : campaign.recordings) {
+    const std::filesystem::path path = options.out / (recording.name + ".h5");
+    recording::Write(recording, path);
+    fmt::print("{} ({} rows)\n", path.string(), recording.rows());
+  }
+  rig.WriteTruth(options, campaign.hidden);
+  return kDone;
+}
+
 int Record(const RigOptions& options) {
+  if (!options.campaign.empty()) return RecordTheCampaign(options);
   const int kinds = (options.axis.empty() ? 0 : 1) + (options.course.course.empty() ? 0 : 1) +
                     (options.length.empty() ? 0 : 1);
   if (kinds != 1) {
     throw InputError(
         "rig record: say what to record: a sweep by --axis X, a path of the linkage by --course "
-        "circle, or calibrated lengths by --length X");
+        "circle, calibrated lengths by --length X, or a whole --campaign standard");
   }
   recording::Write(Recorded(Rig(options), options), options.out);
   fmt::print("{}\n", options.out.string());
@@ -265,6 +316,9 @@ void AddWorldOptions(CLI::App* command, RigOptions& options) {
   command->add_option("--seed", options.seed, "Which machine of the population")
       ->capture_default_str();
   command->add_option("--truth", options.truth, "Write what the rig knows (JSON)");
+  command->add_option("--hide", options.hide,
+                      "An effect that only the rig knows, CAUSE:object=OBJECT[:key=value...]; "
+                      "again for another (docs/virtual-rig.md)");
 }
 
 }  // namespace
@@ -293,7 +347,8 @@ void AddRig(CLI::App& program, int& exit_code) {
   rig->add_option("--ready-file", options->ready_file, "Write the port here when listening");
   rig->footer(
       "Example: abbe rig --machine machines/demo_mill.toml --seed 7 --port 1502 --speed 10\n"
-      "Example: abbe rig --machine machines/demo_mill.toml --can vcan0 --course circle");
+      "Example: abbe rig --machine machines/demo_mill.toml --can vcan0 --course circle\n"
+      "Example: abbe rig --machine machines/demo_mill.toml --hide probe-gain:object=probe_b");
   rig->callback([rig, options, &exit_code] {
     if (rig->get_subcommands().empty()) exit_code = Serve(*options);
   });
@@ -305,15 +360,24 @@ void AddRig(CLI::App& program, int& exit_code) {
   record->add_option("--axis", options->axis, "Of the probe head: sweep X, Y or Z")->check(axis);
   record->add_option("--length", options->length, "Calibrated lengths along X, Y or Z")
       ->check(axis);
+  record
+      ->add_option("--campaign", options->campaign,
+                   "A whole campaign into the folder --out: minimal, standard or full")
+      ->check(CLI::IsMember({"minimal", "standard", "full"}))
+      ->excludes("--axis", "--length");
+  record->add_flag("--reduced", options->reduced, "Fewer stations, places and rows in a campaign");
   record->add_option("--mounting", options->mounting, "For the header of a sweep");
   AddCourseOptions(*record, options->course);
   AddRecordingOptions(*record, options->course);
-  record->add_option("--out", options->out, "Recording (.csv, .h5)")->required();
+  record->add_option("--out", options->out, "Recording (.csv, .h5), or the campaign's folder")
+      ->required();
   record->add_option("--rate", options->rate, "Rows in a second")->capture_default_str();
   record->footer(
       "Example: abbe rig record --machine machines/demo_mill.toml --axis X --out x.csv\n"
       "Example: abbe rig record --machine machines/demo_mill.toml --course circle --reference "
-      "--out circle.csv");
+      "--out circle.csv\n"
+      "Example: abbe rig record --machine machines/demo_mill.toml --seed 7 --campaign standard "
+      "--hide backlash:object=X:width_um=6 --truth truth.json --out campaign");
   record->callback([options, &exit_code] { exit_code = Record(*options); });
 
   CLI::App* compare = rig->add_subcommand("compare", "How near results came to the truth");

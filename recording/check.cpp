@@ -25,19 +25,12 @@ struct KindRule {
 };
 
 const std::vector<KindRule>& KindRules() {
+  static const Required kProbes{{"time_s"},     {"x_mm"},       {"y_mm"},       {"z_mm"},
+                                {"pass"},       {"direction"},  {"probe_a_um"}, {"probe_b_um"},
+                                {"probe_c_um"}, {"probe_d_um"}, {"probe_e_um"}};
   static const std::vector<KindRule> rules{
-      {"sweep",
-       {{"time_s"},
-        {"x_mm"},
-        {"y_mm"},
-        {"z_mm"},
-        {"pass"},
-        {"direction"},
-        {"probe_a_um"},
-        {"probe_b_um"},
-        {"probe_c_um"},
-        {"probe_d_um"},
-        {"probe_e_um"}}},
+      {"sweep", kProbes},
+      {"gap-steps", kProbes},
       {"linkage", {{"time_s"}, {"x_mm"}, {"y_mm"}, {"z_mm"}, {"pivot_1_rad"}}},
       {"reference", {{"x_mm", "y_mm", "z_mm"}, {"ref_x_mm", "ref_y_mm", "ref_z_mm"}}},
       {"length", {{"x_mm"}, {"y_mm"}, {"z_mm"}, {"length_mm"}}},

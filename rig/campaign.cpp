@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "hal/sweep_recorder.h"
+#include "rig/hidden_run.h"
 #include "rig/motion.h"
 #include "rig/noise.h"
 #include "rig/rig_channel.h"
@@ -21,12 +23,15 @@ class SweepMaker {
              const CampaignOptions& options)
       : world_(world),
         axis_(axis),
-        plan_(*world.settings().sweeps[axis]),
+        plan_(Planned(*world.settings().sweeps[axis], options)),
         options_(options),
         motion_(plan_, {world.settings().acceleration, world.settings().lag},
                 world.settings().travels[axis].first),
         noise_(world.settings(), world.seed(), options.run),
-        command_(world.settings().StartOf(axis)) {
+        own_climate_(world.settings(), world.seed(), options.run, Sensors(channels)),
+        climate_(options.climate != nullptr ? *options.climate : own_climate_),
+        hidden_(world.hidden(), climate_, {options.begin, axis}),
+        axes_(world.settings().StartOf(axis)) {
     for (const std::string& name : hal::SweepColumns(channels))
       sweep_.columns.push_back({name, {}});
     for (std::size_t column = kFirstReading; column + 1 < sweep_.columns.size(); ++column) {
@@ -41,7 +46,7 @@ class SweepMaker {
     }
     const hal::SweepAbout about{
         world.settings().name, options.started, "rig", options.mounting,
-        fmt::format("[rig]\nseed = {}\nrun = {}\n", world.seed(), options.run)};
+        fmt::format("{}[rig]\nseed = {}\nrun = {}\n", options.more, world.seed(), options.run)};
     sweep_.header = hal::SweepHeader(plan_, about, channels);
     sweep_.name = fmt::format("rig sweep {:c}, seed {}", plan_.axis, world.seed());
   }
@@ -54,6 +59,9 @@ class SweepMaker {
     for (std::size_t i = 0; i < count; ++i) {
       const double time = static_cast<double>(i) / options_.rate;
       const MotionState state = motion_.At(time);
+      axes_[axis_] = state.position;
+      const double speed = (state.command - state.position) / world_.settings().lag;
+      hidden_.Follow(time, axes_, speed * Eigen::Vector3d::Unit(axis_));
       if (state.pass == 0 || (state.station < 0 && !options_.moving)) continue;
       Add(time, state);
     }
@@ -64,39 +72,59 @@ class SweepMaker {
   static constexpr std::size_t kPosition = 1, kPass = 4, kDirection = 5, kFeed = 6,
                                kFirstReading = 7;
 
+  static hal::SweepPlan Planned(hal::SweepPlan plan, const CampaignOptions& options) {
+    if (options.passes > 0) plan.passes = options.passes;
+    return plan;
+  }
+
   void Put(std::size_t column, double value) { sweep_.columns[column].values.push_back(value); }
 
-  void Add(double time, const MotionState& state) {
-    if (!(std::abs(state.position - gaps_at_) < kStill)) {
-      command_[axis_] = gaps_at_ = state.position;
-      gaps_ = world_.ReadingsAt(axis_, command_);
+  static std::vector<std::string> Sensors(const std::vector<hal::Channel>& channels) {
+    std::vector<std::string> sensors;
+    for (const hal::Channel& channel : channels) {
+      if (channel.name.starts_with("temp_")) sensors.push_back(channel.name);
     }
+    return sensors;
+  }
+
+  void Add(double time, const MotionState& state) {
     Put(0, time);
     for (int axis = 0; axis < kAxes; ++axis) {
-      Put(kPosition + static_cast<std::size_t>(axis),
-          (axis == axis_ ? state.position : command_[axis]) / settings::kMillimetre);
+      Put(kPosition + static_cast<std::size_t>(axis), axes_[axis] / settings::kMillimetre);
     }
     Put(kPass, state.pass);
     Put(kDirection, state.direction);
     Put(kFeed, plan_.feed / settings::UnitOf("feed_mm_min").si);
-    const auto tick =
-        static_cast<std::uint64_t>(std::llround(time * world_.settings().update_rate));
+    const Readings gaps = Gaps(time);
     std::uint32_t flags = 0;
-    std::size_t sensor = 0;
     for (std::size_t i = 0; i < channels_.size(); ++i) {
-      Put(kFirstReading + i, channels_[i].quantity == RigChannel::Quantity::kTemperature
-                                 ? Temperature(sensor++, time)
-                                 : Gap(channels_[i], tick, time, flags));
+      const std::size_t column = kFirstReading + i;
+      Put(column, channels_[i].quantity == RigChannel::Quantity::kTemperature
+                      ? climate_.At(sweep_.columns[column].name, options_.begin + time)
+                      : Gap(channels_[i], gaps, flags));
     }
     Put(sweep_.columns.size() - 1, flags);
   }
 
-  double Temperature(std::size_t sensor, double time) {
-    return world_.settings().temperature + noise_.OfTemperature(sensor, time);
+  // As they are said.
+  Readings Gaps(double time) {
+    const Eigen::Vector3d place = hidden_.PlaceFor(Source::kProbes);
+    Eigen::Vector3d moved = place - gaps_at_;
+    moved[axis_] = std::max(0.0, std::abs(moved[axis_]) - kStill);
+    if (!(moved.squaredNorm() == 0.0)) {
+      gaps_at_ = place;
+      gaps_ = world_.ReadingsAt(axis_, place);
+    }
+    const auto tick =
+        static_cast<std::uint64_t>(std::llround(time * world_.settings().update_rate));
+    Readings said = gaps_;
+    for (int probe = 0; probe < kProbes; ++probe) said[probe] += noise_.OfProbe(probe, tick, time);
+    hidden_.Say(said);
+    return said;
   }
 
-  double Gap(const RigChannel& channel, std::uint64_t tick, double time, std::uint32_t& flags) {
-    const double gap = gaps_[channel.index] + noise_.OfProbe(channel.index, tick, time);
+  double Gap(const RigChannel& channel, const Readings& gaps, std::uint32_t& flags) const {
+    const double gap = gaps[channel.index];
     if (gap >= 0.0 && gap <= world_.settings().probes[channel.index].range) {
       return gap / channel.unit;
     }
@@ -110,10 +138,14 @@ class SweepMaker {
   const CampaignOptions options_;
   const SweepMotion motion_;
   SensorNoise noise_;
-  Eigen::Vector3d command_;
+  Climate own_climate_;
+  Climate& climate_;
+  HiddenRun hidden_;
+  Eigen::Vector3d axes_;  // as the controller shows them
   std::vector<RigChannel> channels_;  // of the columns from kFirstReading on
   recording::Recording sweep_;
-  double gaps_at_ = std::numeric_limits<double>::infinity();  // the position of `gaps_`
+  // The place of `gaps_`.
+  Eigen::Vector3d gaps_at_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   Readings gaps_{};
 };
 

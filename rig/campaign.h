@@ -11,6 +11,9 @@
 // NaN with the flag kOutOfRange. The same (machine file, seed, axis, run, rate) gives the same
 // recording.
 //
+// What the world hides acts here too: the machine is followed row by row, motion included
+// (hidden_run.h), and x_mm, y_mm, z_mm stay what the controller shows.
+//
 // Speed: while the axis moves by less than 1 nm the gaps are kept; they change by less than 1e-12 m
 // there (slopes of the faces and of the errors are below 1e-3).
 #pragma once
@@ -22,6 +25,7 @@
 #include "hal/device_settings.h"
 #include "hal/sample_source.h"
 #include "recording/recording.h"
+#include "rig/climate.h"
 #include "rig/world.h"
 
 namespace abbe::rig {
@@ -32,6 +36,10 @@ struct CampaignOptions {
   std::uint64_t run = 1;      // runs of one world differ in their noise only; 0 is the served rig's
   std::string mounting = {};  // for the header; empty: not stated
   std::string started = "1970-01-01T00:00:00Z";  // for the header
+  std::string more = {};       // further lines of its table [mounting], or of TOML
+  int passes = 0;              // 0: as many as the machine file plans
+  double begin = 0.0;          // s since the machine was switched on
+  Climate* climate = nullptr;  // of a campaign; none: its own, and `begin` is 0
 };
 
 // The channels that the devices of a machine file give, in their order.

@@ -165,6 +165,18 @@ Vector3d CourseRun::PointAt(double distance) {
   return way_[segment_ - 1] + share * (way_[segment_] - way_[segment_ - 1]);
 }
 
+double CourseRun::DurationOf(const Course& course, const Dynamics& dynamics, double step) {
+  CourseRun run(course, dynamics, step);
+  double duration = 0.0;
+  for (; run.move_ < course.moves.size(); ++run.move_) {
+    if (run.move_ > 0) run.state_.command = course.moves[run.move_ - 1].points.back();
+    run.Begin();
+    duration += 2.0 * run.ramp_ + run.cruise_ + course.moves[run.move_].dwell +
+                8.0 * dynamics.lag + 4.0 * step;
+  }
+  return duration;
+}
+
 bool CourseRun::Next() {
   // A move ends when its dwell, counted from the arrival of the axes, is over.
   while (move_ < course_.moves.size() && state_.standing &&

@@ -81,6 +81,9 @@ class CourseRun {
   };
   CourseRun(const Course& course, const Dynamics& dynamics, double step);
 
+  // How long all of it takes, s; too long by a few steps a move.
+  static double DurationOf(const Course& course, const Dynamics& dynamics, double step);
+
   // One step on; false when the course has ended.
   bool Next();
   const CourseState& state() const { return state_; }

@@ -5,11 +5,13 @@
 //
 // The axes stand at `count` + 1 places, from the first end of the travel of `axis` on, the others
 // at `at`. length_mm is how far the tool really stands from the first place, over the calibrated
-// length's own relative error, with white noise of u. Columns and header: docs/recordings.md.
+// length's own relative error, with white noise of u. The axis comes to each place from below, a
+// second after the place before. Columns and header: docs/recordings.md.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "recording/recording.h"
 #include "rig/linkage_campaign.h"
@@ -24,6 +26,10 @@ struct LengthProgram {
   double u = 0.1e-6;      // m: noise of one length
   double u_scale = 2e-6;  // relative: of which the error that all lengths share is drawn
   std::uint64_t run = 1;
+  std::string started = "1970-01-01T00:00:00Z";
+  std::vector<std::string> sensors = {};  // temperature columns
+  double begin = 0.0;                     // s since the machine was switched on
+  Climate* climate = nullptr;             // of a campaign; none: its own, and `begin` is 0
 };
 
 recording::Recording RecordLengths(const LinkageRig& rig, const LengthProgram& program);

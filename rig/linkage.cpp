@@ -16,12 +16,14 @@ using Eigen::Vector3d;
 
 constexpr double kClosed = 1e-13;  // m
 constexpr int kMostRounds = 50;
+constexpr std::uint64_t kDrawsOfBase = 6;
 
 // Draws in a fixed order, each number once.
 class Draws {
  public:
   Draws(std::uint64_t seed, std::uint64_t stream) : random_(seed, stream) {}
   double Normal(double deviation) { return deviation * random_.Normal(index_++); }
+  void Skip(std::uint64_t count) { index_ += count; }
 
  private:
   random::CounterRandom random_;
@@ -92,7 +94,9 @@ double Harmonic::At(double angle) const {
   return sine * std::sin(order * angle) + cosine * std::cos(order * angle);
 }
 
-Linkage::Linkage(const LinkageSettings& settings, std::uint64_t seed) : settings_(settings) {
+Linkage::Linkage(const LinkageSettings& settings, std::uint64_t seed, const HiddenEffects& hidden,
+                 std::uint64_t base)
+    : settings_(settings) {
   Draws draws(seed, kLinkageStream + kPivots);
   const double link_1 = settings.link_1 + draws.Normal(settings.link);
   const double link_2 = settings.link_2 + draws.Normal(settings.link);
@@ -105,17 +109,51 @@ Linkage::Linkage(const LinkageSettings& settings, std::uint64_t seed) : settings
   ball_ = carried * (elbow + Vector3d(ball_x, draws.Normal(settings.ball), link_2));
   for (double& each : expansion_) each = settings.expansion + draws.Normal(settings.thermal);
   Vector3d place, angles;
+  draws.Skip(kDrawsOfBase * base);
   for (double& each : place) each = draws.Normal(settings.base_place);
   for (double& each : angles) each = draws.Normal(settings.base_angle);
   base_ = {FullRotation(angles) * settings.base_rotation, settings.base_position + place};
   down_B_ = base_.rotation.transpose() * settings.down;
+  for (const HiddenEffect& effect : hidden) Build(effect);
+}
+
+void Linkage::Build(const HiddenEffect& effect) {
+  const auto place = static_cast<std::size_t>(effect.place());
+  const auto add = [&](std::vector<Harmonic>& harmonics, int order, const char* sine,
+                       const char* cosine) {
+    harmonics.push_back({order, effect.At(sine), effect.At(cosine)});
+  };
+  switch (effect.cause()) {
+    case Cause::kEncoderEccentricity:
+      add(pivots_[place].encoder, 1, "sin_urad", "cos_urad");
+      break;
+    case Cause::kEncoderSubdivision:
+      add(pivots_[place].encoder, static_cast<int>(effect.At("order")), "sin_urad", "cos_urad");
+      break;
+    case Cause::kBearingRoundness:
+      add(pivots_[place].stretch, 2, "sin2_um", "cos2_um");
+      add(pivots_[place].stretch, 3, "sin3_um", "cos3_um");
+      break;
+    case Cause::kLinkGravityBend:
+      pivots_[place].give += effect.At("compliance_urad");
+      break;
+    case Cause::kLinkThermalGrowth:
+      expansion_[place] += effect.At("coefficient_ppm_per_c");
+      break;
+    default:
+      break;
+  }
 }
 
 Linkage::Posture Linkage::PostureAt(const Vector3d& turns, double temperature) const {
   const double warmth = temperature - settings_.reference_temperature;
   // At zero angles: link 1 along x, link 2 along z; what they grow moves all that they carry.
-  const Vector3d growth_1 = expansion_[0] * warmth * settings_.link_1 * Vector3d::UnitX();
-  const Vector3d growth_2 = expansion_[1] * warmth * settings_.link_2 * Vector3d::UnitZ();
+  const double longer_1 = Sum(pivots_[0].stretch, turns[0]) + Sum(pivots_[1].stretch, turns[1]);
+  const double longer_2 = Sum(pivots_[2].stretch, turns[2]);
+  const Vector3d growth_1 =
+      (expansion_[0] * warmth * settings_.link_1 + longer_1) * Vector3d::UnitX();
+  const Vector3d growth_2 =
+      (expansion_[1] * warmth * settings_.link_2 + longer_2) * Vector3d::UnitZ();
   const std::array<Vector3d, kPivots> link = {Vector3d::Zero(), Vector3d::UnitX(),
                                               Vector3d::UnitZ()};
   Posture posture;
@@ -196,9 +234,12 @@ Vector3d Linkage::EncodersAt(const Vector3d& turns) const {
   return shown;
 }
 
+Vector3d Linkage::TurnsForPlace(const Vector3d& p_M, double temperature) const {
+  return TurnsFor(base_.rotation.transpose() * (p_M - base_.translation), temperature);
+}
+
 Vector3d Linkage::EncodersFor(const Vector3d& p_M, double temperature) const {
-  const Vector3d p_B = base_.rotation.transpose() * (p_M - base_.translation);
-  return EncodersAt(TurnsFor(p_B, temperature));
+  return EncodersAt(TurnsForPlace(p_M, temperature));
 }
 
 }  // namespace abbe::rig

@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "rig/hidden_effect.h"
 #include "rig/linkage_settings.h"
 #include "rig/rotation.h"
 
@@ -39,12 +40,16 @@ struct PivotTruth {
   std::array<std::vector<Harmonic>, 2> run_out;  // m, along `across`
   double encoder_zero;                           // rad
   std::vector<Harmonic> encoder;                 // rad; order 1 is the eccentricity
+  std::vector<Harmonic> stretch;                 // m, longer link after it: hidden roundness
   double give;                                   // rad, under a horizontal link
 };
 
 class Linkage {
  public:
-  Linkage(const LinkageSettings& settings, std::uint64_t seed);
+  // `base`: 0, or another mounting of the base, drawn anew. Hidden effects that are constants of the
+  // linkage are built in here.
+  Linkage(const LinkageSettings& settings, std::uint64_t seed, const HiddenEffects& hidden = {},
+          std::uint64_t base = 0);
 
   const LinkageSettings& settings() const { return settings_; }
   const std::array<PivotTruth, kPivots>& pivots() const { return pivots_; }
@@ -58,7 +63,8 @@ class Linkage {
   Eigen::Vector3d TurnsFor(const Eigen::Vector3d& p_B, double temperature) const;
   // What the encoders show at these turns.
   Eigen::Vector3d EncodersAt(const Eigen::Vector3d& turns) const;
-  // The same for a ball at a place in M.
+  // The turns that put the ball at a place in M, and what the encoders show there.
+  Eigen::Vector3d TurnsForPlace(const Eigen::Vector3d& p_M, double temperature) const;
   Eigen::Vector3d EncodersFor(const Eigen::Vector3d& p_M, double temperature) const;
 
  private:
@@ -68,6 +74,7 @@ class Linkage {
     Eigen::Vector3d ball;
   };
 
+  void Build(const HiddenEffect& effect);
   Posture PostureAt(const Eigen::Vector3d& turns, double temperature) const;
   Eigen::Vector3d Guess(const Eigen::Vector3d& p_B) const;
 

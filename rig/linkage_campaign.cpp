@@ -26,7 +26,9 @@ class CourseMaker {
         options_(options),
         linkage_(options.kind == "linkage"),
         with_reference_(options.reference || !linkage_),
-        sensors_(rig.world().settings(), rig.world().seed(), options.run),
+        own_climate_(rig.world().settings(), rig.world().seed(), options.run, SensorsOf(rig, options)),
+        climate_(options.climate != nullptr ? *options.climate : own_climate_),
+        hidden_(rig.world().hidden(), climate_, {.begin = options.begin}),
         encoders_(rig.world().seed(), kEncoderNoiseStream + kRunStreams * options.run,
                   rig.linkage().settings().encoder_noise),
         reference_(rig.world().seed(), kReferenceNoiseStream + kRunStreams * options.run,
@@ -41,17 +43,25 @@ class CourseMaker {
                                    "pass",   "direction", "feed_mm_min"};
     if (linkage_) names.insert(names.end(), {"pivot_1_rad", "pivot_2_rad", "pivot_3_rad"});
     if (with_reference_) names.insert(names.end(), {"ref_x_mm", "ref_y_mm", "ref_z_mm"});
-    const std::string& temperature = rig.linkage().settings().temperature;
-    if (!temperature.empty()) names.push_back(temperature);
+    sensors_ = SensorsOf(rig, options);
+    names.insert(names.end(), sensors_.begin(), sensors_.end());
     if (linkage_) names.emplace_back("cap_force_n");
     names.emplace_back("flags");
     for (const std::string& name : names) course_.columns.push_back({name, {}});
     course_.header = fmt::format(
-        "kind = \"{}\"\nmachine = \"{}\"\nstarted = \"{}\"\nsource = \"rig\"\n\n[rig]\nseed = {}\n"
-        "run = {}\n",
-        options.kind, rig.world().settings().name, options.started, rig.world().seed(),
-        options.run);
+        "kind = \"{}\"\nmachine = \"{}\"\nstarted = \"{}\"\nsource = \"rig\"\n{}\n[rig]\nseed = {}\n"
+        "run = {}\n{}",
+        options.kind, rig.world().settings().name, options.started, options.keys,
+        rig.world().seed(), options.run, options.tables);
     course_.name = fmt::format("rig {}, seed {}", options.kind, rig.world().seed());
+  }
+
+  // For every step, also those that are not recorded.
+  void Follow(const CourseState& state) {
+    hidden_.Follow(state.time, state.position, state.velocity);
+    if (linkage_ && !hidden_.empty()) {
+      rig_.Follow(state, TemperatureAt(state.time), Force(), hidden_);
+    }
   }
 
   void Add(const CourseState& state) {
@@ -62,14 +72,12 @@ class CourseMaker {
     Put(state.pass);
     Put(state.direction);
     Put(state.feed * kMetrePerSecond);
-    const double temperature =
-        rig_.world().settings().temperature + sensors_.OfTemperature(0, state.time);
-    if (linkage_) AddAngles(state, temperature, row);
+    if (linkage_) AddAngles(state, TemperatureAt(state.time), row);
     if (with_reference_) {
-      const Vector3d place = rig_.ReferenceAt(state.position) + reference_.At(row);
+      const Vector3d place = rig_.ReferenceAt(hidden_.Place()) + reference_.At(row);
       for (const double each : place) Put(each / kMillimetre);
     }
-    if (!rig_.linkage().settings().temperature.empty()) Put(temperature);
+    for (const std::string& sensor : sensors_) Put(climate_.At(sensor, options_.begin + state.time));
     if (linkage_) Put(Force());
     Put(0.0);
   }
@@ -77,19 +85,35 @@ class CourseMaker {
   recording::Recording Take() { return std::move(course_); }
 
  private:
+  static std::vector<std::string> SensorsOf(const LinkageRig& rig, const CourseOptions& options) {
+    std::vector<std::string> sensors;
+    const std::string& links = rig.linkage().settings().temperature;
+    if (!links.empty()) sensors.push_back(links);
+    for (const std::string& sensor : options.sensors) {
+      if (sensor != links) sensors.push_back(sensor);
+    }
+    return sensors;
+  }
+
+  // Of the links.
+  double TemperatureAt(double time) {
+    return climate_.At(rig_.linkage().settings().temperature, options_.begin + time);
+  }
+
   double Force() const {
     return options_.cap_force > 0.0 ? options_.cap_force : rig_.world().settings().cap_force;
   }
 
   void AddAngles(const CourseState& state, double temperature, std::uint64_t row) {
     const double count = 2.0 * std::numbers::pi / rig_.world().settings().encoder_counts;
-    Vector3d angles = rig_.EncodersAt(state, temperature, Force()) + encoders_.At(row);
+    Vector3d angles = rig_.EncodersAt(state, temperature, Force(), hidden_) + encoders_.At(row);
     // A turn on, not a jump by a turn, where an angle passes pi.
     for (Eigen::Index i = 0; i < kPivots; ++i) {
       angles[i] = before_[i] + std::remainder(angles[i] - before_[i], 2.0 * std::numbers::pi);
-      Put(count * std::round(angles[i] / count));
     }
     before_ = angles;
+    hidden_.Say(angles);
+    for (const double angle : angles) Put(count * std::round(angle / count));
   }
 
   void Put(double value) { course_.columns[column_++].values.push_back(value); }
@@ -97,7 +121,10 @@ class CourseMaker {
   const LinkageRig& rig_;
   const CourseOptions options_;
   const bool linkage_, with_reference_;
-  SensorNoise sensors_;
+  Climate own_climate_;
+  Climate& climate_;
+  HiddenRun hidden_;
+  std::vector<std::string> sensors_;
   WhiteNoise encoders_, reference_;
   recording::Recording course_;
   std::size_t column_ = 0;
@@ -145,6 +172,26 @@ Vector3d LinkageRig::TrailingAt(const Vector3d& velocity, double cap_force) cons
   return -amount / feed * moving;
 }
 
+Vector3d LinkageRig::BallFrom(HiddenRun& hidden) const {
+  const RigSettings& machine = world_.settings();
+  const Vector3d& place = hidden.Place();
+  return hidden.BallFrom(machine.HeadTravel(place) - machine.TargetTravel(place));
+}
+
+void LinkageRig::Follow(const CourseState& state, double temperature, double cap_force,
+                        HiddenRun& hidden) const {
+  if (hidden.drags_ball()) BallFrom(hidden);
+  if (hidden.WantsTurns()) EncodersAt(state, temperature, cap_force, hidden);
+}
+
+Vector3d LinkageRig::EncodersAt(const CourseState& state, double temperature, double cap_force,
+                                HiddenRun& hidden) const {
+  Vector3d ball = ToolAt(hidden.PlaceFor(Source::kLinkage)) + TrailingAt(state.velocity, cap_force);
+  if (hidden.drags_ball()) ball += BallFrom(hidden);
+  const Vector3d turns = linkage_.TurnsForPlace(ball, temperature);
+  return linkage_.EncodersAt(turns) + hidden.EncodersShow(turns);
+}
+
 Vector3d LinkageRig::EncodersAt(const CourseState& state, double temperature,
                                 double cap_force) const {
   const Vector3d ball = ToolAt(state.position) + TrailingAt(state.velocity, cap_force);
@@ -160,12 +207,14 @@ recording::Recording LinkageRig::Record(const Course& course, const CourseOption
                     options.rate, machine.update_rate));
   }
   CourseMaker maker(*this, options);
-  CourseRun run(course, {machine.acceleration, machine.lag}, 1.0 / machine.update_rate);
+  const double step = options.step > 0.0 ? options.step : 1.0 / machine.update_rate;
+  CourseRun run(course, {machine.acceleration, machine.lag}, step);
   double next = 0.0;
   while (run.Next()) {
     const CourseState& state = run.state();
+    maker.Follow(state);
     if (!state.counts || state.time < next) continue;
-    next = state.time + 1.0 / options.rate - 0.5 / machine.update_rate;
+    next = state.time + 1.0 / options.rate - 0.5 * step;
     maker.Add(state);
   }
   return maker.Take();

@@ -7,16 +7,20 @@
 //
 // Kind "linkage": the angles of the encoders; kind "reference": the place of the tool in the
 // workpiece by a grid encoder of [linkage.noise] reference_um, in axis coordinates: what the axes
-// would show there on a perfect machine. x_mm, y_mm, z_mm are the scales of the axes. The same
-// (machine file, seed, course, run) gives the same recording.
+// would show there on a perfect machine. x_mm, y_mm, z_mm are the scales of the axes, as the
+// controller shows them. What the world hides acts here too: the machine is followed step by step
+// (hidden_run.h). The same (machine file, seed, course, run) gives the same recording.
 #pragma once
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "recording/recording.h"
+#include "rig/climate.h"
 #include "rig/course.h"
+#include "rig/hidden_run.h"
 #include "rig/linkage.h"
 #include "rig/world.h"
 
@@ -29,6 +33,11 @@ struct CourseOptions {
   double cap_force = 0.0;        // N, of the magnet in the tool cap; 0: that of the machine file
   std::uint64_t run = 1;         // runs of one world differ in their noise only
   std::string started = "1970-01-01T00:00:00Z";
+  std::string keys = {}, tables = {};    // further lines of TOML, in front of the tables, behind
+  std::vector<std::string> sensors = {}; // temperature columns beside the linkage's
+  double step = 0.0;                     // s, in which the machine is followed; 0: an update
+  double begin = 0.0;                    // s since the machine was switched on
+  Climate* climate = nullptr;            // of a campaign; none: its own, and `begin` is 0
 };
 
 class LinkageRig {
@@ -46,7 +55,16 @@ class LinkageRig {
   // How far the ball trails behind the cap while the axes move.
   Eigen::Vector3d TrailingAt(const Eigen::Vector3d& velocity, double cap_force) const;
   // Angles without noise, not cut into counts.
+  Eigen::Vector3d EncodersAt(const CourseState& state, double temperature, double cap_force,
+                             HiddenRun& hidden) const;
+  // The same when nothing is hidden.
   Eigen::Vector3d EncodersAt(const CourseState& state, double temperature, double cap_force) const;
+
+  // For a step at which nobody reads, after `hidden` has followed the axes: ball and pivots too.
+  void Follow(const CourseState& state, double temperature, double cap_force,
+              HiddenRun& hidden) const;
+  // Where a hidden friction holds the ball from where the cap would, in the workpiece.
+  Eigen::Vector3d BallFrom(HiddenRun& hidden) const;
 
   // InputError for an unknown kind, a bad rate, or a place out of the linkage's reach.
   recording::Recording Record(const Course& course, const CourseOptions& options = {}) const;

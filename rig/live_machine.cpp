@@ -46,6 +46,11 @@ void RequireReach(const LinkageRig& linkage, const Course& course) {
   }
 }
 
+std::vector<std::string> LinkSensor(const LinkageRig* linkage) {
+  if (linkage == nullptr) return {};
+  return {linkage->linkage().settings().temperature};
+}
+
 }  // namespace
 
 std::function<double()> SimulatedTime(double speed) {
@@ -62,10 +67,12 @@ LiveMachine::LiveMachine(const World& world, std::function<double()> time,
       linkage_(linkage),
       cap_force_(cap_force > 0.0 ? cap_force : world.settings().cap_force),
       noise_(world.settings(), world.seed(), 0),
+      climate_(world.settings(), world.seed(), 0, LinkSensor(linkage)),
+      hidden_(world.hidden(), climate_, {.swept = 0}),
       encoder_noise_(world.seed(), kEncoderNoiseStream,
                      linkage != nullptr ? linkage->linkage().settings().encoder_noise : 0.0) {
   latest_.axes = StandingAt(RestOf(world.settings()));
-  if (linkage_ != nullptr) temperatures_ = {linkage_->linkage().settings().temperature};
+  hidden_.Follow(0.0, latest_.axes.position, Vector3d::Zero());
   if (!course) return;
   if (linkage_ != nullptr) RequireReach(*linkage_, *course);
   course_ = FromRestAndBack(std::move(*course), latest_.axes.position);
@@ -85,6 +92,7 @@ StartOutcome LiveMachine::Start(int program) {
   } else if (program >= 0 && program < kAxes && settings.sweeps[program]) {
     motion_.emplace(*settings.sweeps[program], dynamics, settings.travels[program].first);
     head_axis_ = program;
+    hidden_.Sweep(program);
   } else {
     return StartOutcome::kNoSuchProgram;
   }
@@ -105,29 +113,66 @@ const Moment& LiveMachine::Latest() {
   const auto tick = static_cast<std::uint64_t>(ticks);
   if (tick > latest_.tick) {
     latest_.tick = tick;
-    if (latest_.state == ProgramState::kRunning) Advance(latest_);
-    latest_.axes.time = static_cast<double>(latest_.tick) / world_.settings().update_rate;
+    const double time = static_cast<double>(tick) / world_.settings().update_rate;
+    if (latest_.state == ProgramState::kRunning) {
+      Advance(latest_);
+    } else {
+      hidden_.Follow(time, latest_.axes.position, Vector3d::Zero());
+    }
+    latest_.axes.time = time;
+    followed_ = tick;
   }
   return latest_;
 }
 
+// What lies between the updates that are asked for, 200 times a second.
+void LiveMachine::FollowSweep(std::uint64_t to) {
+  const RigSettings& settings = world_.settings();
+  const auto stride = static_cast<std::uint64_t>(std::max(1.0, settings.update_rate / 200.0));
+  Vector3d axes = latest_.axes.position;
+  for (; followed_ + stride < to; followed_ += stride) {
+    const double time = static_cast<double>(followed_ + stride) / settings.update_rate;
+    const MotionState state = motion_->At(time - static_cast<double>(started_) /
+                                                     settings.update_rate);
+    axes[latest_.program] = state.position;
+    const double speed = (state.command - state.position) / settings.lag;
+    hidden_.Follow(time, axes, speed * Vector3d::Unit(latest_.program));
+  }
+}
+
 void LiveMachine::Advance(Moment& moment) {
   const std::uint64_t since = moment.tick - started_;
+  const double rate = world_.settings().update_rate;
+  Vector3d velocity = Vector3d::Zero();
   bool done = false;
   if (run_) {
-    for (; run_ticks_ < since && !done; ++run_ticks_) done = !run_->Next();
+    for (; run_ticks_ < since && !done; ++run_ticks_) {
+      done = !run_->Next();
+      if (hidden_.empty()) continue;
+      const CourseState& state = run_->state();
+      const double time = static_cast<double>(started_ + run_ticks_) / rate;
+      hidden_.Follow(time, state.position, state.velocity);
+      if (linkage_ != nullptr) {
+        linkage_->Follow(state, climate_.At(LinkSensor(linkage_).front(), time), cap_force_,
+                         hidden_);
+      }
+    }
     moment.axes = run_->state();
+    velocity = moment.axes.velocity;
   } else {
+    if (!hidden_.empty()) FollowSweep(moment.tick);
     const RigSettings& settings = world_.settings();
     const MotionState state = motion_->At(static_cast<double>(since) / settings.update_rate);
     moment.axes.position[moment.program] = state.position;
     moment.axes.command[moment.program] = state.command;
+    velocity = (state.command - state.position) / settings.lag * Vector3d::Unit(moment.program);
     moment.axes.pass = state.pass;
     moment.axes.direction = state.direction;
     moment.axes.feed = settings.sweeps[moment.program]->feed;
     moment.axes.counts = state.pass > 0;
     done = state.done;
   }
+  hidden_.Follow(static_cast<double>(moment.tick) / rate, moment.axes.position, velocity);
   if (!done) return;
   moment.state = ProgramState::kDone;
   moment.axes = StandingAt(RestOf(world_.settings()));
@@ -149,7 +194,7 @@ std::optional<double> LiveMachine::ReadingOf(std::string_view channel, const Mom
     case Quantity::kFeed:
       return axes.counts ? axes.feed / parsed->unit : 0.0;
     case Quantity::kTemperature:
-      return TemperatureOf(channel, axes.time);
+      return climate_.At(channel, axes.time);
     case Quantity::kGap:
       break;
   }
@@ -160,30 +205,25 @@ std::optional<double> LiveMachine::ReadingOf(std::string_view channel, const Mom
 
 const Readings& LiveMachine::GapsAt(const Moment& moment) {
   if (gaps_tick_ == moment.tick) return gaps_;
-  gaps_ = world_.ReadingsAt(head_axis_, moment.axes.position);
+  gaps_ = world_.ReadingsAt(head_axis_, moment.axes.position + hidden_.OffsetFor(Source::kProbes));
   for (int probe = 0; probe < kProbes; ++probe) {
     gaps_[probe] += noise_.OfProbe(probe, moment.tick, moment.axes.time);
   }
+  hidden_.Say(gaps_);
   gaps_tick_ = moment.tick;
   return gaps_;
-}
-
-double LiveMachine::TemperatureOf(std::string_view channel, double time) {
-  auto found = std::find(temperatures_.begin(), temperatures_.end(), channel);
-  if (found == temperatures_.end()) {
-    found = temperatures_.insert(temperatures_.end(), std::string(channel));
-  }
-  const auto sensor = static_cast<std::size_t>(found - temperatures_.begin());
-  return world_.settings().temperature + noise_.OfTemperature(sensor, time);
 }
 
 std::optional<Vector3d> LiveMachine::EncodersNow() {
   if (linkage_ == nullptr) return std::nullopt;
   const std::lock_guard lock(mutex_);
   const Moment& now = Latest();
-  const double temperature = TemperatureOf(temperatures_.front(), now.axes.time);
+  const double temperature = climate_.At(LinkSensor(linkage_).front(), now.axes.time);
   try {
-    return linkage_->EncodersAt(now.axes, temperature, cap_force_) + encoder_noise_.At(now.tick);
+    Vector3d angles = linkage_->EncodersAt(now.axes, temperature, cap_force_, hidden_) +
+                      encoder_noise_.At(now.tick);
+    hidden_.Say(angles);
+    return angles;
   } catch (const Failure&) {
     return std::nullopt;  // out of reach
   }

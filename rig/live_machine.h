@@ -10,7 +10,8 @@
 // same one. Every program begins and ends at rest, the first ends of the travels; the way from
 // there to a course and back is no part of it (pass 0). The head stands as installed for the sweep
 // that was started last (X before the first). Time is simulated time since the rig was switched on,
-// s. Safe for several threads; time that goes back is taken as the latest moment.
+// s. What the world hides acts here as in a recording, since the rig was switched on. Safe for several
+// threads; time that goes back is taken as the latest moment.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,9 @@
 #include <string_view>
 #include <vector>
 
+#include "rig/climate.h"
 #include "rig/course.h"
+#include "rig/hidden_run.h"
 #include "rig/linkage_campaign.h"
 #include "rig/motion.h"
 #include "rig/noise.h"
@@ -67,7 +70,7 @@ class LiveMachine {
  private:
   const Moment& Latest();  // moves on to it
   void Advance(Moment& moment);
-  double TemperatureOf(std::string_view channel, double time);
+  void FollowSweep(std::uint64_t to);
   const Readings& GapsAt(const Moment& moment);
 
   const World& world_;
@@ -77,6 +80,9 @@ class LiveMachine {
   const double cap_force_;
   std::mutex mutex_;
   SensorNoise noise_;
+  Climate climate_;  // the linkage's sensor, then in the order of first reading
+  HiddenRun hidden_;
+  std::uint64_t followed_ = 0;  // tick
   WhiteNoise encoder_noise_;
   int head_axis_ = 0;
   Moment latest_;
@@ -86,7 +92,6 @@ class LiveMachine {
   std::uint64_t run_ticks_ = 0;
   std::optional<std::uint64_t> gaps_tick_;
   Readings gaps_{};
-  std::vector<std::string> temperatures_;  // the linkage's, then in the order of first reading
 };
 
 }  // namespace abbe::rig

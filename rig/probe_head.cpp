@@ -9,6 +9,8 @@
 namespace abbe::rig {
 namespace {
 
+constexpr std::uint64_t kDrawsOfMounting = 64;  // indices of one mounting in its streams
+
 std::uint64_t FaceStream(int side) { return kFaceStream + static_cast<std::uint64_t>(side); }
 
 Eigen::Vector3d NormalVector(const random::CounterRandom& random, std::uint64_t first) {
@@ -19,18 +21,29 @@ Eigen::Vector3d NormalVector(const random::CounterRandom& random, std::uint64_t 
 
 TargetFace::TargetFace(const RigSettings& settings, int side, const Eigen::Vector3d& normal,
                        const Eigen::Vector3d& corner, double reach, std::uint64_t seed)
-    : normal_axis_(side / 2),
+    : side_(side),
+      normal_axis_(side / 2),
       normal_(normal),
       corner_(corner),
       form_(random::CounterRandom(seed, FaceStream(side)), settings.form, settings.form_length,
             -reach, reach) {}
 
+void TargetFace::AddForm(const RigSettings& settings, double sd, double reach,
+                         std::uint64_t seed) {
+  const auto stream = kHiddenFormStream + static_cast<std::uint64_t>(side_);
+  more_form_.emplace_back(random::CounterRandom(seed, stream), sd, settings.form_length, -reach,
+                          reach);
+}
+
 double TargetFace::GapFrom(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const {
   const double cosine = -direction.dot(normal_);
   const double to_plane = (point - corner_).dot(normal_) / cosine;
-  const Eigen::Vector3d hit = point + to_plane * direction - corner_;
+  Eigen::Vector3d hit = point + to_plane * direction - corner_;
+  if (reversed_about_) hit = 2.0 * *reversed_about_ - hit;
   // The form is a function of the two coordinates in the face.
-  const double form = form_(hit[(normal_axis_ + 1) % 3], hit[(normal_axis_ + 2) % 3]);
+  const double first = hit[(normal_axis_ + 1) % 3], second = hit[(normal_axis_ + 2) % 3];
+  double form = form_(first, second);
+  for (const GaussianSurface& more : more_form_) form += more(first, second);
   return to_plane - form / cosine;
 }
 
@@ -46,9 +59,10 @@ std::array<ProbeTruth, kProbes> DrawProbes(const RigSettings& settings, std::uin
   return probes;
 }
 
-HeadInstallation DrawInstallation(const RigSettings& settings, int axis, std::uint64_t seed) {
+HeadInstallation DrawInstallation(const RigSettings& settings, int axis, std::uint64_t seed,
+                                  std::uint64_t number) {
   const random::CounterRandom random(seed, kInstallationStream);
-  const std::uint64_t first = 8 * static_cast<std::uint64_t>(axis);
+  const std::uint64_t first = kDrawsOfMounting * number + 8 * static_cast<std::uint64_t>(axis);
   HeadInstallation installation{settings.installation_angle * NormalVector(random, first),
                                 settings.installation_offset * NormalVector(random, first + 3),
                                 {}};
@@ -81,12 +95,14 @@ std::array<Electrode, kProbes> PlaceElectrodes(const RigSettings& settings, cons
   return electrodes;
 }
 
-TargetMounting TargetMounting::Draw(const RigSettings& settings, std::uint64_t seed) {
+TargetMounting TargetMounting::Draw(const RigSettings& settings, std::uint64_t seed,
+                                    std::uint64_t number) {
   const random::CounterRandom random(seed, kTargetStream);
   TargetMounting mounting;
   for (int i = 0; i < 3; ++i) {
     const auto index = static_cast<std::uint64_t>(i);
-    mounting.tilt[i] = random.Uniform(index, -settings.target_tilt, settings.target_tilt);
+    mounting.tilt[i] = random.Uniform(kDrawsOfMounting * number + index, -settings.target_tilt,
+                                      settings.target_tilt);
     mounting.squareness[i] =
         settings.target_squareness + settings.u_target_squareness * random.Normal(index + 3);
   }

@@ -17,6 +17,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "rig/gaussian_field.h"
@@ -39,15 +40,23 @@ class TargetFace {
   TargetFace(const RigSettings& settings, int side, const Eigen::Vector3d& normal,
              const Eigen::Vector3d& corner, double reach, std::uint64_t seed);
 
+  // More form of the same length, with this standard deviation.
+  void AddForm(const RigSettings& settings, double sd, double reach, std::uint64_t seed);
+  // The face turned by half a turn about its normal through corner + middle.
+  void Reverse(const Eigen::Vector3d& middle) { reversed_about_ = middle; }
+
   // The distance from a point to the face along a direction; both seen from the target.
   double GapFrom(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
   const Eigen::Vector3d& normal() const { return normal_; }
 
  private:
+  int side_;
   int normal_axis_;
   Eigen::Vector3d normal_;
   Eigen::Vector3d corner_;
   GaussianSurface form_;
+  std::vector<GaussianSurface> more_form_;
+  std::optional<Eigen::Vector3d> reversed_about_;
 };
 
 // The head, drawn, and how it was installed for the sweep of one axis.
@@ -63,7 +72,9 @@ struct ProbeTruth {
 };
 
 std::array<ProbeTruth, kProbes> DrawProbes(const RigSettings& settings, std::uint64_t seed);
-HeadInstallation DrawInstallation(const RigSettings& settings, int axis, std::uint64_t seed);
+// `number`: of the mounting.
+HeadInstallation DrawInstallation(const RigSettings& settings, int axis, std::uint64_t seed,
+                                  std::uint64_t number = 0);
 
 // The electrodes of an installed head, with the mean gap of each unit at `set_gap` if nothing else
 // were wrong.
@@ -76,7 +87,9 @@ struct TargetMounting {
   Eigen::Vector3d tilt;
   Eigen::Vector3d squareness;  // YZ: face y turned about x; XZ, XY: face x turned about y, z
 
-  static TargetMounting Draw(const RigSettings& settings, std::uint64_t seed);
+  // Another `number` is another tilt of the same target.
+  static TargetMounting Draw(const RigSettings& settings, std::uint64_t seed,
+                             std::uint64_t number = 0);
   // The outward normal of the face whose nominal normal is an axis direction of the machine.
   Eigen::Vector3d NormalOf(const Eigen::Vector3d& nominal) const;
 };

@@ -162,7 +162,7 @@ ordered_json TruthOf(const World& world) {
   const auto& [a0z, b0z, c0y] = world.squareness();
   truth["squareness"] = {{"A0Z", a0z}, {"B0Z", b0z}, {"C0Y", c0y}};
   truth["head"] = HeadTruth(world);
-  truth["hidden"] = ordered_json::array();
+  truth["hidden"] = TruthOf(world.hidden());
   return truth;
 }
 

@@ -2,7 +2,7 @@
 // came.
 //
 // Truth: {"machine", "seed", "axes": {"X": {"stations_m": [], "EXX": [], ... "ECX": []}, ...},
-// "scale": {"X": ...}, "squareness": {"A0Z", "B0Z", "C0Y"}, "head": {drawn values}, "hidden": []}.
+// "scale": {"X": ...}, "squareness": {"A0Z", "B0Z", "C0Y"}, "head": {drawn values}, "hidden": [as hidden_effect.h]}.
 // Errors are those of the carriage at the machine's reference point, m and rad, at the stations of
 // the sweep (or of 61 equal steps over the travel where the machine file plans none).
 //

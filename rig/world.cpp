@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace abbe::rig {
 namespace {
@@ -30,27 +31,97 @@ int SideOf(const Eigen::Vector3d& nominal_normal) {
 
 }  // namespace
 
-World::World(const RigSettings& settings, std::uint64_t seed)
+World::World(const RigSettings& settings, std::uint64_t seed, HiddenEffects hidden,
+             const Mounting& mounting)
     : settings_(settings),
       seed_(seed),
+      hidden_(std::move(hidden)),
+      set_up_(mounting),
       squareness_(Squareness::Draw(settings, seed)),
       probes_(DrawProbes(settings, seed)),
-      mounting_(TargetMounting::Draw(settings, seed)) {
+      mounting_(TargetMounting::Draw(settings, seed, mounting.number)) {
+  for (const HiddenEffect& effect : hidden_) Build(effect);
   for (int axis = 0; axis < kAxes; ++axis) errors_.emplace_back(settings_, axis, seed);
   for (int axis = 0; axis < kAxes; ++axis) heads_.push_back(Install(axis));
 }
 
-World::InstalledHead World::Install(int axis) const {
+void World::Build(const HiddenEffect& effect) {
+  const auto probe = static_cast<std::size_t>(effect.place());
+  switch (effect.cause()) {
+    case Cause::kSquareness: {
+      const bool xy = effect.object == "XY", xz = effect.object == "XZ";
+      double& angle = xy ? squareness_.c0y : xz ? squareness_.b0z : squareness_.a0z;
+      angle += effect.At("angle_urad");
+      break;
+    }
+    case Cause::kProbeGain:
+      probes_[probe].gain += effect.At("delta");
+      break;
+    case Cause::kProbePosition:
+      probes_[probe].along += effect.At("du_mm");
+      probes_[probe].across += effect.At("dv_mm");
+      break;
+    case Cause::kFixtureMisalignment:
+      hidden_angles_ += Eigen::Vector3d(effect.At("roll_urad"), effect.At("pitch_urad"),
+                                        effect.At("yaw_urad"));
+      hidden_offsets_ +=
+          Eigen::Vector3d(effect.At("du_mm"), effect.At("ds_mm"), effect.At("dn_mm"));
+      break;
+    case Cause::kProbeTiltResponse:
+      settings_.electrode = effect.At("electrode_radius_mm");
+      break;
+    case Cause::kProbeNonlinearity:
+      response_.quadratic[probe] += effect.At("quadratic_per_mm");
+      response_.any = true;
+      break;
+    case Cause::kProbeCrosstalk:
+      response_.of[probe][static_cast<std::size_t>(effect.places[1])] += effect.At("coefficient");
+      response_.any = true;
+      break;
+    case Cause::kChannelSign:
+      response_.inverted[probe] = true;
+      response_.any = true;
+      break;
+    default:
+      break;
+  }
+}
+
+World::InstalledHead World::Mount(int axis, HeadPlace& place) const {
   const Eigen::Vector3d start = settings_.StartOf(axis);
-  HeadPlace place = settings_.head[axis];
-  const Eigen::Vector3d corner = place.position - settings_.TargetTravel(start);
+  place = settings_.head[axis];
+  const Eigen::Vector3d along = place.rotation.col(0);
+  Eigen::Vector3d corner = place.position - settings_.TargetTravel(start);
+  corner += set_up_.target_shift * along;
   place.position -= settings_.HeadTravel(start);
-  InstalledHead head{DrawInstallation(settings_, axis, seed_), {}, {}};
+  if (set_up_.head_turned) place.rotation.leftCols<2>() *= -1.0;
+  InstalledHead head{DrawInstallation(settings_, axis, seed_, set_up_.number), {}, {}};
+  head.installation.angles += hidden_angles_;
+  head.installation.offsets += hidden_offsets_;
   for (const int direction : {2, 1}) {  // n: the top face, s: the side face
     const Eigen::Vector3d nominal = place.rotation.col(direction);
-    head.faces.emplace_back(settings_, SideOf(nominal), mounting_.NormalOf(nominal), corner,
-                            FaceReach(settings_, axis), seed_);
+    TargetFace face(settings_, SideOf(nominal), mounting_.NormalOf(nominal), corner,
+                    FaceReach(settings_, axis), seed_);
+    for (const HiddenEffect& effect : hidden_) {
+      if (effect.cause() != Cause::kTargetForm || effect.place() != 2 - direction) continue;
+      face.AddForm(settings_, effect.At("rms_um"), FaceReach(settings_, axis), seed_);
+    }
+    if (set_up_.target_reversed) {
+      // About the middle of what the head passes.
+      const double length = settings_.sweeps[axis]
+                                ? settings_.sweeps[axis]->last() - settings_.sweeps[axis]->first()
+                                : settings_.travels[axis].last - settings_.travels[axis].first;
+      face.Reverse((settings_.CarriesTarget(axis) ? -0.5 : 0.5) * length * along);
+    }
+    head.faces.push_back(std::move(face));
   }
+  return head;
+}
+
+World::InstalledHead World::Install(int axis) const {
+  const Eigen::Vector3d start = settings_.StartOf(axis);
+  HeadPlace place;
+  InstalledHead head = Mount(axis, place);
   // The fitter watches the gaps while he sets the head.
   for (int round = 0; round < kSettingRounds; ++round) {
     head.electrodes = PlaceElectrodes(settings_, place, probes_, head.installation);
@@ -68,6 +139,12 @@ World::InstalledHead World::Install(int axis) const {
     }
   }
   head.electrodes = PlaceElectrodes(settings_, place, probes_, head.installation);
+  if (response_.any) {
+    const auto sights = SightsOf(head, start);
+    for (int probe = 0; probe < kProbes; ++probe) {
+      head.at_start[probe] = ResponseTo(sights[probe], probe);
+    }
+  }
   return head;
 }
 
@@ -126,7 +203,18 @@ Readings World::ReadingsAt(int axis, const Eigen::Vector3d& command) const {
   const auto sights = SightsOf(heads_[axis], command);
   Readings readings{};
   for (int probe = 0; probe < kProbes; ++probe) readings[probe] = ResponseTo(sights[probe], probe);
-  return readings;
+  return response_.any ? ResponseOf(heads_[axis], readings) : readings;
+}
+
+Readings World::ResponseOf(const InstalledHead& head, const Readings& readings) const {
+  Readings change{}, shown{};  // d, true and as it is shown
+  for (std::size_t i = 0; i < kProbes; ++i) change[i] = head.at_start[i] - readings[i];
+  for (std::size_t i = 0; i < kProbes; ++i) {
+    double said = change[i] + response_.quadratic[i] * change[i] * change[i];
+    for (std::size_t k = 0; k < kProbes; ++k) said += response_.of[i][k] * change[k];
+    shown[i] = head.at_start[i] - (response_.inverted[i] ? -said : said);
+  }
+  return shown;
 }
 
 }  // namespace abbe::rig

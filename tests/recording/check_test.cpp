@@ -21,7 +21,7 @@ Recording Good(const std::string& kind, const std::vector<std::string>& names) {
 }
 
 std::vector<std::string> Needs(const std::string& kind) {
-  if (kind == "sweep") {
+  if (kind == "sweep" || kind == "gap-steps") {
     return {"time_s",     "x_mm",       "y_mm",       "z_mm",       "pass",      "direction",
             "probe_a_um", "probe_b_um", "probe_c_um", "probe_d_um", "probe_e_um"};
   }
@@ -58,8 +58,12 @@ TEST_P(EachKind, NeedsItsColumnsAndNoOther) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EachKind,
                          testing::Values("sweep", "linkage", "reference", "length", "plate",
-                                         "dwell"),
-                         [](const auto& kind) { return kind.param; });
+                                         "dwell", "gap-steps"),
+                         [](const auto& kind) {
+                           std::string name = kind.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 // A value that breaks a rule in the second row is refused there in both forms, and let pass where
 // the row carries a flag, unless the rule holds for every row.
