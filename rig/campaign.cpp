@@ -141,7 +141,7 @@ class SweepMaker {
   Climate own_climate_;
   Climate& climate_;
   HiddenRun hidden_;
-  Eigen::Vector3d axes_;  // as the controller shows them
+  Eigen::Vector3d axes_;              // as the controller shows them
   std::vector<RigChannel> channels_;  // of the columns from kFirstReading on
   recording::Recording sweep_;
   // The place of `gaps_`.

@@ -171,8 +171,8 @@ double CourseRun::DurationOf(const Course& course, const Dynamics& dynamics, dou
   for (; run.move_ < course.moves.size(); ++run.move_) {
     if (run.move_ > 0) run.state_.command = course.moves[run.move_ - 1].points.back();
     run.Begin();
-    duration += 2.0 * run.ramp_ + run.cruise_ + course.moves[run.move_].dwell +
-                8.0 * dynamics.lag + 4.0 * step;
+    duration += 2.0 * run.ramp_ + run.cruise_ + course.moves[run.move_].dwell + 8.0 * dynamics.lag +
+                4.0 * step;
   }
   return duration;
 }

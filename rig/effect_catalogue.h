@@ -58,27 +58,27 @@ enum class Cause : std::uint8_t {
 
 // What a cause can act on; a bit each.
 enum ObjectKind : std::uint16_t {
-  kAxisObject = 1,         // X
-  kPairObject = 2,         // XY XZ YZ
-  kProbeObject = 4,        // probe_a
-  kProbePairObject = 8,    // probe_a+probe_b
-  kPivotObject = 16,       // pivot_1
-  kLinkObject = 32,        // link_1
-  kHeadObject = 64,        // head
-  kFaceObject = 128,       // target_top target_side
-  kCapObject = 256,        // cap
-  kSourceObject = 512,     // linkage probes
+  kAxisObject = 1,       // X
+  kPairObject = 2,       // XY XZ YZ
+  kProbeObject = 4,      // probe_a
+  kProbePairObject = 8,  // probe_a+probe_b
+  kPivotObject = 16,     // pivot_1
+  kLinkObject = 32,      // link_1
+  kHeadObject = 64,      // head
+  kFaceObject = 128,     // target_top target_side
+  kCapObject = 256,      // cap
+  kSourceObject = 512,   // linkage probes
 };
 
 // How a key that was not given is drawn between its bounds.
 enum class Draw : std::uint8_t {
   kUniform,
-  kEven,         // evenly in its logarithm
-  kEvenSigned,   // and either sign
-  kWhole,        // a whole number
-  kEither,       // one of the two bounds
-  kInstant,      // s since the machine was switched on: when a recording is made (hidden_effect.h)
-  kTurn,         // rad, where the pivot passes
+  kEven,        // evenly in its logarithm
+  kEvenSigned,  // and either sign
+  kWhole,       // a whole number
+  kEither,      // one of the two bounds
+  kInstant,     // s since the machine was switched on: when a recording is made (hidden_effect.h)
+  kTurn,        // rad, where the pivot passes
 };
 
 struct KeyEntry {
@@ -92,7 +92,7 @@ struct CauseEntry {
   std::string_view name;
   unsigned objects;  // of ObjectKind
   std::vector<KeyEntry> keys;
-  bool sensor = false;            // has a key `sensor`, the name of a temperature column
+  bool sensor = false;             // has a key `sensor`, the name of a temperature column
   std::string_view variable = {};  // not empty: none of the causes, and in which variable it lives
 };
 

@@ -52,10 +52,8 @@ Pivot Bump(double height, double centre, double width) {
 }
 
 Pivot Wander(const random::CounterRandom& random, double deviation, double time_constant) {
-  return [drift = SlowDrift(random, deviation, time_constant)](const MachineState& state,
-                                                               double) mutable {
-    return drift.At(state.time);
-  };
+  return [drift = SlowDrift(random, deviation, time_constant)](
+             const MachineState& state, double) mutable { return drift.At(state.time); };
 }
 
 Said Stuck(double from, double to) {
@@ -132,8 +130,9 @@ std::vector<PivotAddition> PivotAdditions(const HiddenEffects& hidden) {
         });
         break;
       case Cause::kEncoderCountSlip:
-        add([angle = e.At("angle_urad"), time = e.At("time_s")](
-                const MachineState& state, double) { return state.time >= time ? angle : 0.0; });
+        add([angle = e.At("angle_urad"), time = e.At("time_s")](const MachineState& state, double) {
+          return state.time >= time ? angle : 0.0;
+        });
         break;
       case Cause::kJointHysteresis:
         add(Hysteresis(e.At("width_urad")), true);

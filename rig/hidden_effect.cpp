@@ -27,14 +27,14 @@ struct Object {
 const std::map<std::string, Object>& Objects() {
   static const std::map<std::string, Object> objects = [] {
     std::map<std::string, Object> all = {
-        {"X", {kAxisObject, {0}}},           {"Y", {kAxisObject, {1}}},
-        {"Z", {kAxisObject, {2}}},           {"XY", {kPairObject, {0, 1}}},
-        {"XZ", {kPairObject, {0, 2}}},       {"YZ", {kPairObject, {1, 2}}},
-        {"pivot_1", {kPivotObject, {0}}},    {"pivot_2", {kPivotObject, {1}}},
-        {"pivot_3", {kPivotObject, {2}}},    {"link_1", {kLinkObject, {0}}},
-        {"link_2", {kLinkObject, {1}}},      {"head", {kHeadObject, {0}}},
-        {"target_top", {kFaceObject, {0}}},  {"target_side", {kFaceObject, {1}}},
-        {"cap", {kCapObject, {0}}},          {"probes", {kSourceObject, {0}}},
+        {"X", {kAxisObject, {0}}},          {"Y", {kAxisObject, {1}}},
+        {"Z", {kAxisObject, {2}}},          {"XY", {kPairObject, {0, 1}}},
+        {"XZ", {kPairObject, {0, 2}}},      {"YZ", {kPairObject, {1, 2}}},
+        {"pivot_1", {kPivotObject, {0}}},   {"pivot_2", {kPivotObject, {1}}},
+        {"pivot_3", {kPivotObject, {2}}},   {"link_1", {kLinkObject, {0}}},
+        {"link_2", {kLinkObject, {1}}},     {"head", {kHeadObject, {0}}},
+        {"target_top", {kFaceObject, {0}}}, {"target_side", {kFaceObject, {1}}},
+        {"cap", {kCapObject, {0}}},         {"probes", {kSourceObject, {0}}},
         {"linkage", {kSourceObject, {1}}},
     };
     for (int i = 0; i < kProbes; ++i) {
@@ -226,8 +226,7 @@ double HiddenEffect::At(const std::string& key) const {
   return values.at(key) * settings::UnitOf(key).si;
 }
 
-HiddenEffect ParseHidden(std::string_view text, std::uint64_t seed,
-                         const Sensors& sensors) {
+HiddenEffect ParseHidden(std::string_view text, std::uint64_t seed, const Sensors& sensors) {
   const std::vector<std::string> parts = Split(text);
   Given given(text, parts);
   const std::string object = given.Take("object");
@@ -251,7 +250,8 @@ HiddenEffect ParseHidden(std::string_view text, std::uint64_t seed,
   if (entry.sensor) {
     const bool link = entry.objects == kLinkObject;
     std::vector<std::string> columns = sensors.columns;
-    if (link) columns = sensors.links.empty() ? std::vector<std::string>{} : std::vector{sensors.links};
+    if (link)
+      columns = sensors.links.empty() ? std::vector<std::string>{} : std::vector{sensors.links};
     effect.sensor = SensorOf(given, columns);
     known.emplace_back("sensor");
   }
@@ -264,8 +264,8 @@ void SetInTime(HiddenEffects& hidden, const std::vector<RecordedTime>& times,
                const std::vector<double>& turns) {
   constexpr double kNear = 0.05;  // rad
   for (HiddenEffect& effect : hidden) {
-    const bool probes = (effect.entry->objects & kProbeObject) != 0 &&
-                        effect.object.starts_with("probe_");
+    const bool probes =
+        (effect.entry->objects & kProbeObject) != 0 && effect.object.starts_with("probe_");
     const random::CounterRandom& random = effect.random;
     if (effect.cause() == Cause::kOutliers && effect.instants.empty()) {
       const auto count = static_cast<std::uint64_t>(effect.values.at("count"));
@@ -281,9 +281,9 @@ void SetInTime(HiddenEffects& hidden, const std::vector<RecordedTime>& times,
         // For a tenth to a half of the recordings' mean length.
         double sum = 0.0;
         for (const RecordedTime& time : times) sum += time.duration;
-        value = effect.values.at("from_s") + random.Uniform(kDrawsOfInstants + 1, 0.1, 0.5) * sum /
-                                                 static_cast<double>(std::max<std::size_t>(
-                                                     1, times.size()));
+        value = effect.values.at("from_s") +
+                random.Uniform(kDrawsOfInstants + 1, 0.1, 0.5) * sum /
+                    static_cast<double>(std::max<std::size_t>(1, times.size()));
       } else if (key.draw == Draw::kInstant) {
         value = Instant(random.Uniform(kDrawsOfInstants), times, probes);
       } else if (key.draw == Draw::kTurn && !turns.empty()) {

@@ -123,8 +123,8 @@ std::vector<AxisShift> AxisShifts(const HiddenEffects& hidden) {
         add(axis, Spike(axis, e.At("height_um"), e.At("decay_mm")));
         break;
       case Cause::kVibration:
-        add(axis, Line(e.At("frequency_hz"), e.At("amplitude_um"),
-                       e.random.Uniform(kPhase, 0.0, kTurn)));
+        add(axis,
+            Line(e.At("frequency_hz"), e.At("amplitude_um"), e.random.Uniform(kPhase, 0.0, kTurn)));
         break;
       case Cause::kLoadCoupling:
         add(third(), Load(e.places, e.At("coefficient_nm_per_mm2")));
@@ -133,8 +133,8 @@ std::vector<AxisShift> AxisShifts(const HiddenEffects& hidden) {
         add(axis, FeedSquare(e.At("height_um")));
         break;
       case Cause::kUnknownDiagonalRipple:
-        add(third(), Diagonal(e.places, e.At("period_mm"), e.At("amplitude_um"),
-                              e.At("phase_rad")));
+        add(third(),
+            Diagonal(e.places, e.At("period_mm"), e.At("amplitude_um"), e.At("phase_rad")));
         break;
       default:
         break;

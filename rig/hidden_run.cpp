@@ -29,8 +29,8 @@ HiddenRun::HiddenRun(const HiddenEffects& effects, Climate& climate, const About
     }
     if (effect.cause() == Cause::kCapFriction) balls_.emplace_back(effect.At("displacement_um"));
     if (effect.cause() == Cause::kChannelSwap) {
-      swapped_.push_back({static_cast<std::size_t>(effect.places[0]),
-                          static_cast<std::size_t>(effect.places[1])});
+      swapped_.push_back(
+          {static_cast<std::size_t>(effect.places[0]), static_cast<std::size_t>(effect.places[1])});
     }
   }
   remembers_turns_ = std::any_of(pivots_.begin(), pivots_.end(),

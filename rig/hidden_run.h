@@ -59,8 +59,8 @@ class HiddenRun {
   bool drags_ball() const { return !balls_.empty(); }
   // What the encoders show beside what they should.
   Eigen::Vector3d EncodersShow(const Eigen::Vector3d& turns);
-  // Whether it must be asked now although nobody reads: 20 times a second where an encoder shows how
-  // its pivot came there.
+  // Whether it must be asked now although nobody reads: 20 times a second where an encoder shows
+  // how its pivot came there.
   bool WantsTurns();
   // What the angles, noise and all, become before they are written.
   void Say(Eigen::Vector3d& angles);

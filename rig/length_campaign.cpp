@@ -44,9 +44,15 @@ recording::Recording RecordLengths(const LinkageRig& rig, const LengthProgram& p
     if (i == 0) first = tool;
     const double noise = program.u * random.Normal(static_cast<std::uint64_t>(i) + 1);
     const double length = i == 0 ? 0.0 : (tool - first).norm() * (1.0 + scale) + noise;
-    std::vector<double> row = {static_cast<double>(i), place[0] / kMillimetre,
-                               place[1] / kMillimetre, place[2] / kMillimetre, 1.0, 1.0, 0.0,
-                               length / kMillimetre, program.u / kMicrometre};
+    std::vector<double> row = {static_cast<double>(i),
+                               place[0] / kMillimetre,
+                               place[1] / kMillimetre,
+                               place[2] / kMillimetre,
+                               1.0,
+                               1.0,
+                               0.0,
+                               length / kMillimetre,
+                               program.u / kMicrometre};
     for (const std::string& sensor : program.sensors) {
       row.push_back(climate.At(sensor, program.begin + i));
     }

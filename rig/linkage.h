@@ -46,8 +46,8 @@ struct PivotTruth {
 
 class Linkage {
  public:
-  // `base`: 0, or another mounting of the base, drawn anew. Hidden effects that are constants of the
-  // linkage are built in here.
+  // `base`: 0, or another mounting of the base, drawn anew. Hidden effects that are constants of
+  // the linkage are built in here.
   Linkage(const LinkageSettings& settings, std::uint64_t seed, const HiddenEffects& hidden = {},
           std::uint64_t base = 0);
 

@@ -26,7 +26,8 @@ class CourseMaker {
         options_(options),
         linkage_(options.kind == "linkage"),
         with_reference_(options.reference || !linkage_),
-        own_climate_(rig.world().settings(), rig.world().seed(), options.run, SensorsOf(rig, options)),
+        own_climate_(rig.world().settings(), rig.world().seed(), options.run,
+                     SensorsOf(rig, options)),
         climate_(options.climate != nullptr ? *options.climate : own_climate_),
         hidden_(rig.world().hidden(), climate_, {.begin = options.begin}),
         encoders_(rig.world().seed(), kEncoderNoiseStream + kRunStreams * options.run,
@@ -49,7 +50,8 @@ class CourseMaker {
     names.emplace_back("flags");
     for (const std::string& name : names) course_.columns.push_back({name, {}});
     course_.header = fmt::format(
-        "kind = \"{}\"\nmachine = \"{}\"\nstarted = \"{}\"\nsource = \"rig\"\n{}\n[rig]\nseed = {}\n"
+        "kind = \"{}\"\nmachine = \"{}\"\nstarted = \"{}\"\nsource = \"rig\"\n{}\n[rig]\nseed = "
+        "{}\n"
         "run = {}\n{}",
         options.kind, rig.world().settings().name, options.started, options.keys,
         rig.world().seed(), options.run, options.tables);
@@ -77,7 +79,8 @@ class CourseMaker {
       const Vector3d place = rig_.ReferenceAt(hidden_.Place()) + reference_.At(row);
       for (const double each : place) Put(each / kMillimetre);
     }
-    for (const std::string& sensor : sensors_) Put(climate_.At(sensor, options_.begin + state.time));
+    for (const std::string& sensor : sensors_)
+      Put(climate_.At(sensor, options_.begin + state.time));
     if (linkage_) Put(Force());
     Put(0.0);
   }

@@ -33,11 +33,11 @@ struct CourseOptions {
   double cap_force = 0.0;        // N, of the magnet in the tool cap; 0: that of the machine file
   std::uint64_t run = 1;         // runs of one world differ in their noise only
   std::string started = "1970-01-01T00:00:00Z";
-  std::string keys = {}, tables = {};    // further lines of TOML, in front of the tables, behind
-  std::vector<std::string> sensors = {}; // temperature columns beside the linkage's
-  double step = 0.0;                     // s, in which the machine is followed; 0: an update
-  double begin = 0.0;                    // s since the machine was switched on
-  Climate* climate = nullptr;            // of a campaign; none: its own, and `begin` is 0
+  std::string keys = {}, tables = {};     // further lines of TOML, in front of the tables, behind
+  std::vector<std::string> sensors = {};  // temperature columns beside the linkage's
+  double step = 0.0;                      // s, in which the machine is followed; 0: an update
+  double begin = 0.0;                     // s since the machine was switched on
+  Climate* climate = nullptr;             // of a campaign; none: its own, and `begin` is 0
 };
 
 class LinkageRig {

@@ -132,8 +132,8 @@ void LiveMachine::FollowSweep(std::uint64_t to) {
   Vector3d axes = latest_.axes.position;
   for (; followed_ + stride < to; followed_ += stride) {
     const double time = static_cast<double>(followed_ + stride) / settings.update_rate;
-    const MotionState state = motion_->At(time - static_cast<double>(started_) /
-                                                     settings.update_rate);
+    const MotionState state =
+        motion_->At(time - static_cast<double>(started_) / settings.update_rate);
     axes[latest_.program] = state.position;
     const double speed = (state.command - state.position) / settings.lag;
     hidden_.Follow(time, axes, speed * Vector3d::Unit(latest_.program));

@@ -10,8 +10,8 @@
 // same one. Every program begins and ends at rest, the first ends of the travels; the way from
 // there to a course and back is no part of it (pass 0). The head stands as installed for the sweep
 // that was started last (X before the first). Time is simulated time since the rig was switched on,
-// s. What the world hides acts here as in a recording, since the rig was switched on. Safe for several
-// threads; time that goes back is taken as the latest moment.
+// s. What the world hides acts here as in a recording, since the rig was switched on. Safe for
+// several threads; time that goes back is taken as the latest moment.
 #pragma once
 
 #include <cstdint>

@@ -78,9 +78,7 @@ class CampaignMaker {
         size_(plan.reduced ? kReduced : kWhole),
         climate_(machine.rig, seed, kFirstRun, machine.sensors.columns) {
     made_.hidden = std::move(hidden);
-    for (auto& sweep : machine_.rig.sweeps) {
-      if (sweep) Thin(*sweep);
-    }
+    if (size_.stations > 0) ThinSweeps(machine_, size_.stations);
   }
 
   Campaign Make() {
@@ -209,8 +207,8 @@ class CampaignMaker {
     const std::string plane = {static_cast<char>('X' + first),
                                static_cast<char>('X' + (first + 1) % kAxes)};
     const double turn = 2.0 * std::numbers::pi * radius;
-    const double rate = (size_.circle_rows > 0.0 ? size_.circle_rows : 100.0 * turn / kFast) *
-                        feed / turn;
+    const double rate =
+        (size_.circle_rows > 0.0 ? size_.circle_rows : 100.0 * turn / kFast) * feed / turn;
     AddCourse("circle",
               fmt::format("circle_{}_{:.0f}mm_{:.0f}", plane, 1e3 * radius,
                           feed / settings::UnitOf("feed_mm_min").si),
@@ -290,8 +288,8 @@ class CampaignMaker {
     if (machine_.linkage) {
       const World world(machine_.rig, seed_);
       const Linkage linkage(*machine_.linkage, seed_);
-      const Vector3d at_middle = linkage.TurnsForPlace(
-          LinkageRig(world, linkage).ToolAt(Middle()), machine_.rig.temperature);
+      const Vector3d at_middle = linkage.TurnsForPlace(LinkageRig(world, linkage).ToolAt(Middle()),
+                                                       machine_.rig.temperature);
       turns.assign(at_middle.begin(), at_middle.end());
     }
     SetInTime(made_.hidden, times, turns);
@@ -318,16 +316,6 @@ class CampaignMaker {
                                          Linkage(settings, seed_, made_.hidden, place.base));
     }
     return *rig;
-  }
-
-  void Thin(hal::SweepPlan& plan) const {
-    const std::size_t intervals = plan.stations.size() - 1;
-    if (size_.stations == 0 || intervals < size_.stations) return;
-    const std::size_t every = (intervals + size_.stations - 2) / (size_.stations - 1);
-    std::vector<double> kept;
-    for (std::size_t i = 0; i < intervals; i += every) kept.push_back(plan.stations[i]);
-    kept.push_back(plan.stations.back());
-    plan.stations = std::move(kept);
   }
 
   Vector3d Middle() const {
@@ -369,8 +357,8 @@ class CampaignMaker {
     ProbeRunOptions options;
     options.rate = size_.sweep_rate;
     options.sensors = machine_.sensors.columns;
-    options.tables = fmt::format("[mounting]\nid = \"{}\"\n", kAsMounted.id) +
-                     HeadText(kAsMounted.mounting);
+    options.tables =
+        fmt::format("[mounting]\nid = \"{}\"\n", kAsMounted.id) + HeadText(kAsMounted.mounting);
     return options;
   }
 
@@ -394,24 +382,6 @@ class CampaignMaker {
 };
 
 }  // namespace
-
-CampaignMachine ReadCampaignMachine(const settings::Table& root) {
-  CampaignMachine machine{ReadRigSettings(root), {}, {}, {}};
-  if (root.Has("linkage")) {
-    machine.linkage = ReadLinkage(root);
-    machine.sensors.links = machine.linkage->temperature;
-  }
-  machine.channels = ChannelsOf(hal::ReadDevices(root.Child("devices")));
-  std::vector<std::string>& columns = machine.sensors.columns;
-  for (const hal::Channel& channel : machine.channels) {
-    if (channel.name.starts_with("temp_")) columns.push_back(channel.name);
-  }
-  const std::string& links = machine.sensors.links;
-  if (!links.empty() && std::find(columns.begin(), columns.end(), links) == columns.end()) {
-    columns.push_back(links);
-  }
-  return machine;
-}
 
 Campaign RecordCampaign(const CampaignMachine& machine, std::uint64_t seed, HiddenEffects hidden,
                         const CampaignPlan& plan) {

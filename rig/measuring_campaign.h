@@ -3,7 +3,8 @@
 //
 //   const CampaignMachine machine = ReadCampaignMachine(document.Root());
 //   HiddenEffects hidden = {ParseHidden("backlash:object=X", 7, machine.sensors)};
-//   const Campaign campaign = RecordCampaign(machine, 7, hidden, {.kind = CampaignKind::kStandard});
+//   const Campaign campaign = RecordCampaign(machine, 7, hidden, {.kind =
+//   CampaignKind::kStandard});
 //   // campaign.recordings: "01_sweep_X", "02_sweep_Y", ...; campaign.hidden: with all its numbers
 //
 // docs/virtual-rig.md lists the recordings of each kind and what their headers say. The machine is
@@ -17,27 +18,15 @@
 
 #include <chrono>
 #include <cstdint>
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "hal/sample_source.h"
 #include "recording/recording.h"
+#include "rig/campaign_machine.h"
 #include "rig/hidden_effect.h"
-#include "rig/linkage_settings.h"
-#include "rig/rig_settings.h"
 
 namespace abbe::rig {
 
 enum class CampaignKind : std::uint8_t { kMinimal, kStandard, kFull };
-
-struct CampaignMachine {
-  RigSettings rig;
-  std::optional<LinkageSettings> linkage;
-  std::vector<hal::Channel> channels;  // of the sweeps
-  Sensors sensors;
-};
-CampaignMachine ReadCampaignMachine(const settings::Table& root);
 
 struct CampaignPlan {
   CampaignKind kind = CampaignKind::kStandard;

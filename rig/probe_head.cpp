@@ -28,8 +28,7 @@ TargetFace::TargetFace(const RigSettings& settings, int side, const Eigen::Vecto
       form_(random::CounterRandom(seed, FaceStream(side)), settings.form, settings.form_length,
             -reach, reach) {}
 
-void TargetFace::AddForm(const RigSettings& settings, double sd, double reach,
-                         std::uint64_t seed) {
+void TargetFace::AddForm(const RigSettings& settings, double sd, double reach, std::uint64_t seed) {
   const auto stream = kHiddenFormStream + static_cast<std::uint64_t>(side_);
   more_form_.emplace_back(random::CounterRandom(seed, stream), sd, settings.form_length, -reach,
                           reach);

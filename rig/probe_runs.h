@@ -2,9 +2,9 @@
 //
 //   const recording::Recording steps = RecordGapSteps(world, 'X', options);
 //
-// Gap steps: the head stands as for the sweep of `axis`, the swept axis at a few of its stations; at
-// each, one after the other, the two other axes step through 0, +45, 0, -45, 0 um about their start
-// and stand at each step, and their rows are recorded. All axes come to the start from below;
+// Gap steps: the head stands as for the sweep of `axis`, the swept axis at a few of its stations;
+// at each, one after the other, the two other axes step through 0, +45, 0, -45, 0 um about their
+// start and stand at each step, and their rows are recorded. All axes come to the start from below;
 // direction is the sign of the last step.
 // Dwell: everything holds still where the sweep of the axis begins, samples 0.093 s apart (no
 // multiple of the period of the mains); with a linkage its encoders too, on the same rows.
@@ -26,9 +26,9 @@
 namespace abbe::rig {
 
 struct ProbeRunOptions {
-  double rate = 200.0;  // rows in a second, of gap steps
-  double stand = 0.5;   // s at each gap step
-  int places = 3;       // of the swept axis, for gap steps
+  double rate = 200.0;   // rows in a second, of gap steps
+  double stand = 0.5;    // s at each gap step
+  int places = 3;        // of the swept axis, for gap steps
   double length = 60.0;  // s, of a dwell
   std::uint64_t run = 1;
   std::string started = "1970-01-01T00:00:00Z";
@@ -38,7 +38,7 @@ struct ProbeRunOptions {
   Climate* climate = nullptr;  // of a campaign; none: its own, and `begin` is 0
 };
 
-inline constexpr double kGapStep = 45e-6;       // m
+inline constexpr double kGapStep = 45e-6;        // m
 inline constexpr double kDwellInterval = 0.093;  // s
 
 Course GapStepCourse(const RigSettings& settings, char axis, const ProbeRunOptions& options);

@@ -2,9 +2,10 @@
 // came.
 //
 // Truth: {"machine", "seed", "axes": {"X": {"stations_m": [], "EXX": [], ... "ECX": []}, ...},
-// "scale": {"X": ...}, "squareness": {"A0Z", "B0Z", "C0Y"}, "head": {drawn values}, "hidden": [as hidden_effect.h]}.
-// Errors are those of the carriage at the machine's reference point, m and rad, at the stations of
-// the sweep (or of 61 equal steps over the travel where the machine file plans none).
+// "scale": {"X": ...}, "squareness": {"A0Z", "B0Z", "C0Y"}, "head": {drawn values}, "hidden": [as
+// hidden_effect.h]}. Errors are those of the carriage at the machine's reference point, m and rad,
+// at the stations of the sweep (or of 61 equal steps over the travel where the machine file plans
+// none).
 //
 // Comparison: a result is the JSON of a sweep reduction, with "axis", "stations" (m) and "errors":
 // {"EYX": {"value": [], "u": []}, ...}. An angle is compared relative to the first station, a

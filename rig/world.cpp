@@ -62,8 +62,8 @@ void World::Build(const HiddenEffect& effect) {
       probes_[probe].across += effect.At("dv_mm");
       break;
     case Cause::kFixtureMisalignment:
-      hidden_angles_ += Eigen::Vector3d(effect.At("roll_urad"), effect.At("pitch_urad"),
-                                        effect.At("yaw_urad"));
+      hidden_angles_ +=
+          Eigen::Vector3d(effect.At("roll_urad"), effect.At("pitch_urad"), effect.At("yaw_urad"));
       hidden_offsets_ +=
           Eigen::Vector3d(effect.At("du_mm"), effect.At("ds_mm"), effect.At("dn_mm"));
       break;

@@ -26,9 +26,8 @@ void ExpectHas(const std::string& text, const std::string& part) {
 }
 
 TEST(HiddenEffect, ReadsItsKeysInTheirUnits) {
-  const HiddenEffect effect =
-      ParseHidden("leadscrew-cyclic:object=Y:pitch_mm=5:amplitude_um=0.4:phase_rad=-1", 1,
-                  DemoSensors());
+  const HiddenEffect effect = ParseHidden(
+      "leadscrew-cyclic:object=Y:pitch_mm=5:amplitude_um=0.4:phase_rad=-1", 1, DemoSensors());
   EXPECT_EQ(effect.cause(), Cause::kLeadscrewCyclic);
   EXPECT_EQ(effect.places, std::vector<int>{1});
   EXPECT_DOUBLE_EQ(effect.At("pitch_mm"), 5e-3);
@@ -45,8 +44,8 @@ TEST(HiddenEffect, ConvertsRareUnits) {
                    2e-9 / 1e-6);
   EXPECT_DOUBLE_EQ(at("probe-nonlinearity:object=probe_a:quadratic_per_mm=2", "quadratic_per_mm"),
                    2e3);
-  EXPECT_DOUBLE_EQ(
-      at("thermal-growth:object=X:coefficient_ppm_per_c=3", "coefficient_ppm_per_c"), 3e-6);
+  EXPECT_DOUBLE_EQ(at("thermal-growth:object=X:coefficient_ppm_per_c=3", "coefficient_ppm_per_c"),
+                   3e-6);
   EXPECT_DOUBLE_EQ(at("servo-lag:object=X:delay_ms=4", "delay_ms"), 4e-3);
 }
 
@@ -54,9 +53,8 @@ TEST(HiddenEffect, WarmUpHasTheUnitOfItsObject) {
   EXPECT_TRUE(ParseHidden("warm-up-drift:object=pivot_2", 1, DemoSensors())
                   .values.contains("amplitude_urad"));
   for (const char* object : {"X", "probe_c"}) {
-    EXPECT_TRUE(
-        ParseHidden(std::string("warm-up-drift:object=") + object, 1, DemoSensors())
-            .values.contains("amplitude_um"));
+    EXPECT_TRUE(ParseHidden(std::string("warm-up-drift:object=") + object, 1, DemoSensors())
+                    .values.contains("amplitude_um"));
   }
 }
 
@@ -64,9 +62,9 @@ TEST(HiddenEffect, WarmUpHasTheUnitOfItsObject) {
 // same for one seed and another for another.
 TEST(HiddenEffect, DrawsWhatIsMissing) {
   const std::map<ObjectKind, std::string> objects = {
-      {kAxisObject, "Z"},     {kPairObject, "XZ"},     {kProbeObject, "probe_d"},
+      {kAxisObject, "Z"},        {kPairObject, "XZ"},     {kProbeObject, "probe_d"},
       {kPivotObject, "pivot_3"}, {kLinkObject, "link_2"}, {kProbePairObject, "probe_d+probe_e"},
-      {kHeadObject, "head"},  {kCapObject, "cap"},     {kFaceObject, "target_side"},
+      {kHeadObject, "head"},     {kCapObject, "cap"},     {kFaceObject, "target_side"},
       {kSourceObject, "linkage"}};
   for (const CauseEntry& entry : EffectCatalogue()) {
     for (const auto& [kind, object] : objects) {
@@ -100,8 +98,7 @@ TEST(HiddenEffect, ChoosesInstantsWhileTheChannelIsRecorded) {
       {0.0, 100.0, true, false}, {130.0, 50.0, false, true}, {210.0, 10.0, true, false}};
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     HiddenEffects hidden = Hide({"encoder-count-slip:object=pivot_1",
-                                 "outliers:object=probe_a:count=9",
-                                 "stuck-channel:object=probe_b"},
+                                 "outliers:object=probe_a:count=9", "stuck-channel:object=probe_b"},
                                 seed);
     SetInTime(hidden, times);
     const double slip = hidden[0].values.at("time_s");

@@ -40,15 +40,15 @@ TEST(HiddenLinkage, SubdivisionComesWithItsOrder) {
 TEST(HiddenLinkage, RoundnessLengthensTheLinkAfterThePivot) {
   const std::string sizes = ":sin2_um=3:cos2_um=1:sin3_um=-2:cos3_um=5";
   const auto longer = [](double turn) {
-    return 3e-6 * std::sin(2.0 * turn) + 1e-6 * std::cos(2.0 * turn) -
-           2e-6 * std::sin(3.0 * turn) + 5e-6 * std::cos(3.0 * turn);
+    return 3e-6 * std::sin(2.0 * turn) + 1e-6 * std::cos(2.0 * turn) - 2e-6 * std::sin(3.0 * turn) +
+           5e-6 * std::cos(3.0 * turn);
   };
   const Linkage plain = LinkageWith({});
   const Vector3d ball = plain.BallAt(kTurns, 20.0);
   // Link 1 after two turns, link 2 after three.
-  const Eigen::Matrix3d turned = (Eigen::AngleAxisd(0.2, Vector3d::UnitZ()) *
-                                  Eigen::AngleAxisd(-0.6, Vector3d::UnitY()))
-                                     .matrix();
+  const Eigen::Matrix3d turned =
+      (Eigen::AngleAxisd(0.2, Vector3d::UnitZ()) * Eigen::AngleAxisd(-0.6, Vector3d::UnitY()))
+          .matrix();
   const Vector3d link_1 = turned * Vector3d::UnitX();
   const Vector3d link_2 = turned * Eigen::AngleAxisd(0.5, Vector3d::UnitY()) * Vector3d::UnitZ();
   for (int pivot = 0; pivot < kPivots; ++pivot) {
@@ -71,8 +71,7 @@ TEST(HiddenLinkage, ALinkGrowsMoreThanItShould) {
 TEST(HiddenLinkage, AJointGivesUnderItsWeight) {
   const Linkage plain = LinkageWith({});
   const Linkage bent = LinkageWith({"link-gravity-bend:object=pivot_2:compliance_urad=100"});
-  const Vector3d level =
-      bent.BallAt(Vector3d::Zero(), 20.0) - plain.BallAt(Vector3d::Zero(), 20.0);
+  const Vector3d level = bent.BallAt(Vector3d::Zero(), 20.0) - plain.BallAt(Vector3d::Zero(), 20.0);
   // By the whole angle where link 1 is level: all after pivot 2 goes down by it; its square is
   // 1e-8.
   EXPECT_NEAR(level.z(), -100e-6 * 0.12, 2e-9);
@@ -136,8 +135,7 @@ TEST(HiddenLinkage, LateEncodersShowWhereTheAxesWere) {
     const double x = path.At("x_mm")[i];
     if (x < 12.0 || x > 28.0) continue;  // at the full feed
     const Vector3d axes(x, path.At("y_mm")[i], path.At("z_mm")[i]);
-    const Vector3d were =
-        1e-3 * axes - Vector3d::Constant(5e-3 * speed * path.At("direction")[i]);
+    const Vector3d were = 1e-3 * axes - Vector3d::Constant(5e-3 * speed * path.At("direction")[i]);
     Vector3d shown;
     for (int k = 0; k < kPivots; ++k) shown[k] = path.At(kColumns[k])[i];
     const Vector3d angles = AnglesFor(plain, {-were.x(), -were.y(), were.z()}, shown);
@@ -161,15 +159,15 @@ TEST(HiddenLinkage, HysteresisLeadsByHalfAlongThePivotsOwnMotion) {
 }
 
 TEST(HiddenLinkage, AnEncoderSlipsAndKeepsItsNewZero) {
-  const auto path = Recorded(
-      Hide({"encoder-count-slip:object=pivot_3:time_s=102:angle_urad=70",
-            "warm-up-drift:object=pivot_2:amplitude_urad=30:time_constant_s=200"}),
-      {.begin = 100.0});
+  const auto path =
+      Recorded(Hide({"encoder-count-slip:object=pivot_3:time_s=102:angle_urad=70",
+                     "warm-up-drift:object=pivot_2:amplitude_urad=30:time_constant_s=200"}),
+               {.begin = 100.0});
   const auto plain = Recorded({});
   for (std::size_t i = 0; i < path.rows(); ++i) {
     const double time = 100.0 + path.At("time_s")[i];
-    EXPECT_NEAR(path.At("pivot_3_rad")[i] - plain.At("pivot_3_rad")[i],
-                time >= 102.0 ? 70e-6 : 0.0, 1e-11);
+    EXPECT_NEAR(path.At("pivot_3_rad")[i] - plain.At("pivot_3_rad")[i], time >= 102.0 ? 70e-6 : 0.0,
+                1e-11);
     EXPECT_NEAR(path.At("pivot_2_rad")[i] - plain.At("pivot_2_rad")[i],
                 30e-6 * (1.0 - std::exp(-time / 200.0)), 1e-11);
   }
@@ -178,10 +176,10 @@ TEST(HiddenLinkage, AnEncoderSlipsAndKeepsItsNewZero) {
 TEST(HiddenLinkage, ABumpAtOneAngleAndAWanderAreNoCauses) {
   const auto plain = Recorded({});
   const double centre = plain.At("pivot_1_rad")[plain.rows() / 4];
-  const auto path = Recorded(
-      Hide({"unknown-angle-bump:object=pivot_1:height_urad=50:width_rad=0.01:centre_rad=" +
-                std::to_string(centre),
-            "unknown-wander:object=pivot_2:deviation_urad=20:time_constant_s=1"}));
+  const auto path =
+      Recorded(Hide({"unknown-angle-bump:object=pivot_1:height_urad=50:width_rad=0.01:centre_rad=" +
+                         std::to_string(centre),
+                     "unknown-wander:object=pivot_2:deviation_urad=20:time_constant_s=1"}));
   double most = 0.0, square = 0.0;
   for (std::size_t i = 0; i < path.rows(); ++i) {
     const double turn = plain.At("pivot_1_rad")[i], from = (turn - centre) / 0.01;

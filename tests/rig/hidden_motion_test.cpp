@@ -48,9 +48,9 @@ TEST(HiddenMotion, BacklashLagsByHalfInEachDirection) {
 }
 
 TEST(HiddenMotion, CyclicAndScaleAddToTheirAxis) {
-  const auto path = ThereAndBack(
-      Hide({"leadscrew-cyclic:object=Y:pitch_mm=5:amplitude_um=2:phase_rad=0.5",
-            "scale-error:object=Z:gain_ppm=100"}));
+  const auto path =
+      ThereAndBack(Hide({"leadscrew-cyclic:object=Y:pitch_mm=5:amplitude_um=2:phase_rad=0.5",
+                         "scale-error:object=Z:gain_ppm=100"}));
   const auto y = Deviations(path, 'y'), z = Deviations(path, 'z');
   for (std::size_t i = 0; i < y.size(); ++i) {
     const double at = path.At("y_mm")[i];
@@ -64,9 +64,9 @@ TEST(HiddenMotion, GrowthFollowsItsSensorFromTheStart) {
   settings.temperature_drift = 0.1;
   Climate climate(settings, 1, 3, {"temp_column_c", "temp_table_c"});
   climate.Warm(2.0);
-  const auto path = ThereAndBack(
-      Hide({"thermal-growth:object=X:coefficient_ppm_per_c=10:sensor=temp_table_c"}),
-      {.sensors = {"temp_column_c"}, .begin = 500.0, .climate = &climate});
+  const auto path =
+      ThereAndBack(Hide({"thermal-growth:object=X:coefficient_ppm_per_c=10:sensor=temp_table_c"}),
+                   {.sensors = {"temp_column_c"}, .begin = 500.0, .climate = &climate});
   const auto x = Deviations(path, 'x');
   const auto temperature = path.At("temp_table_c"), column = path.At("temp_column_c");
   const double start = climate.At("temp_table_c", 0.0) - 2.0;
@@ -101,7 +101,8 @@ constexpr double kOnCircle = 1e-3;
 
 TEST(HiddenMotion, ServoLagTurnsACircleBack) {
   const double delay = 2e-3;
-  const auto path = Circle(Hide({"servo-lag:object=X:delay_ms=2", "servo-lag:object=Y:delay_ms=2"}));
+  const auto path =
+      Circle(Hide({"servo-lag:object=X:delay_ms=2", "servo-lag:object=Y:delay_ms=2"}));
   const auto dx = Deviations(path, 'x'), dy = Deviations(path, 'y');
   for (std::size_t i = 0; i < dx.size(); ++i) {
     const Vector3d arm(1e-3 * path.At("x_mm")[i] - 0.03, 1e-3 * path.At("y_mm")[i] - 0.03, 0.0);
@@ -138,8 +139,7 @@ TEST(HiddenMotion, SpikeStandsAlongTheOldDirectionAfterATurn) {
 }
 
 TEST(HiddenMotion, ALoadLowersTheThirdAxis) {
-  const auto path =
-      ThereAndBack(Hide({"load-coupling:object=XY:coefficient_nm_per_mm2=2"}));
+  const auto path = ThereAndBack(Hide({"load-coupling:object=XY:coefficient_nm_per_mm2=2"}));
   const auto z = Deviations(path, 'z');
   for (std::size_t i = 0; i < z.size(); ++i) {
     EXPECT_NEAR(z[i], -2e-9 * path.At("x_mm")[i] * path.At("y_mm")[i], kRounding);
@@ -147,9 +147,9 @@ TEST(HiddenMotion, ALoadLowersTheThirdAxis) {
 }
 
 TEST(HiddenMotion, SquarenessTurnsALine) {
-  const auto path = ThereAndBack(Hide({"squareness:object=XY:angle_urad=100",
-                                       "squareness:object=XZ:angle_urad=200",
-                                       "squareness:object=YZ:angle_urad=300"}));
+  const auto path = ThereAndBack(
+      Hide({"squareness:object=XY:angle_urad=100", "squareness:object=XZ:angle_urad=200",
+            "squareness:object=YZ:angle_urad=300"}));
   const auto x = Deviations(path, 'x'), y = Deviations(path, 'y');
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double at_y = 1e-3 * path.At("y_mm")[i], at_z = 1e-3 * path.At("z_mm")[i];
@@ -178,9 +178,9 @@ TEST(HiddenMotion, VibrationIsALineInTime) {
 }
 
 TEST(HiddenMotion, FeedSquareAndDiagonalRippleAreNoCauses) {
-  const auto path = ThereAndBack(Hide(
-      {"unknown-feed-square:object=X:height_um=4",
-       "unknown-diagonal-ripple:object=XY:amplitude_um=3:period_mm=8:phase_rad=0"}));
+  const auto path = ThereAndBack(
+      Hide({"unknown-feed-square:object=X:height_um=4",
+            "unknown-diagonal-ripple:object=XY:amplitude_um=3:period_mm=8:phase_rad=0"}));
   const auto x = Deviations(path, 'x'), z = Deviations(path, 'z');
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double sum = path.At("x_mm")[i] + path.At("y_mm")[i];

@@ -172,8 +172,8 @@ recording::Recording Dwell(const std::vector<std::string>& hide, double begin = 
 }
 
 TEST(HiddenProbes, PickUpIsALineInTimeThatADwellDoesNotMiss) {
-  const auto dwell = Dwell(
-      {"mains-pickup:object=probe_a:frequency_hz=50:amplitude_um=0.2:phase_rad=0.3"}, 20.0);
+  const auto dwell =
+      Dwell({"mains-pickup:object=probe_a:frequency_hz=50:amplitude_um=0.2:phase_rad=0.3"}, 20.0);
   double most = 0.0;
   for (std::size_t i = 0; i < dwell.rows(); ++i) {
     const double angle = 2.0 * std::numbers::pi * 50.0 * (20.0 + dwell.At("time_s")[i]) + 0.3;
@@ -197,9 +197,8 @@ TEST(HiddenProbes, AChannelWarmsUp) {
 }
 
 TEST(HiddenProbes, HumAndAStepThatComesBackAreNoCauses) {
-  const auto dwell =
-      Dwell({"unknown-hum:object=probe_a:amplitude_um=0.2:period_s=40:phase_rad=0",
-             "unknown-step-and-back:object=probe_b:height_um=0.7:from_s=5:to_s=9"});
+  const auto dwell = Dwell({"unknown-hum:object=probe_a:amplitude_um=0.2:period_s=40:phase_rad=0",
+                            "unknown-step-and-back:object=probe_b:height_um=0.7:from_s=5:to_s=9"});
   for (std::size_t i = 0; i < dwell.rows(); ++i) {
     const double time = dwell.At("time_s")[i];
     EXPECT_NEAR(dwell.At("probe_a_um")[i] - 100.0,
@@ -264,8 +263,8 @@ TEST(HiddenProbes, SwappedCablesExchangeTwoColumns) {
 TEST(HiddenProbes, DataCanBeStuckOrJump) {
   RigSettings settings = PerfectMachine();
   settings.white = 20e-9;
-  HiddenEffects hidden = Hide({"stuck-channel:object=probe_b:from_s=4:to_s=8",
-                               "outliers:object=probe_c:count=7"});
+  HiddenEffects hidden =
+      Hide({"stuck-channel:object=probe_b:from_s=4:to_s=8", "outliers:object=probe_c:count=7"});
   SetInTime(hidden, {{0.0, 20.0, true, false}});
   const auto said = RecordDwell(World(settings, 1, hidden), 'X', nullptr, Short());
   const auto plain = RecordDwell(World(settings, 1), 'X', nullptr, Short());

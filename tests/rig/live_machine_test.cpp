@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/rig/demo_rig.h"
+#include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {
 namespace {
@@ -78,6 +78,63 @@ TEST_F(Running, ACourseOutOfTheLinkagesReachIsRefused) {
   EXPECT_THROW(LiveMachine(
                    world_, [] { return 0.0; }, &linkage, course_),
                InputError);
+}
+
+// With nothing wrong but what is hidden, every 10 ms through a circle.
+TEST(LiveMachine, BacklashActsOnWhatTheEncodersShow) {
+  double now = 0.0;
+  const LinkageRig rig = PerfectLinkageRig(Hide({"backlash:object=X:width_um=6"}));
+  LiveMachine machine(
+      rig.world(), [&] { return now; }, &rig,
+      CircleCourse({.centre = kCentre, .radius = 0.01, .feed = 0.02}));
+  machine.Start(kCourseProgram);
+  int checked = 0;
+  double before = 0.0, way = 0.0;  // m, since the axis turned
+  for (; now < 30.0 && machine.Now().state == ProgramState::kRunning; now += 0.01) {
+    const Eigen::Vector3d position = machine.Now().axes.position;
+    const double step = position.x() - before;
+    before = position.x();
+    way = way * step >= 0.0 ? way + step : step;
+    if (std::abs(way) < 1e-3) continue;
+    const double x = position.x() - (way > 0.0 ? 3e-6 : -3e-6);
+    const Eigen::Vector3d ball(-x, -position.y(), position.z());
+    const Eigen::Vector3d expected = rig.linkage().EncodersFor(ball, 20.0);
+    const Eigen::Vector3d shown = *machine.EncodersNow();
+    for (int i = 0; i < kPivots; ++i) {
+      EXPECT_NEAR(std::remainder(shown[i] - expected[i], 2.0 * M_PI), 0.0, 1e-11);
+    }
+    ++checked;
+  }
+  EXPECT_GT(checked, 500);
+}
+
+// What happens between two readings does not depend on who reads.
+TEST(LiveMachine, HiddenHistoryDoesNotDependOnTheReader) {
+  const LinkageRig rig = PerfectLinkageRig(
+      Hide({"reversal-spike:object=X:height_um=5:decay_mm=2", "backlash:object=X:width_um=4"}));
+  double now = 0.0;
+  const auto time = [&] { return now; };
+  LiveMachine often(rig.world(), time, &rig), rarely(rig.world(), time, &rig);
+  often.Start(0);
+  rarely.Start(0);
+  for (int i = 0; i < 4000; ++i, now += 0.025) {
+    const Eigen::Vector3d shown = *often.EncodersNow();
+    if (i % 80 != 79) continue;
+    // The spike by 5 um / 2 mm of what the axis moves in the 5 ms of a step.
+    EXPECT_LT((*rarely.EncodersNow() - shown).norm(), 2e-6) << now;
+  }
+}
+
+TEST(LiveMachine, AProbeWarmsUpSinceTheRigIsOn) {
+  const World world(PerfectMachine(), 1,
+                    Hide({"warm-up-drift:object=probe_b:amplitude_um=2:time_constant_s=100"}));
+  double now = 0.0;
+  LiveMachine machine(world, [&] { return now; });
+  for (now = 20.0; now < 300.0; now += 40.0) {
+    EXPECT_NEAR(*machine.ReadingOf("probe_b_um", machine.Now()),
+                100.0 + 2.0 * (1.0 - std::exp(-now / 100.0)), 1e-6);
+    EXPECT_NEAR(*machine.ReadingOf("probe_a_um", machine.Now()), 100.0, 1e-6);
+  }
 }
 
 }  // namespace

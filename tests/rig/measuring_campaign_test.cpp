@@ -128,28 +128,39 @@ TEST(MeasuringCampaign, IsAFunctionOfSeedAndWhatIsHidden) {
 
 // An effect of no size changes nothing, wherever it acts.
 TEST(MeasuringCampaign, NeutralEffectsChangeNothing) {
-  HiddenEffects neutral = Hide(
-      {"backlash:object=X:width_um=0", "leadscrew-cyclic:object=Y:amplitude_um=0",
-       "scale-error:object=Z:gain_ppm=0", "squareness:object=XY:angle_urad=0",
-       "thermal-growth:object=X:coefficient_ppm_per_c=0", "warm-up-drift:object=X:amplitude_um=0",
-       "warm-up-drift:object=probe_a:amplitude_um=0", "warm-up-drift:object=pivot_1:amplitude_urad=0",
-       "servo-lag-mismatch:object=XY:delay_ms=0", "servo-lag:object=X:delay_ms=0",
-       "reversal-spike:object=X:height_um=0", "load-coupling:object=XY:coefficient_nm_per_mm2=0",
-       "vibration:object=Z:amplitude_um=0", "probe-gain:object=probe_a:delta=0",
-       "probe-nonlinearity:object=probe_b:quadratic_per_mm=0",
-       "probe-position:object=probe_a:du_mm=0:dv_mm=0",
-       "fixture-misalignment:object=head:roll_urad=0:pitch_urad=0:yaw_urad=0:du_mm=0:ds_mm=0:dn_mm=0",
-       "probe-tilt-response:object=head:electrode_radius_mm=0",
-       "probe-crosstalk:object=probe_a+probe_b:coefficient=0",
-       "target-form:object=target_top:rms_um=0", "mains-pickup:object=probe_a:amplitude_um=0",
-       "encoder-eccentricity:object=pivot_1:sin_urad=0:cos_urad=0",
-       "encoder-subdivision:object=pivot_2:sin_urad=0:cos_urad=0",
-       "encoder-count-slip:object=pivot_3:angle_urad=0",
-       "bearing-roundness:object=pivot_1:sin2_um=0:cos2_um=0:sin3_um=0:cos3_um=0",
-       "link-thermal-growth:object=link_1:coefficient_ppm_per_c=0",
-       "link-gravity-bend:object=pivot_2:compliance_urad=0",
-       "joint-hysteresis:object=pivot_1:width_urad=0", "cap-friction:object=cap:displacement_um=0",
-       "clock-skew:object=linkage:delay_ms=0", "clock-skew:object=probes:delay_ms=0"});
+  HiddenEffects neutral =
+      Hide({"backlash:object=X:width_um=0",
+            "leadscrew-cyclic:object=Y:amplitude_um=0",
+            "scale-error:object=Z:gain_ppm=0",
+            "squareness:object=XY:angle_urad=0",
+            "thermal-growth:object=X:coefficient_ppm_per_c=0",
+            "warm-up-drift:object=X:amplitude_um=0",
+            "warm-up-drift:object=probe_a:amplitude_um=0",
+            "warm-up-drift:object=pivot_1:amplitude_urad=0",
+            "servo-lag-mismatch:object=XY:delay_ms=0",
+            "servo-lag:object=X:delay_ms=0",
+            "reversal-spike:object=X:height_um=0",
+            "load-coupling:object=XY:coefficient_nm_per_mm2=0",
+            "vibration:object=Z:amplitude_um=0",
+            "probe-gain:object=probe_a:delta=0",
+            "probe-nonlinearity:object=probe_b:quadratic_per_mm=0",
+            "probe-position:object=probe_a:du_mm=0:dv_mm=0",
+            "fixture-misalignment:object=head:roll_urad=0:pitch_urad=0:yaw_urad=0:du_mm=0:ds_mm=0:"
+            "dn_mm=0",
+            "probe-tilt-response:object=head:electrode_radius_mm=0",
+            "probe-crosstalk:object=probe_a+probe_b:coefficient=0",
+            "target-form:object=target_top:rms_um=0",
+            "mains-pickup:object=probe_a:amplitude_um=0",
+            "encoder-eccentricity:object=pivot_1:sin_urad=0:cos_urad=0",
+            "encoder-subdivision:object=pivot_2:sin_urad=0:cos_urad=0",
+            "encoder-count-slip:object=pivot_3:angle_urad=0",
+            "bearing-roundness:object=pivot_1:sin2_um=0:cos2_um=0:sin3_um=0:cos3_um=0",
+            "link-thermal-growth:object=link_1:coefficient_ppm_per_c=0",
+            "link-gravity-bend:object=pivot_2:compliance_urad=0",
+            "joint-hysteresis:object=pivot_1:width_urad=0",
+            "cap-friction:object=cap:displacement_um=0",
+            "clock-skew:object=linkage:delay_ms=0",
+            "clock-skew:object=probes:delay_ms=0"});
   const Campaign plain = Record(CampaignKind::kStandard);
   const Campaign same = Record(CampaignKind::kStandard, neutral);
   for (std::size_t i = 0; i < plain.recordings.size(); ++i) {
@@ -168,10 +179,10 @@ TEST(MeasuringCampaign, NeutralEffectsChangeNothing) {
 }
 
 TEST(MeasuringCampaign, ChoosesWhenThingsHappen) {
-  const Campaign campaign = Record(
-      CampaignKind::kStandard,
-      Hide({"encoder-count-slip:object=pivot_1", "outliers:object=probe_a:count=12",
-            "unknown-angle-bump:object=pivot_2"}));
+  const Campaign campaign =
+      Record(CampaignKind::kStandard,
+             Hide({"encoder-count-slip:object=pivot_1", "outliers:object=probe_a:count=12",
+                   "unknown-angle-bump:object=pivot_2"}));
   EXPECT_TRUE(std::isfinite(campaign.hidden[0].values.at("time_s")));
   EXPECT_TRUE(std::isfinite(campaign.hidden[2].values.at("centre_rad")));
   const Campaign plain = Record(CampaignKind::kStandard);
