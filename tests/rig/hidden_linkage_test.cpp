@@ -1,6 +1,8 @@
 // Each hidden effect of the linkage against its closed form.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -178,7 +180,7 @@ TEST(HiddenLinkage, ABumpAtOneAngleAndAWanderAreNoCauses) {
   const double centre = plain.At("pivot_1_rad")[plain.rows() / 4];
   const auto path =
       Recorded(Hide({"unknown-angle-bump:object=pivot_1:height_urad=50:width_rad=0.01:centre_rad=" +
-                         std::to_string(centre),
+                         fmt::format("{:.17g}", centre),
                      "unknown-wander:object=pivot_2:deviation_urad=20:time_constant_s=1"}));
   double most = 0.0, square = 0.0;
   for (std::size_t i = 0; i < path.rows(); ++i) {
@@ -190,8 +192,9 @@ TEST(HiddenLinkage, ABumpAtOneAngleAndAWanderAreNoCauses) {
     square += wander * wander / static_cast<double>(path.rows());
   }
   EXPECT_NEAR(most, 50e-6, 1e-6);
-  // Some seven time constants: the deviation itself to half of it.
-  EXPECT_NEAR(std::sqrt(square), 20e-6, 12e-6);
+  // Some seven time constants: two or three independent numbers.
+  EXPECT_GT(std::sqrt(square), 5e-6);
+  EXPECT_LT(std::sqrt(square), 50e-6);
 }
 
 TEST(HiddenLinkage, AnEncoderCanJump) {

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """abbe rig as a program, read and started by pymodbus: rig_program_test.py ABBE MACHINE_FILE."""
 import json
+import math
 import pathlib
 import signal
 import subprocess
@@ -59,11 +60,41 @@ class RigProgram(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(out.read_text().startswith('# abbe-recording = 1\n# kind = "sweep"\n'))
 
+    def test_hides_what_only_the_truth_says(self):
+        plain, hidden, truth = self.path / "plain.csv", self.path / "hidden.csv", self.path / "truth.json"
+        arguments = ["record", "--machine", MACHINE, "--axis", "X", "--rate", 5]
+        self.assertEqual(self.run_abbe(*arguments, "--out", plain).returncode, 0)
+        done = self.run_abbe(*arguments, "--out", hidden, "--truth", truth, "--hide",
+                             "warm-up-drift:object=probe_b:amplitude_um=2:time_constant_s=100")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(truth.read_text())["hidden"],
+                         [{"cause": "warm-up-drift", "object": "probe_b",
+                           "parameters": {"amplitude_um": 2.0, "time_constant_s": 100.0}}])
+        def last(path):
+            lines = path.read_text().splitlines()
+            names = next(line for line in lines if not line.startswith("#")).split(",")
+            return dict(zip(names, map(float, lines[-1].split(","))))
+        before, after = last(plain), last(hidden)
+        self.assertAlmostEqual(after["probe_b_um"] - before["probe_b_um"],
+                               2 * (1 - math.exp(-before["time_s"] / 100)), places=6)
+        self.assertEqual(after["probe_a_um"], before["probe_a_um"])
+
+    def test_writes_a_campaign_with_its_truth(self):
+        out, truth = self.path / "campaign", self.path / "truth.json"
+        done = self.run_abbe("record", "--machine", MACHINE, "--campaign", "minimal", "--reduced", "--out", out,
+                             "--hide", "outliers:object=pivot_1:count=4", "--truth", truth)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(path.name for path in out.iterdir()),
+                         ["01_sweep_X.h5", "02_sweep_Y.h5", "03_sweep_Z.h5", "04_circle_XY_20mm_600.h5"])
+        self.assertEqual(json.loads(truth.read_text())["hidden"][0]["parameters"], {"count": 4.0})
+
     def test_refuses_in_one_line(self):
         truth = self.path / "truth.json"
         truth.write_text("{}")
         for arguments in ([], ["--machine", "nowhere.toml"], ["compare", truth, truth],
-                          ["--machine", MACHINE, "--rtu", "head"]):
+                          ["--machine", MACHINE, "--rtu", "head"],
+                          ["--machine", MACHINE, "--hide", "backlsh:object=X"],
+                          ["record", "--machine", MACHINE, "--out", "x", "--axis", "X", "--hide", "backlash"]):
             done = self.run_abbe(*arguments)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
