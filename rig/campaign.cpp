@@ -108,7 +108,7 @@ class SweepMaker {
 
   // As they are said.
   Readings Gaps(double time) {
-    const Eigen::Vector3d place = hidden_.PlaceFor(Source::kProbes);
+    const Eigen::Vector3d place = hidden_.PlaceFor(Source::kGaps);
     Eigen::Vector3d moved = place - gaps_at_;
     moved[axis_] = std::max(0.0, std::abs(moved[axis_]) - kStill);
     if (!(moved.squaredNorm() == 0.0)) {

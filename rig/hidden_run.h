@@ -3,7 +3,7 @@
 //
 //   HiddenRun hidden(effects, climate, {.begin = 0.0, .swept = 0});
 //   hidden.Follow(time, position, velocity);              // at every step, in the order of time
-//   gaps = world.ReadingsAt(0, hidden.PlaceFor(Source::kProbes));
+//   gaps = world.ReadingsAt(0, hidden.PlaceFor(Source::kGaps));
 //   gaps += noise;
 //   hidden.Say(gaps);                                     // for each row
 //
@@ -27,7 +27,7 @@
 
 namespace abbe::rig {
 
-enum class Source : std::uint8_t { kProbes, kLinkage };
+enum class Source : std::uint8_t { kGaps, kAngles };
 
 class HiddenRun {
  public:

@@ -205,7 +205,7 @@ std::optional<double> LiveMachine::ReadingOf(std::string_view channel, const Mom
 
 const Readings& LiveMachine::GapsAt(const Moment& moment) {
   if (gaps_tick_ == moment.tick) return gaps_;
-  gaps_ = world_.ReadingsAt(head_axis_, moment.axes.position + hidden_.OffsetFor(Source::kProbes));
+  gaps_ = world_.ReadingsAt(head_axis_, moment.axes.position + hidden_.OffsetFor(Source::kGaps));
   for (int probe = 0; probe < kProbes; ++probe) {
     gaps_[probe] += noise_.OfProbe(probe, moment.tick, moment.axes.time);
   }

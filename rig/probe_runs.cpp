@@ -78,7 +78,7 @@ class ProbeRunMaker {
 
   double AddGaps(double time) {
     const RigSettings& machine = world_.settings();
-    Readings gaps = world_.ReadingsAt(axis_, hidden_.PlaceFor(Source::kProbes));
+    Readings gaps = world_.ReadingsAt(axis_, hidden_.PlaceFor(Source::kGaps));
     const auto tick = static_cast<std::uint64_t>(std::llround(time * machine.update_rate));
     for (int i = 0; i < kProbes; ++i) gaps[i] += noise_.OfProbe(i, tick, time);
     hidden_.Say(gaps);
