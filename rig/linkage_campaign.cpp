@@ -189,7 +189,8 @@ void LinkageRig::Follow(const CourseState& state, double temperature, double cap
 
 Vector3d LinkageRig::EncodersAt(const CourseState& state, double temperature, double cap_force,
                                 HiddenRun& hidden) const {
-  Vector3d ball = ToolAt(hidden.PlaceFor(Source::kAngles)) + TrailingAt(state.velocity, cap_force);
+  const Vector3d place = state.position + hidden.OffsetFor(Source::kAngles);
+  Vector3d ball = ToolAt(place) + TrailingAt(state.velocity, cap_force);
   if (hidden.drags_ball()) ball += BallFrom(hidden);
   const Vector3d turns = linkage_.TurnsForPlace(ball, temperature);
   return linkage_.EncodersAt(turns) + hidden.EncodersShow(turns);

@@ -54,7 +54,7 @@ class LinkageRig {
   Eigen::Vector3d ReferenceAt(const Eigen::Vector3d& position) const;
   // How far the ball trails behind the cap while the axes move.
   Eigen::Vector3d TrailingAt(const Eigen::Vector3d& velocity, double cap_force) const;
-  // Angles without noise, not cut into counts.
+  // Angles without noise, not cut into counts; `hidden` has followed the axes to `state`.
   Eigen::Vector3d EncodersAt(const CourseState& state, double temperature, double cap_force,
                              HiddenRun& hidden) const;
   // The same when nothing is hidden.
