@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "machine/configurations.h"
-#include "machine/volumetric_model.h"
+#include "machine/volumetric_field.h"
 
 namespace {
 
@@ -43,11 +43,11 @@ Eigen::Matrix3Xd Positions() {
 }
 
 void Exact(benchmark::State& state) {
-  const VolumetricModel model = Column();
+  const VolumetricField field(Column());
   const Eigen::Matrix3Xd positions = Positions();
   Eigen::Matrix3Xd errors;
   for (auto _ : state) {
-    errors = model.Errors(positions, kTool);
+    errors = field.Errors(positions, kTool);
     benchmark::DoNotOptimize(errors.data());
   }
   state.SetItemsProcessed(state.iterations() * kPoints);

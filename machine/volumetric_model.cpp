@@ -121,15 +121,6 @@ Vector3d VolumetricModel::Error(const Vector3d& position, const Vector3d& p_TQ) 
   return VolumetricError<double>(chain_, position, p_TQ, Motions(position));
 }
 
-Eigen::Matrix3Xd VolumetricModel::Errors(const Eigen::Matrix3Xd& positions,
-                                         const Vector3d& p_TQ) const {
-  Eigen::Matrix3Xd errors(3, positions.cols());
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-    errors.col(i) = Error(positions.col(i), p_TQ);
-  }
-  return errors;
-}
-
 VolumetricModel::Linearized VolumetricModel::Linearize(const Vector3d& position,
                                                        const Vector3d& p_TQ) const {
   RefuseOutside(position);

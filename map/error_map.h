@@ -22,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "machine/volumetric_field.h"
 #include "machine/volumetric_model.h"
 
 namespace abbe::map {
@@ -62,7 +63,7 @@ class ErrorMap {
   std::string_view Scale() const;
 
   Eigen::Vector3d Error(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const {
-    return model_.Error(position, p_TQ);
+    return field_.Error(position, p_TQ);
   }
   // Of the three components, m^2.
   Eigen::Matrix3d Covariance(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const;
@@ -73,6 +74,7 @@ class ErrorMap {
  private:
   MapOrigin origin_;
   machine::VolumetricModel model_;
+  machine::VolumetricField field_;
   Eigen::MatrixXd cov_pp_;
 };
 
