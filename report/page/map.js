@@ -41,6 +41,7 @@ function mapSummary(result) {
   return sentences.join(' ');
 }
 
+const probabilityText = (p) => p < 1e-3 ? plain(Number(p.toPrecision(1))) : significant(p, 2);
 const shortName = (path) => String(path).split('/').at(-1);
 
 function mapWarnings(result) {
@@ -51,7 +52,7 @@ function mapWarnings(result) {
     ...(result.contradictions ?? []).map((run) => {
       const {agreement} = result.chi2?.find((one) => one.run === run) ?? {};
       const size = agreement ? ` (chi-square ${significant(agreement.statistic)} of ${
-                                   agreement.directions}, p = ${significant(agreement.p, 2)})` :
+                                   agreement.directions}, p = ${probabilityText(agreement.p)})` :
                                '';
       return `CONTRADICTION: ${shortName(run)} disagrees with all other runs${size}. ` +
           'Look at its set-up, or leave it out and fuse again.';
@@ -88,8 +89,8 @@ function chiSquareTable(result) {
              redundancy > 0 ? expected(redundancy) : null,
              isNumber(outliers) ? grouped(outliers) : null,
              (result.contradictions ?? []).includes(run) ?
-                 element('strong', {}, `${significant(agreement?.p, 2)}, CONTRADICTS`) :
-                 agreement?.directions ? significant(agreement.p, 2) :
+                 element('strong', {}, `${probabilityText(agreement?.p ?? NaN)}, CONTRADICTS`) :
+                 agreement?.directions ? probabilityText(agreement.p) :
                                          'nobody else saw it']),
   });
 }

@@ -19,6 +19,14 @@ const determinedBy = (result, name) => result.observability?.[name]?.determined_
 const sourceText = (result, name) => determinedBy(result, name).join(', ') || 'prior only';
 const isPriorOnly = (result, name) => determinedBy(result, name).length === 0;
 
+// The largest error with its band among the functions of this unit, in its shown unit.
+const largestOfUnit = (result, unit) => Math.max(
+    ...mapFunctions(result)
+        .filter(([, error]) => error.unit === unit)
+        .flatMap(
+            ([, {value, u}]) => value.map(
+                (one, i) => shownUnit(unit).scale * (Math.abs(one) + COVERAGE * (u?.[i] ?? 0)))));
+
 function mapFunctionPanel(result, [name, error]) {
   const unit = unitOf(error);
   const title = mapErrorName(name, error);
@@ -26,6 +34,7 @@ function mapFunctionPanel(result, [name, error]) {
   const value = scaled(error.value, unit.scale);
   const U = scaled(error.u, COVERAGE * unit.scale);
   const source = sourceText(result, name);
+  const most = 1.05 * largestOfUnit(result, error.unit);
   return {
     name: title,
     code: name,
@@ -44,7 +53,10 @@ function mapFunctionPanel(result, [name, error]) {
                                             {color: colours.mean, width: 2}
         }),
       ].filter(Boolean),
-      layout: figureLayout(colours, {x: `${name[2]} position (mm)`}),
+      layout: figureLayout(colours, {
+        x: `${name[2]} position (mm)`,
+        yaxis: shown.has('one_scale') ? {range: [-most, most]} : {},
+      }),
     }),
     values: () => ({
       columns: ['Position, mm', `Error, ${unit.name}`, `U95, ${unit.name}`].map(
@@ -69,7 +81,8 @@ function squarenessPanel(result) {
         'as a table.',
     draw: (colours) => ({
       data: [lineTrace(
-          'squareness', found.map(([name]) => name), urad('value', 1), colours.mean, '\u00b5rad', {
+          'squareness', found.map(([name]) => `${name}<br>${sourceText(result, name)}`),
+          urad('value', 1), colours.mean, '\u00b5rad', {
             mode: 'markers',
             marker: {size: 8, color: colours.mean},
             error_y: {type: 'data', array: urad('u', COVERAGE), color: colours.mean, thickness: 1.5}
@@ -99,7 +112,10 @@ function mapErrorGroup(result) {
     intro: 'Each error over the travel of its axis, zero at the first end; a straightness has no ' +
         'slope, which is squareness. Beside the unit stands what determined it; dotted: nothing ' +
         'measured it, only its tolerance is known.',
-    items: [{key: 'band', label: '95\u00a0% band', swatch: 'band'}],
+    items: [
+      {key: 'band', label: '95\u00a0% band', swatch: 'band'},
+      {key: 'one_scale', label: 'One scale for all of a unit', on: false}
+    ],
     panels,
   });
 }

@@ -6,6 +6,10 @@ const MAP_COMPONENTS = [
 ];
 const MAP_PLANES = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];  // across, up, through
 
+// Turned by 25 deg and seen from 28 deg above: no two points of a cubic grid stand in one place, as
+// they would in an isometric view.
+const MAP_VIEW = [[0.906, -0.198], [0.423, 0.425], [0, 0.883]];
+
 const hasMapGrid = (result) =>
     MAP_AXES.every((axis) => result.map?.grid?.[axis]?.length > 1) && result.map.grid.error?.[2];
 
@@ -52,7 +56,7 @@ const columnsOf = (rows) => [0, 1, 2].map((axis) => rows.map((row) => row[axis])
 
 function gridLine(name, places, colour, width) {
   return {
-    ...lineTrace(name, ...isometric(columnsOf(places)), colour, ''),
+    ...lineTrace(name, ...isometric(columnsOf(places), MAP_VIEW), colour, ''),
     line: {color: colour, width},
     hoverinfo: 'skip',
     hovertemplate: null
@@ -65,7 +69,7 @@ function arrowTraces(grid, amount, component, colours) {
   const to = movedPlaces(grid, places, amount, component);
   const stems = from.flatMap((at, i) => [at, to[i], [NaN, NaN, NaN]]);
   const edges = gridEdges(grid).flatMap((edge) => [...edge, null]);
-  const [x, y] = isometric(columnsOf(to));
+  const [x, y] = isometric(columnsOf(to), MAP_VIEW);
   const text = places.map((place) => {
     const at = MAP_AXES.map((axis, k) => positionText(grid[axis][place[k]] * 1e3)).join(', ');
     const error = grid.error.map((list) => fixed(list[gridPoint(grid, place)] * 1e6, 2)).join(', ');
@@ -78,7 +82,7 @@ function arrowTraces(grid, amount, component, colours) {
     {
       ...lineTrace('tip', x, y, colours.mean, ''),
       mode: 'markers',
-      marker: {size: 4, color: colours.mean},
+      marker: {size: 3.5, color: colours.mean},
       text,
       hovertemplate: '%{text}'
     },
@@ -89,17 +93,17 @@ function mapSpaceGroup(result) {
   if (!hasMapGrid(result)) return null;
   const {grid} = result.map;
   const half = MAP_AXES.map((axis) => (grid[axis].at(-1) - grid[axis][0]) / 2);
-  const span = 1e3 * 1.25 * Math.max(half[0] + half[1], (half[0] + half[1]) / 2 + half[2]);
+  const span = 1e3 * 1.25 * Math.max(half[0] + half[1] / 2, (half[0] + half[1]) / 2 + half[2]);
   const panel = {
     name: 'Error of the tool',
     unit: '\u00b5m',
-    height: 520,
+    height: 480,
     about: 'The volume with the error of the tool at grid points as arrows, and its edges as the ' +
         'errors bend them, magnified; the values follow as a table.',
     draw: (colours, shown, amount, component) => ({
       data: arrowTraces(grid, amount, component, colours),
       layout: squareLayout(
-          colours, span, {annotations: spaceAxes(['X', 'Y', 'Z'], 1.1 * span, colours)}),
+          colours, span, {annotations: spaceAxes(['X', 'Y', 'Z'], 1.1 * span, colours, MAP_VIEW)}),
     }),
     values: () => ({
       columns: [
