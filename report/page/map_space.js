@@ -149,6 +149,7 @@ function sliceRows(grid, values, [across, up, through], at) {
 
 function slicePanel(grid, lists, plane, {name, about, isSigned}) {
   const [across, up, through] = plane.map((axis) => 'XYZ'[axis]);
+  const endsOf = (axis) => [0, -1].map((end) => grid[MAP_AXES[axis]].at(end) * 1e3);
   return {
     name: `${name}, ${across}${up}`,
     unit: '\u00b5m',
@@ -188,8 +189,9 @@ function slicePanel(grid, lists, plane, {name, about, isSigned}) {
         layout: figureLayout(colours, {
           hovermode: 'closest',
           x: `${across} (mm), ${place}`,
-          xaxis: {nticks: 5},
+          xaxis: {nticks: 5, range: endsOf(plane[0])},
           yaxis: {
+            range: endsOf(plane[1]),
             showgrid: false,
             zeroline: false,
             title: {text: up, font: {size: 12, color: colours.muted}, standoff: 4}
