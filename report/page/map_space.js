@@ -39,15 +39,16 @@ const gridEdges = (grid) => [0, 1, 2].flatMap((along) => [0, 1, 2, 3].map((corne
   });
 }));
 
-// Coordinates of grid points in mm about the middle, moved by `amount` times their error.
-function movedPlaces(grid, places, amount, component) {
+// Coordinates of grid points in mm about the middle, moved by `amount` times their error. They are
+// axis positions: where an axis carries the workpiece the tool moves the other way in it, sign -1.
+function movedPlaces({grid, signs = [1, 1, 1]}, places, amount, component) {
   return places.map((place) => {
     if (place === null) return [NaN, NaN, NaN];
     const error = grid.error.map((list) => list[gridPoint(grid, place)]);
     return MAP_AXES.map((axis, k) => {
       const middle = (grid[axis][0] + grid[axis].at(-1)) / 2;
       const moves = component === 'all' || component === k;
-      return 1e3 * (grid[axis][place[k]] - middle + (moves ? amount * error[k] : 0));
+      return 1e3 * (grid[axis][place[k]] - middle + (moves ? amount * signs[k] * error[k] : 0));
     });
   });
 }
@@ -63,10 +64,11 @@ function gridLine(name, places, colour, width) {
   };
 }
 
-function arrowTraces(grid, amount, component, colours) {
+function arrowTraces(map, amount, component, colours) {
+  const {grid} = map;
   const places = gridPlaces(grid, grid.x.length > 8 ? 2 : 1);
-  const from = movedPlaces(grid, places, 0, component);
-  const to = movedPlaces(grid, places, amount, component);
+  const from = movedPlaces(map, places, 0, component);
+  const to = movedPlaces(map, places, amount, component);
   const stems = from.flatMap((at, i) => [at, to[i], [NaN, NaN, NaN]]);
   const edges = gridEdges(grid).flatMap((edge) => [...edge, null]);
   const [x, y] = isometric(columnsOf(to), MAP_VIEW);
@@ -76,8 +78,8 @@ function arrowTraces(grid, amount, component, colours) {
     return `at ${at}\u00a0mm<br>${error}\u00a0\u00b5m`;
   });
   return [
-    gridLine('nominal', movedPlaces(grid, edges, 0, component), colours.axis, 1),
-    gridLine('moved', movedPlaces(grid, edges, amount, component), colours.backward, 1.4),
+    gridLine('nominal', movedPlaces(map, edges, 0, component), colours.axis, 1),
+    gridLine('moved', movedPlaces(map, edges, amount, component), colours.backward, 1.4),
     gridLine('error', stems, colours.mean, 1.2),
     {
       ...lineTrace('tip', x, y, colours.mean, ''),
@@ -101,7 +103,7 @@ function mapSpaceGroup(result) {
     about: 'The volume with the error of the tool at grid points as arrows, and its edges as the ' +
         'errors bend them, magnified; the values follow as a table.',
     draw: (colours, shown, amount, component) => ({
-      data: arrowTraces(grid, amount, component, colours),
+      data: arrowTraces(result.map, amount, component, colours),
       layout: squareLayout(
           colours, span, {annotations: spaceAxes(['X', 'Y', 'Z'], 1.1 * span, colours, MAP_VIEW)}),
     }),
@@ -127,8 +129,8 @@ function mapSpaceGroup(result) {
   return figureGroup({
     title: 'The map over the volume',
     intro:
-        'From each point of the grid a line to where the tool is when it should be there, seen ' +
-        'from the workpiece and magnified. Grey: the volume; orange: its edges as the machine ' +
+        'From each point of the grid a line to where the tool is when it should be there, along ' +
+        'the axes as they are commanded, magnified. Grey: the volume; orange: its edges as the machine ' +
         'makes them.',
     choices: MAP_COMPONENTS,
     slider: magnifierFor(Math.max(...half), Math.max(1e-9, ...grid.error.map(largest))),

@@ -295,7 +295,7 @@ test(
       const [dx, dz] = [0.06 * STRETCH * 1e6, LIFT * 1e6];  // mm, magnified
       const isNear = ([x, y], [to_x, to_y]) =>
           assert.ok(Math.hypot(x - to_x, y - to_y) < 1e-9, `${x} ${y} ${to_x} ${to_y}`);
-      isNear(await last(), [0.906 * dx, -0.198 * dx + 0.883 * dz]);
+      isNear(await last(), [-0.906 * dx, 0.198 * dx + 0.883 * dz]);
       await group.getByRole('button', {name: 'Z', exact: true}).click();
       isNear(await last(), [0, 0.883 * dz]);
       assert.equal(

@@ -392,8 +392,9 @@ export function calibrationResult() {
   };
 }
 
-// A map that stretches X by 100 ppm and lifts Z by 5 um over Y, known to 0.2 um a component; a sweep
-// contradicts, and no length was given.
+// A map whose table goes 100 ppm too little along X, so that the tool comes too far in the workpiece,
+// and that lifts Z by 5 um over Y; known to 0.2 um a component. A sweep contradicts, and no length
+// was given.
 export const STRETCH = 1e-4;
 export const LIFT = 5e-6;
 
@@ -445,6 +446,7 @@ export function fuseResult() {
     ],
     map: {
       tool: [0, 0, -0.08],
+      signs: [-1, -1, 1],
       temperature_c: 20,
       grid: {
         x: travel,
