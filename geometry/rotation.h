@@ -66,38 +66,23 @@ Eigen::Matrix3<T> SmallRotation(const Eigen::Vector3<T>& angles) {
   return Eigen::Matrix3<T>::Identity() + Skew<T>(angles);
 }
 
-// sin(a)/a and (1 - cos(a))/a^2 of the square of an angle a.
-template <typename T>
-struct RotationTerms {
-  T sine, versine;
-};
-
-template <typename T>
-RotationTerms<T> TermsOf(const T& square) {
-  using std::cos, std::sin, std::sqrt;
-  if (square < T(1e-4)) {  // the series neglects a^8/9! < 3e-22
-    return {T(1) - square * (T(1.0 / 6) - square * (T(1.0 / 120) - square * T(1.0 / 5040))),
-            T(0.5) - square * (T(1.0 / 24) - square * (T(1.0 / 720) - square * T(1.0 / 40320)))};
-  }
-  const T angle = sqrt(square);
-  const T half = sin(angle / T(2));
-  return {sin(angle) / angle, T(2) * half * half / square};
-}
-
 // The rotation by |rotation_vector| about the axis rotation_vector.
 template <typename T>
 Eigen::Matrix3<T> ExpRotation(const Eigen::Vector3<T>& rotation_vector) {
-  const auto [sine, versine] = TermsOf<T>(rotation_vector.squaredNorm());
+  using std::cos, std::sin, std::sqrt;
+  const T square = rotation_vector.squaredNorm();
+  T sine, versine;         // sin(a)/a and (1 - cos(a))/a^2
+  if (square < T(1e-4)) {  // the series neglects a^8/9! < 3e-22
+    sine = T(1) - square / T(6) * (T(1) - square / T(20) * (T(1) - square / T(42)));
+    versine = T(0.5) - square / T(24) * (T(1) - square / T(30) * (T(1) - square / T(56)));
+  } else {
+    const T angle = sqrt(square);
+    const T half = sin(angle / T(2));
+    sine = sin(angle) / angle;
+    versine = T(2) * half * half / square;
+  }
   const Eigen::Matrix3<T> S = Skew<T>(rotation_vector);
   return Eigen::Matrix3<T>::Identity() + sine * S + versine * S * S;
-}
-
-// ExpRotation(rotation_vector) * v, without the matrix.
-template <typename T>
-Eigen::Vector3<T> Rotated(const Eigen::Vector3<T>& rotation_vector, const Eigen::Vector3<T>& v) {
-  const auto [sine, versine] = TermsOf<T>(rotation_vector.squaredNorm());
-  const Eigen::Vector3<T> across = rotation_vector.cross(v);
-  return v + sine * across + versine * rotation_vector.cross(across);
 }
 
 // The left Jacobian of ExpRotation, "A micro Lie theory" equation 145: to first order in d,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 namespace abbe::machine {
 namespace {
@@ -12,6 +13,16 @@ using Eigen::Index;
 
 // Powers of t on [0, 1] lose no digits that matter up to here.
 constexpr int kMostDegree = 7;
+
+// Where a form is continuous and a polynomial between its pieces: its degree; else 0.
+int PieceDegree(const FunctionForm& form) {
+  const std::string name = form.Name();
+  if (name == "table") return 1;
+  if (name == "b-spline" || name == "polynomial") {
+    return static_cast<int>(form.Shape().at("degree").front());
+  }
+  return 0;
+}
 
 // Chebyshev's points of [0, 1] with both ends, so that the first coefficient is the value at t = 0.
 Eigen::VectorXd Nodes(int degree) {
@@ -40,7 +51,7 @@ AxisMotions::AxisMotions(int axis, const std::array<ErrorFunction, kMotions>& fu
   for (int motion = 0; motion < kMotions; ++motion) {
     const ErrorFunction& function = functions[static_cast<std::size_t>(motion)];
     if (function.form() == nullptr) continue;
-    const int degree = function.form()->PieceDegree();
+    const int degree = PieceDegree(*function.form());
     if (degree < 1 || degree > kMostDegree) {
       others_.emplace_back(motion, function);
       continue;

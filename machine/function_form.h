@@ -34,8 +34,6 @@ class FunctionForm {
   // Places from a to b, both included, between which x f(x) is smooth enough for a Gauss-Legendre
   // rule of 16 points to integrate it to rounding.
   virtual std::vector<double> Pieces(double a, double b) const = 0;
-  // Where f is continuous and a polynomial between these places: its degree; else 0.
-  virtual int PieceDegree() const { return 0; }
 };
 
 }  // namespace abbe::machine

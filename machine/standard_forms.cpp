@@ -47,7 +47,6 @@ class BSplineForm : public FunctionForm {
     pieces.push_back(b);
     return pieces;
   }
-  int PieceDegree() const override { return basis_.degree(); }
 
  private:
   std::string name_;
@@ -85,7 +84,6 @@ class PolynomialForm : public FunctionForm {
   }
 
   std::vector<double> Pieces(double a, double b) const override { return {a, b}; }
-  int PieceDegree() const override { return degree_; }
 
  private:
   int degree_;

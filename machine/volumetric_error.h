@@ -32,13 +32,8 @@
 namespace abbe::machine {
 
 template <typename T>
-using AxisErrors = std::array<geometry::ErrorVector<T>, kAxes>;  // of X, Y, Z at their positions
-template <typename T>
-using AxisLines = std::array<Eigen::Vector3<T>, kAxes>;
-
-template <typename T>
 struct MotionErrors {
-  AxisErrors<T> axes;
+  std::array<geometry::ErrorVector<T>, kAxes> axes;          // of X, Y, Z at their positions
   Eigen::Vector3<T> squareness = Eigen::Vector3<T>::Zero();  // [A0Z B0Z C0Y]
 
   MotionErrors() { axes.fill(geometry::ErrorVector<T>::Zero()); }
@@ -55,11 +50,6 @@ Eigen::Vector3<T> LineTurn(int axis, const Eigen::Vector3<T>& squareness) {
 template <typename T>
 Eigen::Vector3<T> LineOf(int axis, const Eigen::Vector3<T>& squareness) {
   return geometry::ExpRotation<T>(LineTurn<T>(axis, squareness)).col(axis);
-}
-
-template <typename T>
-AxisLines<T> LinesOf(const Eigen::Vector3<T>& squareness) {
-  return {LineOf<T>(0, squareness), LineOf<T>(1, squareness), LineOf<T>(2, squareness)};
 }
 
 template <typename T>
@@ -91,34 +81,14 @@ Eigen::Vector3<T> NominalToolInWork(const Chain& chain, const Eigen::Vector3<T>&
   return p_WQ;
 }
 
-// p_WQ of the machine with these errors: the tool point handed down from carriage to carriage to
-// the bed, and up the other side to the workpiece.
-template <typename T>
-Eigen::Vector3<T> ToolInWork(const Chain& chain, const AxisLines<T>& lines,
-                             const Eigen::Vector3<T>& position, const Eigen::Vector3<T>& p_TQ,
-                             const AxisErrors<T>& errors) {
-  Eigen::Vector3<T> p = p_TQ;
-  const std::string& tool = chain.tool_axes();
-  for (auto letter = tool.rbegin(); letter != tool.rend(); ++letter) {
-    const int axis = *letter - 'X';
-    const Eigen::Vector3<T> turn = errors[axis].template tail<3>();
-    p = geometry::Rotated<T>(turn, p) + errors[axis].template head<3>() +
-        position[axis] * lines[axis];
-  }
-  const std::string& work = chain.workpiece_axes();
-  for (auto letter = work.rbegin(); letter != work.rend(); ++letter) {
-    const int axis = *letter - 'X';
-    const Eigen::Vector3<T> back = -errors[axis].template tail<3>();
-    p = geometry::Rotated<T>(back,
-                             p - errors[axis].template head<3>() - position[axis] * lines[axis]);
-  }
-  return p;
-}
-
+// p_WQ of the machine with these errors.
 template <typename T>
 Eigen::Vector3<T> ToolInWork(const Chain& chain, const Eigen::Vector3<T>& position,
                              const Eigen::Vector3<T>& p_TQ, const MotionErrors<T>& errors) {
-  return ToolInWork<T>(chain, LinesOf<T>(errors.squareness), position, p_TQ, errors.axes);
+  const std::string& from_workpiece = chain.workpiece_axes();
+  const auto X_MW = BodyPose<T>({from_workpiece.rbegin(), from_workpiece.rend()}, position, errors);
+  const auto X_MT = BodyPose<T>(chain.tool_axes(), position, errors);
+  return X_MW.Inverse() * (X_MT * p_TQ);
 }
 
 template <typename T>

@@ -28,11 +28,12 @@ class VolumetricField {
   Eigen::Matrix3Xd Errors(const Eigen::Matrix3Xd& positions, const Eigen::Vector3d& p_TQ) const;
 
  private:
+  using AxisErrors = std::array<geometry::ErrorVector<double>, kAxes>;
   Eigen::Vector3d ErrorOf(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ,
-                          const AxisErrors<double>& errors) const;
+                          const AxisErrors& errors) const;
 
   Chain chain_;
-  AxisLines<double> lines_;
+  std::array<Eigen::Vector3d, kAxes> lines_;
   std::array<AxisMotions, kAxes> axes_;
 };
 

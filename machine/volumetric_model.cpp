@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "machine/volumetric_field.h"
 #include "machine/volumetric_jacobian.h"
 
 namespace abbe::machine {
@@ -119,6 +120,11 @@ MotionErrors<double> VolumetricModel::Motions(const Vector3d& position) const {
 
 Vector3d VolumetricModel::Error(const Vector3d& position, const Vector3d& p_TQ) const {
   return VolumetricError<double>(chain_, position, p_TQ, Motions(position));
+}
+
+Eigen::Matrix3Xd VolumetricModel::Errors(const Eigen::Matrix3Xd& positions,
+                                         const Vector3d& p_TQ) const {
+  return VolumetricField(*this).Errors(positions, p_TQ);
 }
 
 VolumetricModel::Linearized VolumetricModel::Linearize(const Vector3d& position,

@@ -10,7 +10,7 @@
 // A0Z, B0Z, C0Y. Blocks() names them as an estimation wants them: block "EBX", entries "c0", "c1"
 // ...; block "squareness".
 // Frames, signs, tool vector: volumetric_error.h. Gauge: error_function.h.
-// Many points of a model that stays: volumetric_field.h. Units: SI.
+// Units: SI. Shapes: positions in columns, 3 x N.
 // Failure: InputError for a position outside a travel, naming axis and travel, for an axis or
 // motion that does not exist, and for parameters of the wrong number or not finite.
 // Not safe to change while other threads evaluate; evaluation is.
@@ -47,6 +47,7 @@ class VolumetricModel {
 
   MotionErrors<double> Motions(const Eigen::Vector3d& position) const;
   Eigen::Vector3d Error(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const;
+  Eigen::Matrix3Xd Errors(const Eigen::Matrix3Xd& positions, const Eigen::Vector3d& p_TQ) const;
 
   struct Linearized {
     Eigen::Vector3d error;

@@ -51,10 +51,7 @@ int ErrorNamed(std::string_view name) {
 }
 
 ErrorMap::ErrorMap(MapOrigin origin, machine::VolumetricModel model, Eigen::MatrixXd cov_pp)
-    : origin_(std::move(origin)),
-      model_(std::move(model)),
-      field_(model_),
-      cov_pp_(std::move(cov_pp)) {
+    : origin_(std::move(origin)), model_(std::move(model)), cov_pp_(std::move(cov_pp)) {
   if (!model_.Parameters().allFinite() || !origin_.reference.allFinite() ||
       !origin_.tool.allFinite() || !std::isfinite(origin_.temperature)) {
     throw InputError("the map of " + origin_.machine + " holds a number that is not finite");

@@ -22,7 +22,6 @@
 #include <string_view>
 #include <vector>
 
-#include "machine/volumetric_field.h"
 #include "machine/volumetric_model.h"
 
 namespace abbe::map {
@@ -63,7 +62,7 @@ class ErrorMap {
   std::string_view Scale() const;
 
   Eigen::Vector3d Error(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const {
-    return field_.Error(position, p_TQ);
+    return model_.Error(position, p_TQ);
   }
   // Of the three components, m^2.
   Eigen::Matrix3d Covariance(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const;
@@ -74,7 +73,6 @@ class ErrorMap {
  private:
   MapOrigin origin_;
   machine::VolumetricModel model_;
-  machine::VolumetricField field_;
   Eigen::MatrixXd cov_pp_;
 };
 

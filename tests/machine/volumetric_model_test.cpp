@@ -97,6 +97,18 @@ TEST(VolumetricModel, ParametersReturnAsTheyWereSetAndBlocksNameThem) {
   EXPECT_EQ(model.Blocks().back()["C0Y"].value, p[p.size() - 1]);
 }
 
+TEST(VolumetricModel, ABatchIsItsPoints) {
+  VolumetricModel model = AnyMachine(ChainOf("fixed-bridge"));
+  model.SetParameters(Drawn(model.ParameterCount(), 1e-4));
+  Eigen::Matrix3Xd positions(3, 3);
+  positions << 0.0, 0.5, 0.2, 0.0, 0.4, 0.1, -0.3, 0.0, -0.1;
+  const Eigen::Matrix3Xd errors = model.Errors(positions, Vector3d(0, 0, 0.1));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_LT((errors.col(i) - model.Error(positions.col(i), Vector3d(0, 0, 0.1))).norm(),
+              16 * kEps);
+  }
+}
+
 TEST(VolumetricModel, RefusesWhatDoesNotExist) {
   VolumetricModel model = AnyMachine(ChainOf("column"));
   try {
