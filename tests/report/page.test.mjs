@@ -97,7 +97,7 @@ test(
 
 test('files that are no results are named', () => withPage({}, async (page) => {
                                               const note =
-                                                  await page.locator('[role=note]').textContent();
+                                                  await page.locator('#overview [role=note]').textContent();
                                               assert.match(note, /cut_short\.json/);
                                               assert.match(note, /package\.json/);
                                             }));
