@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr std::array<Travel, 3> kTravels = {{{0.0, 0.5}, {0.0, 0.4}, {-0.3, 0.0}}};
 constexpr double kSize = 1e-4;            // of every coefficient
-constexpr double kRounding = 256 * kEps;  // of sums of seven products, converted once
+constexpr double kRounding = 1e4 * kEps;  // the condition of the powers of t up to the sixth
 const Vector3d kTool(0.05, -0.04, 0.1);
 
 // Every form somewhere, each on pieces of its own.
