@@ -42,8 +42,13 @@ course "$out/circle_fast.csv" "$demo" --course circle --feed 2000
 # All of it together, with the linkage over the volume and one line of lengths: the error map.
 course "$out/volume.csv" "$demo" --course cube --size 57 --points 6,6,6 --dwell 0.2 --feed 6000
 course "$out/line.csv" "$demo" --length X
-"$abbe" fuse "$out"/sweep_{X,Y,Z}.csv "$out"/{volume,line}.csv --machine "$demo" -o "$out/map.toml"
-for format in isg vtk; do "$abbe" export "$out/map.toml" --format "$format" --quiet; done
+"$abbe" fuse "$out"/sweep_{X,Y,Z}.csv "$out"/{volume,line}.csv --machine "$demo" -o "$out/map.toml" --json "$out/fuse.json"
+for format in isg vtk sinumerik; do
+  "$abbe" export "$out/map.toml" --format "$format" --json "$out/export_$format.json" --quiet
+done
+for test in circle diagonals; do
+  "$abbe" simulate "$out/map.toml" --test "$test" --corrected --json "$out/simulate_$test.json" --quiet
+done
 
 # What the rig knows: the same circle by a grid encoder without noise.
 sed 's/^reference_um = .*/reference_um = 0.0001/' "$demo" >"$out/rig/exact.toml"

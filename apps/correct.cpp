@@ -20,7 +20,7 @@ namespace {
 
 struct CorrectCommand {
   MapOption map;
-  std::filesystem::path from, out;
+  std::filesystem::path from, out, json;
   std::vector<double> work_offset_mm = {0.0, 0.0, 0.0};
   std::vector<double> start_mm;
   double chord_um = 1.0;
@@ -40,10 +40,30 @@ std::filesystem::path OutOf(const CorrectCommand& options) {
   return out;
 }
 
-void CorrectCsv(const CorrectCommand& options, const compensation::Corrector& corrector) {
+nlohmann::ordered_json ResultOf(const CorrectCommand& options, const map::ErrorMap& map,
+                                std::string_view kind, double largest) {
+  return {{"abbe", ABBE_VERSION},
+          {"command", "correct"},
+          {"kind", kind},
+          {"machine", map.origin().machine},
+          {"chain", map.model().chain().Text()},
+          {"map", options.map.path.filename()},
+          {"scale", map.Scale()},
+          {"from", options.from.filename()},
+          {"out", OutOf(options).filename()},
+          {"largest_um", largest * 1e6}};
+}
+
+void CorrectCsv(const CorrectCommand& options, const map::ErrorMap& map,
+                const compensation::Corrector& corrector) {
   const auto table =
       compensation::CorrectTable(map::ReadWhole(options.from), options.from.string(), corrector);
   WriteText(table.text, OutOf(options));
+  if (!options.json.empty()) {
+    auto result = ResultOf(options, map, "table", table.largest);
+    result["rows"] = table.rows;
+    WriteResult(result, options.json);
+  }
   if (options.quiet) return;
   fmt::print("{}: {} positions, corrected by up to {:.3g} um\n", OutOf(options).string(),
              table.rows, table.largest * 1e6);
@@ -88,8 +108,17 @@ void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
   if (!options.start_mm.empty()) nc.start = VectorOf(options.start_mm);
   compensation::NcCorrection correction(corrector, nc);
   StreamProgram(options, correction);
-  if (options.quiet) return;
   const auto& counts = correction.counts();
+  if (!options.json.empty()) {
+    auto result = ResultOf(options, map, "program", counts.largest);
+    result.update({{"lines", counts.lines},
+                   {"moves", counts.moves},
+                   {"corrected", counts.corrected},
+                   {"line_mm", nc.limits.length * 1e3},
+                   {"chord_um", options.chord_um}});
+    WriteResult(result, options.json);
+  }
+  if (options.quiet) return;
   fmt::print("{}: {} lines, {} moves written as {}, corrected by up to {:.3g} um\n",
              OutOf(options).string(), counts.lines, counts.moves, counts.corrected,
              counts.largest * 1e6);
@@ -104,7 +133,7 @@ int Correct(const CorrectCommand& options) {
     throw InputError(options.from.string() + ": would be overwritten; choose another --out");
   }
   if (options.from.extension() == ".csv") {
-    CorrectCsv(options, corrector);
+    CorrectCsv(options, map, corrector);
   } else {
     CorrectProgram(options, map, corrector);
   }
@@ -138,6 +167,7 @@ void AddCorrect(CLI::App& program, int& exit_code) {
       ->add_option("--length-mm", options->length_mm,
                    "Longest line (so that it strays from the map by at most 0.1 um)")
       ->check(CLI::PositiveNumber);
+  command->add_option("--json", options->json, "What was corrected, as data");
   command->add_flag("--quiet", options->quiet, "Print nothing but warnings");
   command->footer("Example: abbe correct out/map.toml part.ngc --work-offset 30,30,20");
   command->callback([options, &exit_code] { exit_code = Correct(*options); });

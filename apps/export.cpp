@@ -22,10 +22,16 @@ struct ExportCommand {
   bool quiet = false;
 };
 
-nlohmann::ordered_json ResultOf(const ExportCommand& options, const map::Export& done) {
+nlohmann::ordered_json ResultOf(const ExportCommand& options, const map::ErrorMap& map,
+                                const map::Export& done) {
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
   for (const auto& file : done.files) files.push_back(file.string());
-  return {{"format", options.format},
+  return {{"abbe", ABBE_VERSION},
+          {"command", "export"},
+          {"machine", map.origin().machine},
+          {"chain", map.model().chain().Text()},
+          {"map", options.map.path.filename()},
+          {"format", options.format},
           {"files", files},
           {"drops", map::FormatNamed(options.format).drops},
           {"largest_difference_um", done.discrepancy.largest * 1e6},
@@ -57,7 +63,7 @@ int RunExport(const ExportCommand& options) {
   const map::Export done =
       map::ExportMap(map, format, {PointsOf(options.points), options.map.Tool(map)}, out);
   if (!options.quiet) Print(format, done);
-  if (!options.json.empty()) WriteResult(ResultOf(options, done), options.json);
+  if (!options.json.empty()) WriteResult(ResultOf(options, map, done), options.json);
   return kDone;
 }
 

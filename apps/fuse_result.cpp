@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "apps/map_json.h"
 #include "apps/parameters_json.h"
 
 namespace abbe::apps {
@@ -55,8 +56,10 @@ std::string RunTable(const fusion::FuseReport& report,
 
 ordered_json FuseJson(const fusion::FuseReport& report,
                       const std::vector<simulation::SimulatedRun>& runs) {
-  ordered_json json;
-  json["machine"] = report.map.origin().machine;
+  ordered_json json{{"abbe", ABBE_VERSION},
+                    {"command", "fuse"},
+                    {"machine", report.map.origin().machine},
+                    {"chain", report.map.model().chain().Text()}};
   json["scale"] = {{"value_ppm", report.scale.value / kMicro},
                    {"u_ppm", report.scale.u / kMicro},
                    {"prior_ppm", report.scale.prior / kMicro},
@@ -89,6 +92,7 @@ ordered_json FuseJson(const fusion::FuseReport& report,
         report.runs[static_cast<std::size_t>(report.contradicting)].name);
   }
   json["parameters"] = ParametersJson(report.fit);
+  json["map"] = MapJson(report.map);
   return json;
 }
 

@@ -92,7 +92,14 @@ int Simulate(const SimulateCommand& options) {
     Print(before, after);
   }
   if (!options.json.empty()) {
-    nlohmann::ordered_json result = {{"test", options.test}, {"as_is", FiguresOf(before)}};
+    nlohmann::ordered_json result = {{"abbe", ABBE_VERSION},
+                                     {"command", "simulate"},
+                                     {"machine", map.origin().machine},
+                                     {"chain", map.model().chain().Text()},
+                                     {"map", options.map.path.filename()},
+                                     {"scale", map.Scale()},
+                                     {"test", options.test},
+                                     {"as_is", FiguresOf(before)}};
     if (options.corrected) result["corrected_95"] = FiguresOf(after);
     WriteResult(result, options.json);
   }

@@ -1,5 +1,4 @@
-// Blocks per second of the NC correction, and points per second of the map on a grid, on one core.
-// Targets: 1 million blocks/s, 30 million points/s.
+// Blocks per second of the NC correction on one core, G1 lines of 0.6 mm. Target: 1 million/s.
 #include "compensation/nc_correction.h"
 
 #include <benchmark/benchmark.h>
@@ -10,7 +9,7 @@
 #include <vector>
 
 #include "machine/configurations.h"
-#include "map/map_grid.h"
+#include "map/error_map.h"
 
 namespace {
 
@@ -50,23 +49,7 @@ void ShortLines(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * 1000);
 }
 
-void GridPoints(benchmark::State& state) {
-  const map::MapGrid grid = map::SampleGrid(Column(), Vector3d::Zero(), {51, 51, 51});
-  std::vector<Vector3d> places;
-  for (int i = 0; i < 4096; ++i) {
-    places.push_back(kTravel / 2 *
-                     Vector3d(1 + std::sin(1.1 * i), 1 + std::sin(2.1 * i), 1 + std::sin(3.1 * i)));
-  }
-  for (auto _ : state) {
-    Vector3d sum = Vector3d::Zero();
-    for (const Vector3d& place : places) sum += grid.Error(place);
-    benchmark::DoNotOptimize(sum.data());
-  }
-  state.SetItemsProcessed(state.iterations() * 4096);
-}
-
 BENCHMARK(ShortLines);
-BENCHMARK(GridPoints);
 
 }  // namespace
 

@@ -1,12 +1,14 @@
-// Points per second of the volumetric error on one core: exact, and with all derivatives.
-// bench/volumetric_numpy.py runs this program and SciPy in one run on the same machine, and holds
-// the mean error (the counter mean_um) of the two against each other. Target: 5 million points/s.
+// Points per second of the volumetric error on one core: exact, with all derivatives, and between
+// the points of a grid. bench/volumetric_numpy.py runs this program and SciPy in one run on the same
+// machine, and holds the mean error (the counter mean_um) of the two against each other. Targets: 5
+// million points/s exact, 30 million points/s and ten times SciPy on the grid.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 
 #include "machine/configurations.h"
-#include "machine/volumetric_model.h"
+#include "machine/volumetric_field.h"
+#include "map/map_grid.h"
 
 namespace {
 
@@ -43,11 +45,11 @@ Eigen::Matrix3Xd Positions() {
 }
 
 void Exact(benchmark::State& state) {
-  const VolumetricModel model = Column();
+  const VolumetricField field(Column());
   const Eigen::Matrix3Xd positions = Positions();
   Eigen::Matrix3Xd errors;
   for (auto _ : state) {
-    errors = model.Errors(positions, kTool);
+    errors = field.Errors(positions, kTool);
     benchmark::DoNotOptimize(errors.data());
   }
   state.SetItemsProcessed(state.iterations() * kPoints);
@@ -65,8 +67,21 @@ void WithDerivatives(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * kPoints);
 }
 
+void OnGrid(benchmark::State& state) {
+  const abbe::map::MapGrid grid = abbe::map::SampleGrid({{}, Column(), {}}, kTool, {51, 51, 51});
+  const Eigen::Matrix3Xd positions = Positions();
+  Eigen::Matrix3Xd errors(3, kPoints);
+  for (auto _ : state) {
+    for (Eigen::Index i = 0; i < kPoints; ++i) errors.col(i) = grid.Error(positions.col(i));
+    benchmark::DoNotOptimize(errors.data());
+  }
+  state.SetItemsProcessed(state.iterations() * kPoints);
+  state.counters["mean_um"] = 1e6 * errors.mean();
+}
+
 BENCHMARK(Exact);
 BENCHMARK(WithDerivatives);
+BENCHMARK(OnGrid);
 
 }  // namespace
 

@@ -21,7 +21,7 @@ constexpr int kMostSteps = 50;
 }  // namespace
 
 Corrector::Corrector(const machine::VolumetricModel& model, const Vector3d& p_TQ)
-    : model_(model), p_TQ_(p_TQ), signs_(map::AxisSigns(model.chain())) {}
+    : field_(model), p_TQ_(p_TQ), signs_(map::AxisSigns(model.chain())) {}
 
 Vector3d Corrector::Command(const Vector3d& wanted) const {
   Vector3d command = wanted - Offset(wanted);

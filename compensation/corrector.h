@@ -22,6 +22,7 @@
 
 #include <Eigen/Core>
 
+#include "machine/volumetric_field.h"
 #include "map/error_map.h"
 
 namespace abbe::compensation {
@@ -38,10 +39,10 @@ class Corrector {
 
  private:
   Eigen::Vector3d Offset(const Eigen::Vector3d& position) const {
-    return signs_.cwiseProduct(model_.Error(position, p_TQ_));
+    return signs_.cwiseProduct(field_.Error(position, p_TQ_));
   }
 
-  machine::VolumetricModel model_;
+  machine::VolumetricField field_;
   Eigen::Vector3d p_TQ_, signs_;
 };
 

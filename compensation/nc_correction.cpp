@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "failure/failure.h"
@@ -60,22 +59,27 @@ void AppendBlank(std::string& out) {
   if (!out.empty() && out.back() != '\n') out += ' ';
 }
 
-// `units` of 10^-decimals, e.g. 12500000 with 6 decimals as "12.5".
+// `units` of 10^-decimals, e.g. 12500000 with 6 decimals as "12.5". From the last digit on.
 void AppendFixed(std::int64_t units, int decimals, std::string& out) {
-  if (units < 0) out += '-';
-  const auto digits = static_cast<std::uint64_t>(units < 0 ? -units : units);
-  std::uint64_t scale = 1;
-  for (int i = 0; i < decimals; ++i) scale *= 10;
-  std::array<char, 24> whole;
-  const auto end = std::to_chars(whole.data(), whole.data() + whole.size(), digits / scale).ptr;
-  out.append(whole.data(), end);
-  std::uint64_t rest = digits % scale;
-  if (rest == 0) return;
-  out += '.';
-  for (scale /= 10; rest != 0; scale /= 10) {
-    out += static_cast<char>('0' + rest / scale);
-    rest %= scale;
+  std::array<char, 32> text;
+  char* const end = text.data() + text.size();
+  char* begin = end;
+  auto digits = static_cast<std::uint64_t>(units < 0 ? -units : units);
+  const auto take_digit = [&] {
+    const char digit = static_cast<char>('0' + digits % 10);
+    digits /= 10;
+    return digit;
+  };
+  for (int i = 0; i < decimals; ++i) {
+    const char digit = take_digit();
+    if (begin != end || digit != '0') *--begin = digit;
   }
+  if (begin != end) *--begin = '.';
+  do {
+    *--begin = take_digit();
+  } while (digits != 0);
+  if (units < 0) *--begin = '-';
+  out.append(begin, end);
 }
 
 }  // namespace

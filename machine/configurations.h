@@ -28,7 +28,7 @@ inline constexpr std::array<Configuration, 7> kConfigurations = {{
     {"fixed-horizontal-arm", "[w X b Z Y t]"},
 }};
 
-// The chain of a configuration. InputError lists the names.
-Chain ChainOf(std::string_view configuration);
+// "gantry" or "[w b Y X Z t]". InputError for an unknown name tells the nearest, and all.
+Chain ChainOf(std::string_view chain);
 
 }  // namespace abbe::machine

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "failure/failure.h"
+#include "machine/configurations.h"
 
 namespace abbe::machine {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 Chain ReadChain(const settings::Table& root) {
   const std::string text = root.Text("chain");
   try {
-    return Chain::Parse(text);
+    return ChainOf(text);
   } catch (const InputError& error) {
     throw root.Error("chain", error.what());
   }

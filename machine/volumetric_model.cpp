@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "machine/volumetric_field.h"
 #include "machine/volumetric_jacobian.h"
 
 namespace abbe::machine {
@@ -123,11 +124,7 @@ Vector3d VolumetricModel::Error(const Vector3d& position, const Vector3d& p_TQ) 
 
 Eigen::Matrix3Xd VolumetricModel::Errors(const Eigen::Matrix3Xd& positions,
                                          const Vector3d& p_TQ) const {
-  Eigen::Matrix3Xd errors(3, positions.cols());
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-    errors.col(i) = Error(positions.col(i), p_TQ);
-  }
-  return errors;
+  return VolumetricField(*this).Errors(positions, p_TQ);
 }
 
 VolumetricModel::Linearized VolumetricModel::Linearize(const Vector3d& position,

@@ -8,6 +8,7 @@
 
 #include "failure/failure.h"
 #include "machine/machine.h"
+#include "machine/volumetric_field.h"
 
 namespace abbe::map {
 namespace {
@@ -25,7 +26,7 @@ double Halton(int index, int base) {
 
 class Comparison {
  public:
-  Comparison(const ErrorMap& map, Vector3d p_TQ) : map_(map), p_TQ_(std::move(p_TQ)) {}
+  Comparison(const ErrorMap& map, Vector3d p_TQ) : map_(map.model()), p_TQ_(std::move(p_TQ)) {}
 
   void Add(const Vector3d& position, const Vector3d& other) {
     const Vector3d error = map_.Error(position, p_TQ_);
@@ -46,7 +47,7 @@ class Comparison {
   }
 
  private:
-  const ErrorMap& map_;
+  machine::VolumetricField map_;
   Vector3d p_TQ_;
   Discrepancy result_;
   double squares_ = 0.0;
@@ -116,16 +117,13 @@ MapGrid SampleGrid(const ErrorMap& map, const Vector3d& p_TQ, const std::array<I
   }
   const Index points = counts[0] * counts[1] * counts[2];
   const MapGrid places(axes, Eigen::Matrix3Xd::Zero(3, points), {});
-  Eigen::Matrix3Xd error(3, points), u95;
+  Eigen::Matrix3Xd positions(3, points), u95;
+  for (Index i = 0; i < points; ++i) positions.col(i) = places.Position(i);
   if (map.StatesUncertainty()) u95.resize(3, points);
-  for (Index i = 0; i < points; ++i) {
-    const Vector3d position = places.Position(i);
-    error.col(i) = map.Error(position, p_TQ);
-    if (map.StatesUncertainty()) {
-      u95.col(i) = kCoverage * map.StandardUncertainty(position, p_TQ);
-    }
+  for (Index i = 0; i < u95.cols(); ++i) {
+    u95.col(i) = kCoverage * map.StandardUncertainty(positions.col(i), p_TQ);
   }
-  return {axes, std::move(error), std::move(u95)};
+  return {axes, map.model().Errors(positions, p_TQ), std::move(u95)};
 }
 
 Discrepancy Compare(const ErrorMap& map, const Vector3d& p_TQ, const ErrorField& field,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <vector>
 
 namespace abbe::rig {
@@ -13,8 +14,20 @@ using settings::Table;
 
 constexpr std::array<const char*, kAxes> kAxisNames = {"X", "Y", "Z"};
 
+// Machines that a file may call by name.
+const std::map<std::string, std::string, std::less<>> kNamedChains = {
+    {"column", "wXYbZt"},
+    {"moving-bridge", "wbYXZt"},
+    {"gantry", "wbYXZt"},
+    {"l-shaped-bridge", "wbYXZt"},
+    {"fixed-bridge", "wYbXZt"},
+    {"moving-horizontal-arm", "wbXZYt"},
+    {"fixed-horizontal-arm", "wXbZYt"},
+};
+
 // The letters of "[w X Y b Z t]" without blanks, primes and spindles in parentheses.
 std::string ChainLetters(const std::string& text) {
+  if (const auto named = kNamedChains.find(text); named != kNamedChains.end()) return named->second;
   std::string letters;
   bool spindle = false;
   for (const char letter : text) {
@@ -36,8 +49,10 @@ void ReadChain(const Table& root, RigSettings& rig) {
   std::sort(axes.begin(), axes.end());
   if (letters.size() != 6 || letters.front() != 'w' || letters.back() != 't' ||
       bed == std::string::npos || axes != "XYZ") {
-    throw root.Error("chain",
-                     "must hold w, then X, Y, Z and b in any order, then t: \"[w X Y b Z t]\"");
+    throw root.Error(
+        "chain",
+        "must hold w, then X, Y, Z and b in any order, then t: \"[w X Y b Z t]\", or the "
+        "name of a configuration");
   }
   rig.workpiece_axes = letters.substr(1, bed - 1);
   rig.tool_axes = letters.substr(bed + 1, letters.size() - bed - 2);

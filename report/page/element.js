@@ -99,11 +99,31 @@ function toggles(label, items, changed) {
   return {row, on};
 }
 
+// A row of buttons of which one is on. items: [{key, label}], the first is on at the start;
+// `changed` gets the key that is on.
+function choiceRow(label, items, changed) {
+  const buttons = items.map(
+      ({label: text}, index) => element('button', {type: 'button', class: 'toggle'}, text));
+  const press = (chosen) => buttons.forEach(
+      (button, index) => button.setAttribute('aria-pressed', String(index === chosen)));
+  press(0);
+  buttons.forEach((button, index) => button.addEventListener('click', () => {
+    press(index);
+    changed(items[index].key);
+  }));
+  return element('div', {class: 'toggles', role: 'group', 'aria-label': label}, buttons);
+}
+
 // A slider over a list of values, with the value of the moment beside it.
 function sliderRow({label, values, at, text}, changed) {
   const shown = element('output', {}, text(values[at]));
   const input = element('input', {
-    type: 'range', min: 0, max: values.length - 1, step: 1, value: at, 'aria-label': label,
+    type: 'range',
+    min: 0,
+    max: values.length - 1,
+    step: 1,
+    value: at,
+    'aria-label': label,
     'aria-valuetext': text(values[at])
   });
   input.addEventListener('input', () => {

@@ -143,12 +143,14 @@ function connectPrinting() {
   });
 }
 
-// Panels side by side under one heading, with toggles that say what all of them show, and a slider
-// whose value all of them take. panels: makeFigure's argument, with draw(colours, shown, amount).
-function figureGroup({title, intro, items = [], slider = null, panels}) {
+// Panels side by side under one heading, with toggles that say what all of them show, a choice of
+// one among several things, and a slider whose value all of them take. panels: makeFigure's
+// argument, with draw(colours, shown, amount, chosen).
+function figureGroup({title, intro, items = [], choices = [], slider = null, panels}) {
   const redraw = () => made.forEach((figure) => figure.redraw());
   let shown = new Set();
   let amount = slider?.values[slider.at];
+  let chosen = choices[0]?.key;
   const bar = items.length ? toggles(`Shown in ${title}`, items, (on) => {
     shown = on;
     redraw();
@@ -158,10 +160,15 @@ function figureGroup({title, intro, items = [], slider = null, panels}) {
     amount = value;
     redraw();
   }) : null;
+  const choice = choices.length ? choiceRow(`Component in ${title}`, choices, (key) => {
+    chosen = key;
+    redraw();
+  }) : null;
   const made = panels.map(
-      (panel) => makeFigure({...panel, draw: (colours) => panel.draw(colours, shown, amount)}));
+      (panel) =>
+          makeFigure({...panel, draw: (colours) => panel.draw(colours, shown, amount, chosen)}));
   return element(
       'section', {class: 'group'}, element('h3', {}, title),
-      intro ? element('p', {class: 'intro'}, intro) : null, bar?.row, row,
+      intro ? element('p', {class: 'intro'}, intro) : null, bar?.row, choice, row,
       element('div', {class: 'panels'}, made.map((figure) => figure.node)));
 }

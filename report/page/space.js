@@ -5,9 +5,9 @@ const ISOMETRIC = [
   [Math.sqrt(3) / 2, -0.5], [Math.sqrt(3) / 2, 0.5], [0, 1]
 ];  // where the axes point: to the right and near, to the right and far, up
 
-const isometric = (lists) => [0, 1].map(
+const isometric = (lists, view = ISOMETRIC) => [0, 1].map(
     (row) => lists[0].map(
-        (unused, i) => lists.reduce((sum, list, axis) => sum + list[i] * ISOMETRIC[axis][row], 0)));
+        (unused, i) => lists.reduce((sum, list, axis) => sum + list[i] * view[axis][row], 0)));
 
 // The middle of the nominal path, and the largest distance to it, in m.
 function spaceExtent(paths) {
@@ -36,12 +36,12 @@ function spacePath({name, position, deviation}, middle, amount, line) {
 }
 
 // Three short arrows that say where the axes point.
-function spaceAxes(axes, span, colours) {
+function spaceAxes(axes, span, colours, view = ISOMETRIC) {
   const [ax, ay] = [-0.8 * span, -0.8 * span];
   return axes
       .map((name, axis) => ({
-             x: ax + 0.16 * span * ISOMETRIC[axis][0],
-             y: ay + 0.16 * span * ISOMETRIC[axis][1],
+             x: ax + 0.16 * span * view[axis][0],
+             y: ay + 0.16 * span * view[axis][1],
              ax,
              ay,
              axref: 'x',
@@ -52,8 +52,8 @@ function spaceAxes(axes, span, colours) {
              arrowsize: 0.8,
            }))
       .concat(axes.map((name, axis) => ({
-                         x: ax + 0.23 * span * ISOMETRIC[axis][0],
-                         y: ay + 0.23 * span * ISOMETRIC[axis][1],
+                         x: ax + 0.23 * span * view[axis][0],
+                         y: ay + 0.23 * span * view[axis][1],
                          text: name,
                          showarrow: false,
                          font: {size: 12, color: colours.muted},

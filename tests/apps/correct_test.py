@@ -4,6 +4,7 @@ the second, made by a machine with the errors (NumPy, map_machine.py), are the m
 
     ABBE=path/to/abbe correct_test.py
 """
+import json
 import os
 import pathlib
 import re
@@ -115,8 +116,11 @@ class CorrectTest(unittest.TestCase):
     def test_a_corrected_program_is_made_to_its_last_digit(self):
         machine = MapMachine(5)
         (self.folder / "a.nc").write_text("G0 X10 Y20 Z30\nG1 X50 Y40 Z35 F100\n")
-        done = self.correct(machine, "a.nc")
+        done = self.correct(machine, "a.nc", "--json", self.folder / "a.json")
         self.assertEqual(done.returncode, 0, done.stderr)
+        result = json.loads((self.folder / "a.json").read_text())
+        self.assertEqual([result[key] for key in ("command", "kind", "out", "lines", "moves")],
+                         ["correct", "program", "a_corrected.nc", 2, 2])
         last = (self.folder / "a_corrected.nc").read_text().splitlines()[-1]
         command = np.array([float(word[1:]) for word in last.split()])
         self.assertLess(np.abs(1e3 * machine.made(1e-3 * command) - (50, 40, 35)).max(), 0.6e-6)

@@ -7,6 +7,8 @@ import json
 import pathlib
 import unittest
 
+import numpy as np
+
 from program_case import MACHINE, ProgramCase
 
 
@@ -25,6 +27,22 @@ class FuseTest(ProgramCase):
         volume = make("volume.csv", "--course", "cube", "--size", "58,58,58", "--points", "5,5,5",
                       "--dwell", 0.1, "--feed", 6000)
         return [*sweeps, volume, make("line.csv", "--length", "X")]
+
+    def same_as_the_table(self, result, table):
+        """The map in the result is that of `abbe export`: x_mm,y_mm,z_mm, errors and U95 in um."""
+        self.assertEqual((result["command"], result["chain"]), ("fuse", "[w X Y b Z t]"))
+        rows = np.array([line.split(",") for line in table.read_text().splitlines()
+                         if line[0] not in "#x"], float)
+        grid = result["map"]["grid"]
+        z, y, x = np.meshgrid(grid["z"], grid["y"], grid["x"], indexing="ij")
+        ours = np.array([x.ravel() * 1e3, y.ravel() * 1e3, z.ravel() * 1e3,
+                         *(1e6 * np.array(grid["error"])), *(1.96e6 * np.array(grid["u"]))]).T
+        np.testing.assert_allclose(ours, rows[:, :9], rtol=1e-4, atol=1e-5)
+        errors = result["map"]["errors"]
+        self.assertEqual(len(errors), 21)
+        for name, error in errors.items():
+            self.assertEqual(np.ravel(error["value"]).shape, np.ravel(error["u"]).shape, name)
+            self.assertGreater(np.max(error["u"]), 0.0, name)
 
     def test_a_campaign_becomes_a_map(self):
         runs = self.record()
@@ -45,7 +63,8 @@ class FuseTest(ProgramCase):
             off = parameter["value"] - 1e6 * truth["squareness"][name]
             self.assertLess(abs(off), 4 * parameter["uncertainty"], parameter)
             self.assertLess(parameter["uncertainty"], 4.0)  # 30 urad before the data
-        self.done(map_file, "--format", "csv", command="export")
+        self.done(map_file, "--format", "csv", "--points", 11, command="export")
+        self.same_as_the_table(result, map_file.with_suffix(".csv"))
 
         without = self.path / "without.json"
         text = self.done(*runs[:4], "--machine", self.machine, "-o", map_file, "--json", without)

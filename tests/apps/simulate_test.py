@@ -32,6 +32,8 @@ class SimulateTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("corrected (95 %)", done.stdout)
         result = json.loads(out.read_text())
+        self.assertEqual([result[key] for key in ("command", "machine", "map", "test")],
+                         ["simulate", "numpy-mill", "map.toml", "length"])
         ends = np.array([(0.0006, 0.03, 0.03), (0.0594, 0.03, 0.03)])
         made = np.array([self.machine.made(end) for end in ends])
         expected = 1e6 * (np.linalg.norm(made[1] - made[0]) - np.linalg.norm(ends[1] - ends[0]))

@@ -48,6 +48,18 @@ TEST(Machine, IsReadInSi) {
   EXPECT_DOUBLE_EQ(machine.population.smoothness, 0.015);
 }
 
+TEST(Machine, AConfigurationStandsForItsChain) {
+  const auto chain = [](const std::string& given) {
+    const std::string text = Replaced(kSmall, "[w X Y b Z t]", given);
+    return ReadMachine(settings::Document::Parse(text, "small.toml").Root()).chain.Text();
+  };
+  EXPECT_EQ(chain("fixed-bridge"), "[w Y b X Z t]");
+  EXPECT_EQ(chain("[w Y b X Z t]"), "[w Y b X Z t]");
+  ExpectRefusal(Replaced(kSmall, "[w X Y b Z t]", "fixed-brigde"),
+                "small.toml:3: chain: \"fixed-brigde\" is no machine configuration; did you mean "
+                "\"fixed-bridge\"?");
+}
+
 TEST(Machine, RefusesBadValuesWithFileLineAndKey) {
   ExpectRefusal(Replaced(kSmall, "b Z t", "Z t"), "small.toml:3: chain: ");
   ExpectRefusal(Replaced(kSmall, "[0.0, 60.0]", "[60.0, 0.0]"), "small.toml:6: axis.X.travel_mm: ");

@@ -124,12 +124,13 @@ TEST(Configurations, AreSevenAndEachHasItsChain) {
   EXPECT_EQ(ChainOf("fixed-horizontal-arm").Text(), "[w X b Z Y t]");
 }
 
-TEST(Configurations, AnUnknownNameListsTheKnownOnes) {
+TEST(Configurations, AnUnknownNameIsToldTheNearestAndAll) {
   try {
-    ChainOf("portal");
+    ChainOf("gandry");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("\"portal\""));
+    EXPECT_THAT(error.what(), testing::HasSubstr("\"gandry\" is no machine configuration"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("did you mean \"gantry\"?"));
     EXPECT_THAT(error.what(), testing::HasSubstr("column, moving-bridge, gantry"));
   }
 }

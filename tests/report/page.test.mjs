@@ -8,7 +8,7 @@ import {after, before, test} from 'node:test';
 import {pathToFileURL} from 'node:url';
 
 import {openBrowser} from './browser.mjs';
-import {BACKLASH, BOW, writeSamples} from './sample_results.mjs';
+import {BACKLASH, BOW, LIFT, STRETCH, writeSamples} from './sample_results.mjs';
 
 const program = resolve(process.argv[2]);
 const work = resolve(process.argv[3]);
@@ -79,7 +79,9 @@ test(
       assert.equal(titles.length, sample_names.length);
       assert.deepEqual(titles, [
         'X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning', 'Circular test, XY plane',
-        'Square path', 'Calibration of the linkage', 'rig-compare \u00b7 X'
+        'Square path', 'Calibration of the linkage', 'Error map',
+        'Performance simulation: circle', 'Corrected program: part_corrected.ngc', 'Export: isg',
+        'rig-compare \u00b7 X'
       ]);
       assert.equal(await page.title(), 'Geometric errors of demo-mill');
       assert.equal(await page.locator('nav a').count(), sample_names.length + 1);
@@ -95,7 +97,7 @@ test(
 
 test('files that are no results are named', () => withPage({}, async (page) => {
                                               const note =
-                                                  await page.locator('[role=note]').textContent();
+                                                  await page.locator('#overview [role=note]').textContent();
                                               assert.match(note, /cut_short\.json/);
                                               assert.match(note, /package\.json/);
                                             }));
@@ -108,13 +110,14 @@ test(
               (plot) => ({
                 about: plot.getAttribute('aria-label'),
                 traces: plot.data.filter((trace) => trace.x.length > 0).length,
-                drawn: plot.querySelectorAll('.scatterlayer .trace, .barlayer .trace').length,
+                drawn: plot.querySelectorAll('.scatterlayer .trace, .barlayer .trace, .hm').length,
                 height: plot.getBoundingClientRect().height,
               })));
       // Three whole sweeps of 5 + 2 + 2 + 1 + 2 panels, one early one with its roll, one
       // positioning test, polar plot, space and harmonics of two circles, one square, residuals
-      // before and after and the cells of a calibration.
-      assert.equal(figures.length, 3 * 12 + 1 + 1 + 2 * 3 + 1 + 3);
+      // before and after and the cells of a calibration; a map in space, its slices and their
+      // uncertainty, 18 functions and the squarenesses; a performance simulation.
+      assert.equal(figures.length, 3 * 12 + 1 + 1 + 2 * 3 + 1 + 3 + (1 + 6 + 19) + 1);
       for (const {about, traces, drawn, height} of figures) {
         assert.ok(about.length > 20, about);
         assert.ok(traces > 0 && drawn >= traces, about);
@@ -255,6 +258,91 @@ test(
       // Pairs of ends and a gap; the last cell is lifted by 2 um, which points up.
       assert.ok(Math.abs(stems.at(-2) - stems.at(-3) - 2) < 1e-9, String(stems.slice(-3)));
       assert.ok(Math.abs(stems[1] - stems[0]) < 1e-9);
+    }));
+
+const mapSection = (page) =>
+    page.locator('section.result', {has: page.locator('h2', {hasText: 'Error map'})});
+
+test(
+    'a map says loudly what it does not know and which run contradicts',
+    () => withPage({}, async (page) => {
+      const section = mapSection(page);
+      const note = await section.locator('.note').textContent();
+      assert.match(note, /CONTRADICTION: sweep_X\.csv .*chi-square 40\.2 of 12/);
+      assert.match(note, /SCALE: PRIOR ONLY\..*20.ppm/);
+      assert.match(note, /nothing measured ECX, ECY and ECZ/);
+      const runs = section.locator('table', {hasText: 'does each fit'});
+      // 4988.2 / 4900, and 1 -+ 2 sqrt(2 / 4900).
+      assert.match(await runs.textContent(), /1\.0180\.96 to 1\.04/);
+      assert.match(
+          await section.locator('table', {hasText: 'What determined'})
+              .locator('tr', {hasText: 'ECX'})
+              .textContent(),
+          /PRIOR ONLY/);
+      // The corner that lies furthest: 6 um of stretch and 5 um of lift.
+      assert.match(await section.locator('.summary').textContent(), /up to 7\.81/);
+    }));
+
+test(
+    'the arrows of a map follow magnification and component',
+    () => withPage({}, async (page) => {
+      const group = mapSection(page).locator('section.group', {hasText: 'over the volume'}).first();
+      await group.getByRole('slider', {name: 'Magnification'}).fill('6');  // 1000
+      const last = () => group.locator('.plot').evaluate((div) => {
+        const {x, y} = div.data.find((trace) => trace.name === 'error');
+        return [x.at(-2) - x.at(-3), y.at(-2) - y.at(-3)];
+      });
+      const [dx, dz] = [0.06 * STRETCH * 1e6, LIFT * 1e6];  // mm, magnified
+      const isNear = ([x, y], [to_x, to_y]) =>
+          assert.ok(Math.hypot(x - to_x, y - to_y) < 1e-9, `${x} ${y} ${to_x} ${to_y}`);
+      isNear(await last(), [-0.906 * dx, 0.198 * dx + 0.883 * dz]);
+      await group.getByRole('button', {name: 'Z', exact: true}).click();
+      isNear(await last(), [0, 0.883 * dz]);
+      assert.equal(
+          await group.getByRole('button', {name: 'All three'}).getAttribute('aria-pressed'),
+          'false');
+    }));
+
+test(
+    'a slice shows its component at its place',
+    () => withPage({}, async (page) => {
+      const group = mapSection(page).locator('section.group', {hasText: 'Slices'}).first();
+      await group.getByRole('button', {name: 'X', exact: true}).click();
+      await group.getByRole('slider', {name: 'Through'}).fill('10');
+      assert.match(await group.locator('output').textContent(), /X.60, Y.60, Z.60.mm/);
+      const slices = await group.locator('.plot').evaluateAll(
+          (plots) => plots.map((plot) => ({z: plot.data[0].z, most: plot.data[0].zmax})));
+      assert.equal(slices.length, 6);
+      const [xy, yz, zx] = slices;  // rows go up, columns across
+      assert.ok(Math.abs(xy.z[3][10] - 6) < 1e-9 && xy.z[3][0] === 0);
+      assert.ok(Math.abs(yz.z[0][0] - 6) < 1e-9);
+      assert.ok(Math.abs(zx.z[10][2] - 6) < 1e-9 && zx.z[0][2] === 0);
+      assert.ok(Math.abs(xy.most - 6) < 1e-9);
+      assert.ok(Math.abs(slices[3].z[5][5] - 0.4) < 1e-9);  // U95 = 2 u
+    }));
+
+test(
+    'each of the 21 errors has its band and what determined it',
+    () => withPage({}, async (page) => {
+      const group = mapSection(page).locator('section.group', {hasText: 'The 21 errors'}).first();
+      const exx = group.locator('figure', {hasText: 'EXX'});
+      assert.match(await exx.locator('.unit').first().textContent(), /sweep/);
+      const [band, line] = await exx.locator('.plot').evaluate((div) => div.data.map(({y}) => y));
+      assert.ok(Math.abs(line.at(-1) - 6) < 1e-9);
+      assert.ok(Math.abs(Math.max(...band) - 6 - 1.2) < 1e-9);
+      assert.match(
+          await group.locator('figure', {hasText: 'ECZ'}).locator('.unit').first().textContent(),
+          /prior only/);
+    }));
+
+test(
+    'before and after of a correction stand side by side',
+    () => withPage({}, async (page) => {
+      const section = page.locator('section.result', {hasText: 'Performance simulation'});
+      assert.match(
+          await section.locator('tr', {hasText: 'G XY'}).first().textContent(), /12\.400\.80/);
+      const bars = await section.locator('.plot').evaluate((div) => div.data.map(({y}) => y));
+      assert.deepEqual(bars, [[12.4, 6.1], [0.8, 0.5]]);
     }));
 
 test(

@@ -392,6 +392,123 @@ export function calibrationResult() {
   };
 }
 
+// A map whose table goes 100 ppm too little along X, so that the tool comes too far in the workpiece,
+// and that lifts Z by 5 um over Y; known to 0.2 um a component. A sweep contradicts, and no length
+// was given.
+export const STRETCH = 1e-4;
+export const LIFT = 5e-6;
+
+export function fuseResult() {
+  const travel = Array.from({length: 11}, (unused, index) => 0.006 * index);
+  const places = travel.flatMap((z) => travel.flatMap((y) => travel.map((x) => [x, y, z])));
+  const axes = ['X', 'Y', 'Z'];
+  const functions = axes.flatMap((axis) => ['X', 'Y', 'Z', 'A', 'B', 'C'].map((motion) => [
+    `E${motion}${axis}`, {
+      unit: 'XYZ'.includes(motion) ? 'm' : 'rad',
+      from: motion === 'C' ? 'prior' : 'sweep',
+      positions: travel,
+      value: travel.map((at) => motion === axis ? STRETCH * at : 0),
+      u: travel.map((at) => 1e-5 * at),
+    }
+  ]));
+  const squareness = ['A0Z', 'B0Z', 'C0Y'].map(
+      (name, index) => [name, {unit: 'rad', value: (index + 1) * 1e-5, u: 2e-6, from: 'linkage'}]);
+  const run = (name, kind, probability) => ({
+    run: name,
+    kind,
+    rows: 5000,
+    chi2: 4988.2,
+    redundancy: 4900,
+    outliers: 3,
+    agreement: {statistic: 40.2, directions: 12, p: probability}
+  });
+  return {
+    abbe: '0.1.0',
+    command: 'fuse',
+    machine: 'demo-mill',
+    chain: '[w X Y b Z t]',
+    scale: {value_ppm: 3.1, u_ppm: 18, prior_ppm: 20, statement: 'prior only'},
+    smoothness_mm: 15,
+    observability: Object.fromEntries([...functions, ...squareness].map(([name, {from}]) => [
+      name, {prior: 2e-5, u: 1e-6, determined_by: from === 'prior' ? [] : [from]}
+    ])),
+    chi2: [run('a/sweep_X.csv', 'sweep', 1e-5), run('volume.csv', 'linkage', 0.4)],
+    contradictions: ['a/sweep_X.csv'],
+    parameters: [
+      {
+        name: 'EXX.c0', unit: 'um', value: 1, uncertainty: 0.1, nominal: 0, prior: 2,
+        seen_by: 'data'
+      },
+      {
+        name: 'base.x', unit: 'um', value: 12, uncertainty: 2, nominal: 0, prior: 100,
+        seen_by: 'data'
+      }
+    ],
+    map: {
+      tool: [0, 0, -0.08],
+      signs: [-1, -1, 1],
+      temperature_c: 20,
+      grid: {
+        x: travel,
+        y: travel,
+        z: travel,
+        error: [
+          places.map(([x]) => STRETCH * x), places.map(() => 0),
+          places.map(([, y]) => LIFT * y / 0.06)
+        ],
+        u: [0, 1, 2].map(() => places.map(() => 2e-7)),
+      },
+      errors: Object.fromEntries([...functions, ...squareness]),
+    },
+  };
+}
+
+export function simulateResult() {
+  return {
+    abbe: '0.1.0',
+    command: 'simulate',
+    machine: 'demo-mill',
+    map: 'map.toml',
+    scale: 'calibrated',
+    test: 'circle',
+    as_is: {'G XY um': 12.4, 'F_min XY um': -6.1},
+    corrected_95: {'G XY um': 0.8, 'F_min XY um': 0.5},
+  };
+}
+
+export function correctResult() {
+  return {
+    abbe: '0.1.0',
+    command: 'correct',
+    kind: 'program',
+    machine: 'demo-mill',
+    map: 'map.toml',
+    from: 'part.ngc',
+    out: 'part_corrected.ngc',
+    lines: 20,
+    moves: 15,
+    corrected: 480,
+    largest_um: 13.2,
+    line_mm: 0.9,
+    chord_um: 1
+  };
+}
+
+export function exportResult() {
+  return {
+    abbe: '0.1.0',
+    command: 'export',
+    machine: 'demo-mill',
+    map: 'map.toml',
+    format: 'isg',
+    files: ['out/map.csv'],
+    drops: 'uncertainty',
+    largest_difference_um: 0.52,
+    rms_difference_um: 0.14,
+    largest_error_um: 27
+  };
+}
+
 export function writeSamples(folder) {
   mkdirSync(folder, {recursive: true});
   const write = (name, content) => writeFileSync(join(folder, name), content);
@@ -403,6 +520,10 @@ export function writeSamples(folder) {
     'circle.json': circleResult(),
     'square.json': squareResult(),
     'linkage.json': calibrationResult(),
+    'fuse.json': fuseResult(),
+    'simulate.json': simulateResult(),
+    'correct.json': correctResult(),
+    'export.json': exportResult(),
     // A result of a later version: no section of its own, and text that tries to leave its element.
     'compare_X.json': {
       abbe: '0.1.0',

@@ -282,6 +282,8 @@ TEST(RigSettings, ReadsAnyChainOfThreeAxes) {
   EXPECT_EQ(read("[w b Y X Z t]").workpiece_axes, "");
   EXPECT_TRUE(read("[w Y b X Z t]").CarriesTarget(1));
   EXPECT_FALSE(read("[w Y b X Z t]").CarriesTarget(0));
+  EXPECT_EQ(read("moving-horizontal-arm").tool_axes, "XZY");
+  EXPECT_THROW(read("moving-arm"), InputError);
 }
 
 }  // namespace

@@ -1,0 +1,110 @@
+#include "machine/axis_motions.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace abbe::machine {
+namespace {
+
+using Eigen::Index;
+
+// Powers of t on [0, 1] lose no digits that matter up to here.
+constexpr int kMostDegree = 7;
+
+// Where a form is continuous and a polynomial between its pieces: its degree; else 0.
+int PieceDegree(const FunctionForm& form) {
+  const std::string name = form.Name();
+  if (name == "table") return 1;
+  if (name == "b-spline" || name == "polynomial") {
+    return static_cast<int>(form.Shape().at("degree").front());
+  }
+  return 0;
+}
+
+// Chebyshev's points of [0, 1] with both ends, so that the first coefficient is the value at t = 0.
+Eigen::VectorXd Nodes(int degree) {
+  Eigen::VectorXd nodes = Eigen::VectorXd::Zero(degree + 1);
+  for (Index i = 1; i <= degree; ++i) {
+    nodes[i] = (1 - std::cos(std::numbers::pi * static_cast<double>(i) / degree)) / 2;
+  }
+  return nodes;
+}
+
+// From values at the nodes to coefficients of 1, t, t^2 ...
+Eigen::MatrixXd CoefficientsOfValues(const Eigen::VectorXd& nodes) {
+  Eigen::MatrixXd powers(nodes.size(), nodes.size());
+  for (Index k = 0; k < nodes.size(); ++k) {
+    powers.col(k) = nodes.array().pow(static_cast<double>(k));
+  }
+  return powers.fullPivLu().inverse();
+}
+
+}  // namespace
+
+AxisMotions::AxisMotions(int axis, const std::array<ErrorFunction, kMotions>& functions,
+                         const Travel& travel)
+    : axis_(axis), travel_(travel), ends_{travel.first, travel.last} {
+  std::vector<std::pair<int, const ErrorFunction*>> polynomials;
+  for (int motion = 0; motion < kMotions; ++motion) {
+    const ErrorFunction& function = functions[static_cast<std::size_t>(motion)];
+    if (function.form() == nullptr) continue;
+    const int degree = PieceDegree(*function.form());
+    if (degree < 1 || degree > kMostDegree) {
+      others_.emplace_back(motion, function);
+      continue;
+    }
+    polynomials.emplace_back(motion, &function);
+    degree_ = std::max(degree_, degree);
+    const std::vector<double> pieces = function.form()->Pieces(travel.first, travel.last);
+    ends_.insert(ends_.end(), pieces.begin(), pieces.end());
+  }
+  std::sort(ends_.begin(), ends_.end());
+  ends_.erase(std::unique(ends_.begin(), ends_.end()), ends_.end());
+
+  const Eigen::VectorXd nodes = Nodes(degree_);
+  const Eigen::MatrixXd of_values = CoefficientsOfValues(nodes);
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(degree_ + 1, kMotions);
+  for (std::size_t piece = 0; piece + 1 < ends_.size(); ++piece) {
+    const double left = ends_[piece], right = ends_[piece + 1];
+    per_width_.push_back(1 / (right - left));
+    for (Index i = 0; i < nodes.size(); ++i) {
+      const double x = i == 0 ? left : i == degree_ ? right : left + nodes[i] * (right - left);
+      for (const auto& [motion, function] : polynomials) values(i, motion) = function->Evaluate(x);
+    }
+    const Eigen::MatrixXd coefficients = of_values * values;
+    coefficients_.emplace_back(values.row(0).transpose());
+    for (Index k = 1; k <= degree_; ++k)
+      coefficients_.emplace_back(coefficients.row(k).transpose());
+  }
+
+  const std::size_t cells = 2 * per_width_.size();
+  cells_per_m_ = static_cast<double>(cells) / (travel.last - travel.first);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    const double begin = travel.first + static_cast<double>(cell) / cells_per_m_;
+    const auto after = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, begin);
+    first_piece_.push_back(static_cast<std::size_t>(after - ends_.begin()) - 1);
+  }
+}
+
+std::size_t AxisMotions::PieceOf(double x) const {
+  const auto cell = static_cast<std::size_t>((x - travel_.first) * cells_per_m_);
+  std::size_t piece = first_piece_[std::min(cell, first_piece_.size() - 1)];
+  while (piece + 1 < per_width_.size() && x >= ends_[piece + 1]) ++piece;
+  return piece;
+}
+
+geometry::ErrorVector<double> AxisMotions::At(double x) const {
+  if (!(x >= travel_.first && x <= travel_.last)) x = InTravel(travel_, axis_, x);
+  const std::size_t piece = PieceOf(x);
+  const double t = (x - ends_[piece]) * per_width_[piece];
+  const auto* const c = &coefficients_[piece * static_cast<std::size_t>(degree_ + 1)];
+  geometry::ErrorVector<double> errors = c[degree_];
+  for (int k = degree_ - 1; k >= 0; --k) errors = c[k] + t * errors;
+  for (const auto& [motion, function] : others_) errors[motion] = function.Evaluate(x);
+  return errors;
+}
+
+}  // namespace abbe::machine
