@@ -15,6 +15,8 @@ enum Stream : std::uint64_t {
   kTargetStream = 0x300,          // index: three angles, three squarenesses
   kFaceStream = 0x310,            // + face: -x +x -y +y -z +z
   kLinkageStream = 0x400,         // + pivot, and one for the links, the ball and the base
+  kPlateStream = 0x500,           // index: scale, then two for each hole
+  kPlateRunStream = 0x100b0,      // + kRunStreams * run; index: pose of a set-up, then its holes
   kLengthStream = 0x100a0,        // + kRunStreams * run; index: common scale, then each length
   kNoiseStream = 0x10000,         // + kRunStreams * run + probe
   kDriftStream = 0x10008,         // + kRunStreams * run + probe
