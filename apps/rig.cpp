@@ -25,6 +25,7 @@
 #include "rig/encoder_server.h"
 #include "rig/length_campaign.h"
 #include "rig/linkage_campaign.h"
+#include "rig/plate_campaign.h"
 #include "rig/register_server.h"
 #include "rig/truth.h"
 
@@ -41,6 +42,7 @@ struct RigOptions {
   std::filesystem::path truth, ready_file, out;
   std::string start, axis, length, mounting;
   CourseRequest course;
+  bool plate = false;
   double rate = 200.0;
   std::filesystem::path truth_to_compare;
   std::vector<std::filesystem::path> results;
@@ -220,6 +222,7 @@ recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
         rig.world, options.axis.front(), rig::ChannelsOf(rig.devices),
         {.rate = options.rate, .mounting = options.mounting, .started = hal::UtcNow()});
   }
+  if (options.plate) return rig::RecordPlate(rig.world, {.run = options.course.run});
   if (!rig.linkage) {
     throw InputError(
         fmt::format("{} has no linkage to record with; add a table [linkage]", options.machine));
@@ -230,11 +233,11 @@ recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
 
 int Record(const RigOptions& options) {
   const int kinds = (options.axis.empty() ? 0 : 1) + (options.course.course.empty() ? 0 : 1) +
-                    (options.length.empty() ? 0 : 1);
+                    (options.length.empty() ? 0 : 1) + (options.plate ? 1 : 0);
   if (kinds != 1) {
     throw InputError(
         "rig record: say what to record: a sweep by --axis X, a path of the linkage by --course "
-        "circle, or calibrated lengths by --length X");
+        "circle, calibrated lengths by --length X, or a hole plate by --plate");
   }
   recording::Write(Recorded(Rig(options), options), options.out);
   fmt::print("{}\n", options.out.string());
@@ -305,6 +308,7 @@ void AddRig(CLI::App& program, int& exit_code) {
   record->add_option("--axis", options->axis, "Of the probe head: sweep X, Y or Z")->check(axis);
   record->add_option("--length", options->length, "Calibrated lengths along X, Y or Z")
       ->check(axis);
+  record->add_flag("--plate", options->plate, "A hole plate in five set-ups");
   record->add_option("--mounting", options->mounting, "For the header of a sweep");
   AddCourseOptions(*record, options->course);
   AddRecordingOptions(*record, options->course);

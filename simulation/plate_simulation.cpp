@@ -99,10 +99,6 @@ PlateSetUp Part(const PlateSetUp& all, const std::vector<Index>& of) {
   return part;
 }
 
-std::string HoleBlock(const PlateSetUp& setup, int hole) {
-  return fmt::format("plate_hole {} {}", setup.plate, hole);
-}
-
 estimation::ParameterBlock FormOf(const PlateSetUp& setup, std::size_t point) {
   const double u = setup.u_form[static_cast<Index>(point)];
   estimation::ParameterBlock block(HoleBlock(setup, setup.holes[point]), {"um", 1e-6}, {});
@@ -159,6 +155,10 @@ class PlateResidual : public estimation::Residual {
 };
 
 }  // namespace
+
+std::string HoleBlock(const PlateSetUp& setup, int hole) {
+  return fmt::format("plate_hole {} {}", setup.plate, hole);
+}
 
 std::vector<PlateSetUp> ReadPlate(const recording::Recording& recording) {
   PlateSetUp all;

@@ -51,6 +51,9 @@ struct PlateSetUp {
 // In the order of first appearance.
 std::vector<PlateSetUp> ReadPlate(const recording::Recording& recording);
 
+// The block of the form of a hole.
+std::string HoleBlock(const PlateSetUp& setup, int hole);
+
 // X_MP: where the plate lies on a machine without errors.
 geometry::Transform<double> PlatePose(const PointsOnMachine& points, const PlateSetUp& setup);
 
