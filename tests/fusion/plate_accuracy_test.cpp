@@ -113,13 +113,12 @@ TEST_F(PlateOfRig, OneSetUpLeavesTheThirdAxisToThePrior) {
   const auto program = rig::PlateProgram{.setups = {rig::FiveSetUps().front()}};
   const FuseReport report = Measure(World(), program).report;
   for (const FunctionSeen& seen : report.functions) {
-    const bool of_z = seen.name.ends_with("Z");
-    if (of_z) EXPECT_THAT(seen.determined_by, testing::IsEmpty()) << seen.name;
+    if (!seen.name.ends_with("Z")) continue;
+    EXPECT_THAT(seen.determined_by, testing::IsEmpty()) << seen.name;
   }
   EXPECT_THAT(report.functions[0].determined_by, testing::ElementsAre("plate"));
 }
 
-// One hole of a plate in one set-up, off by 20 um: the set-up is named, or the hole shrugged off.
 TEST_F(PlateOfRig, ASetUpThatMovedIsNamed) {
   auto recording = rig::RecordPlate(World().rig.world(), {});
   // Half of the third set-up was measured after the plate had slipped by 50 um.
