@@ -205,7 +205,7 @@ double HeldOut(const machine::Machine& machine, const machine::VolumetricModel& 
     VectorXd values(run.residual->Rows());
     run.residual->Evaluate(InputsOf(run, model, fit), values, nullptr);
     const std::vector<Index> rows = folds.Rows(setup, fold, true);
-    squares += setup.u_probing * setup.u_probing * values(rows).squaredNorm();
+    for (const Index row : rows) squares += std::pow(setup.u_probing * values[row], 2);
     holes += static_cast<double>(rows.size()) / 2.0;
   }
   return std::sqrt(squares / holes);

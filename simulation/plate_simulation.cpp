@@ -215,7 +215,7 @@ geometry::Transform<double> PlatePose(const PointsOnMachine& points, const Plate
 SimulatedRun SimulatePlate(const machine::VolumetricModel& model, const Vector3d& reference,
                            const PlateSetUp& setup) {
   SimulatedRun simulated{setup.points.name, "plate", model.Blocks(), nullptr,
-                         estimation::RobustLoss::Huber(kPullsNoMore)};
+                         estimation::RobustLoss::None()};
   auto& blocks = simulated.blocks;
   blocks.push_back({"plate_place " + setup.points.name, {"um", 1e-6}, {{"u"}, {"v"}}});
   blocks.push_back({"plate_turn " + setup.points.name, {"urad", 1e-6}, {{"w"}}});

@@ -21,6 +21,8 @@
 // Units: m, rad. Failure: InputError with recording and row: no u_probing_um, a set-up without tool
 // or of less than three holes that span a plane, a hole in two places of the certificate, a hole
 // that is not where the plate says; that of simulation/machine_points.h.
+// No loss: a robust one follows a plate that slipped while it was measured for a hundred passes;
+// without one its set-up is named at once (fusion/run_consistency.h).
 // Source: Ha and Khanh, "An application of neural network in calibration of coordinate measuring
 // machines" (2011), section 3. Validity: the other three numbers of the pose stay at the start, to
 // 1 mrad: 0.5 ppm of a length in the plate.

@@ -82,8 +82,9 @@ TEST(PlateAccuracy, StatesTrueUncertainties) {
   }
   for (const Pulls& pulls : diagonals) {
     fmt::print("squareness by diagonals: rms {:.2f} urad\n", std::sqrt(pulls.square.mean()));
-    // Population 30 urad: the diagonals have seen it. u of the probing alone is 4 to 5 urad.
-    EXPECT_LT(std::sqrt(pulls.square.mean()), 10.0);
+    // Population 30 urad: the diagonals have seen it. The other errors, which are taken off before,
+    // bring more than the probing.
+    EXPECT_LT(std::sqrt(pulls.square.mean()), 20.0);
   }
   one.ExpectTrueUncertainties();
 }

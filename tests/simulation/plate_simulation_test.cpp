@@ -106,8 +106,8 @@ TEST(PlateSimulation, ReadsWhatTheClosedFormsOfHaAndKhanhSay) {
       VectorXd x(model.ParameterCount() + 3), values(run.residual->Rows());
       x << model.Parameters(), off.p.head<2>(), std::atan2(off.R(1, 0), off.R(0, 0));
       run.residual->Evaluate(x, values, nullptr);
-      // Products of two errors of 20 urad, over 0.5 m: 0.2 nm; in u_probing of 1 um.
-      EXPECT_LT(values.cwiseAbs().maxCoeff(), 1e-3) << seed;
+      // A few products of two errors of 30 urad, over 0.5 m: 0.5 nm each; in u_probing of 1 um.
+      EXPECT_LT(values.cwiseAbs().maxCoeff(), 3e-3) << seed;
       x.head(model.ParameterCount()).setZero();
       run.residual->Evaluate(x, values, nullptr);
       EXPECT_GT(values.cwiseAbs().maxCoeff(), 3.0);  // the machine has errors of micrometres
