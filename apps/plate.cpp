@@ -52,8 +52,7 @@ map::ErrorMap WithNetworks(const map::ErrorMap& map,
 }
 
 int Plate(const PlateArguments& arguments) {
-  const MachineFile file = ReadMachineFile(arguments.machine);
-  const machine::Machine& machine = file.sweep_setup.machine;
+  const machine::Machine machine = ReadMachineOf(arguments.machine);
   const auto setups = ReadSetUps(arguments, machine);
   const machine::VolumetricModel model = fusion::UnknownMachine(machine);
   std::vector<simulation::SimulatedRun> runs;

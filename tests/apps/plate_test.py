@@ -108,6 +108,14 @@ class PlateTest(ProgramCase):
         self.refuse(self.path / "plain.csv", *machine, saying=["state u_probing_um"])
         self.done(table, self.path / "stated.csv", "--probing-um", 3, command="convert")
         self.done(self.path / "stated.csv", *machine)
+        # A measuring machine has neither head nor devices.
+        alone = self.path / "cmm.toml"
+        alone.write_text('name = "cmm"\nchain = "[w b Y X Z t]"\n' +
+                         "".join(f"[axis.{axis}]\ntravel_mm = [0.0, 60.0]\n" for axis in "XYZ") +
+                         "[population]\nsmoothness_mm = 30.0\n")
+        self.done(self.path / "stated.csv", "--machine", alone, "-o", self.path / "map.toml")
+        alone.write_text(alone.read_text() + "smothness_mm = 30.0\n")
+        self.refuse(self.path / "stated.csv", "--machine", alone, saying=["cmm.toml", "smothness_mm", "smoothness_mm"])
 
 
 if __name__ == "__main__":

@@ -39,7 +39,7 @@ TEST_F(HoleTable, BecomesAPlateOfOneSetUp) {
   const Recording plate = ReadText(
       "Plug Plate: 7\r\n\r\n" + kNames + " 1.5 -2.25  1.4 -2.2  .1\r\n\r\n3 4 5 6 7\r\n", 3.0);
   EXPECT_EQ(plate.Kind(), "plate");
-  EXPECT_EQ(plate.HeaderText("u_probing_um"), "3.0");
+  EXPECT_EQ(plate.HeaderText("u_probing_um"), "3");
   EXPECT_THAT(plate.At("x_mm"), ElementsAre(1.5, 3.0));
   EXPECT_THAT(plate.At("y_mm"), ElementsAre(-2.25, 4.0));
   EXPECT_THAT(plate.At("z_mm"), ElementsAre(0.0, 0.0));
