@@ -14,6 +14,7 @@ void AddReduce(CLI::App& program, int& exit_code);
 void AddCircle(CLI::App& program, int& exit_code);
 void AddPath(CLI::App& program, int& exit_code);
 void AddCalibrate(CLI::App& program, int& exit_code);
+void AddPlate(CLI::App& program, int& exit_code);
 void AddFuse(CLI::App& program, int& exit_code);
 void AddHarmonics(CLI::App& program, int& exit_code);
 void AddExport(CLI::App& program, int& exit_code);
@@ -25,6 +26,6 @@ void AddReport(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands = std::to_array<AddCommand>(
     {AddRig, AddSweep, AddRecord, AddReduce, AddCalibrate, AddCircle, AddPath, AddHarmonics,
-     AddFuse, AddExport, AddCorrect, AddSimulate, AddConvert, AddSensitivity, AddReport});
+     AddPlate, AddFuse, AddExport, AddCorrect, AddSimulate, AddConvert, AddSensitivity, AddReport});
 
 }  // namespace abbe::apps

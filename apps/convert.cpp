@@ -107,7 +107,7 @@ void AddConvert(CLI::App& program, int& exit_code) {
       "A recording from CSV to HDF5 or back, from a table or a log, or to a log of candump");
   command
       ->add_option("from", options->from,
-                   "A recording (.csv, .h5, .hdf5), a table (.dat), a log (.log)")
+                   "A recording (.csv, .h5, .hdf5), a table (.dat, .txt), a log (.log)")
       ->required();
   command->add_option("to", options->to, "The new recording (.csv, .h5, .hdf5), or log (.log)")
       ->required();
@@ -119,6 +119,10 @@ void AddConvert(CLI::App& program, int& exit_code) {
       ->allow_extra_args(false);
   command->add_option("--axis", options->import.axis, "The axis of a table that does not say (X)")
       ->check(CLI::IsMember({"X", "Y", "Z"}));
+  command
+      ->add_option("--probing-um", options->import.u_probing_um,
+                   "Standard uncertainty of a hole centre in a table of holes")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--quiet", options->quiet, "Print nothing but warnings");
   command->footer("Example: abbe convert sweep_X.csv sweep_X.h5");
   command->callback([options, &exit_code] { exit_code = Convert(*options); });

@@ -10,11 +10,12 @@
 #include "apps/commands.h"
 #include "apps/fuse_result.h"
 #include "apps/machine_file.h"
+#include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "map/map_file.h"
-#include "recording/recording_file.h"
 #include "simulation/length_simulation.h"
 #include "simulation/linkage_on_machine.h"
+#include "simulation/plate_simulation.h"
 #include "simulation/reference_simulation.h"
 #include "simulation/sweep_simulation.h"
 
@@ -37,17 +38,7 @@ class RunReader {
       : file_(file), machine_(file.sweep_setup.machine), model_(fusion::UnknownMachine(machine_)) {}
 
   void Add(const fs::path& path, std::vector<SimulatedRun>& runs) const {
-    const recording::Recording recording = recording::Read(path);
-    for (const std::string& warning : recording.warnings) {
-      fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
-    }
-    const std::string machine = recording.HeaderText("machine").value_or(machine_.name);
-    if (machine != machine_.name) {
-      throw InputError(fmt::format(
-          "{}: was recorded on the machine \"{}\", the machine file describes \"{}\"; give the "
-          "file of that machine",
-          recording.name, machine, machine_.name));
-    }
+    const recording::Recording recording = ReadRecordingOf(machine_, path);
     const std::string kind = recording.Kind();
     if (kind == "sweep") {
       const auto& setup = file_.sweep_setup;
@@ -60,9 +51,13 @@ class RunReader {
       AddReference(recording, runs);
     } else if (kind == "length") {
       runs.push_back(simulation::SimulateLengths(model_, machine_.reference, recording));
+    } else if (kind == "plate") {
+      for (const auto& setup : simulation::ReadPlate(recording)) {
+        runs.push_back(simulation::SimulatePlate(model_, machine_.reference, setup));
+      }
     } else {
       throw InputError(
-          fmt::format("{}: kind is \"{}\"; fuse takes sweep, linkage, reference and length",
+          fmt::format("{}: kind is \"{}\"; fuse takes sweep, linkage, reference, length and plate",
                       recording.name, kind));
     }
   }
@@ -112,7 +107,7 @@ void AddFuse(CLI::App& program, int& exit_code) {
       program.add_subcommand("fuse", "One error map of the machine from all recordings");
   command
       ->add_option("recordings", arguments->recordings,
-                   "Recordings of kind sweep, linkage, reference or length")
+                   "Recordings of kind sweep, linkage, reference, length or plate")
       ->required();
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   command->add_flag("--fixed-smoothness", arguments->fixed_smoothness,

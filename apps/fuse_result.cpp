@@ -17,12 +17,6 @@ using nlohmann::ordered_json;
 
 constexpr double kMicro = 1e-6;
 
-std::string DeterminedBy(const fusion::FunctionSeen& function) {
-  return function.determined_by.empty()
-             ? "prior only"
-             : fmt::format("{}", fmt::join(function.determined_by, ", "));
-}
-
 std::string ScaleText(const fusion::ScaleSeen& scale) {
   return fmt::format(
       "\nIsotropic scale {:+.2f} ppm, u {:.2f} ppm, {:.2f} ppm before the data: {}\n",
@@ -53,6 +47,20 @@ std::string RunTable(const fusion::FuseReport& report,
 }
 
 }  // namespace
+
+std::string DeterminedBy(const fusion::FunctionSeen& function) {
+  return function.determined_by.empty()
+             ? "prior only"
+             : fmt::format("{}", fmt::join(function.determined_by, ", "));
+}
+
+std::string RunsText(const fusion::FuseReport& report,
+                     const std::vector<simulation::SimulatedRun>& runs) {
+  return ScaleText(report.scale) +
+         fmt::format("Correlation length of the error functions: {:.1f} mm\n",
+                     1e3 * report.chosen_smoothness) +
+         RunTable(report, runs);
+}
 
 ordered_json FuseJson(const fusion::FuseReport& report,
                       const std::vector<simulation::SimulatedRun>& runs) {
@@ -106,11 +114,7 @@ std::string FuseTable(const fusion::FuseReport& report,
         fmt::format("{:<7}{:>10.3f}{:>10.3f}  {:<6}{}\n", function.name, function.prior / kMicro,
                     function.u / kMicro, length ? "um" : "urad", DeterminedBy(function));
   }
-  text += ScaleText(report.scale);
-  text += fmt::format("Correlation length of the error functions: {:.1f} mm\n",
-                      1e3 * report.chosen_smoothness);
-  text += RunTable(report, runs);
-  return text;
+  return text + RunsText(report, runs);
 }
 
 }  // namespace abbe::apps

@@ -12,6 +12,10 @@ namespace abbe::apps {
 
 nlohmann::ordered_json FuseJson(const fusion::FuseReport& report,
                                 const std::vector<simulation::SimulatedRun>& runs);
+// The scale and, one line each, the runs.
+std::string RunsText(const fusion::FuseReport& report,
+                     const std::vector<simulation::SimulatedRun>& runs);
+std::string DeterminedBy(const fusion::FunctionSeen& function);
 std::string FuseTable(const fusion::FuseReport& report,
                       const std::vector<simulation::SimulatedRun>& runs);
 

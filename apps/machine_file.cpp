@@ -38,4 +38,12 @@ MachineFile ReadMachineFile(const std::filesystem::path& path) {
   return file;
 }
 
+machine::Machine ReadMachineOf(const std::filesystem::path& path) {
+  const settings::Document document = settings::Document::Read(path);
+  if (document.Root().Has("devices")) return ReadMachineFile(path).sweep_setup.machine;
+  machine::Machine machine = machine::ReadMachine(document.Root());
+  document.Root().RefuseUnknown();
+  return machine;
+}
+
 }  // namespace abbe::apps

@@ -30,4 +30,8 @@ struct MachineFile {
 // InputError with file, line and key.
 MachineFile ReadMachineFile(const std::filesystem::path& path);
 
+// The machine alone: its file may be one without [devices], which then holds nothing but the
+// machine.
+machine::Machine ReadMachineOf(const std::filesystem::path& path);
+
 }  // namespace abbe::apps

@@ -27,6 +27,7 @@
 #include "rig/length_campaign.h"
 #include "rig/linkage_campaign.h"
 #include "rig/measuring_campaign.h"
+#include "rig/plate_campaign.h"
 #include "rig/register_server.h"
 #include "rig/truth.h"
 
@@ -45,6 +46,7 @@ struct RigOptions {
   bool reduced = false;
   std::vector<std::string> hide;
   CourseRequest course;
+  bool plate = false;
   double rate = 200.0;
   std::filesystem::path truth_to_compare;
   std::vector<std::filesystem::path> results;
@@ -246,6 +248,7 @@ recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
         rig.world, options.axis.front(), rig::ChannelsOf(rig.devices),
         {.rate = options.rate, .mounting = options.mounting, .started = hal::UtcNow()});
   }
+  if (options.plate) return rig::RecordPlate(rig.world, {.run = options.course.run});
   if (!rig.linkage) {
     throw InputError(
         fmt::format("{} has no linkage to record with; add a table [linkage]", options.machine));
@@ -281,11 +284,12 @@ int RecordTheCampaign(const RigOptions& options) {
 int Record(const RigOptions& options) {
   if (!options.campaign.empty()) return RecordTheCampaign(options);
   const int kinds = (options.axis.empty() ? 0 : 1) + (options.course.course.empty() ? 0 : 1) +
-                    (options.length.empty() ? 0 : 1);
+                    (options.length.empty() ? 0 : 1) + (options.plate ? 1 : 0);
   if (kinds != 1) {
     throw InputError(
         "rig record: say what to record: a sweep by --axis X, a path of the linkage by --course "
-        "circle, calibrated lengths by --length X, or a whole --campaign standard");
+        "circle, calibrated lengths by --length X, a hole plate by --plate, or a whole "
+        "--campaign standard");
   }
   recording::Write(Recorded(Rig(options), options), options.out);
   fmt::print("{}\n", options.out.string());
@@ -366,6 +370,7 @@ void AddRig(CLI::App& program, int& exit_code) {
       ->check(CLI::IsMember({"minimal", "standard", "full"}))
       ->excludes("--axis", "--length");
   record->add_flag("--reduced", options->reduced, "Fewer stations, places and rows in a campaign");
+  record->add_flag("--plate", options->plate, "A hole plate in five set-ups");
   record->add_option("--mounting", options->mounting, "For the header of a sweep");
   AddCourseOptions(*record, options->course);
   AddRecordingOptions(*record, options->course);

@@ -86,6 +86,32 @@ Eigen::Vector3d ErrorMap::StandardUncertainty(const Eigen::Vector3d& position,
   return Covariance(position, p_TQ).diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
+ErrorMap::Curve ErrorMap::CurveOf(int error, const Eigen::VectorXd& positions) const {
+  constexpr int kAllMotions = machine::kAxes * machine::kMotions;
+  const Eigen::Index n = model_.ParameterCount(), count = positions.size();
+  Curve curve{Eigen::VectorXd(count), {}};
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(count, n);
+  if (error >= kAllMotions) {
+    curve.value.setConstant(model_.squareness()[error - kAllMotions]);
+    J.col(n - kErrors + error).setOnes();
+  } else {
+    Eigen::Index first = 0;
+    for (int e = 0; e < error; ++e) {
+      first += model_.Function(e / machine::kMotions, e % machine::kMotions).size();
+    }
+    const auto& function = model_.Function(error / machine::kMotions, error % machine::kMotions);
+    Eigen::VectorXd gradient(function.size());
+    for (Eigen::Index i = 0; i < count; ++i) {
+      curve.value[i] = function.Evaluate(positions[i], nullptr, gradient.data());
+      J.row(i).segment(first, gradient.size()) = gradient.transpose();
+    }
+  }
+  if (StatesUncertainty()) {
+    curve.u = (J * cov_pp_).cwiseProduct(J).rowwise().sum().cwiseMax(0.0).cwiseSqrt();
+  }
+  return curve;
+}
+
 Eigen::Vector3d AxisSigns(const machine::Chain& chain) {
   Eigen::Vector3d signs = Eigen::Vector3d::Ones();
   for (const char axis : chain.workpiece_axes()) signs[axis - 'X'] = -1.0;

@@ -70,6 +70,13 @@ class ErrorMap {
   Eigen::Vector3d StandardUncertainty(const Eigen::Vector3d& position,
                                       const Eigen::Vector3d& p_TQ) const;
 
+  // What one of the 21 errors is at positions of its axis and how well that is known; a squareness
+  // is the same everywhere.
+  struct Curve {
+    Eigen::VectorXd value, u;  // m or rad
+  };
+  Curve CurveOf(int error, const Eigen::VectorXd& positions) const;
+
  private:
   MapOrigin origin_;
   machine::VolumetricModel model_;

@@ -34,7 +34,8 @@ const std::vector<KindRule>& KindRules() {
       {"linkage", {{"time_s"}, {"x_mm"}, {"y_mm"}, {"z_mm"}, {"pivot_1_rad"}}},
       {"reference", {{"x_mm", "y_mm", "z_mm"}, {"ref_x_mm", "ref_y_mm", "ref_z_mm"}}},
       {"length", {{"x_mm"}, {"y_mm"}, {"z_mm"}, {"length_mm"}}},
-      {"plate", {{"x_mm"}, {"y_mm"}, {"setup"}, {"hole"}, {"plate_x_mm"}, {"plate_y_mm"}}},
+      {"plate",
+       {{"x_mm"}, {"y_mm"}, {"z_mm"}, {"setup"}, {"hole"}, {"plate_x_mm"}, {"plate_y_mm"}}},
       {"dwell", {{"time_s"}}},
   };
   return rules;

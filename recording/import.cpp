@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "recording/hole_table.h"
 #include "recording/target_table.h"
 
 namespace abbe::recording {
@@ -18,6 +19,10 @@ const std::vector<Importer>& Importers() {
       {".dat",
        [](const std::filesystem::path& path, const ImportOptions& options) {
          return ReadTargetTable(path, options.axis.empty() ? "X" : options.axis);
+       }},
+      {".txt",
+       [](const std::filesystem::path& path, const ImportOptions& options) {
+         return ReadHoleTable(path, options.u_probing_um);
        }},
   };
   return importers;

@@ -11,7 +11,8 @@ namespace abbe::recording {
 
 // What the file itself does not say.
 struct ImportOptions {
-  std::string axis;  // "X", "Y" or "Z": the axis that was measured; empty when not given
+  std::string axis;           // "X", "Y" or "Z": the axis that was measured; empty when not given
+  double u_probing_um = 0.0;  // standard uncertainty of a hole centre; 0 when not given
 };
 
 // The recording in a file of another's form, told by its extension; nothing when no importer takes

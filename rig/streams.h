@@ -17,6 +17,8 @@ enum Stream : std::uint64_t {
   kLinkageStream = 0x400,         // + pivot, and one for the links, the ball and the base
   kHiddenStream = 0x500,          // the beginning of the streams of hidden effects
   kHiddenFormStream = 0x510,      // + face, as kFaceStream
+  kPlateStream = 0x480,           // index: scale, then two for each hole
+  kPlateRunStream = 0x100b0,      // + kRunStreams * run; index: pose of a set-up, then its holes
   kLengthStream = 0x100a0,        // + kRunStreams * run; index: common scale, then each length
   kNoiseStream = 0x10000,         // + kRunStreams * run + probe
   kDriftStream = 0x10008,         // + kRunStreams * run + probe

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "failure/failure.h"
-#include "simulation/machine_points.h"
 
 namespace abbe::simulation {
 namespace {
@@ -16,43 +15,11 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-struct Length {
-  Index from, to;  // points
-  double length, u;
-};
-
 constexpr double kOnePlace = 1e-6;  // m
 
 InputError Bad(const MachinePoints& points, Index i, std::string_view what) {
   return InputError(fmt::format("{}: row {}: {}", points.name,
                                 points.rows[static_cast<std::size_t>(i)] + 1, what));
-}
-
-std::vector<Length> LengthsOf(const recording::Recording& recording, const MachinePoints& points) {
-  const VectorXd pass = ColumnAt(recording, points, "pass");
-  const VectorXd length = ColumnAt(recording, points, "length_mm");
-  const VectorXd u = ColumnAt(recording, points, "u_length_um");
-  std::vector<Length> lengths;
-  Index first = 0;
-  for (Index i = 0; i < points.count(); ++i) {
-    if (i == 0 || pass[i] != pass[first]) {
-      first = i;
-      if (length[i] != 0.0) {
-        throw Bad(points, i, "the first length of a pass must be 0: others are counted from there");
-      }
-      if (i + 1 == points.count() || pass[i + 1] != pass[i]) {
-        throw Bad(points, i, "a pass of one row has no length; give it a second row");
-      }
-      continue;
-    }
-    if (!(length[i] > 0.0)) throw Bad(points, i, "length_mm must be above 0");
-    if (!(u[i] > 0.0)) throw Bad(points, i, "u_length_um must be above 0");
-    if ((points.axes.col(i) - points.axes.col(first)).norm() < kOnePlace) {
-      throw Bad(points, i, "stands where the pass began, but its length is not 0");
-    }
-    lengths.push_back({first, i, length[i], u[i]});
-  }
-  return lengths;
 }
 
 class LengthResidual : public estimation::Residual {
@@ -87,25 +54,41 @@ class LengthResidual : public estimation::Residual {
   bool scaled_;
 };
 
-double CommonScale(const recording::Recording& recording) {
-  const auto text = recording.HeaderText("u_scale_ppm");
-  if (!text) return 0.0;
-  char* end = nullptr;
-  const double ppm = std::strtod(text->c_str(), &end);
-  if (end == text->c_str() || *end != '\0' || !(ppm >= 0.0)) {
-    throw InputError(fmt::format("{}: header: u_scale_ppm is {}; write a number not below 0",
-                                 recording.name, *text));
-  }
-  return 1e-6 * ppm;
-}
-
 }  // namespace
+
+std::vector<Length> ReadLengths(const recording::Recording& recording,
+                                const MachinePoints& points) {
+  const VectorXd pass = ColumnAt(recording, points, "pass");
+  const VectorXd length = ColumnAt(recording, points, "length_mm");
+  const VectorXd u = ColumnAt(recording, points, "u_length_um");
+  std::vector<Length> lengths;
+  Index first = 0;
+  for (Index i = 0; i < points.count(); ++i) {
+    if (i == 0 || pass[i] != pass[first]) {
+      first = i;
+      if (length[i] != 0.0) {
+        throw Bad(points, i, "the first length of a pass must be 0: others are counted from there");
+      }
+      if (i + 1 == points.count() || pass[i + 1] != pass[i]) {
+        throw Bad(points, i, "a pass of one row has no length; give it a second row");
+      }
+      continue;
+    }
+    if (!(length[i] > 0.0)) throw Bad(points, i, "length_mm must be above 0");
+    if (!(u[i] > 0.0)) throw Bad(points, i, "u_length_um must be above 0");
+    if ((points.axes.col(i) - points.axes.col(first)).norm() < kOnePlace) {
+      throw Bad(points, i, "stands where the pass began, but its length is not 0");
+    }
+    lengths.push_back({first, i, length[i], u[i]});
+  }
+  return lengths;
+}
 
 SimulatedRun SimulateLengths(const machine::VolumetricModel& model, const Vector3d& reference,
                              const recording::Recording& recording) {
   MachinePoints points = ReadMachinePoints(recording);
-  std::vector<Length> lengths = LengthsOf(recording, points);
-  const double u_scale = CommonScale(recording);
+  std::vector<Length> lengths = ReadLengths(recording, points);
+  const double u_scale = 1e-6 * HeaderNumber(recording, "u_scale_ppm").value_or(0.0);
   SimulatedRun simulated{recording.name, "length", model.Blocks(), nullptr,
                          estimation::RobustLoss::None()};
   if (u_scale > 0.0) {

@@ -16,11 +16,22 @@
 // two rows in one place.
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "machine/volumetric_model.h"
 #include "recording/recording.h"
+#include "simulation/machine_points.h"
 #include "simulation/simulated_run.h"
 
 namespace abbe::simulation {
+
+struct Length {
+  Eigen::Index from, to;  // points
+  double length, u;       // m
+};
+
+std::vector<Length> ReadLengths(const recording::Recording& recording, const MachinePoints& points);
 
 SimulatedRun SimulateLengths(const machine::VolumetricModel& model,
                              const Eigen::Vector3d& reference,

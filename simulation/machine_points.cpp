@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 #include "failure/failure.h"
@@ -18,25 +18,37 @@ using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-Vector3d ToolOf(const recording::Recording& recording) {
-  const auto text = recording.HeaderText("tool_mm");
-  if (!text) return Vector3d::Zero();
-  std::array<double, 3> tool{};
-  if (std::sscanf(text->c_str(), " [ %lf , %lf , %lf ]", &tool[0], &tool[1], &tool[2]) != 3) {
-    throw InputError(
-        fmt::format("{}: header: tool_mm is {}; write three numbers, such as [0.0, 0.0, 50.0]",
-                    recording.name, *text));
+}  // namespace
+
+std::optional<double> HeaderNumber(const recording::Recording& recording, const std::string& key) {
+  const auto text = recording.HeaderText(key);
+  if (!text) return std::nullopt;
+  char* end = nullptr;
+  const double number = std::strtod(text->c_str(), &end);
+  if (end == text->c_str() || *end != '\0' || !(number >= 0.0)) {
+    throw InputError(fmt::format("{}: header: {} is {}; write a number not below 0", recording.name,
+                                 key, *text));
   }
-  return 1e-3 * Vector3d(tool[0], tool[1], tool[2]);
+  return number;
 }
 
-}  // namespace
+std::optional<Vector3d> HeaderPoint(const recording::Recording& recording, const std::string& key) {
+  const auto text = recording.HeaderText(key);
+  if (!text) return std::nullopt;
+  Vector3d point;
+  if (std::sscanf(text->c_str(), " [ %lf , %lf , %lf ]", &point[0], &point[1], &point[2]) != 3) {
+    throw InputError(
+        fmt::format("{}: header: {} is {}; write three numbers, such as [0.0, 0.0, 50.0]",
+                    recording.name, key, *text));
+  }
+  return 1e-3 * point;
+}
 
 MachinePoints ReadMachinePoints(const recording::Recording& recording) {
   MachinePoints points;
   points.name = recording.name;
   points.rows = recording::GoodRows(recording);
-  points.tool = ToolOf(recording);
+  points.tool = HeaderPoint(recording, "tool_mm").value_or(Vector3d::Zero());
   points.axes.resize(3, static_cast<Index>(points.rows.size()));
   for (Index axis = 0; axis < 3; ++axis) {
     points.axes.row(axis) = ColumnAt(recording, points, fmt::format("{}_mm", "xyz"[axis]));

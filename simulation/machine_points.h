@@ -1,5 +1,5 @@
-// Positions at which a known thing met the tool point: read from recordings of kind reference and
-// length, and the common part of their simulation.
+// Positions at which a known thing met the tool point: read from recordings of kind reference,
+// length and plate, and the common part of their simulation.
 //
 // Tool point Q: header `tool_mm` = [x, y, z], where Q stands in M when all axes are at zero;
 // without it the machine's origin. Frames: M, the machine frame as the workpiece carries it. Units:
@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,12 @@ struct MachinePoints {
 
   Eigen::Index count() const { return axes.cols(); }
 };
+
+// A number of the header that is not below 0, as written, or three in mm, as m; empty when the
+// header has no such key. InputError naming recording and key for anything else.
+std::optional<double> HeaderNumber(const recording::Recording& recording, const std::string& key);
+std::optional<Eigen::Vector3d> HeaderPoint(const recording::Recording& recording,
+                                           const std::string& key);
 
 MachinePoints ReadMachinePoints(const recording::Recording& recording);
 

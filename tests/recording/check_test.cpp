@@ -28,7 +28,7 @@ std::vector<std::string> Needs(const std::string& kind) {
   if (kind == "linkage") return {"time_s", "x_mm", "y_mm", "z_mm", "pivot_1_rad"};
   if (kind == "reference") return {"x_mm", "ref_x_mm"};
   if (kind == "length") return {"x_mm", "y_mm", "z_mm", "length_mm"};
-  if (kind == "plate") return {"x_mm", "y_mm", "setup", "hole", "plate_x_mm", "plate_y_mm"};
+  if (kind == "plate") return {"x_mm", "y_mm", "z_mm", "setup", "hole", "plate_x_mm", "plate_y_mm"};
   return {"time_s"};
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "random/counter_random.h"
+#include "rig/plate_campaign.h"
+#include "simulation/plate_simulation.h"
 #include "simulation/reference_simulation.h"
 #include "tests/fusion/rig_campaign.h"
 
@@ -71,6 +73,9 @@ TEST(SimulatedRuns, HaveTrueDerivatives) {
   ExpectTrueDerivatives(World().Linkage(World().LinkageRecording(2)));
   ExpectTrueDerivatives(World().Length('Y'));
   ExpectTrueDerivatives(Reference());
+  for (const PlateSetUp& setup : ReadPlate(rig::RecordPlate(World().rig.world(), {.holes = 3}))) {
+    ExpectTrueDerivatives(SimulatePlate(World().model, World().reference, setup));
+  }
 }
 
 // Every stage alone moves the reading by what a hand calculation says.

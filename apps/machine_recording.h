@@ -1,0 +1,16 @@
+// A recording for a command that has read a machine file: made on that machine, its warnings shown.
+#pragma once
+
+#include <filesystem>
+
+#include "machine/machine.h"
+#include "recording/recording.h"
+
+namespace abbe::apps {
+
+// Warnings go to standard error. InputError when the recording names another machine, and those of
+// recording/recording_file.h.
+recording::Recording ReadRecordingOf(const machine::Machine& machine,
+                                     const std::filesystem::path& path);
+
+}  // namespace abbe::apps

@@ -1,0 +1,109 @@
+// abbe plate: from recordings of a hole plate to the 21 errors of the machine.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/machine_file.h"
+#include "apps/machine_recording.h"
+#include "apps/plate_result.h"
+#include "apps/result_file.h"
+#include "map/map_file.h"
+
+namespace abbe::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PlateArguments {
+  std::vector<fs::path> recordings;
+  fs::path machine, out = "map.toml", json, specimen;
+  int holdout = 0;
+  bool network = false, fixed_smoothness = false, quiet = false;
+};
+
+std::vector<simulation::PlateSetUp> ReadSetUps(const PlateArguments& arguments,
+                                               const machine::Machine& machine) {
+  std::vector<simulation::PlateSetUp> setups;
+  for (const fs::path& path : arguments.recordings) {
+    const recording::Recording recording = ReadRecordingOf(machine, path);
+    if (recording.Kind() != "plate") {
+      throw InputError(
+          fmt::format("{}: kind is \"{}\", not \"plate\"; abbe fuse takes it together "
+                      "with plates",
+                      recording.name, recording.Kind()));
+    }
+    for (auto& setup : simulation::ReadPlate(recording)) setups.push_back(std::move(setup));
+  }
+  return setups;
+}
+
+// The same machine in the document's form, which states no uncertainty.
+map::ErrorMap WithNetworks(const map::ErrorMap& map,
+                           const std::vector<simulation::PlateSetUp>& setups) {
+  return {map.origin(),
+          fusion::AsNetworks(map.model(), fusion::StationsOf(setups),
+                             machine::NetworkBias::kWithBias, nullptr),
+          {}};
+}
+
+int Plate(const PlateArguments& arguments) {
+  const machine::Machine machine = ReadMachineOf(arguments.machine);
+  const auto setups = ReadSetUps(arguments, machine);
+  const machine::VolumetricModel model = fusion::UnknownMachine(machine);
+  std::vector<simulation::SimulatedRun> runs;
+  for (const auto& setup : setups) {
+    runs.push_back(simulation::SimulatePlate(model, machine.reference, setup));
+  }
+  PlateResult result{
+      fusion::Fuse(machine, runs, {.choose_smoothness = !arguments.fixed_smoothness}),
+      runs,
+      {},
+      {},
+      {}};
+  const fusion::FuseReport& fused = result.fused;
+  result.diagonals =
+      fusion::SquarenessByDiagonals(fused.map.model(), machine.reference, setups, fused.fit);
+  if (arguments.holdout > 0) {
+    result.interpolators =
+        fusion::CompareInterpolators(machine, fused.chosen_smoothness, setups, arguments.holdout);
+  }
+  if (!arguments.specimen.empty()) {
+    result.specimen =
+        fusion::CheckSpecimen(fused.map, ReadRecordingOf(machine, arguments.specimen));
+  }
+  map::WriteMap(arguments.network ? WithNetworks(fused.map, setups) : fused.map, arguments.out);
+  if (!arguments.json.empty()) WriteResult(PlateJson(result), arguments.json);
+  if (!arguments.quiet) fmt::print("{}\nmap: {}\n", PlateTable(result), arguments.out.string());
+  return kDone;
+}
+
+}  // namespace
+
+void AddPlate(CLI::App& program, int& exit_code) {
+  auto arguments = std::make_shared<PlateArguments>();
+  CLI::App* command = program.add_subcommand("plate", "The 21 errors of a machine by a hole plate");
+  command->add_option("recordings", arguments->recordings, "Recordings of kind plate")->required();
+  command->add_option("--machine", arguments->machine, "Machine file")->required();
+  command
+      ->add_option("--holdout", arguments->holdout,
+                   "Leave out every K-th hole in turn and compare what predicts it")
+      ->check(CLI::Range(2, 100));
+  command->add_option("--specimen", arguments->specimen,
+                      "Recording of kind length: measured before and after correction");
+  command->add_flag("--network", arguments->network,
+                    "Write the error functions as networks, without uncertainty");
+  command->add_flag("--fixed-smoothness", arguments->fixed_smoothness,
+                    "Keep population.smoothness_mm of the machine file");
+  command->add_option("-o,--out", arguments->out, "Error map (TOML)");
+  command->add_option("--json", arguments->json, "File for the result as data");
+  command->add_flag("--quiet", arguments->quiet, "No tables");
+  command->footer("Example: abbe plate plate.csv --machine mill.toml --holdout 4 -o map.toml");
+  command->callback([arguments, &exit_code] { exit_code = Plate(*arguments); });
+}
+
+}  // namespace abbe::apps

@@ -1,0 +1,29 @@
+// `abbe plate`: what it found, as data and as tables for people. SI in the data unless the name
+// says otherwise; tables end in a newline.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "fusion/fuse.h"
+#include "fusion/interpolators.h"
+#include "fusion/plate_diagonals.h"
+#include "fusion/specimen_check.h"
+
+namespace abbe::apps {
+
+struct PlateResult {
+  fusion::FuseReport fused;
+  std::vector<simulation::SimulatedRun> runs;
+  std::array<fusion::DiagonalSquareness, 3> diagonals;
+  std::vector<fusion::InterpolatorCheck> interpolators;  // empty: nothing was held out
+  std::vector<fusion::SpecimenLength> specimen;          // empty: none was given
+};
+
+// The keys of `abbe fuse`, and those of docs/plate.md.
+nlohmann::ordered_json PlateJson(const PlateResult& result);
+std::string PlateTable(const PlateResult& result);
+
+}  // namespace abbe::apps

@@ -1,0 +1,59 @@
+// Which form of the error functions predicts holes best that it has not seen: the B-spline of the
+// fit, or the network of Ha and Khanh.
+//
+//   const auto checks = CompareInterpolators(mill, smoothness, setups, 4);
+//   const VolumetricModel networks = AsNetworks(model, stations, NetworkBias::kWithBias, nullptr);
+//
+// Every `folds`-th hole is left out in turn, in all set-ups; the rest is fitted, with B-splines.
+// The network then does what the document does: it learns each error function from its values at
+// the stations, the axis positions of the holes. It has one hidden layer of tanh
+// and grows by one neuron until its rms is 1 um or less (of an angle: at the longest travel) or
+// kMostNeurons is reached; each size is trained by the one estimator, in at most kMostCycles steps,
+// under weak priors that keep its weights from running away.
+// Units: m. Failure: InputError when too few holes are left in a set-up to lay the plate.
+// Source: Ha and Khanh, "An application of neural network in calibration of coordinate measuring
+// machines" (2011), section 4: equations 22 and 23, stop at RMS <= 1 um or N cycles; there trained
+// by gradient descent.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "machine/machine.h"
+#include "machine/tanh_network.h"
+#include "machine/volumetric_model.h"
+#include "simulation/plate_simulation.h"
+
+namespace abbe::fusion {
+
+inline constexpr double kLearned = 1e-6;  // m, rms
+inline constexpr int kMostNeurons = 6;
+inline constexpr int kMostCycles = 200;
+
+struct Learning {
+  double rms = 0.0;  // m, of the function that was learned worst
+  int cycles = 0;    // most
+  int neurons = 0;   // most
+};
+
+// `stations`: of each axis, m. Functions that are nowhere larger than a picometre become zero.
+machine::VolumetricModel AsNetworks(const machine::VolumetricModel& model,
+                                    const std::array<std::vector<double>, machine::kAxes>& stations,
+                                    machine::NetworkBias bias, Learning* learning);
+
+// The axis positions of the holes; where there are many, evenly chosen ones.
+std::array<std::vector<double>, machine::kAxes> StationsOf(
+    const std::vector<simulation::PlateSetUp>& setups);
+
+struct InterpolatorCheck {
+  std::string name;       // "b-spline", "network", "network with bias"
+  double held_out = 0.0;  // m: rms distance of a hole in the plate, mean of the folds
+  Learning learning = {};
+};
+
+std::vector<InterpolatorCheck> CompareInterpolators(
+    const machine::Machine& machine, double smoothness,
+    const std::vector<simulation::PlateSetUp>& setups, int folds);
+
+}  // namespace abbe::fusion

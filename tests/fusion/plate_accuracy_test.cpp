@@ -1,0 +1,167 @@
+// Are the 21 errors of a plate as uncertain as they say? One world of the virtual rig a seed, which
+// shares no code with the simulation; the five set-ups of rig/plate_campaign.h.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "fusion/interpolators.h"
+#include "fusion/plate_diagonals.h"
+#include "fusion/specimen_check.h"
+#include "random/counter_random.h"
+#include "rig/plate_campaign.h"
+#include "tests/fusion/rig_campaign.h"
+#include "tests/pull_statistics.h"
+#include "tests/seeds.h"
+
+namespace abbe::fusion {
+namespace {
+
+using Eigen::VectorXd;
+using simulation::PlateSetUp;
+
+constexpr double kCoverage = 1.96;
+constexpr int kMotionErrors = machine::kAxes * machine::kMotions;
+
+double TrueError(const rig::World& world, int error, double position) {
+  if (error < kMotionErrors) {
+    return world.ErrorsOf(error / machine::kMotions, position)[error % machine::kMotions];
+  }
+  const auto& square = world.squareness();
+  return std::array{square.a0z, square.b0z,
+                    square.c0y}[static_cast<std::size_t>(error - kMotionErrors)];
+}
+
+struct Measured {
+  std::vector<PlateSetUp> setups;
+  FuseReport report;
+};
+
+Measured Measure(const Campaign& campaign, const rig::PlateProgram& program = {}) {
+  auto setups = simulation::ReadPlate(rig::RecordPlate(campaign.rig.world(), program));
+  std::vector<simulation::SimulatedRun> runs;
+  for (const PlateSetUp& setup : setups) {
+    runs.push_back(simulation::SimulatePlate(campaign.model, campaign.reference, setup));
+  }
+  FuseReport report = Fuse(campaign.machine, runs, {.choose_smoothness = false});
+  return {std::move(setups), std::move(report)};
+}
+
+TEST(PlateAccuracy, StatesTrueUncertainties) {
+  const settings::Document document = CampaignMachine();
+  Pulls one;  // a seed: one error at one place, so that they are independent
+  std::array<Pulls, map::kErrors> each;
+  std::array<Pulls, 3> diagonals;
+  const Seeds seeds = SeedsFromEnvironment();
+  for (std::uint64_t seed = seeds.first; seed <= seeds.last; seed += seeds.step) {
+    const Campaign campaign(document, seed);
+    const Measured measured = Measure(campaign);
+    const random::CounterRandom random(seed, 0x51A);
+    const int chosen = static_cast<int>(map::kErrors * random.Uniform(0));
+    for (int error = 0; error < map::kErrors; ++error) {
+      const double at = random.Uniform(1 + static_cast<std::uint64_t>(error), 0.005, 0.06);
+      const auto curve = measured.report.map.CurveOf(error, VectorXd::Constant(1, at));
+      const double off = curve.value[0] - TrueError(campaign.rig.world(), error, at);
+      each[static_cast<std::size_t>(error)].Add(off, curve.u[0], kCoverage);
+      if (error == chosen) one.Add(off, curve.u[0], kCoverage);
+    }
+    const auto by = SquarenessByDiagonals(measured.report.map.model(), campaign.reference,
+                                          measured.setups, measured.report.fit);
+    for (std::size_t k = 0; k < by.size(); ++k) {
+      const double truth = TrueError(campaign.rig.world(), kMotionErrors + static_cast<int>(k), 0);
+      diagonals[k].Add(by[k].value - truth, 1e-6, kCoverage);
+    }
+  }
+  fmt::print("{:<7}{:>12}{:>12}{:>10}\n", "error", "mean pull", "variance", "in U95");
+  for (int error = 0; error < map::kErrors; ++error) {
+    const Pulls& pulls = each[static_cast<std::size_t>(error)];
+    fmt::print("{:<7}{:>12.3f}{:>12.3f}{:>9.1f}%\n", map::ErrorName(error), pulls.pull.mean(),
+               pulls.square.mean(), 100.0 * pulls.inside.mean());
+  }
+  for (const Pulls& pulls : diagonals) {
+    fmt::print("squareness by diagonals: rms {:.2f} urad\n", std::sqrt(pulls.square.mean()));
+    // Population 30 urad: the diagonals have seen it. The other errors, which are taken off before,
+    // bring more than the probing.
+    EXPECT_LT(std::sqrt(pulls.square.mean()), 20.0);
+  }
+  one.ExpectTrueUncertainties();
+}
+
+class PlateOfRig : public testing::Test {
+ protected:
+  static const Campaign& World() {
+    static const Campaign campaign(CampaignMachine(), 5);
+    return campaign;
+  }
+  static const Measured& All() {
+    static const Measured measured = Measure(World());
+    return measured;
+  }
+};
+
+// Of every one of the 21 the data know more than the tolerances do.
+TEST_F(PlateOfRig, FiveSetUpsDetermineAll21Errors) {
+  for (const FunctionSeen& seen : All().report.functions) {
+    EXPECT_THAT(seen.determined_by, testing::ElementsAre("plate")) << seen.name;
+  }
+  EXPECT_TRUE(All().report.scale.calibrated);
+  EXPECT_EQ(All().report.contradicting, -1);
+}
+
+TEST_F(PlateOfRig, OneSetUpLeavesTheThirdAxisToThePrior) {
+  const auto program = rig::PlateProgram{.setups = {rig::FiveSetUps().front()}};
+  const FuseReport report = Measure(World(), program).report;
+  for (const FunctionSeen& seen : report.functions) {
+    if (!seen.name.ends_with("Z")) continue;
+    EXPECT_THAT(seen.determined_by, testing::IsEmpty()) << seen.name;
+  }
+  EXPECT_THAT(report.functions[0].determined_by, testing::ElementsAre("plate"));
+}
+
+TEST_F(PlateOfRig, ASetUpThatMovedIsNamed) {
+  auto recording = rig::RecordPlate(World().rig.world(), {});
+  // Half of the third set-up was measured after the plate had slipped by 50 um.
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    if (recording.At("setup")[row] != 3.0 || recording.At("hole")[row] < 25.0) continue;
+    recording.columns[1].values[row] += 0.05;
+  }
+  std::vector<simulation::SimulatedRun> runs;
+  for (const PlateSetUp& setup : simulation::ReadPlate(recording)) {
+    runs.push_back(simulation::SimulatePlate(World().model, World().reference, setup));
+  }
+  const FuseReport report = Fuse(World().machine, runs, {.choose_smoothness = false});
+  ASSERT_EQ(report.contradicting, 2);
+}
+
+// The document's specimen: measured by the machine as it is, then corrected.
+TEST_F(PlateOfRig, ASpecimenIsMeasuredBetterAfterwards) {
+  double before = 0.0, after = 0.0;
+  for (const char axis : {'X', 'Y', 'Z'}) {
+    for (const auto& each : CheckSpecimen(All().report.map, World().LengthRecording(axis))) {
+      before += std::pow(each.before - each.length, 2);
+      after += std::pow(each.after - each.length, 2);
+      // The specimen has its own: 0.1 um and 2 ppm.
+      const double u = std::hypot(each.u, 0.1e-6 * std::sqrt(2.0), 2e-6 * each.length);
+      EXPECT_LT(std::abs(each.after - each.length), 4.0 * u) << axis << each.row;
+    }
+  }
+  EXPECT_LT(std::sqrt(after), std::sqrt(before) / 2.0);
+}
+
+// The B-spline predicts holes as well as they can be known: their form, the probing, and the fit.
+TEST_F(PlateOfRig, BSplinesPredictHolesThatTheyHaveNotSeen) {
+  const auto checks = CompareInterpolators(World().machine, 0.015, All().setups, 4);
+  ASSERT_EQ(checks.size(), 3u);
+  for (const auto& check : checks) {
+    fmt::print("{:<20} held out {:.3f} um, at the stations {:.3f} um, {} neurons, {} cycles\n",
+               check.name, 1e6 * check.held_out, 1e6 * check.learning.rms, check.learning.neurons,
+               check.learning.cycles);
+    EXPECT_GT(check.held_out, std::sqrt(2.0) * 0.2e-6) << check.name;
+  }
+  EXPECT_LT(checks[0].held_out, 1.5 * std::sqrt(2.0) * std::hypot(0.5e-6, 0.2e-6));
+}
+
+}  // namespace
+}  // namespace abbe::fusion
