@@ -87,25 +87,13 @@ class LengthResidual : public estimation::Residual {
   bool scaled_;
 };
 
-double CommonScale(const recording::Recording& recording) {
-  const auto text = recording.HeaderText("u_scale_ppm");
-  if (!text) return 0.0;
-  char* end = nullptr;
-  const double ppm = std::strtod(text->c_str(), &end);
-  if (end == text->c_str() || *end != '\0' || !(ppm >= 0.0)) {
-    throw InputError(fmt::format("{}: header: u_scale_ppm is {}; write a number not below 0",
-                                 recording.name, *text));
-  }
-  return 1e-6 * ppm;
-}
-
 }  // namespace
 
 SimulatedRun SimulateLengths(const machine::VolumetricModel& model, const Vector3d& reference,
                              const recording::Recording& recording) {
   MachinePoints points = ReadMachinePoints(recording);
   std::vector<Length> lengths = LengthsOf(recording, points);
-  const double u_scale = CommonScale(recording);
+  const double u_scale = 1e-6 * recording.HeaderNumber("u_scale_ppm", 0.0).value_or(0.0);
   SimulatedRun simulated{recording.name, "length", model.Blocks(), nullptr,
                          estimation::RobustLoss::None()};
   if (u_scale > 0.0) {

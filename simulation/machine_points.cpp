@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cstdio>
 #include <utility>
 
-#include "failure/failure.h"
 #include "machine/volumetric_error.h"
 #include "recording/good_rows.h"
 #include "simulation/axes_in_travel.h"
@@ -19,15 +16,8 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 Vector3d ToolOf(const recording::Recording& recording) {
-  const auto text = recording.HeaderText("tool_mm");
-  if (!text) return Vector3d::Zero();
-  std::array<double, 3> tool{};
-  if (std::sscanf(text->c_str(), " [ %lf , %lf , %lf ]", &tool[0], &tool[1], &tool[2]) != 3) {
-    throw InputError(
-        fmt::format("{}: header: tool_mm is {}; write three numbers, such as [0.0, 0.0, 50.0]",
-                    recording.name, *text));
-  }
-  return 1e-3 * Vector3d(tool[0], tool[1], tool[2]);
+  const auto tool = recording.HeaderNumbers("tool_mm", 3);
+  return tool ? Vector3d(1e-3 * Vector3d((*tool)[0], (*tool)[1], (*tool)[2])) : Vector3d::Zero();
 }
 
 }  // namespace
