@@ -29,6 +29,8 @@ class CourseMaker {
         sensors_(rig.world().settings(), rig.world().seed(), options.run),
         encoders_(rig.world().seed(), kEncoderNoiseStream + kRunStreams * options.run,
                   rig.linkage().settings().encoder_noise),
+        ball_(rig.world().seed(), kBallStream + kRunStreams * options.run,
+              rig.linkage().settings().repeatability),
         reference_(rig.world().seed(), kReferenceNoiseStream + kRunStreams * options.run,
                    rig.linkage().settings().reference_noise) {
     if (!linkage_ && options.kind != "reference") {
@@ -83,7 +85,8 @@ class CourseMaker {
 
   void AddAngles(const CourseState& state, double temperature, std::uint64_t row) {
     const double count = 2.0 * std::numbers::pi / rig_.world().settings().encoder_counts;
-    Vector3d angles = rig_.EncodersAt(state, temperature, Force()) + encoders_.At(row);
+    Vector3d angles =
+        rig_.EncodersAt(state, temperature, Force(), ball_.At(state.position)) + encoders_.At(row);
     // A turn on, not a jump by a turn, where an angle passes pi.
     for (Eigen::Index i = 0; i < kPivots; ++i) {
       angles[i] = before_[i] + std::remainder(angles[i] - before_[i], 2.0 * std::numbers::pi);
@@ -98,7 +101,9 @@ class CourseMaker {
   const CourseOptions options_;
   const bool linkage_, with_reference_;
   SensorNoise sensors_;
-  WhiteNoise encoders_, reference_;
+  WhiteNoise encoders_;
+  BallSeat ball_;
+  WhiteNoise reference_;
   recording::Recording course_;
   std::size_t column_ = 0;
   Vector3d before_ = Vector3d::Zero();  // angles of the last row
@@ -145,9 +150,9 @@ Vector3d LinkageRig::TrailingAt(const Vector3d& velocity, double cap_force) cons
   return -amount / feed * moving;
 }
 
-Vector3d LinkageRig::EncodersAt(const CourseState& state, double temperature,
-                                double cap_force) const {
-  const Vector3d ball = ToolAt(state.position) + TrailingAt(state.velocity, cap_force);
+Vector3d LinkageRig::EncodersAt(const CourseState& state, double temperature, double cap_force,
+                                const Vector3d& seat) const {
+  const Vector3d ball = ToolAt(state.position) + TrailingAt(state.velocity, cap_force) + seat;
   return linkage_.EncodersFor(ball, temperature);
 }
 

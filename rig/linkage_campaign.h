@@ -45,8 +45,9 @@ class LinkageRig {
   Eigen::Vector3d ReferenceAt(const Eigen::Vector3d& position) const;
   // How far the ball trails behind the cap while the axes move.
   Eigen::Vector3d TrailingAt(const Eigen::Vector3d& velocity, double cap_force) const;
-  // Angles without noise, not cut into counts.
-  Eigen::Vector3d EncodersAt(const CourseState& state, double temperature, double cap_force) const;
+  // Angles without noise, not cut into counts. `seat`: how far the ball sits off, in M.
+  Eigen::Vector3d EncodersAt(const CourseState& state, double temperature, double cap_force,
+                             const Eigen::Vector3d& seat = Eigen::Vector3d::Zero()) const;
 
   // InputError for an unknown kind, a bad rate, or a place out of the linkage's reach.
   recording::Recording Record(const Course& course, const CourseOptions& options = {}) const;

@@ -63,7 +63,9 @@ LiveMachine::LiveMachine(const World& world, std::function<double()> time,
       cap_force_(cap_force > 0.0 ? cap_force : world.settings().cap_force),
       noise_(world.settings(), world.seed(), 0),
       encoder_noise_(world.seed(), kEncoderNoiseStream,
-                     linkage != nullptr ? linkage->linkage().settings().encoder_noise : 0.0) {
+                     linkage != nullptr ? linkage->linkage().settings().encoder_noise : 0.0),
+      ball_(world.seed(), kBallStream,
+            linkage != nullptr ? linkage->linkage().settings().repeatability : 0.0) {
   latest_.axes = StandingAt(RestOf(world.settings()));
   if (linkage_ != nullptr) temperatures_ = {linkage_->linkage().settings().temperature};
   if (!course) return;
@@ -183,7 +185,8 @@ std::optional<Vector3d> LiveMachine::EncodersNow() {
   const Moment& now = Latest();
   const double temperature = TemperatureOf(temperatures_.front(), now.axes.time);
   try {
-    return linkage_->EncodersAt(now.axes, temperature, cap_force_) + encoder_noise_.At(now.tick);
+    return linkage_->EncodersAt(now.axes, temperature, cap_force_, ball_.At(now.axes.position)) +
+           encoder_noise_.At(now.tick);
   } catch (const Failure&) {
     return std::nullopt;  // out of reach
   }

@@ -78,6 +78,7 @@ class LiveMachine {
   std::mutex mutex_;
   SensorNoise noise_;
   WhiteNoise encoder_noise_;
+  BallSeat ball_;
   int head_axis_ = 0;
   Moment latest_;
   std::uint64_t started_ = 0;  // tick
