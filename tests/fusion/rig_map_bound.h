@@ -8,23 +8,21 @@
 // The errors of the rig are Gaussian and small, so what a reading says is linear in them: the bound
 // is the variance of a Gaussian process given the readings. It is worked out in the space of the
 // readings with the covariance functions of rig/gaussian_field.h and rig/noise.h, without any basis
-// for the functions; kinematics and head are written out once more, differentiated by steps. No
-// code of simulation/, fusion/ and machine/, and none of the rig but its settings.
-// Left out: products of small quantities (a gain times a gap), quantised encoders, temperatures.
-// Units: m, rad, s.
+// for the functions; kinematics and head: rig_slopes.h. No code of simulation/, fusion/ and
+// machine/, and none of the rig but its settings. Left out: products of small quantities (a gain
+// times a gap), quantised encoders, temperatures. Units: m, rad, s.
 #pragma once
 
 #include <Eigen/Dense>
-#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "recording/recording.h"
 #include "rig/rig_settings.h"
 #include "tests/fusion/rig_linkage_bound.h"
+#include "tests/fusion/rig_slopes.h"
 
 namespace abbe::fusion {
 
@@ -38,8 +36,10 @@ class RigMapBound {
 
   RigMapBound(const rig::RigSettings& machine, const rig::LinkageSettings& linkage,
               const Eigen::Matrix3Xd& places)
-      : machine_(machine), linkage_settings_(linkage), linkage_(linkage) {
-    for (Index i = 0; i < places.cols(); ++i) AddPlace(kWanted, places.col(i));
+      : machine_(machine), slopes_(machine), linkage_settings_(linkage), linkage_(linkage) {
+    for (Index i = 0; i < places.cols(); ++i) {
+      for (Datum& datum : AtPlace(kWanted, places.col(i))) data_.push_back(std::move(datum));
+    }
   }
 
   // Rows that stand at one place are one reading.
@@ -71,113 +71,25 @@ class RigMapBound {
   }
 
  private:
-  // One reading: what it depends on, to first order.
   struct Datum {
-    Kind kind;
-    Eigen::Matrix<double, 3, 6> motions = Eigen::Matrix<double, 3, 6>::Zero();  // by axis
+    Kind kind = kWanted;
     Vector3d at = Vector3d::Zero();  // where the functions of the three axes are taken
-    VectorXd shared;                 // by what all readings share, in its deviations
-    Eigen::Matrix<double, 1, Eigen::Dynamic> linkage;  // the same for the linkage
-    int run = 0, probe = 0, face = -1, stay = 0, component = 0;
+    RigSlopes::Slopes by = {};
+    Eigen::RowVectorXd linkage = {};  // by everything drawn of it, in units of the deviations
+    int run = 0, probe = 0, stay = 0, component = 0;
     double time = 0.0, length = 0.0, white = 0.0;
-    Eigen::Vector2d hit = Eigen::Vector2d::Zero();
     Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();  // of the three readings of a stay
   };
 
-  // Shared by all: squareness, then of the head and the target.
-  enum Shared {
-    kSquare = 0,
-    kAlong = 3,
-    kAcross = 8,
-    kDepth = 13,
-    kGain = 18,
-    kTurn = 23,
-    kPlace = 32,
-    kSet = 41,
-    kTilt = 47,
-    kFaces = 50,
-    kSharedCount = 53
-  };
-
-  VectorXd SharedDeviations() const {
-    VectorXd sd(Index{kSharedCount});
-    sd.segment<3>(kSquare).setConstant(machine_.population.squareness);
-    sd.segment<15>(kAlong).setConstant(machine_.probe_position);
-    sd.segment<5>(kGain).setConstant(machine_.gain);
-    sd.segment<9>(kTurn).setConstant(machine_.installation_angle);
-    sd.segment<9>(kPlace).setConstant(machine_.installation_offset);
-    sd.segment<6>(kSet).setConstant(machine_.gap_setting);
-    sd.segment<3>(kTilt).setConstant(machine_.target_tilt / std::sqrt(3.0));
-    sd.segment<3>(kFaces).setConstant(machine_.u_target_squareness);
-    return sd;
-  }
-
-  static Eigen::Matrix3d Turn(const Vector3d& w) {
-    const double angle = w.norm();
-    if (angle == 0.0) return Eigen::Matrix3d::Identity();
-    return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
-  }
-
-  // Of the body at the end of these axes, from the bed; `motions` of the axes at `position`.
-  Eigen::Isometry3d Body(const std::string& axes, const Vector3d& position,
-                         const Eigen::Matrix<double, 3, 6>& motions,
-                         const Vector3d& squareness) const {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    for (const char letter : axes) {
-      const int axis = letter - 'X';
-      Vector3d line = Vector3d::Unit(axis);
-      if (axis == 1) line = Turn({0, 0, squareness[2]}) * line;
-      if (axis == 2) line = Turn({squareness[0], squareness[1], 0}) * line;
-      const Vector3d shift = motions.row(axis).head<3>(), turn = motions.row(axis).tail<3>();
-      pose = pose * Eigen::Translation3d(machine_.reference + position[axis] * line + shift) *
-             Eigen::Quaterniond(Turn(turn)) * Eigen::Translation3d(-machine_.reference);
-    }
-    return pose;
-  }
-  Eigen::Isometry3d Work(const Vector3d& position, const Eigen::Matrix<double, 3, 6>& motions,
-                         const Vector3d& squareness) const {
-    const std::string& axes = machine_.workpiece_axes;
-    return Body({axes.rbegin(), axes.rend()}, position, motions, squareness);
-  }
-
-  // Derivatives of f at zero by central steps of these sizes.
-  static MatrixXd BySteps(const VectorXd& steps,
-                          const std::function<VectorXd(const VectorXd&)>& f) {
-    MatrixXd J(f(VectorXd::Zero(steps.size())).size(), steps.size());
-    for (Index i = 0; i < steps.size(); ++i) {
-      const VectorXd h = steps[i] * VectorXd::Unit(steps.size(), i);
-      J.col(i) = (f(h) - f(-h)) / (2.0 * steps[i]);
-    }
-    return J;
-  }
-  static Eigen::Matrix<double, 3, 6> Unpack(const VectorXd& x) {
-    return Eigen::Map<const Eigen::Matrix<double, 6, 3>>(x.data()).transpose();
-  }
-
-  // Where the ball stands in the workpiece: three readings without noise.
-  std::array<Datum, 3> PlaceData(Kind kind, const Vector3d& position) const {
-    VectorXd steps(21);
-    steps.setConstant(1e-6);
-    const MatrixXd J = BySteps(steps, [&](const VectorXd& x) -> VectorXd {
-      const Vector3d squareness = x.tail<3>();
-      const Vector3d tool =
-          Body(machine_.tool_axes, position, Unpack(x), squareness) * Vector3d(0, 0, 0);
-      return Work(position, Unpack(x), squareness).inverse() * tool;
-    });
+  std::array<Datum, 3> AtPlace(Kind kind, const Vector3d& position) const {
+    const auto slopes = slopes_.OfBall(position);
     std::array<Datum, 3> data;
-    for (Index i = 0; i < 3; ++i) {
-      Datum& datum = data[static_cast<std::size_t>(i)];
-      datum.kind = kind;
-      datum.at = position;
-      datum.motions = Unpack(J.row(i).head<18>().transpose());
-      datum.shared = VectorXd::Zero(Index{kSharedCount});
-      datum.shared.segment<3>(kSquare) =
-          machine_.population.squareness * J.row(i).tail<3>().transpose();
+    for (std::size_t i = 0; i < 3; ++i) {
+      data[i].kind = kind;
+      data[i].at = position;
+      data[i].by = slopes[i];
     }
     return data;
-  }
-  void AddPlace(Kind kind, const Vector3d& position) {
-    for (Datum& datum : PlaceData(kind, position)) data_.push_back(std::move(datum));
   }
 
   struct Stay {
@@ -203,30 +115,25 @@ class RigMapBound {
   }
 
   void AddLinkage(const recording::Recording& recording) {
+    const Eigen::Matrix3d R = linkage_settings_.base_rotation;
+    int number = 0;
     for (const Stay& stay : StaysOf(recording)) {
-      auto data = PlaceData(kLinkage, stay.position);
-      const Vector3d ball =
-          Work(stay.position, Unpack(VectorXd::Zero(18)), Vector3d::Zero()).inverse() *
-          (Body(machine_.tool_axes, stay.position, Unpack(VectorXd::Zero(18)), Vector3d::Zero()) *
-           Vector3d(0, 0, 0));
-      const Eigen::Matrix3d R = linkage_settings_.base_rotation;
-      const Vector3d shown =
-          linkage_.Angles(R.transpose() * (ball - linkage_settings_.base_position));
+      const Vector3d ball = slopes_.BallAt(stay.position) - linkage_settings_.base_position;
+      const Vector3d shown = linkage_.Angles(R.transpose() * ball);
       const MatrixXd J = R * linkage_.Jacobian(shown, 0.0);
-      const Eigen::Matrix3d slope = R * linkage_.Slope(shown, 0.0);
-      const double encoder = linkage_settings_.encoder_noise;
-      const Eigen::Matrix3d cov =
-          encoder * encoder / static_cast<double>(stay.rows) * slope * slope.transpose() +
-          std::pow(linkage_settings_.repeatability, 2) * Eigen::Matrix3d::Identity();
+      const Eigen::Matrix3d slope =
+          linkage_settings_.encoder_noise * R * linkage_.Slope(shown, 0.0);
+      auto data = AtPlace(kLinkage, stay.position);
       for (int i = 0; i < 3; ++i) {
         Datum& datum = data[static_cast<std::size_t>(i)];
         datum.linkage = J.row(i);
-        datum.stay = static_cast<int>(data_.size()) / 3 + 1;
+        datum.stay = number;
         datum.component = i;
-        datum.cov = cov;
+        datum.cov = slope * slope.transpose() / static_cast<double>(stay.rows);
+        datum.cov.diagonal().array() += std::pow(linkage_settings_.repeatability, 2);
+        data_.push_back(std::move(datum));
       }
-      for (Datum& datum : data) datum.stay = data[0].stay;
-      for (Datum& datum : data) data_.push_back(std::move(datum));
+      ++number;
     }
   }
 
@@ -235,115 +142,39 @@ class RigMapBound {
     const auto u = recording.At("u_length_um");
     const double u_scale = 1e-6 * recording.HeaderNumber("u_scale_ppm").value_or(0.0);
     const std::vector<Stay> stays = StaysOf(recording);
-    const auto from = PlaceData(kLength, stays[0].position);
+    const auto from = AtPlace(kLength, stays[0].position);
     for (std::size_t s = 1; s < stays.size(); ++s) {
       const Vector3d apart = stays[s].position - stays[0].position;
       Index axis = 0;
       apart.cwiseAbs().maxCoeff(&axis);
-      const auto to = PlaceData(kLength, stays[s].position);
+      const auto to = AtPlace(kLength, stays[s].position);
       const auto i = static_cast<std::size_t>(axis);
       Datum datum = to[i];
       // The first end is where the functions of the axis are zero.
       for (Index other = 0; other < 3; ++other) {
-        if (other != axis) datum.motions.row(other) -= from[i].motions.row(other);
+        if (other != axis) datum.by.motions.row(other) -= from[i].by.motions.row(other);
       }
-      datum.shared -= from[i].shared;
+      datum.by.shared -= from[i].by.shared;
       const double sign = machine_.CarriesTarget(static_cast<int>(axis)) ? -1.0 : 1.0;
-      datum.motions *= sign;
-      datum.shared *= sign;
+      datum.by.motions *= sign;
+      datum.by.shared *= sign;
       datum.white = 1e-6 * u[stays[s].first];
       datum.length = u_scale * apart.norm();
       data_.push_back(std::move(datum));
     }
   }
 
-  // The readings of the five probes; x = [six motions of the swept axis | shared].
-  VectorXd Readings(int axis, const Vector3d& start, const Vector3d& command, const VectorXd& x,
-                    std::array<Eigen::Vector2d, 5>* hits = nullptr,
-                    std::array<int, 5>* faces = nullptr) const {
-    const VectorXd s = x.tail(Index{kSharedCount});
-    const rig::HeadPlace& head = machine_.head[static_cast<std::size_t>(axis)];
-    const Vector3d square = s.segment<3>(kSquare), tilt = s.segment<3>(kTilt),
-                   edges = s.segment<3>(kFaces);
-    const Vector3d corner = head.position - machine_.TargetTravel(start);
-    const Vector3d origin = head.position - machine_.HeadTravel(start);
-    const Eigen::Matrix3d turn = head.rotation * Turn(s.segment<3>(kTurn + 3 * axis));
-    const auto gaps = [&](const Vector3d& position, const Eigen::Matrix<double, 3, 6>& motions) {
-      const Eigen::Isometry3d seen = Work(position, motions, square).inverse() *
-                                     Body(machine_.tool_axes, position, motions, square);
-      VectorXd gap(5);
-      for (int probe = 0; probe < 5; ++probe) {
-        const rig::ProbePlace& place = machine_.probes[static_cast<std::size_t>(probe)];
-        const int direction = place.top ? 2 : 1;
-        Vector3d in_head(place.along + s[kAlong + probe], 0.0, 0.0);
-        in_head[direction] = place.range / 2 + s[kDepth + probe];
-        in_head[3 - direction] = place.across + s[kAcross + probe];
-        const Vector3d p =
-            seen * (origin + head.rotation * Turn(s.segment<3>(kTurn + 3 * axis)) * in_head +
-                    head.rotation * s.segment<3>(kPlace + 3 * axis));
-        const Vector3d w = -(seen.rotation() * turn.col(direction));
-        const Vector3d nominal = head.rotation.col(direction);
-        Index normal_axis = 0;
-        nominal.cwiseAbs().maxCoeff(&normal_axis);
-        Eigen::Matrix3d of_face = Eigen::Matrix3d::Identity();
-        if (normal_axis == 0) of_face = Turn({0.0, edges[1], edges[2]});
-        if (normal_axis == 1) of_face = Turn({edges[0], 0.0, 0.0});
-        const Vector3d m = Turn(tilt) * of_face * nominal;
-        gap[probe] = (p - corner).dot(m) / -w.dot(m);
-        if (hits == nullptr) continue;
-        const Vector3d hit = p + gap[probe] * w - corner;
-        const auto at = static_cast<std::size_t>(probe);
-        (*hits)[at] = {hit[(normal_axis + 1) % 3], hit[(normal_axis + 2) % 3]};
-        (*faces)[at] = 2 * static_cast<int>(normal_axis) + (nominal[normal_axis] > 0.0 ? 1 : 0);
-      }
-      return gap;
-    };
-    Eigen::Matrix<double, 3, 6> motions = Eigen::Matrix<double, 3, 6>::Zero();
-    const VectorXd before = gaps(start, motions);
-    motions.row(axis) = x.head<6>();
-    VectorXd gap = gaps(command, motions);
-    for (const bool top : {true, false}) {
-      double mean = 0.0, count = 0.0;
-      for (int probe = 0; probe < 5; ++probe) {
-        if (machine_.probes[static_cast<std::size_t>(probe)].top != top) continue;
-        mean += before[probe];
-        count += 1.0;
-      }
-      for (int probe = 0; probe < 5; ++probe) {
-        const rig::ProbePlace& place = machine_.probes[static_cast<std::size_t>(probe)];
-        if (place.top != top) continue;
-        // The fitter sets the mean gap of the unit.
-        gap[probe] += place.range / 2 + s[kSet + 2 * axis + (top ? 0 : 1)] - mean / count;
-        gap[probe] += s[kGain + probe] * (gap[probe] - place.range / 2);
-      }
-    }
-    return gap;
-  }
-
   void AddSweep(const recording::Recording& recording) {
     const int axis = recording.HeaderText("axis").value()[0] - 'X';
-    const Vector3d start = machine_.StartOf(axis);
-    const VectorXd sd = SharedDeviations();
-    VectorXd steps(6 + Index{kSharedCount});
-    steps.head<6>().setConstant(1e-6);
-    steps.tail(Index{kSharedCount}) = sd.cwiseMax(1e-9);
     for (const Stay& stay : StaysOf(recording)) {
-      std::array<Eigen::Vector2d, 5> hits;
-      std::array<int, 5> faces{};
-      Vector3d command = start;
-      command[axis] = stay.position[axis];
-      Readings(axis, start, command, VectorXd::Zero(steps.size()), &hits, &faces);
-      const MatrixXd J = BySteps(
-          steps, [&](const VectorXd& x) -> VectorXd { return Readings(axis, start, command, x); });
-      for (int probe = 0; probe < 5; ++probe) {
-        Datum datum{.kind = kSweep, .shared = {}, .linkage = {}};
-        datum.at = command;
-        datum.motions.row(axis) = J.row(probe).head<6>();
-        datum.shared = sd.cwiseProduct(J.row(probe).tail(Index{kSharedCount}).transpose());
+      const auto slopes = slopes_.OfProbes(axis, stay.position[axis]);
+      for (std::size_t probe = 0; probe < slopes.size(); ++probe) {
+        Datum datum;
+        datum.kind = kSweep;
+        datum.at = stay.position;
+        datum.by = slopes[probe];
         datum.run = axis;
-        datum.probe = probe;
-        datum.face = faces[static_cast<std::size_t>(probe)];
-        datum.hit = hits[static_cast<std::size_t>(probe)];
+        datum.probe = static_cast<int>(probe);
         datum.time = stay.time;
         datum.white = machine_.white / std::sqrt(static_cast<double>(stay.rows));
         data_.push_back(std::move(datum));
@@ -360,7 +191,8 @@ class RigMapBound {
 
   // Covariance of a function at the positions of all readings, after the gauge.
   MatrixXd Functions(int axis, int motion) const {
-    constexpr int kCells = 200;  // of the slope of a straightness
+    constexpr int kCells = 200;         // of the slope of a straightness
+    constexpr double kOnePlace = 2e-5;  // m
     const auto [low, high] = machine_.travels[static_cast<std::size_t>(axis)];
     const double sd = Deviation(axis, motion), length = machine_.population.smoothness;
     // Positions that occur; most readings share theirs.
@@ -368,8 +200,9 @@ class RigMapBound {
     std::vector<Index> place_of;
     for (const Datum& datum : data_) {
       const double x = datum.at[axis];
-      const auto found = std::find_if(places.begin(), places.end(),
-                                      [&](double known) { return std::abs(known - x) < 1e-7; });
+      const auto found = std::find_if(places.begin(), places.end(), [&](double known) {
+        return std::abs(known - x) < kOnePlace;
+      });
       place_of.push_back(found - places.begin());
       if (found == places.end()) places.push_back(x);
     }
@@ -407,12 +240,12 @@ class RigMapBound {
       for (int motion = 0; motion < 6; ++motion) {
         VectorXd by(n);
         for (Index i = 0; i < n; ++i)
-          by[i] = data_[static_cast<std::size_t>(i)].motions(axis, motion);
+          by[i] = data_[static_cast<std::size_t>(i)].by.motions(axis, motion);
         K += (by * by.transpose()).cwiseProduct(Functions(axis, motion));
       }
     }
-    MatrixXd shared(n, Index{kSharedCount});
-    for (Index i = 0; i < n; ++i) shared.row(i) = data_[static_cast<std::size_t>(i)].shared;
+    MatrixXd shared(n, Index{RigSlopes::kSharedCount});
+    for (Index i = 0; i < n; ++i) shared.row(i) = data_[static_cast<std::size_t>(i)].by.shared;
     K += shared * shared.transpose();
     for (Index i = 0; i < n; ++i) {
       for (Index j = 0; j < n; ++j) {
@@ -438,14 +271,15 @@ class RigMapBound {
       sum +=
           std::pow(machine_.drift, 2) * std::exp(-std::abs(a.time - b.time) / machine_.drift_time);
     }
-    if (a.face == b.face) {
-      const double apart = (a.hit - b.hit).norm() / machine_.form_length;
+    if (a.by.face == b.by.face) {
+      const double apart = (a.by.hit - b.by.hit).norm() / machine_.form_length;
       sum += std::pow(machine_.form, 2) * std::exp(-0.5 * apart * apart);
     }
     return sum;
   }
 
   const rig::RigSettings machine_;
+  const RigSlopes slopes_;
   const rig::LinkageSettings linkage_settings_;
   const RigLinkageBound linkage_;
   std::vector<Datum> data_;
