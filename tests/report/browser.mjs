@@ -1,6 +1,6 @@
 // A browser for the page tests, or a reason why there is none.
 import {spawnSync} from 'node:child_process';
-import {copyFileSync, existsSync, mkdirSync} from 'node:fs';
+import {copyFileSync, existsSync, mkdirSync, readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
@@ -13,11 +13,16 @@ function skip(reason) {
   process.exit(SKIPPED);
 }
 
-// Fetches the pinned packages into `folder` when they are not there yet.
+// Fetches the pinned packages into `folder` when they are not there yet, or others are.
 function fetchPackages(folder) {
-  if (existsSync(join(folder, 'node_modules/playwright-core/package.json'))) return;
-  mkdirSync(folder, {recursive: true});
   const here = dirname(fileURLToPath(import.meta.url));
+  const textOf = (file) => existsSync(file) ? readFileSync(file, 'utf8') : '';
+  const wanted = textOf(join(here, 'package-lock.json'));
+  if (existsSync(join(folder, 'node_modules/playwright-core/package.json')) &&
+      textOf(join(folder, 'package-lock.json')) === wanted) {
+    return;
+  }
+  mkdirSync(folder, {recursive: true});
   for (const name of ['package.json', 'package-lock.json']) {
     copyFileSync(join(here, name), join(folder, name));
   }
