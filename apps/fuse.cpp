@@ -28,6 +28,7 @@ using simulation::SimulatedRun;
 struct FuseArguments {
   std::vector<fs::path> recordings;
   fs::path machine, out = "map.toml", json;
+  int holdout = 0;
   bool fixed_smoothness = false, quiet = false;
 };
 
@@ -67,8 +68,9 @@ class RunReader {
     const relm::LinkageSettings& linkage = file_.Linkage();
     const simulation::LinkageSimulation nominal(
         machine_.chain, linkage, relm::MakeLinkageModel(linkage, relm::ErrorModel::kComplete));
-    const auto run = simulation::MeansOfStays(simulation::ReadLinkageRun(recording, linkage));
-    runs.push_back(simulation::SimulateLinkage(model_, machine_.reference, nominal, run));
+    runs.push_back(simulation::SimulateLinkage(
+        model_, machine_.reference, nominal,
+        simulation::MeansOfStays(simulation::ReadLinkageRun(recording, linkage))));
     if (recording.Find("ref_x_mm") || recording.Find("ref_y_mm") || recording.Find("ref_z_mm")) {
       AddReference(recording, runs);
     }
@@ -90,7 +92,8 @@ int Fuse(const FuseArguments& arguments) {
   std::vector<SimulatedRun> runs;
   for (const fs::path& path : arguments.recordings) reader.Add(path, runs);
   const fusion::FuseReport report = fusion::Fuse(
-      file.sweep_setup.machine, runs, {.choose_smoothness = !arguments.fixed_smoothness});
+      file.sweep_setup.machine, runs,
+      {.choose_smoothness = !arguments.fixed_smoothness, .holdout = arguments.holdout});
   map::WriteMap(report.map, arguments.out);
   if (!arguments.json.empty()) WriteResult(FuseJson(report, runs), arguments.json);
   if (!arguments.quiet) {
@@ -112,6 +115,9 @@ void AddFuse(CLI::App& program, int& exit_code) {
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   command->add_flag("--fixed-smoothness", arguments->fixed_smoothness,
                     "Keep population.smoothness_mm of the machine file");
+  command->add_option(
+      "--holdout", arguments->holdout,
+      "Fit once more without every n-th block of rows of each run and predict them");
   command->add_option("-o,--out", arguments->out, "Error map (TOML)");
   command->add_option("--json", arguments->json, "File for the result as data");
   command->add_flag("--quiet", arguments->quiet, "No tables");

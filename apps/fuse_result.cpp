@@ -16,12 +16,32 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kMicro = 1e-6;
+constexpr double kFarOff = 9.0;  // chi-square over redundancy: three times the stated noise
 
 std::string ScaleText(const fusion::ScaleSeen& scale) {
   return fmt::format(
       "\nIsotropic scale {:+.2f} ppm, u {:.2f} ppm, {:.2f} ppm before the data: {}\n",
       scale.value / kMicro, scale.u / kMicro, scale.prior / kMicro,
       scale.calibrated ? "calibrated" : "PRIOR ONLY; give a run of kind length");
+}
+
+// What nothing measured, loudly.
+std::vector<std::string> PriorOnly(const fusion::FuseReport& report) {
+  std::vector<std::string> names;
+  for (const auto& function : report.functions) {
+    if (function.determined_by.empty()) names.push_back(function.name);
+  }
+  return names;
+}
+
+// Runs whose rows are nowhere near what the simulation makes of the machine file.
+std::vector<std::string> Misfits(const fusion::FuseReport& report) {
+  std::vector<std::string> names;
+  for (const auto& source : report.fit.sources) {
+    if (source.is_prior || !(source.redundancy > 0.0)) continue;
+    if (source.chi_square > kFarOff * source.redundancy) names.push_back(source.name);
+  }
+  return names;
 }
 
 std::string RunTable(const fusion::FuseReport& report,
@@ -36,12 +56,29 @@ std::string RunTable(const fusion::FuseReport& report,
         report.runs[i].directions == 0 ? "nobody else saw it"
                                        : fmt::format("{:.2g}", report.runs[i].probability));
   }
+  for (const std::string& name : Misfits(report)) {
+    text += fmt::format(
+        "\nDOES NOT FIT: {} is off by many times its noise; check that chain, [head] and [linkage] "
+        "of the machine file are those of the recording, and its noise.\n",
+        name);
+  }
   if (report.contradicting >= 0) {
     const auto& run = report.runs[static_cast<std::size_t>(report.contradicting)];
     text += fmt::format(
         "\nCONTRADICTION: {} disagrees with all other runs (chi-square {:.1f} of {}); look at its "
         "set-up, or leave it out and fuse again.\n",
         run.name, run.statistic, run.directions);
+  }
+  return text;
+}
+
+std::string HoldoutTable(const fusion::FuseReport& report) {
+  if (report.held_out.empty()) return "";
+  std::string text = fmt::format("\n{:<32}{:>10}{:>13}{:>22}\n", "held out, predicted", "rows",
+                                 "chi2/expected", "rms / own noise");
+  for (const auto& run : report.held_out) {
+    text += fmt::format("{:<32}{:>10}{:>13.3f}{:>22.3f}\n", run.name, run.rows,
+                        run.chi_square / run.expected, run.rms);
   }
   return text;
 }
@@ -94,6 +131,15 @@ ordered_json FuseJson(const fusion::FuseReport& report,
                               {"directions", report.runs[i].directions},
                               {"p", report.runs[i].probability}}}});
   }
+  for (const auto& run : report.held_out) {
+    json["held_out"].push_back({{"run", run.name},
+                                {"rows", run.rows},
+                                {"chi2", run.chi_square},
+                                {"expected", run.expected},
+                                {"rms", run.rms}});
+  }
+  json["prior_only"] = PriorOnly(report);
+  json["misfits"] = Misfits(report);
   json["contradictions"] = ordered_json::array();
   if (report.contradicting >= 0) {
     json["contradictions"].push_back(
@@ -114,7 +160,12 @@ std::string FuseTable(const fusion::FuseReport& report,
         fmt::format("{:<7}{:>10.3f}{:>10.3f}  {:<6}{}\n", function.name, function.prior / kMicro,
                     function.u / kMicro, length ? "um" : "urad", DeterminedBy(function));
   }
-  return text + RunsText(report, runs);
+  if (const auto names = PriorOnly(report); !names.empty()) {
+    text += fmt::format(
+        "\nPRIOR ONLY: no run determines {}; the map knows of them what the machine file says.\n",
+        fmt::join(names, ", "));
+  }
+  return text + RunsText(report, runs) + HoldoutTable(report);
 }
 
 }  // namespace abbe::apps

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kRounding = 1e-12;  // of the normal equations, as in weak_directions.h
+// A reciprocal condition in the 1-norm, which is below that of the eigenvalues, with a margin for
+// its being an estimate.
+constexpr double kAllSeen = 10.0 * kRounding;
 // Far below 1: what the data hardly see may be the bottom of a curved valley, where the undamped
 // step leaves the valley and a strong damping creeps.
 constexpr double kFirstDamping = 1e-10;
@@ -28,19 +32,27 @@ constexpr double kCostRounding = 1e-11;
 class NormalEquations {
  public:
   explicit NormalEquations(const Linearization& at) : gradient_(at.Gradient()) {
-    MatrixXd total = at.prior.information;
-    for (const SourceSums& source : at.sources) total += source.information;
-    scale_ = total.diagonal();
+    scaled_ = at.prior.information;
+    for (const SourceSums& source : at.sources) scaled_ += source.information;
+    scale_ = scaled_.diagonal();
     for (double& s : scale_) s = s > 0.0 ? 1.0 / std::sqrt(s) : 0.0;
-    eigen_.compute(scale_.asDiagonal() * total * scale_.asDiagonal());
-    along_ = -eigen_.eigenvectors().transpose() * scale_.cwiseProduct(gradient_);
-    const double largest = eigen_.eigenvalues().maxCoeff();
-    for (Index i = 0; i < along_.size(); ++i) {
-      if (eigen_.eigenvalues()[i] <= kRounding * largest) along_[i] = 0.0;
+    scaled_ = scale_.asDiagonal() * scaled_ * scale_.asDiagonal();
+    const Eigen::LLT<MatrixXd> factor(scaled_);
+    if (factor.info() == Eigen::Success && factor.rcond() > kAllSeen) {
+      undamped_ = Solved(factor);
+    } else {
+      Decompose();
+      undamped_ = Step(0.0);
     }
   }
 
   VectorXd Step(double damping) const {
+    if (along_.size() == 0) {
+      if (damping == 0.0) return undamped_;
+      MatrixXd damped = scaled_;
+      damped.diagonal().array() += damping;
+      return Solved(Eigen::LLT<MatrixXd>(damped));
+    }
     VectorXd step = along_;
     for (Index i = 0; i < step.size(); ++i) {
       if (step[i] != 0.0) step[i] /= eigen_.eigenvalues()[i] + damping;
@@ -49,15 +61,14 @@ class NormalEquations {
   }
 
   // Length of the undamped step in standard uncertainties.
-  double Length() const { return std::sqrt(std::max(0.0, -gradient_.dot(Step(0.0)))); }
+  double Length() const { return std::sqrt(std::max(0.0, -gradient_.dot(undamped_))); }
 
   // The parameter that the step moves most, on the scale of its own information.
   Index MovesMost() const {
-    const VectorXd step = Step(0.0);
     Index most = 0;
     double largest = -1.0;
-    for (Index i = 0; i < step.size(); ++i) {
-      const double moved = scale_[i] > 0.0 ? std::abs(step[i]) / scale_[i] : 0.0;
+    for (Index i = 0; i < undamped_.size(); ++i) {
+      const double moved = scale_[i] > 0.0 ? std::abs(undamped_[i]) / scale_[i] : 0.0;
       if (moved > largest) {
         largest = moved;
         most = i;
@@ -67,7 +78,23 @@ class NormalEquations {
   }
 
  private:
-  VectorXd gradient_, scale_, along_;
+  VectorXd Solved(const Eigen::LLT<MatrixXd>& factor) const {
+    return -scale_.cwiseProduct(factor.solve(scale_.cwiseProduct(gradient_)));
+  }
+
+  // Where rounding hides a direction: it stays where it is.
+  void Decompose() {
+    eigen_.compute(scaled_);
+    along_ = -eigen_.eigenvectors().transpose() * scale_.cwiseProduct(gradient_);
+    const double largest = eigen_.eigenvalues().maxCoeff();
+    for (Index i = 0; i < along_.size(); ++i) {
+      if (eigen_.eigenvalues()[i] <= kRounding * largest) along_[i] = 0.0;
+    }
+  }
+
+  VectorXd gradient_, scale_, undamped_;
+  MatrixXd scaled_;
+  VectorXd along_;  // empty when the data and the priors see every direction
   Eigen::SelfAdjointEigenSolver<MatrixXd> eigen_;
 };
 

@@ -85,6 +85,7 @@ struct SolveOptions {
   int threads = 0;        // 0: all; the result does not depend on it
   double settled = 1e-6;  // standard uncertainties
   std::size_t jacobian_bytes = 200'000'000;
+  bool weak_directions = true;  // look for them, and for the condition: costs several eigensystems
 };
 
 class Problem {

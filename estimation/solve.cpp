@@ -138,9 +138,11 @@ Result Problem::Solve(const SolveOptions& options) const {
   const PosteriorCovariance covariance = InvertInformation(information.data, information.prior);
   result.names = layout.names;
   result.covariance = covariance.matrix;
-  result.condition = ScaledCondition(information.data);
-  result.weak_directions =
-      FindWeakDirections(information.data, information.prior, layout.tolerance, layout.names);
+  if (options.weak_directions || covariance.undetermined > 0) {
+    result.condition = ScaledCondition(information.data);
+    result.weak_directions =
+        FindWeakDirections(information.data, information.prior, layout.tolerance, layout.names);
+  }
   for (Index c = 0; c < layout.columns(); ++c) {
     result.seen_by.push_back(WhoSees(layout, information, c, covariance.matrix(c, c)));
   }

@@ -100,6 +100,28 @@ VectorXd ToleranceInformation(const MatrixXd& prior, const VectorXd& tolerances)
   return information;
 }
 
+// A positive matrix factored with its diagonal scaled to 1.
+class ScaledInverse {
+ public:
+  explicit ScaledInverse(const MatrixXd& total)
+      : scale_(total.diagonal().cwiseSqrt().cwiseInverse()),
+        factor_(scale_.asDiagonal() * total * scale_.asDiagonal()) {}
+
+  // Whether every direction stands out of the rounding: the reciprocal condition in the 1-norm is
+  // below that of the eigenvalues; the factor is for its being an estimate.
+  bool certain() const {
+    return factor_.info() == Eigen::Success && factor_.rcond() > 10.0 * kRounding;
+  }
+  MatrixXd Inverse() const {
+    const MatrixXd inverse = scale_.asDiagonal() * factor_.solve(MatrixXd(scale_.asDiagonal()));
+    return 0.5 * (inverse + inverse.transpose());
+  }
+
+ private:
+  VectorXd scale_;
+  Eigen::LLT<MatrixXd> factor_;
+};
+
 }  // namespace
 
 std::string InWords(const VectorXd& coefficients, const std::vector<std::string>& names) {
@@ -164,6 +186,11 @@ PosteriorCovariance InvertInformation(const MatrixXd& data, const MatrixXd& prio
   const Index n = data.rows();
   PosteriorCovariance result;
   if (n == 0) return result;
+  const ScaledInverse total(data + prior);
+  if (total.certain()) {
+    result.determined = result.matrix = total.Inverse();
+    return result;
+  }
   const Spectrum spectrum = SpectrumOf(data, Reference(data, prior));
   // Of the weak directions, those that the prior does not hold either.
   const MatrixXd weak = spectrum.whitened.leftCols(spectrum.weak);
@@ -175,12 +202,7 @@ PosteriorCovariance InvertInformation(const MatrixXd& data, const MatrixXd& prio
     undetermined = weak * share.eigenvectors().leftCols(result.undetermined);
   }
   if (result.undetermined == 0) {
-    const MatrixXd total = data + prior;
-    const VectorXd scale = total.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::LLT<MatrixXd> factor(scale.asDiagonal() * total * scale.asDiagonal());
-    result.matrix = scale.asDiagonal() * factor.solve(MatrixXd(scale.asDiagonal()));
-    result.matrix = 0.5 * (result.matrix + result.matrix.transpose()).eval();
-    result.determined = result.matrix;
+    result.determined = result.matrix = total.Inverse();
     return result;
   }
   MatrixXd root = spectrum.whitened * (1.0 + spectrum.lambda.array()).rsqrt().matrix().asDiagonal();

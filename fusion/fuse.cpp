@@ -10,6 +10,7 @@
 
 #include "estimation/linearization.h"
 #include "fusion/linkage_problem.h"
+#include "fusion/marginal.h"
 
 namespace abbe::fusion {
 namespace {
@@ -34,14 +35,7 @@ VectorXd AllValues(const Result& result) {
   return Eigen::Map<VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
-MatrixXd Inverse(const MatrixXd& information) {
-  return estimation::InvertInformation(information,
-                                       MatrixXd::Zero(information.rows(), information.cols()))
-      .determined;
-}
-
-double LogDeterminant(const MatrixXd& positive) {
-  const Eigen::LDLT<MatrixXd> factor(positive);
+double LogDeterminant(const Eigen::LDLT<MatrixXd>& factor) {
   return factor.vectorD().cwiseMax(std::numeric_limits<double>::min()).array().log().sum();
 }
 
@@ -63,6 +57,13 @@ map::Source SourceOf(const std::string& kind) {
   return static_cast<map::Source>(found - map::kSourceNames.begin());
 }
 
+// A problem with its solution and what every source says there.
+struct Fitted {
+  Problem problem;
+  Result fit = {};
+  Linearization at = {};
+};
+
 class FuseJob {
  public:
   FuseJob(const machine::Machine& machine, const std::vector<SimulatedRun>& runs,
@@ -71,35 +72,66 @@ class FuseJob {
 
   FuseReport Run() {
     double length = machine_.population.smoothness;
-    Problem problem = ProblemWith(length);
-    Result fit = SolveLinkage(problem, options_.threads);
+    Fitted now = Fit(length, {});
+    if (Condense(now.fit)) now = Fit(length, now.fit.blocks);
     std::vector<SmoothnessTried> tried;
     if (options_.choose_smoothness) {
-      tried = TryLengths(problem, fit);
+      tried = TryLengths(now);
       const auto best = std::max_element(
           tried.begin(), tried.end(),
           [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
       if (best->length != length) {
         length = best->length;
-        problem = ProblemWith(length);
-        fit = SolveLinkage(problem, options_.threads);
+        now = Fit(length, now.fit.blocks);
       }
     }
-    Describe(problem, fit);
-    FuseReport report{.map = MapOf(fit)};
+    Describe(now);
+    FuseReport report{.map = MapOf(now.fit)};
     report.functions = std::move(functions_);
     report.scale = scale_;
     report.smoothness = std::move(tried);
     report.chosen_smoothness = length;
-    report.runs = CheckRuns(problem, fit);
+    report.runs = CheckRuns(now.problem, now.at);
     report.contradicting = Contradicting(report.runs);
-    report.fit = std::move(fit);
+    if (options_.holdout > 0) {
+      const MachinePrior prior(machine_, model_, length);
+      report.held_out = HoldOut(options_.holdout, runs_, [&](const auto& runs) {
+        return MakeMachineProblem(machine_, model_, prior, runs);
+      });
+    }
+    report.fit = std::move(now.fit);
     return report;
   }
 
  private:
-  Problem ProblemWith(double length) const {
-    return MakeMachineProblem(machine_, model_, MachinePrior(machine_, model_, length), runs_);
+  // From these values on; from the nominal ones where there are none.
+  Fitted Fit(double length, const std::vector<estimation::ParameterBlock>& start) const {
+    Fitted fitted{
+        MakeMachineProblem(machine_, model_, MachinePrior(machine_, model_, length), runs_)};
+    for (const auto& block : start) {
+      auto& entries = fitted.problem.Block(fitted.problem.Find(block.name)).entries;
+      for (std::size_t i = 0; i < entries.size(); ++i) entries[i].value = block.entries[i].value;
+    }
+    fitted.fit = SolveLinkage(fitted.problem, options_.threads, false);
+    fitted.at = estimation::Linearize(fitted.problem, estimation::Layout(fitted.problem),
+                                      AllValues(fitted.fit), options_.threads);
+    return fitted;
+  }
+
+  // From samples of the long runs to all of their rows; false when there are none.
+  bool Condense(const Result& fit) {
+    bool any = false;
+    for (SimulatedRun& run : runs_) {
+      if (!run.condense) continue;
+      std::vector<double> x;
+      for (const auto& block : run.blocks) {
+        for (const auto& entry : fit.Block(block.name).entries) x.push_back(entry.value);
+      }
+      run.residual = run.condense(Eigen::Map<VectorXd>(x.data(), static_cast<Index>(x.size())));
+      run.condense = nullptr;
+      any = true;
+    }
+    return any;
   }
 
   // The precision of the smoothness prior among all columns, and its log determinant.
@@ -127,10 +159,10 @@ class FuseJob {
     return {precision, log_determinant};
   }
 
-  std::vector<SmoothnessTried> TryLengths(const Problem& problem, const Result& fit) const {
-    const estimation::Layout layout(problem);
-    const VectorXd x = AllValues(fit);
-    const Linearization at = estimation::Linearize(problem, layout, x, options_.threads);
+  std::vector<SmoothnessTried> TryLengths(const Fitted& fitted) const {
+    const estimation::Layout layout(fitted.problem);
+    const VectorXd x = AllValues(fitted.fit);
+    const Linearization& at = fitted.at;
     const std::vector<int> columns = MachineColumns(layout, model_);
     // All but the smoothness: information and gradient at x; x itself for the prior to come.
     MatrixXd information = at.prior.information;
@@ -155,7 +187,7 @@ class FuseJob {
       const Eigen::LDLT<MatrixXd> factorized(H);
       const double chi_square =
           coefficients.dot(precision * coefficients) - g.dot(factorized.solve(g));
-      const double evidence = 0.5 * (log_determinant - LogDeterminant(H) - chi_square);
+      const double evidence = 0.5 * (log_determinant - LogDeterminant(factorized) - chi_square);
       if (factor == 1.0) base = evidence;
       tried.push_back({length, evidence});
     }
@@ -199,11 +231,9 @@ class FuseJob {
     return row;
   }
 
-  void Describe(const Problem& problem, const Result& fit) {
-    const estimation::Layout layout(problem);
-    const Linearization at =
-        estimation::Linearize(problem, layout, AllValues(fit), options_.threads);
-    const std::vector<int> columns = MachineColumns(layout, model_);
+  void Describe(const Fitted& now) {
+    const Linearization& at = now.at;
+    const std::vector<int> columns = MachineColumns(estimation::Layout(now.problem), model_);
     MatrixXd prior = at.prior.information + at.sources.back().information;
     MatrixXd all = prior;
     std::map<std::string, MatrixXd> kinds;
@@ -213,7 +243,7 @@ class FuseJob {
       all += at.sources[s].information;
     }
     const auto of_machine = [&](const MatrixXd& information) {
-      return MatrixXd(Inverse(information)(columns, columns));
+      return MarginalCovariance(information, columns);
     };
     const MatrixXd C_prior = of_machine(prior);
     cov_pp_ = of_machine(all);
@@ -260,7 +290,7 @@ class FuseJob {
   }
 
   const machine::Machine& machine_;
-  const std::vector<SimulatedRun>& runs_;
+  std::vector<SimulatedRun> runs_;
   const FuseOptions options_;
   const machine::VolumetricModel model_;
   MatrixXd cov_pp_;

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "estimation/result.h"
+#include "fusion/holdout.h"
 #include "fusion/machine_problem.h"
 #include "fusion/run_consistency.h"
 #include "map/error_map.h"
@@ -32,6 +33,7 @@ namespace abbe::fusion {
 
 struct FuseOptions {
   bool choose_smoothness = true;  // else that of the machine file
+  int holdout = 0;                // every n-th block of rows of each run; 0: none
   int threads = 0;
 };
 
@@ -60,7 +62,8 @@ struct FuseReport {
   std::vector<SmoothnessTried> smoothness = {};
   double chosen_smoothness = 0.0;  // m
   std::vector<RunConsistency> runs = {};
-  int contradicting = -1;  // of `runs`
+  int contradicting = -1;              // of `runs`
+  std::vector<HeldOut> held_out = {};  // one for each run; empty when not asked for
 };
 
 FuseReport Fuse(const machine::Machine& machine, const std::vector<simulation::SimulatedRun>& runs,

@@ -103,16 +103,19 @@ std::vector<int> ColumnsOf(const std::vector<ParameterBlock>& blocks, const std:
   return columns;
 }
 
-estimation::Result SolveLinkage(const estimation::Problem& problem, int threads) {
+estimation::Result SolveLinkage(const estimation::Problem& problem, int threads,
+                                bool weak_directions) {
   constexpr double kSettled = 1e-4;
   constexpr int kFewPasses = 20;
   try {
     return problem.Solve({.max_iterations = kFewPasses,
                           .threads = threads,
                           .settled = kSettled,
-                          .jacobian_bytes = 0});
+                          .jacobian_bytes = 0,
+                          .weak_directions = weak_directions});
   } catch (const NumericalError&) {
-    return problem.Solve({.threads = threads, .settled = kSettled});
+    return problem.Solve(
+        {.threads = threads, .settled = kSettled, .weak_directions = weak_directions});
   }
 }
 

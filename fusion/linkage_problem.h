@@ -33,7 +33,8 @@ struct LinkageProblemOptions {
 // Nearly always a few passes from the nominal linkage do; where they do not, as with a base that is
 // known to some decimetres only, the trust region goes before them. Failure: that of
 // Problem::Solve.
-estimation::Result SolveLinkage(const estimation::Problem& problem, int threads = 0);
+estimation::Result SolveLinkage(const estimation::Problem& problem, int threads = 0,
+                                bool weak_directions = true);
 
 estimation::Problem MakeLinkageProblem(const simulation::LinkageSimulation& simulation,
                                        const std::vector<simulation::LinkageRun>& runs,

@@ -5,7 +5,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
-#include "estimation/linearization.h"
+#include "fusion/marginal.h"
 
 namespace abbe::fusion {
 namespace {
@@ -44,13 +44,18 @@ RunConsistency Check(const std::string& name, const estimation::SourceSums& run,
   }
   const Quadratic seen = Eliminate({run.information, run.gradient}, others, own);
   RunConsistency check{.name = name};
-  const Eigen::LLT<MatrixXd> H{MatrixXd(rest(others, others))};
-  if (H.info() != Eigen::Success) return check;
-  // L = U^-1 with H = U'U.
-  const MatrixXd half = H.matrixL().solve(seen.information);
-  const MatrixXd M = H.matrixL().solve(half.transpose());
+  std::vector<int> touched;
+  for (int i = 0; i < static_cast<int>(others.size()); ++i) {
+    if (run.information.diagonal()[others[static_cast<std::size_t>(i)]] > 0.0) touched.push_back(i);
+  }
+  const MatrixXd factor = MarginalFactor(rest(others, others), touched);
+  if (factor.size() == 0) return check;
+  // What the run does not touch is integrated out; L = U'^-1 with H = U U'.
+  const auto U = factor.triangularView<Eigen::Lower>();
+  const MatrixXd half = U.solve(MatrixXd(seen.information(touched, touched)));
+  const MatrixXd M = U.solve(MatrixXd(half.transpose()));
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (M + M.transpose()));
-  const VectorXd y = eigen.eigenvectors().transpose() * H.matrixL().solve(seen.score);
+  const VectorXd y = eigen.eigenvectors().transpose() * U.solve(VectorXd(seen.score(touched)));
   for (Index i = 0; i < y.size(); ++i) {
     const double lambda = eigen.eigenvalues()[i];
     if (!(lambda > kSeen)) continue;
@@ -67,15 +72,7 @@ RunConsistency Check(const std::string& name, const estimation::SourceSums& run,
 }  // namespace
 
 std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
-                                      const estimation::Result& result) {
-  const estimation::Layout layout(problem);
-  VectorXd x(layout.start.size());
-  Index at = 0;
-  for (const auto& block : result.blocks) {
-    x.segment(at, block.size()) = block.Values();
-    at += block.size();
-  }
-  const auto sums = estimation::Linearize(problem, layout, x, 0);
+                                      const estimation::Linearization& sums) {
   MatrixXd all = sums.prior.information;
   for (const auto& source : sums.sources) all += source.information;
   std::vector<RunConsistency> checks;

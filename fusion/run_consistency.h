@@ -1,6 +1,6 @@
 // Whether the runs of a fit agree: what each of them says against what all others say.
 //
-//   for (const RunConsistency& run : CheckRuns(problem, result)) ...
+//   for (const RunConsistency& run : CheckRuns(problem, sums)) ...
 //
 // Background: at the common estimate x, run r has the information D and the score g = J'r of its
 // own rows; all others and the priors have the information H. Without run r the estimate would be
@@ -21,8 +21,8 @@
 #include <string>
 #include <vector>
 
+#include "estimation/linearization.h"
 #include "estimation/problem.h"
-#include "estimation/result.h"
 
 namespace abbe::fusion {
 
@@ -33,9 +33,10 @@ struct RunConsistency {
   double probability = 1.0;  // of a T as large by chance
 };
 
-// In the order of the sources; those that are priors are left out.
+// In the order of the sources; those that are priors are left out. `sums`: of the problem at its
+// solution.
 std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
-                                      const estimation::Result& result);
+                                      const estimation::Linearization& sums);
 
 // The run that contradicts the others, an index into `runs`; -1: none does at 1 % for the whole
 // set.

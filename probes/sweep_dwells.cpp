@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -54,18 +53,6 @@ Rows RowsOf(const recording::Recording& recording, char axis) {
   for (std::size_t probe = 0; probe < kProbes; ++probe)
     rows.gaps[probe] = recording.At(kGapColumns[probe]);
   return rows;
-}
-
-double HeaderNumber(const recording::Recording& recording, std::string_view path, double fallback) {
-  const std::optional<std::string> text = recording.HeaderText(path);
-  if (!text) return fallback;
-  char* end = nullptr;
-  const double value = std::strtod(text->c_str(), &end);
-  if (end == text->c_str() || *end != '\0' || !(value >= 0.0)) {
-    throw InputError(fmt::format("{}: header: {} is {}; it must be a number of at least 0",
-                                 recording.name, path, *text));
-  }
-  return value;
 }
 
 // Gathers the rows of the run at hand and turns them into a dwell when it ends.
@@ -257,8 +244,8 @@ Eigen::Vector3d PositionAt(const recording::Recording& recording, std::size_t ro
 }  // namespace
 
 DwellRule DwellRuleOf(const recording::Recording& recording) {
-  return {HeaderNumber(recording, "sweep.window_um", 20.0) * kMicrometre,
-          HeaderNumber(recording, "sweep.settle_s", 0.1)};
+  return {recording.HeaderNumber("sweep.window_um", 0.0).value_or(20.0) * kMicrometre,
+          recording.HeaderNumber("sweep.settle_s", 0.0).value_or(0.1)};
 }
 
 SweepDwells FindDwells(const recording::Recording& recording, const DwellRule& rule,

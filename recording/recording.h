@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -48,6 +49,11 @@ struct Recording {
   // A text of the header by dotted path ("kind", "mounting.head"), or an empty optional. Other TOML
   // values are returned as TOML writes them.
   std::optional<std::string> HeaderText(std::string_view path) const;
+  // Numbers of the header; InputError naming the file and the key when it is none, is below
+  // `at_least`, or there are not `count` of them.
+  std::optional<double> HeaderNumber(
+      std::string_view path, double at_least = -std::numeric_limits<double>::infinity()) const;
+  std::optional<std::vector<double>> HeaderNumbers(std::string_view path, std::size_t count) const;
   std::string Kind() const;  // HeaderText("kind"); InputError when missing
 };
 

@@ -32,6 +32,8 @@ class CourseMaker {
         hidden_(rig.world().hidden(), climate_, {.begin = options.begin}),
         encoders_(rig.world().seed(), kEncoderNoiseStream + kRunStreams * options.run,
                   rig.linkage().settings().encoder_noise),
+        ball_(rig.world().seed(), kBallStream + kRunStreams * options.run,
+              rig.linkage().settings().repeatability),
         reference_(rig.world().seed(), kReferenceNoiseStream + kRunStreams * options.run,
                    rig.linkage().settings().reference_noise) {
     if (!linkage_ && options.kind != "reference") {
@@ -109,7 +111,9 @@ class CourseMaker {
 
   void AddAngles(const CourseState& state, double temperature, std::uint64_t row) {
     const double count = 2.0 * std::numbers::pi / rig_.world().settings().encoder_counts;
-    Vector3d angles = rig_.EncodersAt(state, temperature, Force(), hidden_) + encoders_.At(row);
+    Vector3d angles =
+        rig_.EncodersAt(state, temperature, Force(), hidden_, ball_.At(state.position)) +
+        encoders_.At(row);
     // A turn on, not a jump by a turn, where an angle passes pi.
     for (Eigen::Index i = 0; i < kPivots; ++i) {
       angles[i] = before_[i] + std::remainder(angles[i] - before_[i], 2.0 * std::numbers::pi);
@@ -128,7 +132,9 @@ class CourseMaker {
   Climate& climate_;
   HiddenRun hidden_;
   std::vector<std::string> sensors_;
-  WhiteNoise encoders_, reference_;
+  WhiteNoise encoders_;
+  BallSeat ball_;
+  WhiteNoise reference_;
   recording::Recording course_;
   std::size_t column_ = 0;
   Vector3d before_ = Vector3d::Zero();  // angles of the last row
@@ -188,9 +194,9 @@ void LinkageRig::Follow(const CourseState& state, double temperature, double cap
 }
 
 Vector3d LinkageRig::EncodersAt(const CourseState& state, double temperature, double cap_force,
-                                HiddenRun& hidden) const {
+                                HiddenRun& hidden, const Vector3d& seat) const {
   const Vector3d place = state.position + hidden.OffsetFor(Source::kAngles);
-  Vector3d ball = ToolAt(place) + TrailingAt(state.velocity, cap_force);
+  Vector3d ball = ToolAt(place) + TrailingAt(state.velocity, cap_force) + seat;
   if (hidden.drags_ball()) ball += BallFrom(hidden);
   const Vector3d turns = linkage_.TurnsForPlace(ball, temperature);
   return linkage_.EncodersAt(turns) + hidden.EncodersShow(turns);

@@ -54,9 +54,11 @@ class LinkageRig {
   Eigen::Vector3d ReferenceAt(const Eigen::Vector3d& position) const;
   // How far the ball trails behind the cap while the axes move.
   Eigen::Vector3d TrailingAt(const Eigen::Vector3d& velocity, double cap_force) const;
-  // Angles without noise, not cut into counts; `hidden` has followed the axes to `state`.
+  // Angles without noise, not cut into counts; `hidden` has followed the axes to `state`. `seat`:
+  // how far the ball sits off, in M.
   Eigen::Vector3d EncodersAt(const CourseState& state, double temperature, double cap_force,
-                             HiddenRun& hidden) const;
+                             HiddenRun& hidden,
+                             const Eigen::Vector3d& seat = Eigen::Vector3d::Zero()) const;
   // The same when nothing is hidden.
   Eigen::Vector3d EncodersAt(const CourseState& state, double temperature, double cap_force) const;
 

@@ -67,6 +67,7 @@ LinkageSettings ReadLinkage(const Table& root) {
   const Table noise = table.Child("noise");
   linkage.encoder_noise = Deviation(noise, "encoder_urad", 3.0);
   linkage.reference_noise = Deviation(noise, "reference_um", 0.3);
+  linkage.repeatability = Deviation(noise, "repeatability_um", 0.0);
   return linkage;
 }
 

@@ -27,7 +27,7 @@ struct LinkageSettings {
   // Standard deviations of what is drawn.
   double link, pivot_angle, pivot_offset, encoder_offset, eccentricity, graduation, bearing;
   double base_place, base_angle, ball, compliance, thermal;
-  double encoder_noise, reference_noise;
+  double encoder_noise, reference_noise, repeatability;
 };
 
 LinkageSettings ReadLinkage(const settings::Table& root);

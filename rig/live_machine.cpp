@@ -70,7 +70,9 @@ LiveMachine::LiveMachine(const World& world, std::function<double()> time,
       climate_(world.settings(), world.seed(), 0, LinkSensor(linkage)),
       hidden_(world.hidden(), climate_, {.swept = 0}),
       encoder_noise_(world.seed(), kEncoderNoiseStream,
-                     linkage != nullptr ? linkage->linkage().settings().encoder_noise : 0.0) {
+                     linkage != nullptr ? linkage->linkage().settings().encoder_noise : 0.0),
+      ball_(world.seed(), kBallStream,
+            linkage != nullptr ? linkage->linkage().settings().repeatability : 0.0) {
   latest_.axes = StandingAt(RestOf(world.settings()));
   hidden_.Follow(0.0, latest_.axes.position, Vector3d::Zero());
   if (!course) return;
@@ -220,7 +222,8 @@ std::optional<Vector3d> LiveMachine::EncodersNow() {
   const Moment& now = Latest();
   const double temperature = climate_.At(LinkSensor(linkage_).front(), now.axes.time);
   try {
-    Vector3d angles = linkage_->EncodersAt(now.axes, temperature, cap_force_, hidden_) +
+    Vector3d angles = linkage_->EncodersAt(now.axes, temperature, cap_force_, hidden_,
+                                           ball_.At(now.axes.position)) +
                       encoder_noise_.At(now.tick);
     hidden_.Say(angles);
     return angles;

@@ -84,6 +84,7 @@ class LiveMachine {
   HiddenRun hidden_;
   std::uint64_t followed_ = 0;  // tick
   WhiteNoise encoder_noise_;
+  BallSeat ball_;
   int head_axis_ = 0;
   Moment latest_;
   std::uint64_t started_ = 0;  // tick

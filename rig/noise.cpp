@@ -41,6 +41,15 @@ Eigen::Vector3d WhiteNoise::At(std::uint64_t number) const {
   return noise;
 }
 
+Eigen::Vector3d BallSeat::At(const Eigen::Vector3d& axes) {
+  constexpr double kMoved = 1e-6;  // m
+  if (draws_ == 0 || (axes - axes_).norm() > kMoved) {
+    axes_ = axes;
+    seat_ = noise_.At(draws_++);
+  }
+  return seat_;
+}
+
 SensorNoise::SensorNoise(const RigSettings& settings, std::uint64_t seed, std::uint64_t run)
     : seed_(seed),
       first_stream_(kRunStreams * run),

@@ -46,6 +46,22 @@ class WhiteNoise {
   double deviation_;
 };
 
+// How the ball comes to sit in its cap, each direction normal with this deviation: drawn anew when
+// the axes stand more than 1 um from where they stood at the last draw, so it stays for a stay.
+class BallSeat {
+ public:
+  // Takes three streams from `stream` on.
+  BallSeat(std::uint64_t seed, std::uint64_t stream, double deviation)
+      : noise_(seed, stream, deviation) {}
+
+  Eigen::Vector3d At(const Eigen::Vector3d& axes);
+
+ private:
+  WhiteNoise noise_;
+  std::uint64_t draws_ = 0;
+  Eigen::Vector3d axes_, seat_;
+};
+
 // The noise of the five probes and of temperatures in one run. Two runs of one seed are
 // independent.
 class SensorNoise {

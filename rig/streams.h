@@ -24,6 +24,7 @@ enum Stream : std::uint64_t {
   kDriftStream = 0x10008,         // + kRunStreams * run + probe
   kTemperatureStream = 0x10010,   // + kRunStreams * run + sensor, up to 16
   kEncoderNoiseStream = 0x10080,  // + kRunStreams * run + pivot
+  kBallStream = 0x10088,          // + kRunStreams * run + direction
   kReferenceNoiseStream = 0x10090,  // + kRunStreams * run + axis
 };
 

@@ -88,7 +88,7 @@ SimulatedRun SimulateLengths(const machine::VolumetricModel& model, const Vector
                              const recording::Recording& recording) {
   MachinePoints points = ReadMachinePoints(recording);
   std::vector<Length> lengths = ReadLengths(recording, points);
-  const double u_scale = 1e-6 * HeaderNumber(recording, "u_scale_ppm").value_or(0.0);
+  const double u_scale = 1e-6 * recording.HeaderNumber("u_scale_ppm", 0.0).value_or(0.0);
   SimulatedRun simulated{recording.name, "length", model.Blocks(), nullptr,
                          estimation::RobustLoss::None()};
   if (u_scale > 0.0) {

@@ -8,9 +8,11 @@
 // with a command is what is to be found. What is left is the noise of the encoders and how well the
 // ball repeats (linkage.noise.repeatability). The ball stands in the machine's origin when all axes
 // are at zero.
+// A run of more than 4096 poses is gathered into cells of a quarter of the correlation length
+// (linkage_cells.h) at the parameters that fit 1024 of them; their chi-square is that of the cells.
 // Unknowns: those of the linkage and its base, then the machine's functions and squareness.
-// Units: m, rad. Failure: InputError for a position outside the travels, naming the row. Validity:
-// exact.
+// Units: m, rad. Failure: InputError for a position outside the travels, naming the row, and for a
+// ball that does not go where the chain takes it. Validity: exact.
 #pragma once
 
 #include "machine/volumetric_model.h"
@@ -22,6 +24,6 @@ namespace abbe::simulation {
 // `reference`: the machine's reference point, m, in M.
 SimulatedRun SimulateLinkage(const machine::VolumetricModel& model,
                              const Eigen::Vector3d& reference, const LinkageSimulation& linkage,
-                             const LinkageRun& run);
+                             LinkageRun run);
 
 }  // namespace abbe::simulation

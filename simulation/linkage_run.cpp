@@ -104,9 +104,10 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
   return run;
 }
 
-LinkageRun MeansOfStays(const LinkageRun& run, double window) {
+LinkageRun MeansOfStays(LinkageRun run, double window) {
   if (run.poses() == 0) return run;
   const std::vector<Index> starts = StartsOfStays(run, window);
+  if (static_cast<Index>(starts.size()) == run.poses() + 1) return run;  // it never stands
   LinkageRun means = Like(run, static_cast<Index>(starts.size()) - 1);
   for (Index stay = 0; stay < means.poses(); ++stay) {
     const Index first = starts[static_cast<std::size_t>(stay)];

@@ -45,7 +45,7 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
                           const relm::LinkageSettings& settings);
 
 inline constexpr double kStayWindow = 5e-6;  // m
-LinkageRun MeansOfStays(const LinkageRun& run, double window = kStayWindow);
+LinkageRun MeansOfStays(LinkageRun run, double window = kStayWindow);
 
 // A run that stands at the given axis positions [x y z], its reference instrument present, before
 // any encoder has been read.

@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 
-#include "failure/failure.h"
 #include "machine/volumetric_error.h"
 #include "recording/good_rows.h"
 #include "simulation/axes_in_travel.h"
@@ -20,28 +17,10 @@ using Eigen::Vector3d;
 
 }  // namespace
 
-std::optional<double> HeaderNumber(const recording::Recording& recording, const std::string& key) {
-  const auto text = recording.HeaderText(key);
-  if (!text) return std::nullopt;
-  char* end = nullptr;
-  const double number = std::strtod(text->c_str(), &end);
-  if (end == text->c_str() || *end != '\0' || !(number >= 0.0)) {
-    throw InputError(fmt::format("{}: header: {} is {}; write a number not below 0", recording.name,
-                                 key, *text));
-  }
-  return number;
-}
-
 std::optional<Vector3d> HeaderPoint(const recording::Recording& recording, const std::string& key) {
-  const auto text = recording.HeaderText(key);
-  if (!text) return std::nullopt;
-  Vector3d point;
-  if (std::sscanf(text->c_str(), " [ %lf , %lf , %lf ]", &point[0], &point[1], &point[2]) != 3) {
-    throw InputError(
-        fmt::format("{}: header: {} is {}; write three numbers, such as [0.0, 0.0, 50.0]",
-                    recording.name, key, *text));
-  }
-  return 1e-3 * point;
+  const auto numbers = recording.HeaderNumbers(key, 3);
+  if (!numbers) return std::nullopt;
+  return 1e-3 * Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
 }
 
 MachinePoints ReadMachinePoints(const recording::Recording& recording) {

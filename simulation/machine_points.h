@@ -27,9 +27,7 @@ struct MachinePoints {
   Eigen::Index count() const { return axes.cols(); }
 };
 
-// A number of the header that is not below 0, as written, or three in mm, as m; empty when the
-// header has no such key. InputError naming recording and key for anything else.
-std::optional<double> HeaderNumber(const recording::Recording& recording, const std::string& key);
+// A point of the header in mm, as m; empty when the header has no such key.
 std::optional<Eigen::Vector3d> HeaderPoint(const recording::Recording& recording,
                                            const std::string& key);
 

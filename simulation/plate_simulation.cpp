@@ -52,7 +52,7 @@ void RefuseTwoPlaces(const MachinePoints& points, const std::vector<int>& holes,
 }
 
 double Probing(const recording::Recording& recording) {
-  const double u = 1e-6 * HeaderNumber(recording, "u_probing_um").value_or(0.0);
+  const double u = 1e-6 * recording.HeaderNumber("u_probing_um", 0.0).value_or(0.0);
   if (u > 0.0) return u;
   throw InputError(
       fmt::format("{}: header: state u_probing_um above 0, the standard uncertainty of a hole "
@@ -165,7 +165,7 @@ std::vector<PlateSetUp> ReadPlate(const recording::Recording& recording) {
   all.points = ReadMachinePoints(recording);
   all.plate = recording.HeaderText("plate").value_or(recording.name);
   all.u_probing = Probing(recording);
-  all.u_scale = 1e-6 * HeaderNumber(recording, "u_scale_ppm").value_or(0.0);
+  all.u_scale = 1e-6 * recording.HeaderNumber("u_scale_ppm", 0.0).value_or(0.0);
   const VectorXd setup = ColumnAt(recording, all.points, "setup");
   const VectorXd hole = ColumnAt(recording, all.points, "hole");
   all.certificate.resize(2, setup.size());

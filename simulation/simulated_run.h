@@ -6,8 +6,13 @@
 // the entries of `blocks`, one block after the other. Blocks are shared by name: the functions of
 // the machine by all runs, the probes by all sweeps, the target by the sweeps of one mounting.
 // A new kind of run is a new file that makes one of these.
+//
+// A run of more rows than a fit wants to see gives a sample of them as its residual, and
+// `condense`: called with the x that fits the sample, it makes one residual of all rows.
 #pragma once
 
+#include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +33,8 @@ struct SimulatedRun {
   std::vector<estimation::ParameterBlock> blocks;
   std::shared_ptr<const estimation::Residual> residual;
   estimation::RobustLoss loss = estimation::RobustLoss::None();
+  std::function<std::shared_ptr<const estimation::Residual>(const Eigen::VectorXd& x)> condense =
+      {};
 };
 
 }  // namespace abbe::simulation

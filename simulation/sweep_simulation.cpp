@@ -376,7 +376,8 @@ std::vector<ParameterBlock> InstrumentBlocks(const SweepInstrument& instrument,
 
 SimulatedRun SimulateSweep(const machine::VolumetricModel& model, const Vector3d& reference,
                            const SweepInstrument& instrument, const SweepRun& run) {
-  SimulatedRun simulated{run.name, "sweep", {}, nullptr, estimation::RobustLoss::None()};
+  SimulatedRun simulated{
+      run.name, "sweep", {}, nullptr, estimation::RobustLoss::Huber(kPullsNoMore)};
   SweepRun within = run;
   Eigen::Matrix3Xd axes(3, run.rows());
   for (Index row = 0; row < run.rows(); ++row) axes.col(row) = run.AxesAt(row);

@@ -63,6 +63,8 @@ class FuseTest(ProgramCase):
             off = parameter["value"] - 1e6 * truth["squareness"][name]
             self.assertLess(abs(off), 4 * parameter["uncertainty"], parameter)
             self.assertLess(parameter["uncertainty"], 4.0)  # 30 urad before the data
+        self.assertEqual(result["misfits"], [])
+        self.assertNotIn("held_out", result)
         self.done(map_file, "--format", "csv", "--points", 11, command="export")
         self.same_as_the_table(result, map_file.with_suffix(".csv"))
 
@@ -70,6 +72,47 @@ class FuseTest(ProgramCase):
         text = self.done(*runs[:4], "--machine", self.machine, "-o", map_file, "--json", without)
         self.assertIn("PRIOR ONLY; give a run of kind length", text)
         self.assertEqual(json.loads(without.read_text())["scale"]["statement"], "prior only")
+
+        held = self.path / "held.json"
+        text = self.done(*runs, "--machine", self.machine, "-o", map_file, "--json", held, "--holdout", 4)
+        self.assertIn("held out, predicted", text)
+        for run in json.loads(held.read_text())["held_out"]:
+            self.assertAlmostEqual(run["chi2"] / run["expected"], 1.0, delta=4 * (2 / run["rows"]) ** 0.5, msg=run)
+        self.refuse(*runs, "--machine", self.machine, "--holdout", 1, saying=["hold out every 2nd or fewer"])
+
+    def test_what_does_not_belong_together_is_said(self):
+        runs = self.record()
+        map_file, json_file = self.path / "map.toml", self.path / "fuse.json"
+        # An axis without a run.
+        text = self.done(runs[0], runs[2], "--machine", self.machine, "-o", map_file, "--json", json_file)
+        names = [f"E{motion}Y" for motion in "XYZABC"]
+        self.assertIn("PRIOR ONLY: no run determines", text)
+        self.assertLessEqual(set(names), set(json.loads(json_file.read_text())["prior_only"]))
+        # Another chain: the linkage sees it at once, a sweep in its rows.
+        other = self.path / "other.toml"
+        other.write_text(self.machine.read_text().replace("[w X Y b Z t]", "[w b X Y Z t]"))
+        self.refuse(runs[3], "--machine", other, saying=["volume.csv", "go different ways", "[w b X Y Z t]"])
+        text = self.done(runs[0], "--machine", other, "-o", map_file, "--json", json_file)
+        self.assertIn("DOES NOT FIT: ", text)
+        self.assertEqual(len(json.loads(json_file.read_text())["misfits"]), 1)
+        # A gauge 50 um too long.
+        lines = pathlib.Path(runs[4]).read_text().splitlines()
+        names = next(line for line in lines if line.startswith("time_s")).split(",")
+        at = names.index("length_mm")
+        wrong = self.path / "wrong.csv"
+        with wrong.open("w") as out:
+            for line in lines:
+                fields = line.split(",")
+                if len(fields) == len(names) and fields != names:
+                    fields[at] = repr(float(fields[at]) * (1 + 0.05 / 60))
+                print(",".join(fields), file=out)
+        text = self.done(*runs[:4], wrong, "--machine", self.machine, "-o", map_file, "--json", json_file)
+        self.assertIn("CONTRADICTION: ", text)
+        self.assertIn("wrong.csv", json.loads(json_file.read_text())["contradictions"][0])
+        # Nothing to map.
+        empty = self.path / "empty.toml"
+        empty.write_text(self.machine.read_text().replace("travel_mm = [0.0, 60.0]", "travel_mm = [30.0, 30.0]", 1))
+        self.refuse(runs[0], "--machine", empty, saying=["empty.toml", "travel_mm"])
 
     def test_refusals_take_one_line(self):
         dwell = self.path / "dwell.csv"

@@ -49,7 +49,7 @@ struct Campaign {
         rig(rig::World(rig::ReadRigSettings(document.Root()), seed),
             rig::Linkage(rig::ReadLinkage(document.Root()), seed)) {}
 
-  simulation::SimulatedRun Sweep(char axis, std::uint64_t run = 1) const {
+  recording::Recording SweepRecording(char axis, std::uint64_t run = 1) const {
     rig::CampaignOptions options;
     options.rate = 50.0;
     options.moving = false;
@@ -57,8 +57,16 @@ struct Campaign {
     options.mounting = "A";
     auto recording = rig::RecordSweep(rig.world(), axis, channels, options);
     recording.name = std::string("sweep ") + axis;
+    return recording;
+  }
+
+  simulation::SimulatedRun Sweep(const recording::Recording& recording) const {
     return simulation::SimulateSweep(model, reference, instrument,
                                      simulation::ReadSweepRun(recording, instrument.head, noise));
+  }
+
+  simulation::SimulatedRun Sweep(char axis, std::uint64_t run = 1) const {
+    return Sweep(SweepRecording(axis, run));
   }
 
   recording::Recording LinkageRecording(int points = 6, std::uint64_t run = 1) const {
@@ -74,7 +82,7 @@ struct Campaign {
         machine.chain, linkage, relm::MakeLinkageModel(linkage, relm::ErrorModel::kComplete));
     auto run = simulation::MeansOfStays(simulation::ReadLinkageRun(recording, linkage));
     run.name = "linkage";
-    return simulation::SimulateLinkage(model, reference, nominal, run);
+    return simulation::SimulateLinkage(model, reference, nominal, std::move(run));
   }
   simulation::SimulatedRun Linkage() const { return Linkage(LinkageRecording()); }
 

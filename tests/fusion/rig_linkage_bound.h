@@ -21,6 +21,8 @@ namespace abbe::fusion {
 
 class RigLinkageBound {
  public:
+  using Index = Eigen::Index;
+
   explicit RigLinkageBound(const rig::LinkageSettings& settings) : settings_(settings) {
     const auto drawn = [&](double deviation) {
       deviations_.push_back(deviation);
@@ -56,9 +58,7 @@ class RigLinkageBound {
     Eigen::MatrixXd information = Eigen::MatrixXd::Identity(n, n);
     for (Eigen::Index i = 0; i < places.cols(); ++i) {
       const Eigen::Vector3d shown = Angles(places.col(i));
-      const Eigen::Matrix3d slope = BySteps(3, 1e-5, [&](const Eigen::VectorXd& step) {
-        return Ball(Eigen::VectorXd::Zero(n), shown + step, warmth[i]);
-      });
+      const Eigen::Matrix3d slope = Slope(shown, warmth[i]);
       const Eigen::Matrix3d noise =
           std::pow(settings_.encoder_noise, 2) * slope * slope.transpose() +
           std::pow(settings_.reference_noise, 2) * Eigen::Matrix3d::Identity();
@@ -131,8 +131,31 @@ class RigLinkageBound {
     return rotated + Vector3d(at(place_[0]), at(place_[1]), at(place_[2]));
   }
 
+  // By everything drawn, in units of its deviations: a hundredth of them is straight enough.
+  Eigen::MatrixXd Jacobian(const Eigen::Vector3d& shown, double warmth) const {
+    return BySteps(static_cast<Index>(deviations_.size()), 0.01,
+                   [&](const Eigen::VectorXd& x) { return Ball(x, shown, warmth); });
+  }
+
+  // By the angles that are shown.
+  Eigen::Matrix3d Slope(const Eigen::Vector3d& shown, double warmth) const {
+    const auto n = static_cast<Index>(deviations_.size());
+    return BySteps(3, 1e-5, [&](const Eigen::VectorXd& step) {
+      return Ball(Eigen::VectorXd::Zero(n), shown + step, warmth);
+    });
+  }
+
+  // The elbow up, by the law of cosines: the nominal linkage.
+  Eigen::Vector3d Angles(const Eigen::Vector3d& p) const {
+    const double a = settings_.link_1, b = settings_.link_2, distance = p.norm();
+    const double reach = std::hypot(p.x(), p.y());
+    const double first = std::atan2(p.z(), reach) +
+                         std::acos((a * a + distance * distance - b * b) / (2 * a * distance));
+    const double second = std::atan2(p.z() - a * std::sin(first), reach - a * std::cos(first));
+    return {std::atan2(p.y(), p.x()), -first, M_PI / 2 - second + first};
+  }
+
  private:
-  using Index = Eigen::Index;
   struct Wave {
     int order;
     Index sine, cosine;
@@ -154,22 +177,6 @@ class RigLinkageBound {
       J.col(i) = (f(h) - f(-h)) / (2.0 * step);
     }
     return J;
-  }
-
-  // By everything drawn, in units of its deviations: a hundredth of them is straight enough.
-  Eigen::MatrixXd Jacobian(const Eigen::Vector3d& shown, double warmth) const {
-    return BySteps(static_cast<Index>(deviations_.size()), 0.01,
-                   [&](const Eigen::VectorXd& x) { return Ball(x, shown, warmth); });
-  }
-
-  // The elbow up, by the law of cosines: the nominal linkage.
-  Eigen::Vector3d Angles(const Eigen::Vector3d& p) const {
-    const double a = settings_.link_1, b = settings_.link_2, distance = p.norm();
-    const double reach = std::hypot(p.x(), p.y());
-    const double first = std::atan2(p.z(), reach) +
-                         std::acos((a * a + distance * distance - b * b) / (2 * a * distance));
-    const double second = std::atan2(p.z() - a * std::sin(first), reach - a * std::cos(first));
-    return {std::atan2(p.y(), p.x()), -first, M_PI / 2 - second + first};
   }
 
   rig::LinkageSettings settings_;

@@ -26,6 +26,26 @@ TEST(RecordingTest, FindsAColumnByItsName) {
   ExpectHas(message, "runs/a.csv: probe_a_um: ");
 }
 
+TEST(RecordingTest, HandsOutTheNumbersOfTheHeader) {
+  Recording recording = Example();
+  recording.header = "u_ppm = 2.5\ncount = 3\ntool_mm = [0, 1.5, -2]\nword = \"x\"\nbad = nan\n" +
+                     recording.header;
+  EXPECT_EQ(recording.HeaderNumber("u_ppm", 0.0), 2.5);
+  EXPECT_EQ(recording.HeaderNumber("count"), 3.0);
+  EXPECT_FALSE(recording.HeaderNumber("nothing").has_value());
+  EXPECT_EQ(recording.HeaderNumbers("tool_mm", 3), (std::vector<double>{0.0, 1.5, -2.0}));
+  EXPECT_FALSE(recording.HeaderNumbers("nothing", 3).has_value());
+  for (const char* path : {"word", "bad", "tool_mm"}) {
+    const auto message = MessageOf<InputError>([&] { recording.HeaderNumber(path); });
+    ExpectHas(message, std::string("runs/a.csv: header: ") + path + " is ");
+  }
+  ExpectHas(MessageOf<InputError>([&] { recording.HeaderNumber("u_ppm", 3.0); }), "at least 3");
+  for (const char* path : {"word", "u_ppm"}) {
+    ExpectHas(MessageOf<InputError>([&] { recording.HeaderNumbers(path, 3); }), "write 3 numbers");
+  }
+  ExpectHas(MessageOf<InputError>([&] { recording.HeaderNumbers("tool_mm", 2); }), "2 numbers");
+}
+
 TEST(RecordingTest, ReadsTheHeaderByDottedPath) {
   const Recording recording = Example();
   EXPECT_EQ(recording.Kind(), "dwell");

@@ -8,6 +8,8 @@
 
 #include "failure/failure.h"
 #include "recording/recording_file.h"
+#include "rig/noise.h"
+#include "rig/streams.h"
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
@@ -97,6 +99,33 @@ TEST(LinkageRig, TheSameSeedGivesTheSameRecordingAndARunOnlyOtherNoise) {
   EXPECT_LT(ScatterOf(angles, others), 7e-6);
   const auto stranger = RigOf(DemoRig(), 8).Record(Line(), {.reference = true});
   EXPECT_GT(ScatterOf(angles, Column(stranger, "pivot_2_rad")), 5e-5);
+}
+
+TEST(LinkageRig, TheBallSitsElsewhereInEachStayAndStillInOne) {
+  constexpr double kSeat = 3e-6;
+  constexpr int kStays = 4000;
+  BallSeat seat(1, kBallStream, kSeat);
+  double squares = 0.0;
+  for (int stay = 0; stay < kStays; ++stay) {
+    const Vector3d axes(0.001 * stay, 0.0, 0.0);
+    const Vector3d there = seat.At(axes);
+    EXPECT_EQ(seat.At(axes + Vector3d::Constant(1e-7)), there);
+    squares += there.squaredNorm();
+  }
+  // A variance of 3 n normal numbers: four standard deviations.
+  const double count = 3.0 * kStays;
+  EXPECT_NEAR(squares / count / (kSeat * kSeat), 1.0, 4.0 * std::sqrt(2.0 / count));
+
+  // In a recording: the angles of two stays at one place.
+  LinkageSettings settings = ReadLinkage(DemoMill().Root());
+  settings.encoder_noise = 0.0;
+  settings.repeatability = 0.1e-3;
+  const Vector3d here(0.03, 0.03, 0.03), there(0.04, 0.03, 0.03);
+  const auto course = DwellCourse({here, there, here}, 0.1, 0.1, 1);
+  const LinkageRig rig(World(PerfectRig(), 1), Linkage(settings, 1));
+  const auto angles = Column(rig.Record(course), "pivot_2_rad");
+  EXPECT_NEAR(angles[0], angles[2], 1e-5);  // 0.1 um of arriving, a count
+  EXPECT_GT(std::abs(angles.front() - angles.back()), 1e-5);
 }
 
 TEST(LinkageRig, AnglesDoNotJumpByATurn) {
