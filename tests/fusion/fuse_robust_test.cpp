@@ -64,9 +64,7 @@ SimulatedRun Simulated(const simulation::LinkageRun& run) {
   return simulation::SimulateLinkage(World().model, World().reference, nominal, run);
 }
 
-// Row by row the noise of the readings pulls the scale of the machine: a linkage and a machine that
-// both grow make every gap grow, so the fit shrinks both a little. Means have less noise to shrink:
-// the two differ by up to 0.85 u here, for as many rows as there are.
+// The two differ by up to 0.85 u here, nearly all of it isotropic scale; docs/fuse.md, Known limit.
 TEST(FuseOfLongRuns, GatheredTheySayWhatTheirRowsSay) {
   const simulation::LinkageRun path = RowsOf(LongPath());
   ASSERT_GT(path.poses(), 5000);
