@@ -1,7 +1,7 @@
 // Points per second of the volumetric error on one core: exact, with all derivatives, and between
-// the points of a grid. bench/volumetric_numpy.py runs this program and SciPy in one run on the same
-// machine, and holds the mean error (the counter mean_um) of the two against each other. Targets: 5
-// million points/s exact, 30 million points/s and ten times SciPy on the grid.
+// the points of a grid. bench/volumetric_numpy.py runs this program and SciPy in one run on the
+// same machine, and holds the mean error (the counter mean_um) of the two against each other.
+// Targets: 5 million points/s exact, 30 million points/s and ten times SciPy on the grid.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

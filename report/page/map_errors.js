@@ -7,7 +7,8 @@ const SQUARENESS_NAMES = {
   C0Y: 'Squareness Y to X'
 };
 const isSquareness = (name) => name in SQUARENESS_NAMES;
-const mapErrorName = (name, error) => SQUARENESS_NAMES[name] ?? componentName(name, error);
+const mapErrorName = (name, error) => SQUARENESS_NAMES[name] ??
+    componentName(name, {...error, kind: `turn about ${'XYZ'['ABC'.indexOf(name[1])]}`});
 const mapFunctions = (result) =>
     Object.entries(result.map?.errors ?? {}).filter(([name]) => !isSquareness(name));
 const mapSquareness = (result) =>

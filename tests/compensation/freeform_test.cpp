@@ -105,7 +105,7 @@ TEST(Freeform, CorrectedByAFusedMapIsAsTrueAsTheMapSays) {
       std::sqrt(ratio.mean()));
   // As far as so few machines tell it.
   EXPECT_LT(ratio.mean(), kMost * kMost + k99 * ratio.error());
-  EXPECT_GT(before.mean(), 100.0 * left.mean());
+  EXPECT_GT(before.mean(), kMost * kMost * stated.mean());  // without it the path would not pass
 }
 
 }  // namespace
