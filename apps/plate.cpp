@@ -56,6 +56,7 @@ int Plate(const PlateArguments& arguments) {
   const auto setups = ReadSetUps(arguments, machine);
   const machine::VolumetricModel model = fusion::UnknownMachine(machine);
   std::vector<simulation::SimulatedRun> runs;
+  runs.reserve(setups.size());
   for (const auto& setup : setups) {
     runs.push_back(simulation::SimulatePlate(model, machine.reference, setup));
   }
