@@ -53,7 +53,9 @@ function travelText(result) {
   const stations = numbers(result.stations);
   if (!stations.length) return '';
   const [first, last] = [Math.min(...stations), Math.max(...stations)];
-  return `${positionText(first * 1e3)} to ${positionText(last * 1e3)}`;
+  // To the micrometre: a scale trembles below it.
+  const text = (position) => positionText(Number((position * 1e3).toFixed(3)));
+  return `${text(first)} to ${text(last)}`;
 }
 
 function movesText(moves) {
