@@ -18,6 +18,8 @@ using Eigen::Vector3d;
 
 constexpr double kRelative = 1e-13;  // of errors in units of 1e-6: below 100 of them, 4 eps
 constexpr double kRounding = 1e-15;  // m: of numbers that go through mm or um, below 0.3 m
+constexpr double kErrorRounding =
+    1e-20;  // m: two roundings of errors below 20 um, that go through um
 
 ErrorMap Bare(const ErrorMap& map) { return {map.origin(), map.model(), {}}; }
 
@@ -47,10 +49,10 @@ TEST(Exporter, EveryGridFormatReadsBackWhatWasWritten) {
       EXPECT_EQ(back.header.temperature, 20.1);
       EXPECT_LT((back.header.tool - options.tool).norm(), kRounding);
       ASSERT_EQ(back.grid.size(), 4 * 5 * 6);
-      EXPECT_LT((back.grid.error() - grid.error()).cwiseAbs().maxCoeff(), 1e-6 * kRounding);
+      EXPECT_LT((back.grid.error() - grid.error()).cwiseAbs().maxCoeff(), kErrorRounding);
       ASSERT_EQ(back.grid.u95().size(), grid.u95().size());
       if (has_u95) {
-        EXPECT_LT((back.grid.u95() - grid.u95()).cwiseAbs().maxCoeff(), 1e-6 * kRounding);
+        EXPECT_LT((back.grid.u95() - grid.u95()).cwiseAbs().maxCoeff(), kErrorRounding);
       }
       for (Eigen::Index i = 0; i < grid.size(); ++i) {
         EXPECT_LT((back.grid.Position(i) - grid.Position(i)).norm(), kRounding);
