@@ -160,7 +160,7 @@ TEST(FuseHoldout, RefusesToHoldOutAllOrNothing) {
 }
 
 // The ball sits half a micrometre off in each stay, as the machine file says.
-TEST(FuseOfRig, KnowsHowTheBallRepeats) {
+TEST(FuseOfTheBall, KnowsHowItRepeats) {
   const Campaign campaign(
       CampaignMachine({{"encoder_urad = 3.0", "encoder_urad = 3.0\nrepeatability_um = 0.5"}}), 5);
   const FuseReport report = Fuse(campaign.machine, {campaign.Linkage()}, kFixed);
@@ -172,7 +172,7 @@ TEST(FuseOfRig, KnowsHowTheBallRepeats) {
   EXPECT_GT(not_stated.fit.sources[0].chi_square, 1.5 * not_stated.fit.sources[0].redundancy);
 }
 
-TEST(FuseOfRig, RefusesALinkageOnAnotherChain) {
+TEST(FuseOfAnotherChain, IsRefused) {
   const Campaign other(CampaignMachine({{R"(w X Y b Z t\])", "w b X Y Z t]"}}), 5);
   EXPECT_THAT([&] { other.Linkage(World().LinkageRecording()); },
               ThrowsMessage<InputError>(HasSubstr("go different ways")));
