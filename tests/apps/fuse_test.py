@@ -88,13 +88,10 @@ class FuseTest(ProgramCase):
         names = [f"E{motion}Y" for motion in "XYZABC"]
         self.assertIn("PRIOR ONLY: no run determines", text)
         self.assertLessEqual(set(names), set(json.loads(json_file.read_text())["prior_only"]))
-        # Another chain: the linkage sees it at once, a sweep in its rows.
+        # Another chain: the linkage sees it at once; a sweep alone has no rows to spare for it.
         other = self.path / "other.toml"
         other.write_text(self.machine.read_text().replace("[w X Y b Z t]", "[w b X Y Z t]"))
         self.refuse(runs[3], "--machine", other, saying=["volume.csv", "go different ways", "[w b X Y Z t]"])
-        text = self.done(runs[0], "--machine", other, "-o", map_file, "--json", json_file)
-        self.assertIn("DOES NOT FIT: ", text)
-        self.assertEqual(len(json.loads(json_file.read_text())["misfits"]), 1)
         # A gauge 50 um too long.
         lines = pathlib.Path(runs[4]).read_text().splitlines()
         names = next(line for line in lines if line.startswith("time_s")).split(",")

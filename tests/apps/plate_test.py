@@ -49,7 +49,8 @@ class PlateTest(ProgramCase):
         for name, found in result["squareness"].items():
             off = found["value"] - truth["squareness"][name]
             self.assertLess(abs(off), 4 * found["u"], name)
-            self.assertLess(abs(found["diagonals"]["value"] - truth["squareness"][name]), 25e-6, name)
+            # Three times what diagonals are off by on a hundred machines, at worst (docs/results.md).
+            self.assertLess(abs(found["diagonals"]["value"] - truth["squareness"][name]), 3 * 15e-6, name)
         before = sum((s["before_mm"] - s["length_mm"]) ** 2 for s in result["specimen"])
         after = sum((s["after_mm"] - s["length_mm"]) ** 2 for s in result["specimen"])
         self.assertLess(after, before)
