@@ -41,7 +41,7 @@ void RefuseTwoPlaces(const MachinePoints& points, const std::vector<int>& holes,
   for (Index i = 0; i < points.count(); ++i) {
     const auto row = points.rows[static_cast<std::size_t>(i)];
     const int number = holes[static_cast<std::size_t>(i)];
-    const Hole& first = known.try_emplace(number, row, certificate.col(i)).first->second;
+    const Hole& first = known.try_emplace(number, Hole{row, certificate.col(i)}).first->second;
     if (first.place == certificate.col(i)) continue;
     throw Bad(points, i,
               fmt::format("hole {} is at {:.4f}, {:.4f} mm here and at {:.4f}, {:.4f} mm in row "
