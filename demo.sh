@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds abbe, measures the three axes of a virtual machine with the five-probe
-# head over Modbus TCP, calibrates its linkage, measures circles with it, fuses all into one error map, and writes
-# the report. Can be run again at any time.
+# head over Modbus TCP, calibrates its linkage, measures circles with it, fuses all into one error map, hides an
+# effect of the day in the machine and finds it, and writes the report. Can be run again at any time.
 set -euo pipefail
 cd "$(dirname "$0")"
 speed=20 # the virtual machine runs this many times faster than a real one
@@ -50,6 +50,20 @@ for test in circle diagonals; do
   "$abbe" simulate "$out/map.toml" --test "$test" --corrected --json "$out/simulate_$test.json" --quiet
 done
 
+# Something is wrong with the machine, another thing every day: a campaign, and what the diagnosis says of it.
+wrong=(backlash:object=X:width_um=4 servo-lag:object=Y:delay_ms=0.3 leadscrew-cyclic:object=Y:pitch_mm=6:amplitude_um=0.8
+  mains-pickup:object=probe_d:frequency_hz=50:amplitude_um=0.2 load-coupling:object=XY:coefficient_nm_per_mm2=2
+  reversal-spike:object=X:height_um=2:decay_mm=0.3
+  clock-skew:object=linkage:delay_ms=3)
+hidden=${ABBE_DEMO_HIDE:-${wrong[$((10#$(date +%j) % ${#wrong[@]}))]}}
+# Its ball moves in the cap without drag, or the diagnosis would find that too.
+{ cat "$demo"; printf '\n[rig]\ncap_um = 0.0\n'; } >"$out/rig/no_drag.toml"
+"$abbe" rig record --seed "$seed" --machine "$out/rig/no_drag.toml" --campaign full --reduced --hide "$hidden" \
+  --truth "$out/rig/hidden.json" --out "$out/campaign" >"$out/rig/log"
+# Of the full campaign the standard one, the gap steps and the target mounted again.
+rm "$out"/campaign/{19,2?,3?}_*
+"$abbe" diagnose "$out"/campaign/*.h5 --machine "$out/rig/no_drag.toml" -o "$out/causes.toml" --json "$out/diagnosis.json" --quiet
+
 # What the rig knows: the same circle by a grid encoder without noise.
 sed 's/^reference_um = .*/reference_um = 0.0001/' "$demo" >"$out/rig/exact.toml"
 course "$out/rig/circle.csv" "$out/rig/exact.toml" --course circle --feed 300 --kind reference
@@ -70,4 +84,5 @@ for figure in G_b F_max F_min D; do
     "$(number "$out/circle_circle.json" "${figure}_um")" "$(number "$out/circle_circle.json" "u.${figure}_um")" \
     "$(number "$out/rig/circle.json" "${figure}_um")"
 done
+"$abbe" rig compare "$out/rig/hidden.json" "$out/diagnosis.json"
 "$abbe" report "$out" --out "$out/report.html"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/calibration_tables.h"
+#include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/machine_file.h"
@@ -24,7 +25,7 @@ using Eigen::Index;
 
 struct CalibrateArguments {
   std::vector<fs::path> recordings, checks;
-  fs::path machine, out, json;
+  fs::path machine, causes, out, json;
   std::string model;
   std::vector<double> volume_mm;
   bool displacement = false, mapped = false, compare = false, study = false, quiet = false;
@@ -39,7 +40,9 @@ constexpr int kPlanPoints = 9;                // along each side of the travel, 
 class Calibration {
  public:
   explicit Calibration(const CalibrateArguments& arguments)
-      : arguments_(arguments), file_(ReadMachineFile(arguments.machine)) {
+      : arguments_(arguments),
+        file_(ReadMachineFile(arguments.machine)),
+        causes_(arguments.causes, file_, kForCalibrating) {
     if (!file_.linkage) {
       throw InputError(fmt::format("{}: has no table [linkage]; describe the linkage there",
                                    arguments.machine.string()));
@@ -68,16 +71,17 @@ class Calibration {
           "nothing to calibrate with; name recordings of kind linkage, or ask for a plan with "
           "--poses N, --study or --volume X,Y,Z");
     }
+    if (causes_.Active()) Show(causes_.Line() + "\n");
     return kDone;
   }
 
  private:
-  simulation::LinkageRun Read(const fs::path& path) const {
+  simulation::LinkageRun Read(const fs::path& path) {
     const recording::Recording recording = recording::Read(path);
     for (const std::string& warning : recording.warnings) {
       fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
     }
-    return simulation::ReadLinkageRun(recording, *file_.linkage);
+    return simulation::ReadLinkageRun(causes_.Take(recording), *file_.linkage);
   }
 
   void Compare() {
@@ -109,7 +113,9 @@ class Calibration {
     report.calibration.machine = file_.sweep_setup.machine.name;
     Show(CalibrationTable(report, runs));
     if (!arguments_.out.empty()) fusion::WriteCalibration(report.calibration, arguments_.out);
-    if (!arguments_.json.empty()) WriteResult(CalibrationJson(report, runs), arguments_.json);
+    auto json = CalibrationJson(report, runs);
+    if (causes_.Active()) json["causes_taken_out"] = causes_.Data();
+    if (!arguments_.json.empty()) WriteResult(json, arguments_.json);
   }
 
   // Of poses in a box, before anything is measured.
@@ -185,6 +191,7 @@ class Calibration {
 
   const CalibrateArguments& arguments_;
   MachineFile file_;
+  CauseCorrection causes_;
   fusion::CalibrateOptions options_;
 };
 
@@ -199,6 +206,7 @@ void AddCalibrate(CLI::App& program, int& exit_code) {
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   command->add_option("--model", arguments->model,
                       "pivots, published, \"published with bearing\" or complete (the default)");
+  AddCausesOption(*command, arguments->causes);
   command->add_flag("--displacement", arguments->displacement,
                     "Nothing is known of the base position");
   command->add_flag("--mapped", arguments->mapped, "Local parameters on the grid of the poses");

@@ -6,9 +6,11 @@
 #include <memory>
 #include <system_error>
 
+#include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/map_option.h"
+#include "apps/path_table.h"
 #include "apps/result_file.h"
 #include "compensation/corrected_table.h"
 #include "compensation/nc_correction.h"
@@ -20,10 +22,10 @@ namespace {
 
 struct CorrectCommand {
   MapOption map;
-  std::filesystem::path from, out, json;
+  std::filesystem::path from, causes, out, json;
   std::vector<double> work_offset_mm = {0.0, 0.0, 0.0};
   std::vector<double> start_mm;
-  double chord_um = 1.0;
+  double chord_um = 1.0, feed_mm_min = 0.0;
   double length_mm = 0.0;  // 0: from the map
   bool quiet = false;
 };
@@ -56,17 +58,21 @@ nlohmann::ordered_json ResultOf(const CorrectCommand& options, const map::ErrorM
 
 void CorrectCsv(const CorrectCommand& options, const map::ErrorMap& map,
                 const compensation::Corrector& corrector) {
-  const auto table =
-      compensation::CorrectTable(map::ReadWhole(options.from), options.from.string(), corrector);
+  const PathCauses causes(options.causes, map.origin().machine, options.feed_mm_min);
+  const auto table = compensation::CorrectTable(
+      map::ReadWhole(options.from), options.from.string(), corrector,
+      causes.Active() ? causes.Beside(ReadPathTable(options.from)) : Eigen::Matrix3Xd());
   WriteText(table.text, OutOf(options));
   if (!options.json.empty()) {
     auto result = ResultOf(options, map, "table", table.largest);
     result["rows"] = table.rows;
+    if (causes.Active()) result["causes"] = causes.Names();
     WriteResult(result, options.json);
   }
   if (options.quiet) return;
   fmt::print("{}: {} positions, corrected by up to {:.3g} um\n", OutOf(options).string(),
              table.rows, table.largest * 1e6);
+  if (causes.Active()) fmt::print("{}\n", causes.Line());
 }
 
 // Line by line, so that a program may be larger than the memory.
@@ -134,6 +140,11 @@ int Correct(const CorrectCommand& options) {
   }
   if (options.from.extension() == ".csv") {
     CorrectCsv(options, map, corrector);
+  } else if (!options.causes.empty()) {
+    throw InputError(fmt::format(
+        "{}: --causes is for measured coordinates (.csv); set backlash and lag of a program in the "
+        "controller",
+        options.from.string()));
   } else {
     CorrectProgram(options, map, corrector);
   }
@@ -150,6 +161,7 @@ void AddCorrect(CLI::App& program, int& exit_code) {
   command
       ->add_option("file", options->from, "A table with x_mm, y_mm, z_mm (.csv), or an NC program")
       ->required();
+  AddPathCauses(*command, options->causes, options->feed_mm_min);
   command->add_option("--out", options->out, "The corrected file (NAME_corrected beside it)");
   command
       ->add_option("--work-offset", options->work_offset_mm,

@@ -1,11 +1,18 @@
 // abbe fuse: from all recordings of a machine to one error map.
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/fuse_result.h"
@@ -13,6 +20,7 @@
 #include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "map/map_file.h"
+#include "map/map_grid.h"
 #include "simulation/length_simulation.h"
 #include "simulation/linkage_on_machine.h"
 #include "simulation/plate_simulation.h"
@@ -27,10 +35,27 @@ using simulation::SimulatedRun;
 
 struct FuseArguments {
   std::vector<fs::path> recordings;
-  fs::path machine, out = "map.toml", json;
+  fs::path machine, causes, out = "map.toml", json;
   int holdout = 0;
   bool fixed_smoothness = false, quiet = false;
 };
+
+// A recording, block by block or as a whole.
+struct Source {
+  recording::Recording head;
+  recording::Blocks blocks;
+  std::function<recording::Recording()> whole;
+};
+
+Source SourceAt(const machine::Machine& machine, const fs::path& path) {
+  return {ReadHeadOf(machine, path), BlocksOf(path),
+          [&machine, path] { return ReadRecordingOf(machine, path); }};
+}
+
+Source SourceOf(recording::Recording recording) {
+  const auto shared = std::make_shared<const recording::Recording>(std::move(recording));
+  return {*shared, [shared](const auto& use) { use(*shared); }, [shared] { return *shared; }};
+}
 
 // Every recording with the simulation of its kind.
 class RunReader {
@@ -38,47 +63,50 @@ class RunReader {
   explicit RunReader(const MachineFile& file)
       : file_(file), machine_(file.sweep_setup.machine), model_(fusion::UnknownMachine(machine_)) {}
 
-  void Add(const fs::path& path, std::vector<SimulatedRun>& runs) const {
-    const recording::Recording recording = ReadRecordingOf(machine_, path);
-    const std::string kind = recording.Kind();
+  void Add(const Source& source, std::vector<SimulatedRun>& runs) const {
+    const std::string kind = source.head.Kind();
     if (kind == "sweep") {
-      const auto& setup = file_.sweep_setup;
-      runs.push_back(
-          simulation::SimulateSweep(model_, machine_.reference, {setup.head, setup.target},
-                                    simulation::ReadSweepRun(recording, setup.head, setup.noise)));
+      AddSweep(source, runs);
     } else if (kind == "linkage") {
-      AddLinkage(recording, runs);
+      AddLinkage(source, runs);
     } else if (kind == "reference") {
-      AddReference(recording, runs);
+      AddReference(source, runs);
     } else if (kind == "length") {
-      runs.push_back(simulation::SimulateLengths(model_, machine_.reference, recording));
+      runs.push_back(simulation::SimulateLengths(model_, machine_.reference, source.whole()));
     } else if (kind == "plate") {
-      for (const auto& setup : simulation::ReadPlate(recording)) {
+      for (const auto& setup : simulation::ReadPlate(source.whole())) {
         runs.push_back(simulation::SimulatePlate(model_, machine_.reference, setup));
       }
     } else {
       throw InputError(
           fmt::format("{}: kind is \"{}\"; fuse takes sweep, linkage, reference, length and plate",
-                      recording.name, kind));
+                      source.head.name, kind));
     }
   }
 
  private:
-  void AddLinkage(const recording::Recording& recording, std::vector<SimulatedRun>& runs) const {
+  void AddSweep(const Source& source, std::vector<SimulatedRun>& runs) const {
+    const auto& setup = file_.sweep_setup;
+    runs.push_back(simulation::SimulateSweep(
+        model_, machine_.reference, {setup.head, setup.target},
+        simulation::ReadSweepRun(source.head, source.blocks, setup.head, setup.noise)));
+  }
+
+  void AddLinkage(const Source& source, std::vector<SimulatedRun>& runs) const {
     const relm::LinkageSettings& linkage = file_.Linkage();
     const simulation::LinkageSimulation nominal(
         machine_.chain, linkage, relm::MakeLinkageModel(linkage, relm::ErrorModel::kComplete));
-    runs.push_back(simulation::SimulateLinkage(
-        model_, machine_.reference, nominal,
-        simulation::MeansOfStays(simulation::ReadLinkageRun(recording, linkage))));
-    if (recording.Find("ref_x_mm") || recording.Find("ref_y_mm") || recording.Find("ref_z_mm")) {
-      AddReference(recording, runs);
+    runs.push_back(simulation::SimulateLinkage(model_, machine_.reference, nominal,
+                                               simulation::PartsOf(source.blocks, linkage)));
+    if (source.head.Find("ref_x_mm") || source.head.Find("ref_y_mm") ||
+        source.head.Find("ref_z_mm")) {
+      AddReference(source, runs);
     }
   }
 
-  void AddReference(const recording::Recording& recording, std::vector<SimulatedRun>& runs) const {
+  void AddReference(const Source& source, std::vector<SimulatedRun>& runs) const {
     runs.push_back(simulation::SimulateReference(model_, machine_.reference,
-                                                 file_.Linkage().noise.reference, recording));
+                                                 file_.Linkage().noise.reference, source.whole()));
   }
 
   const MachineFile& file_;
@@ -86,19 +114,95 @@ class RunReader {
   machine::VolumetricModel model_;
 };
 
+struct MapChange {
+  double rms, largest;  // m
+};
+
+// Over a grid of the volume.
+MapChange ChangeOf(const map::ErrorMap& before, const map::ErrorMap& after) {
+  const Eigen::Vector3d& tool = after.origin().tool;
+  const std::array<Eigen::Index, 3> points{11, 11, 11};
+  const Eigen::RowVectorXd change =
+      (map::SampleGrid(after, tool, points).error() - map::SampleGrid(before, tool, points).error())
+          .colwise()
+          .norm();
+  return {std::sqrt(change.squaredNorm() / static_cast<double>(change.size())), change.maxCoeff()};
+}
+
+// Recordings as they were read, causes and all, may fit no map.
+std::optional<fusion::FuseReport> FuseIfItFits(const machine::Machine& machine,
+                                               const std::vector<SimulatedRun>& runs,
+                                               bool choose_smoothness) {
+  try {
+    return fusion::Fuse(machine, runs, {.choose_smoothness = choose_smoothness});
+  } catch (const NumericalError&) {
+    return std::nullopt;
+  }
+}
+
+// What the machine does beside its map, one line each.
+std::string NotInMap(const std::vector<simulation::ModelledCause>& causes) {
+  std::string text;
+  for (const auto& cause : causes) {
+    if (cause.cause->SeatAt(cause.object) != simulation::Seat::kMotion) continue;
+    text += fmt::format("not in the map: {}", cause.Name());
+    for (std::size_t i = 0; i < cause.cause->keys.size(); ++i) {
+      const auto& key = cause.cause->keys[i];
+      text += fmt::format(", {} = {:.4g}", key.name,
+                          cause.values[static_cast<Eigen::Index>(i)] / key.unit);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+// Rows that come twice would count twice.
+void RefuseTwice(const std::vector<fs::path>& recordings) {
+  std::set<fs::path> seen;
+  for (const fs::path& path : recordings) {
+    if (seen.insert(fs::weakly_canonical(path)).second) continue;
+    throw InputError(fmt::format("{}: is given twice, and its rows would count twice; give it once",
+                                 path.string()));
+  }
+}
+
 int Fuse(const FuseArguments& arguments) {
+  RefuseTwice(arguments.recordings);
   const MachineFile file = ReadMachineFile(arguments.machine);
+  const machine::Machine& machine = file.sweep_setup.machine;
+  CauseCorrection causes(arguments.causes, file, kForMaps);
   const RunReader reader(file);
-  std::vector<SimulatedRun> runs;
-  for (const fs::path& path : arguments.recordings) reader.Add(path, runs);
+  std::vector<SimulatedRun> runs, as_read;
+  for (const fs::path& path : arguments.recordings) {
+    const Source source = SourceAt(machine, path);
+    if (!causes.Active()) {
+      reader.Add(source, runs);
+      continue;
+    }
+    reader.Add(SourceOf(causes.Take(source.whole())), runs);
+    reader.Add(source, as_read);
+  }
   const fusion::FuseReport report = fusion::Fuse(
-      file.sweep_setup.machine, runs,
+      machine, runs,
       {.choose_smoothness = !arguments.fixed_smoothness, .holdout = arguments.holdout});
   map::WriteMap(report.map, arguments.out);
-  if (!arguments.json.empty()) WriteResult(FuseJson(report, runs), arguments.json);
-  if (!arguments.quiet) {
-    fmt::print("{}\nmap: {}\n", FuseTable(report, runs), arguments.out.string());
+  auto json = FuseJson(report, runs);
+  std::string text = FuseTable(report, runs);
+  if (causes.Active()) {
+    json["causes_taken_out"] = causes.Data();
+    text += fmt::format("\n{}\n{}", causes.Line(), NotInMap(causes.taken()));
+    if (const auto without = FuseIfItFits(machine, as_read, !arguments.fixed_smoothness)) {
+      const MapChange change = ChangeOf(without->map, report.map);
+      json["map_change_um"] = {{"rms", 1e6 * change.rms}, {"largest", 1e6 * change.largest}};
+      text +=
+          fmt::format("the map is another than without them by {:.2f} um rms, {:.2f} um at most\n",
+                      1e6 * change.rms, 1e6 * change.largest);
+    } else {
+      text += "without them no map fits the recordings\n";
+    }
   }
+  if (!arguments.json.empty()) WriteResult(json, arguments.json);
+  if (!arguments.quiet) fmt::print("{}\nmap: {}\n", text, arguments.out.string());
   return kDone;
 }
 
@@ -113,6 +217,7 @@ void AddFuse(CLI::App& program, int& exit_code) {
                    "Recordings of kind sweep, linkage, reference, length or plate")
       ->required();
   command->add_option("--machine", arguments->machine, "Machine file")->required();
+  AddCausesOption(*command, arguments->causes);
   command->add_flag("--fixed-smoothness", arguments->fixed_smoothness,
                     "Keep population.smoothness_mm of the machine file");
   command->add_option(

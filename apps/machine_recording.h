@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "machine/machine.h"
+#include "recording/blocks.h"
 #include "recording/recording.h"
 
 namespace abbe::apps {
@@ -12,5 +13,9 @@ namespace abbe::apps {
 // recording/recording_file.h.
 recording::Recording ReadRecordingOf(const machine::Machine& machine,
                                      const std::filesystem::path& path);
+
+// The same without its rows, and its blocks, as often as wanted; warnings come with the first time.
+recording::Recording ReadHeadOf(const machine::Machine& machine, const std::filesystem::path& path);
+recording::Blocks BlocksOf(const std::filesystem::path& path);
 
 }  // namespace abbe::apps

@@ -1,7 +1,5 @@
 #include "apps/map_json.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -11,7 +9,6 @@ namespace abbe::apps {
 namespace {
 
 using Eigen::Index;
-using Eigen::Vector3d;
 using nlohmann::ordered_json;
 
 constexpr Index kGridPoints = 11;      // along each axis
@@ -20,65 +17,52 @@ constexpr Index kFunctionPoints = 61;  // of each error function
 // To a picometre or picoradian: more would only make the file large.
 double Short(double value) { return std::round(value * 1e12) * 1e-12; }
 
-map::GridAxis TravelOf(const map::ErrorMap& map, int axis, Index count) {
-  const machine::Travel& travel = map.model().travels()[static_cast<std::size_t>(axis)];
-  return {travel.first, travel.last, count};
-}
-
 // x runs fastest, then y, then z.
 ordered_json GridJson(const map::ErrorMap& map) {
-  std::array<map::GridAxis, 3> axes;
+  const map::MapGrid grid =
+      map::SampleGrid(map, map.origin().tool, {kGridPoints, kGridPoints, kGridPoints});
   ordered_json json;
-  for (int k = 0; k < 3; ++k) {
-    axes[static_cast<std::size_t>(k)] = TravelOf(map, k, kGridPoints);
-    for (Index i = 0; i < kGridPoints; ++i) {
-      json[std::string(1, "xyz"[k])].push_back(Short(axes[static_cast<std::size_t>(k)].At(i)));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const map::GridAxis& axis = grid.axes()[k];
+    for (Index i = 0; i < axis.count; ++i) {
+      json[std::string(1, "xyz"[k])].push_back(Short(axis.At(i)));
     }
-  }
-  const map::MapGrid places(axes,
-                            Eigen::Matrix3Xd::Zero(3, kGridPoints * kGridPoints * kGridPoints), {});
-  for (Index i = 0; i < places.size(); ++i) {
-    const Vector3d position = places.Position(i);
-    const Vector3d error = map.Error(position, map.origin().tool);
-    for (int k = 0; k < 3; ++k) json["error"][k].push_back(Short(error[k]));
+    const auto row = static_cast<Index>(k);
+    for (const double error : grid.error().row(row)) json["error"][k].push_back(Short(error));
     if (!map.StatesUncertainty()) continue;
-    const Vector3d u = map.StandardUncertainty(position, map.origin().tool);
-    for (int k = 0; k < 3; ++k) json["u"][k].push_back(Short(u[k]));
+    for (const double u95 : grid.u95().row(row)) {
+      json["u"][k].push_back(Short(u95 / map::kCoverage));
+    }
   }
   return json;
 }
 
-// `first`: of its coefficients among the parameters of the map.
-ordered_json FunctionJson(const map::ErrorMap& map, int axis, int motion, Index first) {
-  const machine::ErrorFunction& function = map.model().Function(axis, motion);
-  const map::GridAxis places = TravelOf(map, axis, kFunctionPoints);
-  const Index count = function.size();
-  Eigen::VectorXd gradient(count);
-  ordered_json json = {{"unit", motion < 3 ? "m" : "rad"}};
-  for (Index i = 0; i < places.count; ++i) {
-    json["positions"].push_back(Short(places.At(i)));
-    json["value"].push_back(Short(function.Evaluate(places.At(i), nullptr, gradient.data())));
-    if (!map.StatesUncertainty()) continue;
-    const double variance = gradient.dot(map.cov_pp().block(first, first, count, count) * gradient);
-    json["u"].push_back(Short(std::sqrt(std::max(0.0, variance))));
+// A squareness is one number, an error motion a curve over the travel of its axis.
+ordered_json ErrorJson(const map::ErrorMap& map, int error) {
+  constexpr int kAllMotions = machine::kAxes * machine::kMotions;
+  const bool is_curve = error < kAllMotions;
+  Eigen::VectorXd positions = Eigen::VectorXd::Zero(1);
+  if (is_curve) {
+    const auto& travel = map.model().travels()[static_cast<std::size_t>(error / machine::kMotions)];
+    positions = Eigen::VectorXd::LinSpaced(kFunctionPoints, travel.first, travel.last);
   }
+  const auto [value, u] = map.CurveOf(error, positions);
+  ordered_json json{{"unit", is_curve && error % machine::kMotions < 3 ? "m" : "rad"}};
+  if (!is_curve) {
+    json["value"] = Short(value[0]);
+    if (map.StatesUncertainty()) json["u"] = Short(u[0]);
+    return json;
+  }
+  for (const double position : positions) json["positions"].push_back(Short(position));
+  for (const double each : value) json["value"].push_back(Short(each));
+  for (const double each : u) json["u"].push_back(Short(each));
   return json;
 }
 
 ordered_json ErrorsJson(const map::ErrorMap& map) {
   ordered_json json;
-  Index first = 0;
   for (int error = 0; error < map::kErrors; ++error) {
-    const int axis = error / machine::kMotions, motion = error % machine::kMotions;
-    ordered_json& one = json[map::ErrorName(error)];
-    if (axis < machine::kAxes) {
-      one = FunctionJson(map, axis, motion, first);
-      first += map.model().Function(axis, motion).size();
-    } else {
-      one = {{"unit", "rad"}, {"value", Short(map.model().squareness()[motion])}};
-      if (map.StatesUncertainty()) one["u"] = Short(std::sqrt(map.cov_pp()(first, first)));
-      ++first;
-    }
+    ordered_json& one = json[map::ErrorName(error)] = ErrorJson(map, error);
     const auto source = map.origin().sources[static_cast<std::size_t>(error)];
     one["from"] = map::kSourceNames[static_cast<std::size_t>(source)];
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/causes_option.h"
 #include "apps/linkage_reader.h"
 #include "recording/recording_file.h"
 
@@ -30,7 +31,12 @@ void RefuseOtherMachine(const Recording& recording, const std::string& machine) 
 // The machine file of a reference alone needs no linkage.
 struct Machine {
   explicit Machine(const PathSources& sources) : calibration(sources.calibration) {
-    if (!sources.machine.empty()) file = ReadMachineFile(sources.machine);
+    if (!sources.machine.empty()) {
+      file = ReadMachineFile(sources.machine);
+      causes.emplace(sources.causes, *file, kForMeasuring);
+    } else if (!sources.causes.empty()) {
+      throw InputError("--causes needs the machine that they are of; add --machine FILE");
+    }
   }
 
   LinkageReader& Reader(const Recording& recording) {
@@ -45,6 +51,7 @@ struct Machine {
 
   std::filesystem::path calibration;
   std::optional<MachineFile> file;
+  std::optional<CauseCorrection> causes;
   std::optional<LinkageReader> reader;
 };
 
@@ -76,6 +83,7 @@ void AddPathSources(CLI::App& command, PathSources& sources) {
   command.add_option("--machine", sources.machine, "Machine file; the linkage needs it");
   command.add_option("--calibration", sources.calibration,
                      "What abbe calibrate wrote (default: nominal parameters)");
+  AddCausesOption(command, sources.causes);
 }
 
 std::vector<relm::MeasuredPath> MeasuredPaths::All() const {
@@ -94,17 +102,20 @@ MeasuredPaths ReadMeasuredPaths(const PathSources& sources) {
   Machine machine(sources);
   MeasuredPaths paths;
   for (const std::filesystem::path& file : sources.recordings) {
-    Add(ReadWithWarnings(file), machine, paths);
+    const Recording recording = ReadWithWarnings(file);
+    Add(machine.causes ? machine.causes->Take(recording) : recording, machine, paths);
   }
   if (machine.file) {
     paths.machine = machine.file->sweep_setup.machine;
     paths.head["machine"] = paths.machine->name;
     paths.head["chain"] = paths.machine->chain.Text();
+    if (machine.causes->Active()) paths.head["causes_taken_out"] = machine.causes->Data();
   }
   if (machine.reader) {
     paths.errors = machine.reader->IndependentErrors();
     paths.head["linkage"] = machine.reader->Data();
     paths.notes = machine.reader->Notes();
+    if (machine.causes->Active()) paths.notes.push_back(machine.causes->Line());
   } else if (!sources.calibration.empty()) {
     throw InputError(fmt::format(
         "--calibration {}: none of the recordings is of the linkage; leave the option out",

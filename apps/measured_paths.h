@@ -16,7 +16,7 @@ namespace abbe::apps {
 
 struct PathSources {
   std::vector<std::filesystem::path> recordings;
-  std::filesystem::path machine, calibration;
+  std::filesystem::path machine, calibration, causes;
 };
 
 // The arguments that both commands take.

@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/machine_file.h"
@@ -22,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct ReduceOptions {
   std::vector<fs::path> recordings;
-  fs::path machine, out, json;
+  fs::path machine, causes, out, json;
   bool squareness = false;
   bool quiet = false;
 };
@@ -35,6 +37,7 @@ class Reduction {
     if (!options_.json.empty() && options_.recordings.size() > 1) {
       throw InputError("--json takes the result of one recording; use --out for several");
     }
+    if (!options_.causes.empty()) Setup();
     for (const fs::path& path : options_.recordings) {
       const recording::Recording recording = recording::Read(path);
       for (const std::string& warning : recording.warnings) {
@@ -43,6 +46,7 @@ class Reduction {
       Reduce(recording, path);
     }
     if (options_.squareness) Squareness();
+    if (causes_ && causes_->Active()) Show(causes_->Line() + "\n");
     return kDone;
   }
 
@@ -50,9 +54,12 @@ class Reduction {
   void Reduce(const recording::Recording& recording, const fs::path& path) {
     const std::string kind = recording.Kind();
     if (kind == "sweep") {
-      sweeps_.push_back(probes::ReduceSweep(recording, Setup()));
+      const probes::SweepSetup& setup = Setup();
+      sweeps_.push_back(probes::ReduceSweep(causes_->Take(recording), setup));
       Show(SweepTable(sweeps_.back()));
-      Keep(SweepJson(sweeps_.back()), path.stem().string());
+      auto json = SweepJson(sweeps_.back());
+      if (causes_->Active()) json["causes_taken_out"] = causes_->Data();
+      Keep(json, path.stem().string());
     } else if (kind == "reference") {
       const nlohmann::ordered_json result = ReduceReference(recording);
       Show(ReferenceTable(result));
@@ -78,9 +85,10 @@ class Reduction {
   const probes::SweepSetup& Setup() {
     if (!file_) {
       if (options_.machine.empty()) {
-        throw InputError("a sweep is reduced with its machine file; add --machine FILE");
+        throw InputError("a sweep and an extended model need the machine file; add --machine FILE");
       }
       file_ = ReadMachineFile(options_.machine);
+      causes_.emplace(options_.causes, *file_, kForMaps);
     }
     return file_->sweep_setup;
   }
@@ -96,6 +104,7 @@ class Reduction {
 
   const ReduceOptions& options_;
   std::optional<MachineFile> file_;
+  std::optional<CauseCorrection> causes_;
   std::vector<probes::SweepResult> sweeps_;
 };
 
@@ -108,6 +117,7 @@ void AddReduce(CLI::App& program, int& exit_code) {
   command->add_option("recordings", options->recordings, "Recordings of kind sweep or reference")
       ->required();
   command->add_option("--machine", options->machine, "Machine file; sweeps need it");
+  AddCausesOption(*command, options->causes);
   command->add_option("--out", options->out, "Folder for one result (RECORDING.json) each");
   command->add_option("--json", options->json, "File for the result of one recording");
   command->add_flag("--squareness", options->squareness, "Squareness of two sweeps, one mounting");

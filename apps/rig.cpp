@@ -1,5 +1,4 @@
-// abbe rig: serves the virtual rig; records a sweep or a course of it directly; compares results
-// with its truth.
+// abbe rig: serves the virtual rig; records a sweep or a course of it directly.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -17,6 +16,7 @@
 #include "apps/commands.h"
 #include "apps/interrupt.h"
 #include "apps/result_file.h"
+#include "apps/rig_compare.h"
 #include "apps/rig_course.h"
 #include "hal/can_socket.h"
 #include "hal/device_settings.h"
@@ -296,25 +296,6 @@ int Record(const RigOptions& options) {
   return kDone;
 }
 
-int Compare(const RigOptions& options) {
-  const auto truth = ReadResult(options.truth_to_compare);
-  for (const auto& path : options.results) {
-    const auto result = ReadResult(path);
-    const auto comparison = rig::Compare(truth, result, path.string());
-    fmt::print("{} axis against the truth of seed {} ({})\n", result.value("axis", "?"),
-               truth.value("seed", std::uint64_t{0}), path.string());
-    fmt::print("  {:<9} {:>5} {:>11} {:>11} {:>5}  {:>9} {:>10}\n", "component", "n", "rms error",
-               "max error", "", "rms e/u", "inside 2u");
-    for (const rig::ComponentComparison& row : comparison) {
-      const bool angle = row.component.size() > 1 && row.component[1] <= 'C';
-      fmt::print("  {:<9} {:>5} {:>11.4f} {:>11.4f} {:<5} {:>9.2f} {:>8.0f} %\n", row.component,
-                 row.stations, 1e6 * row.rms_error, 1e6 * row.max_error, angle ? "urad" : "um",
-                 row.rms_pull, 100.0 * row.share_inside_2u);
-    }
-  }
-  return kDone;
-}
-
 void AddWorldOptions(CLI::App* command, RigOptions& options) {
   command->add_option("--machine", options.machine, "Machine file (TOML)");
   command->add_option("--seed", options.seed, "Which machine of the population")
@@ -387,9 +368,11 @@ void AddRig(CLI::App& program, int& exit_code) {
 
   CLI::App* compare = rig->add_subcommand("compare", "How near results came to the truth");
   compare->add_option("truth", options->truth_to_compare, "What --truth wrote")->required();
-  compare->add_option("results", options->results, "JSON of sweeps")->required();
+  compare->add_option("results", options->results, "JSON of sweeps or of a diagnosis")->required();
   compare->footer("Example: abbe rig compare out/rig_truth.json out/sweep_X.json");
-  compare->callback([options, &exit_code] { exit_code = Compare(*options); });
+  compare->callback([options, &exit_code] {
+    exit_code = CompareWithTruth(options->truth_to_compare, options->results);
+  });
 }
 
 }  // namespace abbe::apps

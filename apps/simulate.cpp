@@ -6,14 +6,14 @@
 #include <filesystem>
 #include <memory>
 
+#include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/map_option.h"
+#include "apps/path_table.h"
 #include "apps/result_file.h"
 #include "compensation/performance.h"
 #include "failure/failure.h"
-#include "map/text_file.h"
-#include "map/words.h"
 
 namespace abbe::apps {
 namespace {
@@ -23,40 +23,12 @@ using compensation::Figure;
 struct SimulateCommand {
   MapOption map;
   std::string test;
-  std::filesystem::path path, json;
-  double radius_mm = 0.0;
+  std::filesystem::path path, causes, json;
+  double radius_mm = 0.0, feed_mm_min = 0.0;
   bool corrected = false, quiet = false;
   int draws = 200;
   std::uint64_t seed = 1;
 };
-
-// The columns x_mm, y_mm, z_mm of a CSV.
-Eigen::Matrix3Xd ReadPath(const std::filesystem::path& file) {
-  const std::string text = map::ReadWhole(file);
-  map::Lines lines(text, file.string());
-  std::vector<std::string_view> names;
-  std::vector<double> values;
-  for (std::string_view line; lines.Next(line);) {
-    if (line.empty() || line.starts_with('#')) continue;
-    const auto words = map::PartsOf(line, ',');
-    if (names.empty()) names = words;
-    if (words.size() != names.size()) {
-      throw InputError(
-          fmt::format("{}: {} values under {} columns", lines.Where(), words.size(), names.size()));
-    }
-    for (const std::string_view column : {"x_mm", "y_mm", "z_mm"}) {
-      const auto at = std::find(names.begin(), names.end(), column);
-      if (at == names.end()) {
-        throw InputError(fmt::format("{}: there is no column {}", lines.Where(), column));
-      }
-      if (words == names) continue;
-      values.push_back(
-          1e-3 * map::NumberOf(words[static_cast<std::size_t>(at - names.begin())], lines.Where()));
-    }
-  }
-  return Eigen::Map<const Eigen::Matrix3Xd>(values.data(), 3,
-                                            static_cast<Eigen::Index>(values.size() / 3));
-}
 
 nlohmann::ordered_json FiguresOf(const std::vector<Figure>& figures) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
@@ -80,8 +52,13 @@ int Simulate(const SimulateCommand& options) {
   const Eigen::Vector3d tool = options.map.Tool(map);
   compensation::TestSize size;
   size.radius = options.radius_mm * 1e-3;
-  if (!options.path.empty()) size.path = ReadPath(options.path);
-  const auto test = compensation::MakeTest(options.test, map, size);
+  if (!options.path.empty()) size.path = ReadPathTable(options.path);
+  auto test = compensation::MakeTest(options.test, map, size);
+  const PathCauses causes(options.causes, map.origin().machine, options.feed_mm_min);
+  if (causes.Active()) {
+    test.evaluate = [evaluate = test.evaluate, beside = causes.Beside(test.wanted)](
+                        const Eigen::Matrix3Xd& made) { return evaluate(made + beside); };
+  }
   const auto before = test.evaluate(compensation::MadeBy(map.model(), tool, test.wanted));
   std::vector<Figure> after;
   if (options.corrected) {
@@ -90,6 +67,7 @@ int Simulate(const SimulateCommand& options) {
   if (!options.quiet) {
     fmt::print("{} on {} {}\n", options.test, map.origin().machine, map.model().chain().Text());
     Print(before, after);
+    if (causes.Active()) fmt::print("{}\n", causes.Line());
   }
   if (!options.json.empty()) {
     nlohmann::ordered_json result = {{"abbe", ABBE_VERSION},
@@ -101,6 +79,7 @@ int Simulate(const SimulateCommand& options) {
                                      {"test", options.test},
                                      {"as_is", FiguresOf(before)}};
     if (options.corrected) result["corrected_95"] = FiguresOf(after);
+    if (causes.Active()) result["causes"] = causes.Names();
     WriteResult(result, options.json);
   }
   return kDone;
@@ -122,6 +101,7 @@ void AddSimulate(CLI::App& program, int& exit_code) {
       ->add_option("--radius-mm", options->radius_mm,
                    "Of the circle and the cylinder, half the square's side (0.39 of a travel)")
       ->check(CLI::PositiveNumber);
+  AddPathCauses(*command, options->causes, options->feed_mm_min);
   command->add_flag("--corrected", options->corrected,
                     "Also what remains when the map corrects: the map's own uncertainty");
   command->add_option("--draws", options->draws, "Machines drawn for that (200)");

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/machine_file.h"
@@ -24,6 +25,7 @@ namespace {
 struct SweepCommand {
   std::string axis;
   std::string machine;
+  std::filesystem::path causes;
   std::filesystem::path out = "out";
   std::string json;
   std::string mounting;
@@ -125,6 +127,7 @@ void WarnOfLackingVisits(const hal::SweepOutcome& outcome, const hal::SweepPlan&
 int Sweep(const SweepCommand& options) {
   const MachineFile file = ReadMachineFile(options.machine);
   const hal::SweepPlan& plan = file.SweepPlanOf(options.axis[0]);
+  CauseCorrection causes(options.causes, file, kForMaps);
   InterruptFlag();
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
@@ -137,13 +140,16 @@ int Sweep(const SweepCommand& options) {
   RefuseUnfinished(outcome, path);
   WarnOfLackingVisits(outcome, plan);
 
-  const probes::SweepResult result = probes::ReduceSweep(recording::Read(path), file.sweep_setup);
-  const auto json = SweepJson(result);
+  const probes::SweepResult result =
+      probes::ReduceSweep(causes.Take(recording::Read(path)), file.sweep_setup);
+  auto json = SweepJson(result);
+  if (causes.Active()) json["causes_taken_out"] = causes.Data();
   auto beside = path;
   WriteResult(json, options.json.empty() ? beside.replace_extension(".json")
                                          : std::filesystem::path(options.json));
   if (!options.quiet) {
     fmt::print("{}", SweepTable(result));
+    if (causes.Active()) fmt::print("{}\n", causes.Line());
     fmt::print("recorded {} rows in {} ({} flagged, worst skew {:.1f} ms)\n", outcome.rows,
                path.string(), outcome.flagged, 1e3 * outcome.worst_skew_s);
   }
@@ -159,6 +165,7 @@ void AddSweep(CLI::App& program, int& exit_code) {
       ->required()
       ->check(CLI::IsMember({"X", "Y", "Z"}));
   command->add_option("--machine", options->machine, "the machine file")->required();
+  AddCausesOption(*command, options->causes);
   command->add_option("--out", options->out, "folder of the recording and the result")
       ->capture_default_str();
   command->add_option("--json", options->json,

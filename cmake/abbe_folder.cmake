@@ -27,12 +27,13 @@ function(abbe_folder name)
           FILES_MATCHING PATTERN "*.h" PATTERN "node_modules" EXCLUDE)
 endfunction()
 
-# abbe_tests(NAME LABEL label SOURCES file... LINKS target... [ENVIRONMENT VAR=value...])
+# abbe_tests(NAME LABEL label SOURCES file... LINKS target... [SEEDS n [LONG_SEEDS n]])
 #
 # One GoogleTest program NAME_LABEL_test; every TEST in it is the ctest entry NAME.LABEL.SUITE.TEST with
-# that label.
+# that label. A statistical suite draws SEEDS seeds (ABBE_SEEDS); with LONG_SEEDS its tests are there a
+# second time as NAME.long.SUITE.TEST, with that many.
 function(abbe_tests name)
-  cmake_parse_arguments(arg "" "LABEL;TIMEOUT" "SOURCES;LINKS;ENVIRONMENT" ${ARGN})
+  cmake_parse_arguments(arg "" "LABEL;TIMEOUT;SEEDS;LONG_SEEDS" "SOURCES;LINKS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
@@ -44,9 +45,16 @@ function(abbe_tests name)
   target_link_libraries(${program} PRIVATE ${arg_LINKS} GTest::gtest_main abbe_warnings)
   target_compile_definitions(${program} PRIVATE ABBE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              ABBE_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(${program} TEST_PREFIX "${name}.${arg_LABEL}." NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
-    PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} SKIP_REGULAR_EXPRESSION "SKIPPED"
-               ENVIRONMENT "${arg_ENVIRONMENT}")
+  abbe_register_tests(${program} ${name} ${arg_LABEL} ${arg_TIMEOUT} "${arg_SEEDS}")
+  if(arg_LONG_SEEDS)
+    abbe_register_tests(${program} ${name} long ${arg_TIMEOUT} ${arg_LONG_SEEDS})
+  endif()
+endfunction()
+
+function(abbe_register_tests program name label timeout seeds)
+  gtest_discover_tests(${program} TEST_PREFIX "${name}.${label}." NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
+    PROPERTIES LABELS ${label} TIMEOUT ${timeout} SKIP_REGULAR_EXPRESSION "SKIPPED"
+               ENVIRONMENT "$<$<BOOL:${seeds}>:ABBE_SEEDS=${seeds}>")
 endfunction()
 
 # abbe_bench(NAME LINKS target... ): one Google Benchmark program from bench/NAME.cpp.

@@ -33,7 +33,7 @@ std::array<std::size_t, 3> ColumnsOf(const std::vector<std::string_view>& names,
 }  // namespace
 
 CorrectedTable CorrectTable(std::string_view text, const std::string& file,
-                            const Corrector& corrector) {
+                            const Corrector& corrector, const Eigen::Matrix3Xd& beside) {
   CorrectedTable table;
   table.text.reserve(text.size());
   map::Lines lines(text, file);
@@ -65,6 +65,7 @@ CorrectedTable CorrectTable(std::string_view text, const std::string& file,
     } catch (const InputError& failure) {
       throw InputError(fmt::format("{}: {}", lines.Where(), failure.what()));
     }
+    if (beside.size() > 0) made += beside.col(static_cast<Eigen::Index>(table.rows));
     table.largest = std::max(table.largest, (made - read).norm());
     ++table.rows;
     for (std::size_t i = 0; i < width; ++i) {

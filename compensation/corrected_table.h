@@ -4,6 +4,7 @@
 // and all other columns are passed on as they are. Every position p becomes Made(p) (corrector.h).
 // Units: mm in the file. Failure: InputError with file and line for a missing column, a row of
 // another length, a word that is no number, a position outside the travels.
+// `beside`: what the axes did beside their map in each row, m; empty: nothing.
 #pragma once
 
 #include <string>
@@ -20,6 +21,6 @@ struct CorrectedTable {
 };
 
 CorrectedTable CorrectTable(std::string_view text, const std::string& file,
-                            const Corrector& corrector);
+                            const Corrector& corrector, const Eigen::Matrix3Xd& beside = {});
 
 }  // namespace abbe::compensation

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "estimation/rounding.h"
 #include "failure/failure.h"
 
 namespace abbe::estimation {
@@ -17,16 +17,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRounding = 1e-12;  // of the normal equations, as in weak_directions.h
-// A reciprocal condition in the 1-norm, which is below that of the eigenvalues, with a margin for
-// its being an estimate.
-constexpr double kAllSeen = 10.0 * kRounding;
 // Far below 1: what the data hardly see may be the bottom of a curved valley, where the undamped
 // step leaves the valley and a strong damping creeps.
 constexpr double kFirstDamping = 1e-10;
 constexpr double kMostDamping = 1e8;
 // A cost is a sum of many squares; two of them are equal when they agree to this.
 constexpr double kCostRounding = 1e-11;
+constexpr double kFarOff = 3.0;  // times the stated noise
 
 // The normal equations with columns scaled to 1, ready to be solved for any damping.
 class NormalEquations {
@@ -38,7 +35,7 @@ class NormalEquations {
     for (double& s : scale_) s = s > 0.0 ? 1.0 / std::sqrt(s) : 0.0;
     scaled_ = scale_.asDiagonal() * scaled_ * scale_.asDiagonal();
     const Eigen::LLT<MatrixXd> factor(scaled_);
-    if (factor.info() == Eigen::Success && factor.rcond() > kAllSeen) {
+    if (EveryDirectionStandsOut(factor)) {
       undamped_ = Solved(factor);
     } else {
       Decompose();
@@ -118,15 +115,56 @@ VectorXd Moved(const Layout& layout, VectorXd x, const VectorXd& step) {
   return x;
 }
 
+// How many times its stated noise a source scatters, at least 1; less of it where a loss weighs
+// rows.
+double Excess(const Source& source, const SourceSums& sums) {
+  if (source.options.is_prior || source.rows == 0) return 1.0;
+  return std::max(1.0, std::sqrt(sums.chi_square / static_cast<double>(source.rows)));
+}
+
+// What is short enough. Where the rows scatter beyond their stated noise, the uncertainties that a
+// step is measured by are too small, and a robust loss comes near its minimum slowly.
+double Short(const Problem& problem, const Linearization& at, double settled) {
+  constexpr double kMostExcess = 10.0;
+  double chi_square = 0.0, rows = 0.0;
+  for (std::size_t s = 0; s < at.sources.size(); ++s) {
+    if (problem.sources()[s].options.is_prior) continue;
+    chi_square += at.sources[s].chi_square;
+    rows += static_cast<double>(problem.sources()[s].rows);
+  }
+  const double excess = rows > 0.0 ? std::sqrt(chi_square / rows) : 1.0;
+  return settled * std::clamp(excess, 1.0, kMostExcess);
+}
+
+// What to do about a fit that does not settle.
+std::string Advice(const Problem& problem, const Linearization& at) {
+  std::size_t worst = 0;
+  double most = 0.0;
+  for (std::size_t s = 0; s < at.sources.size(); ++s) {
+    const double excess = Excess(problem.sources()[s], at.sources[s]);
+    if (excess > most) {
+      most = excess;
+      worst = s;
+    }
+  }
+  if (most < kFarOff) return "start nearer or state priors";
+  return fmt::format(
+      "the rows of '{}' scatter at least {:.1f} times the noise that is stated for them: state it "
+      "larger, "
+      "or "
+      "look whether that source belongs to this model",
+      problem.sources()[worst].name, most);
+}
+
 [[noreturn]] void RefuseUnsettled(const Problem& problem, const Layout& layout,
                                   const Linearization& at, int passes, const std::string& trouble) {
   const NormalEquations equations(at);
   throw NumericalError(fmt::format(
       "the fit did not settle in {} passes: the next step is {:.2g} standard uncertainties long, "
-      "parameter {} moves most, source '{}' pulls most{}; start nearer or state priors",
+      "parameter {} moves most, source '{}' pulls most{}; {}",
       passes, equations.Length(), layout.names[static_cast<std::size_t>(equations.MovesMost())],
       PullsMost(problem, at, equations.Step(0.0)),
-      trouble.empty() ? "" : " (a step was refused: " + trouble + ")"));
+      trouble.empty() ? "" : " (a step was refused: " + trouble + ")", Advice(problem, at)));
 }
 
 }  // namespace
@@ -139,7 +177,7 @@ Settled SettleByPasses(const Problem& problem, const Layout& layout, const Solve
   std::string trouble;
   NormalEquations equations(now.at);
   // One pass at least: a linear problem then is exact, however far Ceres went.
-  while (now.passes == 0 || equations.Length() > options.settled) {
+  while (now.passes == 0 || equations.Length() > Short(problem, now.at, options.settled)) {
     if (now.passes == options.max_iterations || damping > kMostDamping) {
       RefuseUnsettled(problem, layout, now.at, now.passes, trouble);
     }
@@ -147,7 +185,7 @@ Settled SettleByPasses(const Problem& problem, const Layout& layout, const Solve
     Linearization there = Linearize(problem, layout, trial, options.threads);
     ++now.passes;
     const double cost = now.at.Cost();
-    const bool last = equations.Length() <= options.settled;
+    const bool last = equations.Length() <= Short(problem, now.at, options.settled);
     if (there.trouble.empty() && (last || there.Cost() <= cost + kCostRounding * cost)) {
       now.x = std::move(trial);
       now.at = std::move(there);

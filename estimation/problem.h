@@ -26,9 +26,10 @@
 // settle; it names the source and the parameter. Parameters that nothing determines are no failure:
 // the result is then not usable and names them. Method: Ceres (Levenberg-Marquardt) while its
 // Jacobian fits in `jacobian_bytes`, then passes over the rows that keep only the n x n normal
-// equations, until what is left to go is below `settled` standard uncertainties. Beyond that size
-// it is passes alone: memory does not grow with the rows; start them near the solution (solve a
-// subsample first). Validity: n up to about 1000.
+// equations, until what is left to go is below `settled` standard uncertainties (more by what the
+// rows scatter beyond their stated noise, up to ten times). Beyond that size it is passes alone:
+// memory does not grow with the rows; start them near the solution (solve a subsample first).
+// Validity: n up to about 1000.
 #pragma once
 
 #include <Eigen/Core>

@@ -9,6 +9,8 @@
 #include <limits>
 #include <numeric>
 
+#include "estimation/rounding.h"
+
 namespace abbe::estimation {
 namespace {
 
@@ -16,8 +18,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of a parameter's own information: what sums of products in double precision leave to be seen.
-constexpr double kRounding = 1e-12;
 constexpr double kUnseen = 1.0;  // lambda below which the data halve no variance
 constexpr double kShownCoefficient = 0.1;
 constexpr std::size_t kMostTerms = 6;
@@ -107,11 +107,7 @@ class ScaledInverse {
       : scale_(total.diagonal().cwiseSqrt().cwiseInverse()),
         factor_(scale_.asDiagonal() * total * scale_.asDiagonal()) {}
 
-  // Whether every direction stands out of the rounding: the reciprocal condition in the 1-norm is
-  // below that of the eigenvalues; the factor is for its being an estimate.
-  bool certain() const {
-    return factor_.info() == Eigen::Success && factor_.rcond() > 10.0 * kRounding;
-  }
+  bool certain() const { return EveryDirectionStandsOut(factor_); }
   MatrixXd Inverse() const {
     const MatrixXd inverse = scale_.asDiagonal() * factor_.solve(MatrixXd(scale_.asDiagonal()));
     return 0.5 * (inverse + inverse.transpose());

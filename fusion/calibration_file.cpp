@@ -13,6 +13,7 @@
 
 #include "failure/failure.h"
 #include "settings/document.h"
+#include "settings/toml_text.h"
 #include "simulation/linkage_simulation.h"
 
 namespace abbe::fusion {
@@ -22,6 +23,9 @@ using Eigen::Index;
 using estimation::Parameter;
 using estimation::ParameterBlock;
 using relm::ErrorModel;
+using settings::Float;
+using settings::Quoted;
+using settings::QuotedList;
 using settings::Table;
 
 constexpr std::int64_t kFormat = 1;
@@ -32,30 +36,6 @@ constexpr std::array<std::pair<const char*, ErrorModel>, 4> kModels{{
     {"published with bearing", ErrorModel::kPublishedWithBearing},
     {"complete", ErrorModel::kComplete},
 }};
-
-std::string Quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') quoted += '\\';
-    quoted += letter;
-  }
-  return quoted + '"';
-}
-
-std::string QuotedList(const std::vector<std::string>& texts) {
-  std::vector<std::string> quoted;
-  quoted.reserve(texts.size());
-  for (const std::string& text : texts) quoted.push_back(Quoted(text));
-  return fmt::format("[{}]", fmt::join(quoted, ", "));
-}
-
-// As TOML writes it: a float, in the shortest form that reads back the same.
-std::string Float(double value) {
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  if (std::isnan(value)) return "nan";
-  const std::string text = fmt::format("{}", value);
-  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-}
 
 template <typename Values>
 std::string Floats(const Values& values, double si) {

@@ -27,14 +27,6 @@ constexpr std::array<double, 6> kLengthsTried{0.5, 0.71, 1.0, 1.41, 2.0, 2.83}; 
 constexpr double kHalf = 0.5;
 constexpr Index kStations = 25;  // over a travel, for variances
 
-VectorXd AllValues(const Result& result) {
-  std::vector<double> values;
-  for (const auto& block : result.blocks) {
-    for (const auto& entry : block.entries) values.push_back(entry.value);
-  }
-  return Eigen::Map<VectorXd>(values.data(), static_cast<Index>(values.size()));
-}
-
 double LogDeterminant(const Eigen::LDLT<MatrixXd>& factor) {
   return factor.vectorD().cwiseMax(std::numeric_limits<double>::min()).array().log().sum();
 }
@@ -114,20 +106,16 @@ class FuseJob {
     }
     fitted.fit = SolveLinkage(fitted.problem, options_.threads, false);
     fitted.at = estimation::Linearize(fitted.problem, estimation::Layout(fitted.problem),
-                                      AllValues(fitted.fit), options_.threads);
+                                      ValuesFound(fitted.fit, fitted.fit.blocks), options_.threads);
     return fitted;
   }
 
-  // From samples of the long runs to all of their rows; false when there are none.
+  // To the residuals that take a first fit; false when there are none.
   bool Condense(const Result& fit) {
     bool any = false;
     for (SimulatedRun& run : runs_) {
       if (!run.condense) continue;
-      std::vector<double> x;
-      for (const auto& block : run.blocks) {
-        for (const auto& entry : fit.Block(block.name).entries) x.push_back(entry.value);
-      }
-      run.residual = run.condense(Eigen::Map<VectorXd>(x.data(), static_cast<Index>(x.size())));
+      run.residual = run.condense(ValuesFound(fit, run.blocks));
       run.condense = nullptr;
       any = true;
     }
@@ -161,7 +149,7 @@ class FuseJob {
 
   std::vector<SmoothnessTried> TryLengths(const Fitted& fitted) const {
     const estimation::Layout layout(fitted.problem);
-    const VectorXd x = AllValues(fitted.fit);
+    const VectorXd x = ValuesFound(fitted.fit, fitted.fit.blocks);
     const Linearization& at = fitted.at;
     const std::vector<int> columns = MachineColumns(layout, model_);
     // All but the smoothness: information and gradient at x; x itself for the prior to come.
@@ -274,7 +262,7 @@ class FuseJob {
 
   map::ErrorMap MapOf(const Result& fit) {
     machine::VolumetricModel model = model_;
-    const VectorXd values = AllValues(fit).head(model.ParameterCount());
+    const VectorXd values = ValuesFound(fit, model.Blocks());
     model.SetParameters(values);
     scale_.value = ScaleRow().dot(values);
     map::MapOrigin origin;

@@ -7,9 +7,11 @@
 #include <memory>
 #include <utility>
 
+#include "estimation/chosen_rows.h"
 #include "estimation/linearization.h"
 #include "failure/failure.h"
 #include "fusion/linkage_problem.h"
+#include "fusion/machine_problem.h"
 
 namespace abbe::fusion {
 namespace {
@@ -19,29 +21,6 @@ using Eigen::VectorXd;
 using simulation::SimulatedRun;
 
 constexpr Index kBlocksOfEach = 4;  // blocks held out of a long run
-
-// Some rows of another residual.
-class SomeRows : public estimation::Residual {
- public:
-  SomeRows(std::shared_ptr<const estimation::Residual> all, std::vector<Index> rows)
-      : all_(std::move(all)), rows_(std::move(rows)) {}
-
-  Index Rows() const override { return static_cast<Index>(rows_.size()); }
-
-  void Evaluate(const VectorXd& x, VectorXd& values,
-                estimation::RowMatrix* jacobian) const override {
-    VectorXd every(all_->Rows());
-    estimation::RowMatrix J;
-    if (jacobian != nullptr) J.resize(every.size(), x.size());
-    all_->Evaluate(x, every, jacobian == nullptr ? nullptr : &J);
-    values = every(rows_);
-    if (jacobian != nullptr) *jacobian = J(rows_, Eigen::all);
-  }
-
- private:
-  std::shared_ptr<const estimation::Residual> all_;
-  std::vector<Index> rows_;
-};
 
 SimulatedRun Part(const SimulatedRun& run, int n, bool held) {
   const Index count = run.residual->Rows();
@@ -56,17 +35,9 @@ SimulatedRun Part(const SimulatedRun& run, int n, bool held) {
     if ((row / block % n == n - 1) == held) rows.push_back(row);
   }
   SimulatedRun part = run;
-  part.residual = std::make_shared<SomeRows>(run.residual, std::move(rows));
+  part.residual = std::make_shared<estimation::ChosenRows>(run.residual, std::move(rows));
   if (held) part.loss = estimation::RobustLoss::None();
   return part;
-}
-
-VectorXd ValuesOf(const estimation::Problem& problem, const estimation::Result& fit) {
-  std::vector<double> values;
-  for (const auto& block : problem.blocks()) {
-    for (const auto& entry : fit.Block(block.name).entries) values.push_back(entry.value);
-  }
-  return Eigen::Map<VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
 }  // namespace
@@ -84,8 +55,8 @@ std::vector<HeldOut> HoldOut(int n, const std::vector<SimulatedRun>& runs,
   }
   const estimation::Result fit = SolveLinkage(problem_of(kept), 0, false);
   const estimation::Problem problem = problem_of(held);
-  const auto at =
-      estimation::Linearize(problem, estimation::Layout(problem), ValuesOf(problem, fit), 0);
+  const auto at = estimation::Linearize(problem, estimation::Layout(problem),
+                                        ValuesFound(fit, problem.blocks()), 0);
   std::vector<HeldOut> result;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     HeldOut& out = result.emplace_back();

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "estimation/chosen_rows.h"
 #include "failure/failure.h"
 #include "fusion/linkage_problem.h"
 #include "fusion/machine_problem.h"
@@ -134,28 +135,6 @@ class Teacher {
   double longest_ = 0.0, accepted_ = 0.0;
 };
 
-// Some rows of another residual.
-class ChosenRows : public estimation::Residual {
- public:
-  ChosenRows(std::shared_ptr<const estimation::Residual> all, std::vector<Index> rows)
-      : all_(std::move(all)), rows_(std::move(rows)) {}
-
-  Index Rows() const override { return static_cast<Index>(rows_.size()); }
-
-  void Evaluate(const VectorXd& x, VectorXd& values,
-                estimation::RowMatrix* jacobian) const override {
-    VectorXd all(all_->Rows());
-    estimation::RowMatrix J(jacobian == nullptr ? 0 : all_->Rows(), x.size());
-    all_->Evaluate(x, all, jacobian == nullptr ? nullptr : &J);
-    values = all(rows_);
-    if (jacobian != nullptr) *jacobian = J(rows_, Eigen::all);
-  }
-
- private:
-  std::shared_ptr<const estimation::Residual> all_;
-  std::vector<Index> rows_;
-};
-
 // The fold in which each hole is left out: the holes of each plate in order of first appearance.
 class Folds {
  public:
@@ -187,12 +166,11 @@ class Folds {
 // The x of a run: of the machine those of the model, else those of the fit.
 VectorXd InputsOf(const SimulatedRun& run, const machine::VolumetricModel& model,
                   const estimation::Result& fit) {
-  const VectorXd machine = model.Parameters();
-  std::vector<double> x(machine.begin(), machine.end());
-  for (std::size_t b = model.Blocks().size(); b < run.blocks.size(); ++b) {
-    for (const double value : fit.Block(run.blocks[b].name).Values()) x.push_back(value);
-  }
-  return Eigen::Map<VectorXd>(x.data(), static_cast<Index>(x.size()));
+  const auto own = run.blocks.begin() + static_cast<std::ptrdiff_t>(model.Blocks().size());
+  const VectorXd others = ValuesFound(fit, {own, run.blocks.end()});
+  VectorXd x(model.ParameterCount() + others.size());
+  x << model.Parameters(), others;
+  return x;
 }
 
 double HeldOut(const machine::Machine& machine, const machine::VolumetricModel& model,
@@ -222,7 +200,7 @@ estimation::Result FitWithout(const machine::Machine& machine, double smoothness
     }
     SimulatedRun& run =
         runs.emplace_back(simulation::SimulatePlate(model, machine.reference, setup));
-    run.residual = std::make_shared<ChosenRows>(run.residual, std::move(rows));
+    run.residual = std::make_shared<estimation::ChosenRows>(run.residual, std::move(rows));
   }
   return SolveLinkage(
       MakeMachineProblem(machine, model, MachinePrior(machine, model, smoothness), runs));
@@ -284,13 +262,7 @@ std::vector<InterpolatorCheck> CompareInterpolators(const machine::Machine& mach
   for (int fold = 0; fold < folds; ++fold) {
     const estimation::Result fit = FitWithout(machine, smoothness, setups, split, fold);
     machine::VolumetricModel model = UnknownMachine(machine);
-    VectorXd parameters(model.ParameterCount());
-    Index at = 0;
-    for (const auto& block : model.Blocks()) {
-      parameters.segment(at, block.size()) = fit.Block(block.name).Values();
-      at += block.size();
-    }
-    model.SetParameters(parameters);
+    model.SetParameters(ValuesFound(fit, model.Blocks()));
     const auto stations = StationsOf(setups);
     for (InterpolatorCheck& check : checks) {
       const NetworkBias bias =

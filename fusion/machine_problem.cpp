@@ -76,4 +76,13 @@ estimation::Problem MakeMachineProblem(const machine::Machine& machine,
   return problem;
 }
 
+Eigen::VectorXd ValuesFound(const estimation::Result& fit,
+                            const std::vector<ParameterBlock>& blocks) {
+  std::vector<double> values;
+  for (const ParameterBlock& block : blocks) {
+    for (const auto& entry : fit.Block(block.name).entries) values.push_back(entry.value);
+  }
+  return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
 }  // namespace abbe::fusion

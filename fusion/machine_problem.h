@@ -7,6 +7,7 @@
 // Failure: InputError for no run.
 #pragma once
 
+#include <Eigen/Core>
 #include <string_view>
 #include <vector>
 
@@ -22,5 +23,9 @@ estimation::Problem MakeMachineProblem(const machine::Machine& machine,
                                        const machine::VolumetricModel& model,
                                        const MachinePrior& prior,
                                        const std::vector<simulation::SimulatedRun>& runs);
+
+// The values that a fit found for all entries of these blocks, in their order.
+Eigen::VectorXd ValuesFound(const estimation::Result& fit,
+                            const std::vector<estimation::ParameterBlock>& blocks);
 
 }  // namespace abbe::fusion

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimation/linearization.h"
+#include "fusion/machine_problem.h"
 
 namespace abbe::fusion {
 namespace {
@@ -11,14 +12,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-VectorXd ValuesOf(const std::vector<estimation::ParameterBlock>& blocks) {
-  std::vector<double> x;
-  for (const auto& block : blocks) {
-    for (const auto& entry : block.entries) x.push_back(entry.value);
-  }
-  return Eigen::Map<VectorXd>(x.data(), static_cast<Index>(x.size()));
-}
 
 // The information about the parameters with a prior, in units of it, the others eliminated.
 MatrixXd InUnitsOfPrior(const MatrixXd& data, const VectorXd& prior_sd) {
@@ -40,7 +33,7 @@ MatrixXd InUnitsOfPrior(const MatrixXd& data, const VectorXd& prior_sd) {
 
 Observability Observe(const estimation::Problem& problem, const estimation::Result& result) {
   const estimation::Layout layout(problem);
-  const auto at = estimation::Linearize(problem, layout, ValuesOf(result.blocks), 1);
+  const auto at = estimation::Linearize(problem, layout, ValuesFound(result, result.blocks), 1);
   MatrixXd data = MatrixXd::Zero(layout.columns(), layout.columns());
   for (std::size_t s = 0; s < at.sources.size(); ++s) {
     if (!problem.sources()[s].options.is_prior) data += at.sources[s].information;

@@ -7,6 +7,7 @@
 
 #include "hal/recorder.h"
 #include "hal/sweep_recorder.h"
+#include "settings/toml_text.h"
 #include "settings/unit.h"
 
 namespace abbe::hal {
@@ -14,20 +15,11 @@ namespace {
 
 using settings::kMicrometre;
 using settings::kMillimetre;
+using settings::Quoted;
 
 // Columns that every sweep has, whatever the devices give.
 const std::vector<std::string> kOfSweep = {"time_s", "x_mm",      "y_mm",       "z_mm",
                                            "pass",   "direction", "feed_mm_min"};
-
-// A text as TOML writes it.
-std::string Quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return quoted + "\"";
-}
 
 // The table [sources]: what each device gives, and by which way.
 std::string SourcesText(const std::vector<Channel>& channels,

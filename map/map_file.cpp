@@ -11,51 +11,29 @@
 #include "machine/form_of_shape.h"
 #include "map/text_file.h"
 #include "settings/document.h"
+#include "settings/toml_text.h"
 
 namespace abbe::map {
 namespace {
 
 using Eigen::Index;
 using machine::FormShape;
+using settings::Float;
+using settings::Floats;
+using settings::Quoted;
+using settings::QuotedList;
 using settings::Table;
 
 constexpr std::int64_t kFormat = 1;
 constexpr std::array kAxisKeys{"x", "y", "z"};
 
-std::string Quoted(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') quoted += '\\';
-    quoted += letter;
-  }
-  return quoted + '"';
-}
-
-// A TOML float, in the shortest form that reads back the same.
-std::string Float(double value) {
-  const std::string text = fmt::format("{}", value);
-  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-}
-
-template <typename Values>
-std::string Floats(const Values& values) {
-  std::string text = "[";
-  for (const double value : values) text += (text.size() > 1 ? ", " : "") + Float(value);
-  return text + "]";
-}
-
-template <typename Texts>
-std::string QuotedList(const Texts& texts) {
-  std::string list = "[";
-  for (const auto& text : texts) list += (list.size() > 1 ? ", " : "") + Quoted(text);
-  return list + "]";
-}
-
 std::string_view NameOf(Source source) { return kSourceNames[static_cast<std::size_t>(source)]; }
 
 std::string HeadText(const ErrorMap& map) {
   const MapOrigin& origin = map.origin();
-  const auto of_squareness = [&](int i) { return NameOf(origin.sources[kErrors - 3 + i]); };
+  const auto of_squareness = [&](int i) {
+    return std::string(NameOf(origin.sources[kErrors - 3 + i]));
+  };
   std::string text = fmt::format(
       "# An error map: docs/map.md says what each key means.\nformat = {}\nmachine = {}\n"
       "chain = {}\nreference = {}\ntool = {}\ntemperature_c = {}\nscale = {}\nsquareness = {}\n"

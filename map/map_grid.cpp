@@ -16,8 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double kCoverage = 1.959963984540054;  // 95 % of a normal distribution
-
 double Halton(int index, int base) {
   double value = 0.0, digit = 1.0 / base;
   for (int i = index; i > 0; i /= base, digit /= base) value += digit * (i % base);

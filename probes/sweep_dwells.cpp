@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -26,7 +27,9 @@ constexpr PerProbe<std::string_view> kGapColumns = {"probe_a_um", "probe_b_um", 
 // The columns that the reduction reads, in the units of the file.
 struct Rows {
   std::span<const double> time, position, pass, direction, flags;
+  std::array<std::span<const double>, 3> axes;
   PerProbe<std::span<const double>> gaps;
+  std::size_t first_row = 0;  // of the file
 };
 
 char SweptAxis(const recording::Recording& recording) {
@@ -50,6 +53,8 @@ Rows RowsOf(const recording::Recording& recording, char axis) {
   rows.pass = recording.At("pass");
   rows.direction = recording.At("direction");
   rows.flags = recording.At("flags");
+  rows.axes = {recording.At("x_mm"), recording.At("y_mm"), recording.At("z_mm")};
+  rows.first_row = recording.first_row;
   for (std::size_t probe = 0; probe < kProbes; ++probe)
     rows.gaps[probe] = recording.At(kGapColumns[probe]);
   return rows;
@@ -58,42 +63,43 @@ Rows RowsOf(const recording::Recording& recording, char axis) {
 // Gathers the rows of the run at hand and turns them into a dwell when it ends.
 class DwellFinder {
  public:
-  DwellFinder(const Rows& rows, const DwellRule& rule, SweepDwells& found)
-      : rows_(rows), rule_(rule), found_(found) {}
+  DwellFinder(const DwellRule& rule, SweepDwells& found) : rule_(rule), found_(found) {}
 
-  void Add(std::size_t row) {
-    if (!Continues(row)) {
+  void Add(const Rows& rows, std::size_t row) {
+    const double time = rows.time[row], position = rows.position[row];
+    if (!Continues(rows, row)) {
       Close();
-      start_ = row;
       open_ = true;
+      start_ = time;
+      at_ = position;
+      dwell_ = {.pass = static_cast<int>(rows.pass[row]),
+                .direction = static_cast<int>(rows.direction[row]),
+                .first_row = rows.first_row + row,
+                .axes = Eigen::Vector3d(rows.axes[0][row], rows.axes[1][row], rows.axes[2][row]) *
+                        kMillimetre};
     }
-    if (rows_.time[row] < rows_.time[start_] + rule_.settle) {
+    if (time < start_ + rule_.settle) {
       ++found_.counts.moving;
       return;
     }
-    if (gaps_[0].empty()) first_time_ = rows_.time[row];
-    last_time_ = rows_.time[row];
-    time_ += rows_.time[row];
-    position_ += rows_.position[row];
+    if (gaps_[0].empty()) first_time_ = time;
+    last_time_ = time;
+    time_ += time;
+    position_ += position;
     for (std::size_t probe = 0; probe < kProbes; ++probe)
-      gaps_[probe].push_back(rows_.gaps[probe][row]);
+      gaps_[probe].push_back(rows.gaps[probe][row]);
   }
 
   void Close() {
     const std::size_t samples = gaps_[0].size();
     if (open_ && samples > 0) {
       const double n = static_cast<double>(samples);
-      Dwell dwell{.time = time_ / n,
-                  .duration = last_time_ - first_time_,
-                  .position = position_ / n * kMillimetre,
-                  .pass = static_cast<int>(rows_.pass[start_]),
-                  .direction = static_cast<int>(rows_.direction[start_]),
-                  .station = 0,
-                  .first_row = start_,
-                  .samples = samples,
-                  .gap = {}};
-      for (std::size_t probe = 0; probe < kProbes; ++probe) dwell.gap[probe] = Mean(probe);
-      found_.dwells.push_back(dwell);
+      dwell_.time = time_ / n;
+      dwell_.duration = last_time_ - first_time_;
+      dwell_.position = position_ / n * kMillimetre;
+      dwell_.samples = samples;
+      for (std::size_t probe = 0; probe < kProbes; ++probe) dwell_.gap[probe] = Mean(probe);
+      found_.dwells.push_back(dwell_);
     }
     for (std::vector<double>& gap : gaps_) gap.clear();
     time_ = position_ = 0.0;
@@ -112,20 +118,19 @@ class DwellFinder {
     double dwells = 0.0;
   };
 
-  bool Continues(std::size_t row) const {
-    return open_ && rows_.pass[row] == rows_.pass[start_] &&
-           rows_.direction[row] == rows_.direction[start_] &&
-           std::abs(rows_.position[row] - rows_.position[start_]) * kMillimetre <= rule_.window;
+  bool Continues(const Rows& rows, std::size_t row) const {
+    return open_ && rows.pass[row] == dwell_.pass && rows.direction[row] == dwell_.direction &&
+           std::abs(rows.position[row] - at_) * kMillimetre <= rule_.window;
   }
 
   double Mean(std::size_t probe);
 
-  const Rows& rows_;
   const DwellRule& rule_;
   SweepDwells& found_;
-  std::size_t start_ = 0;
   bool open_ = false;
-  double time_ = 0.0;  // s, sum
+  Dwell dwell_;                    // the one at hand: its beginning
+  double start_ = 0.0, at_ = 0.0;  // s and mm, there
+  double time_ = 0.0;              // s, sum
   double first_time_ = 0.0, last_time_ = 0.0;
   double position_ = 0.0;
   PerProbe<std::vector<double>> gaps_;  // um
@@ -179,7 +184,7 @@ void RefuseImpossibleGap(const recording::Recording& recording, const Rows& rows
         fmt::format("{}: row {}: {} is {:.6g} um without a flag, the probe's range is 0 to {:.6g} "
                     "um; flag the row "
                     "(flags = 2) or correct range_um in the machine file",
-                    recording.name, row + 1, kGapColumns[probe], gap, range));
+                    recording.name, rows.first_row + row + 1, kGapColumns[probe], gap, range));
   }
 }
 
@@ -235,10 +240,18 @@ void AssignStations(double window, SweepDwells& found) {
   }
 }
 
-Eigen::Vector3d PositionAt(const recording::Recording& recording, std::size_t row) {
-  return Eigen::Vector3d(recording.At("x_mm")[row], recording.At("y_mm")[row],
-                         recording.At("z_mm")[row]) *
-         kMillimetre;
+void AddRows(const recording::Recording& recording, const PerProbe<>& ranges, DwellFinder& finder,
+             SweepDwells& found) {
+  const Rows rows = RowsOf(recording, found.axis);
+  found.counts.rows += rows.time.size();
+  for (std::size_t row = 0; row < rows.time.size(); ++row) {
+    if (!IsGood(rows, row)) {
+      ++found.counts.flagged;
+      continue;
+    }
+    RefuseImpossibleGap(recording, rows, row, ranges);
+    finder.Add(rows, row);
+  }
 }
 
 }  // namespace
@@ -248,35 +261,32 @@ DwellRule DwellRuleOf(const recording::Recording& recording) {
           recording.HeaderNumber("sweep.settle_s", 0.0).value_or(0.1)};
 }
 
-SweepDwells FindDwells(const recording::Recording& recording, const DwellRule& rule,
-                       const PerProbe<>& ranges) {
+SweepDwells FindDwells(const recording::Recording& head, const recording::Blocks& blocks,
+                       const DwellRule& rule, const PerProbe<>& ranges) {
   SweepDwells found;
-  found.axis = SweptAxis(recording);
-  const Rows rows = RowsOf(recording, found.axis);
-  found.counts.rows = rows.time.size();
-  DwellFinder finder(rows, rule, found);
-  for (std::size_t row = 0; row < rows.time.size(); ++row) {
-    if (!IsGood(rows, row)) {
-      ++found.counts.flagged;
-      continue;
-    }
-    RefuseImpossibleGap(recording, rows, row, ranges);
-    finder.Add(row);
-  }
+  found.axis = SweptAxis(head);
+  DwellFinder finder(rule, found);
+  blocks([&](const recording::Recording& block) { AddRows(block, ranges, finder, found); });
   finder.Close();
   DropOtherStandstills(found);
   if (found.dwells.empty()) {
     throw InputError(fmt::format(
         "{}: no dwell found: the {} axis never stands within {} um for longer than {} s; set "
         "sweep.window_um and sweep.settle_s in the header",
-        recording.name, found.axis, rule.window / kMicrometre, rule.settle));
+        head.name, found.axis, rule.window / kMicrometre, rule.settle));
   }
   AssignStations(rule.window, found);
-  found.start = PositionAt(recording, found.dwells.front().first_row);
+  found.start = found.dwells.front().axes;
   found.start[found.axis - 'X'] = found.stations[found.dwells.front().station];
   found.scatter = finder.Scatters();
   for (const Dwell& dwell : found.dwells) found.counts.used += dwell.samples;
   return found;
+}
+
+SweepDwells FindDwells(const recording::Recording& recording, const DwellRule& rule,
+                       const PerProbe<>& ranges) {
+  return FindDwells(
+      recording, [&](const auto& use) { use(recording); }, rule, ranges);
 }
 
 }  // namespace abbe::probes

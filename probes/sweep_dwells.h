@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "probes/head_layout.h"
+#include "recording/blocks.h"
 #include "recording/recording.h"
 
 namespace abbe::probes {
@@ -26,15 +27,16 @@ struct DwellRule {
 };
 
 struct Dwell {
-  double time;      // s, mean of its rows
-  double duration;  // s, from the first to the last of them
-  double position;  // m, of the swept axis
-  int pass;
-  int direction;          // +1, -1: of the approach
-  std::size_t station;    // index into SweepDwells::stations
-  std::size_t first_row;  // of the run
-  std::size_t samples;    // rows that count
-  PerProbe<> gap;         // m
+  double time = 0.0;      // s, mean of its rows
+  double duration = 0.0;  // s, from the first to the last of them
+  double position = 0.0;  // m, of the swept axis
+  int pass = 0;
+  int direction = 0;                               // +1, -1: of the approach
+  std::size_t station = 0;                         // index into SweepDwells::stations
+  std::size_t first_row = 0;                       // of the run
+  std::size_t samples = 0;                         // rows that count
+  PerProbe<> gap = {};                             // m
+  Eigen::Vector3d axes = Eigen::Vector3d::Zero();  // m: [x y z] in the first row
 };
 
 struct SampleCounts {
@@ -67,7 +69,9 @@ struct SweepDwells {
 DwellRule DwellRuleOf(const recording::Recording& recording);
 
 // `recording` is of kind sweep; `ranges` are the largest gaps of the probes, m. One pass over the
-// rows.
+// rows. Of a long recording `head` needs no rows, and memory is that of a block and of a dwell.
+SweepDwells FindDwells(const recording::Recording& head, const recording::Blocks& blocks,
+                       const DwellRule& rule, const PerProbe<>& ranges);
 SweepDwells FindDwells(const recording::Recording& recording, const DwellRule& rule,
                        const PerProbe<>& ranges);
 

@@ -190,8 +190,7 @@ void CheckAgainstPasses(double chi2, double dof, StationMeans& means) {
                   means.noise.scale));
 }
 
-void FillResidualsAndFigures(const SweepDwells& sweep, const DwellFit& fit,
-                             const Eigen::MatrixXd& white, StationMeans& means) {
+void FillResidualsAndFigures(const SweepDwells& sweep, const DwellFit& fit, StationMeans& means) {
   const auto dwells = static_cast<Eigen::Index>(means.dwells.size());
   means.position = Eigen::VectorXd::Zero(fit.group_count());
   means.residual.resize(kProbes, dwells);
@@ -212,7 +211,7 @@ void FillResidualsAndFigures(const SweepDwells& sweep, const DwellFit& fit,
     figures = {sweep.scatter[probe].white, sweep.scatter[probe].lag1, 0.0};
     if (dof <= 0.0) continue;
     const double between = means.residual.row(Row(probe)).squaredNorm() / dof;
-    figures.drift = std::sqrt(std::max(0.0, between - white.col(Row(probe)).mean()));
+    figures.drift = std::sqrt(std::max(0.0, between - means.white.col(Row(probe)).mean()));
   }
 }
 
@@ -223,9 +222,9 @@ StationMeans FitStations(const std::string& name, const SweepDwells& sweep,
   StationMeans means;
   KeepCompleteStations(name, sweep, means);
   const DwellFit fit(means, noise);
-  const Eigen::MatrixXd white = ChooseWhite(sweep, noise, fit, means);
-  const double chi2 = fit.Run(white, means);
-  FillResidualsAndFigures(sweep, fit, white, means);
+  means.white = ChooseWhite(sweep, noise, fit, means);
+  const double chi2 = fit.Run(means.white, means);
+  FillResidualsAndFigures(sweep, fit, means);
   CheckAgainstPasses(chi2, fit.dof(), means);
   return means;
 }

@@ -50,7 +50,8 @@ struct StationMeans {
   PerProbe<Eigen::MatrixXd> covariance;                // m^2, group x group, per probe
   std::vector<Dwell> dwells;                           // those of `stations`
   Eigen::Matrix<double, kProbes, Eigen::Dynamic>
-      residual;  // m, per dwell: dwell - mean of its group
+      residual;           // m, per dwell: dwell - mean of its group
+  Eigen::MatrixXd white;  // m^2, dwells x probes: variance of a dwell without its drift
   NoiseFigures noise;
   std::vector<std::string> notes;  // what the user must know, one sentence each
 

@@ -86,23 +86,27 @@ const ValueRule* RuleOf(std::string_view name) {
   throw InputError(fmt::format("{}: {}: {}", place, what, message));
 }
 
-void CheckTime(std::span<const double> time, const Places& places) {
+// `before`: the time of the row before the first; then that of the last one.
+void CheckTime(std::span<const double> time, std::size_t first_row, const Places& places,
+               double& before) {
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (!std::isfinite(time[i])) {
-      Refuse(places.Row(i), "time_s", fmt::format("is {}; every row needs a time", time[i]));
+      Refuse(places.Row(first_row + i), "time_s",
+             fmt::format("is {}; every row needs a time", time[i]));
     }
-    if (i > 0 && time[i] < time[i - 1]) {
-      Refuse(places.Row(i), "time_s",
+    if (time[i] < before) {
+      Refuse(places.Row(first_row + i), "time_s",
              fmt::format("goes back from {} to {}; rows must stand in the order of their time",
-                         time[i - 1], time[i]));
+                         before, time[i]));
     }
+    before = time[i];
   }
 }
 
-void CheckFlags(std::span<const double> flags, const Places& places) {
+void CheckFlags(std::span<const double> flags, std::size_t first_row, const Places& places) {
   for (std::size_t i = 0; i < flags.size(); ++i) {
     if (!Count(flags[i]) || flags[i] > kAllFlags) {
-      Refuse(places.Row(i), "flags",
+      Refuse(places.Row(first_row + i), "flags",
              fmt::format("is {}; it must be a sum of 1 stale, 2 out of range, 4 device error, 8 "
                          "interpolated, 16 clock jump, or 0",
                          flags[i]));
@@ -111,16 +115,16 @@ void CheckFlags(std::span<const double> flags, const Places& places) {
 }
 
 void CheckValues(const Column& column, const ValueRule& rule, std::span<const double> flags,
-                 const Places& places) {
+                 std::size_t first_row, const Places& places) {
   for (std::size_t i = 0; i < column.values.size(); ++i) {
     const double value = column.values[i];
     if (std::isfinite(value) && rule.allows(value)) continue;
     if (!flags.empty() && flags[i] != 0.0) continue;
     if (std::isfinite(value)) {
-      Refuse(places.Row(i), column.name,
+      Refuse(places.Row(first_row + i), column.name,
              fmt::format("is {}; it must be {}, or the row must carry a flag", value, rule.wanted));
     }
-    Refuse(places.Row(i), column.name,
+    Refuse(places.Row(first_row + i), column.name,
            fmt::format("is {} in a row without a flag; say in the column flags why the value is "
                        "missing, or remove the row",
                        value));
@@ -198,25 +202,29 @@ void CheckHeader(const std::string& header, const std::vector<std::string>& name
   }
 }
 
+void RowCheck::Take(const Recording& block) {
+  for (const Column& column : block.columns) {
+    if (column.values.size() != block.rows()) {
+      Refuse(places_.file, column.name,
+             fmt::format("has {} rows, but {} has {}; all columns must be of one length",
+                         column.values.size(), block.columns.front().name, block.rows()));
+    }
+  }
+  if (const auto time = block.Find("time_s")) CheckTime(*time, block.first_row, places_, time_);
+  const std::span<const double> flags = block.Find("flags").value_or(std::span<const double>{});
+  CheckFlags(flags, block.first_row, places_);
+  for (const Column& column : block.columns) {
+    const ValueRule* rule = RuleOf(column.name);
+    if (rule != nullptr) CheckValues(column, *rule, flags, block.first_row, places_);
+  }
+}
+
 void Check(const Recording& recording, const Places& places) {
   std::vector<std::string> names;
   for (const Column& column : recording.columns) names.push_back(column.name);
   CheckColumnNames(names, places.file);
   CheckHeader(recording.header, names, places);
-  for (const Column& column : recording.columns) {
-    if (column.values.size() != recording.rows()) {
-      Refuse(places.file, column.name,
-             fmt::format("has {} rows, but {} has {}; all columns must be of one length",
-                         column.values.size(), recording.columns.front().name, recording.rows()));
-    }
-  }
-  if (const auto time = recording.Find("time_s")) CheckTime(*time, places);
-  const std::span<const double> flags = recording.Find("flags").value_or(std::span<const double>{});
-  CheckFlags(flags, places);
-  for (const Column& column : recording.columns) {
-    const ValueRule* rule = RuleOf(column.name);
-    if (rule != nullptr) CheckValues(column, *rule, flags, places);
-  }
+  RowCheck(places).Take(recording);
 }
 
 }  // namespace abbe::recording

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "recording/recording.h"
@@ -29,10 +31,22 @@ void CheckColumnNames(const std::vector<std::string>& names, std::string_view pl
 void CheckHeader(const std::string& header, const std::vector<std::string>& names,
                  const Places& places);
 
-// Throws InputError, naming place and column, unless the recording keeps every rule: names, header,
-// columns of one length, time that never goes back, flags that are known, and in the columns that
-// abbe knows no NaN, infinity or impossible value in a row without a flag. Other columns may hold
-// anything.
+// The rules for rows, over the blocks of a recording one after the other: columns of one length,
+// time that never goes back, flags that are known, and in the columns that abbe knows no NaN,
+// infinity or impossible value in a row without a flag. Other columns may hold anything. Throws
+// InputError naming place and column.
+class RowCheck {
+ public:
+  explicit RowCheck(Places places) : places_(std::move(places)) {}
+  void Take(const Recording& block);
+
+ private:
+  Places places_;
+  double time_ = -std::numeric_limits<double>::infinity();  // of the last row
+};
+
+// Throws InputError, naming place and column, unless the recording keeps every rule for names,
+// header and rows.
 void Check(const Recording& recording, const Places& places);
 
 }  // namespace abbe::recording

@@ -10,6 +10,7 @@
 #include "recording/check.h"
 #include "recording/csv_form.h"
 #include "recording/line_reader.h"
+#include "recording/recording_file.h"
 
 namespace abbe::recording {
 namespace {
@@ -126,8 +127,10 @@ class RowParser {
   const Places& places_;
 };
 
-// The header's text and the names of the columns; `lines` then stands before the first row.
-std::vector<std::string> ReadHead(LineReader& lines, Recording& recording, Places& places) {
+// A recording without rows; `lines` then stands before the first row.
+Recording ReadHead(LineReader& lines, Places& places) {
+  Recording recording;
+  recording.name = places.file;
   CheckSignature(lines.Next().value_or(std::string_view{}), places);
   places.header_line = 2;
   std::optional<std::string_view> line;
@@ -139,29 +142,28 @@ std::vector<std::string> ReadHead(LineReader& lines, Recording& recording, Place
     throw Error(places, lines.number(), "the file ends before its first row; nothing was recorded");
   }
   places.first_row_line = lines.number() + 1;
-  return ColumnNames(*line, fmt::format("{}:{}", places.file, lines.number()));
+  const std::vector<std::string> names =
+      ColumnNames(*line, fmt::format("{}:{}", places.file, lines.number()));
+  CheckHeader(recording.header, names, places);
+  for (const std::string& name : names) recording.columns.push_back({name, {}});
+  return recording;
 }
 
 }  // namespace
 
-Recording ReadCsv(const std::filesystem::path& path) {
+void ReadCsv(const std::filesystem::path& path, std::size_t rows,
+             const std::function<void(Recording& block)>& use) {
   LineReader lines(path);
-  Recording recording;
-  recording.name = path.string();
-  Places places{recording.name};
-  const std::vector<std::string> names = ReadHead(lines, recording, places);
-  CheckHeader(recording.header, names, places);
-
-  const std::size_t at_most = lines.CountLineEnds() - places.first_row_line + 1;
-  for (const std::string& name : names) {
-    recording.columns.push_back({name, {}});
-    recording.columns.back().values.reserve(at_most);
-  }
-  const RowParser parser(recording, places);
-  std::size_t blank = 0;
+  Places places{path.string()};
+  Recording block = ReadHead(lines, places);
+  RowCheck check(places);
+  const std::size_t at_most = rows <= kBlockRows ? rows : lines.CountLineEnds();
+  for (Column& column : block.columns) column.values.reserve(at_most);
+  const RowParser parser(block, places);
+  std::size_t blank = 0, before = 0;  // line; rows of the blocks before
   while (const auto line = lines.Next()) {
     if (!lines.complete()) {
-      recording.warnings.push_back(
+      block.warnings.push_back(
           fmt::format("{}:{}: the last line has no line end, as if cut: that row is dropped",
                       places.file, lines.number()));
     } else if (Trimmed(*line).empty()) {
@@ -169,11 +171,24 @@ Recording ReadCsv(const std::filesystem::path& path) {
     } else if (blank != 0) {
       throw Error(places, blank, "is blank, and rows follow; remove the line");
     } else {
+      if (block.rows() == rows) {
+        check.Take(block);
+        before += rows;
+        use(block);
+        for (Column& column : block.columns) column.values.clear();
+        block.first_row = before;
+      }
       parser.Parse(*line, lines.number());
     }
   }
-  Check(recording, places);
-  return recording;
+  check.Take(block);
+  use(block);
+}
+
+Recording ReadCsvHead(const std::filesystem::path& path) {
+  LineReader lines(path);
+  Places places{path.string()};
+  return ReadHead(lines, places);
 }
 
 }  // namespace abbe::recording

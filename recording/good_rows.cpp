@@ -2,11 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "settings/unit.h"
 
 namespace abbe::recording {
+
+bool HasGoodRow(const Recording& recording) {
+  const auto flags = recording.Find("flags");
+  return flags ? std::find(flags->begin(), flags->end(), 0.0) != flags->end()
+               : recording.rows() > 0;
+}
+
+void RefuseNoGoodRow(const Recording& recording, std::size_t rows) {
+  throw InputError(fmt::format("{}: none of the {} rows is without a flag; nothing to evaluate",
+                               recording.name, rows));
+}
 
 std::vector<std::size_t> GoodRows(const Recording& recording) {
   const auto flags = recording.Find("flags").value_or(std::span<const double>{});
@@ -14,10 +26,7 @@ std::vector<std::size_t> GoodRows(const Recording& recording) {
   for (std::size_t row = 0; row < recording.rows(); ++row) {
     if (flags.empty() || flags[row] == 0) rows.push_back(row);
   }
-  if (rows.empty()) {
-    throw InputError(fmt::format("{}: none of the {} rows is without a flag; nothing to evaluate",
-                                 recording.name, recording.rows()));
-  }
+  if (rows.empty()) RefuseNoGoodRow(recording, recording.rows());
   return rows;
 }
 
@@ -30,7 +39,7 @@ std::vector<double> ValuesOf(const Recording& recording, const std::string& colu
   for (const std::size_t row : rows) {
     if (!std::isfinite(all[row])) {
       throw InputError(fmt::format("{}: row {}: {} is no number and has no flag", recording.name,
-                                   row + 1, column));
+                                   recording.first_row + row + 1, column));
     }
     values.push_back(all[row] * si);
   }

@@ -116,20 +116,18 @@ class DataSet {
     return rows_;
   }
 
-  // The first `rows` values.
-  std::vector<double> Read(hsize_t rows, const std::string& file_name) const {
-    std::vector<double> values(rows);
+  void Read(hsize_t first, hsize_t rows, const std::string& file_name,
+            std::vector<double>& values) const {
+    values.resize(rows);
+    if (rows == 0) return;
     const Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
     const Handle space(H5Dget_space(set_.id()), H5Sclose);
-    const hsize_t first = 0;
-    if (rows == 0) return values;
     H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, nullptr, &rows, nullptr);
     if (H5Dread(set_.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, values.data()) <
         0) {
       throw InputError(fmt::format("{}: {}: cannot be read: {}; use a copy that is whole",
                                    file_name, name_, Hdf5Reason()));
     }
-    return values;
   }
 
  private:
@@ -157,35 +155,77 @@ void KeepWholeRows(Recording& recording) {
   for (Column& column : recording.columns) column.values.resize(rows);
 }
 
+struct Content {
+  OpenFile open;
+  Recording head;  // without rows
+  std::vector<DataSet> sets;
+};
+
+Content OpenRecording(const std::string& name) {
+  Content content{Open(name), {}, {}};
+  CheckVersion(content.open.file.id(), name);
+  content.head.name = name;
+  content.head.header = Text(content.open.file.id(), kHeaderAttribute, name);
+  content.sets = OpenColumns(content.open.file.id(), name);
+  std::vector<std::string> names;
+  for (const DataSet& set : content.sets) {
+    names.push_back(set.name());
+    content.head.columns.push_back({set.name(), {}});
+  }
+  CheckColumnNames(names, name);
+  CheckHeader(content.head.header, names, Places{name});
+  return content;
+}
+
+hsize_t RowsOf(const Content& content) {
+  if (content.open.trouble.empty()) {
+    for (const DataSet& set : content.sets) {
+      if (set.rows() == content.sets.front().rows()) continue;
+      throw InputError(
+          fmt::format("{}: {}: has {} rows, but {} has {}; all columns must be of one length",
+                      content.head.name, set.name(), set.rows(), content.sets.front().name(),
+                      content.sets.front().rows()));
+    }
+    return content.sets.front().rows();
+  }
+  hsize_t rows = std::numeric_limits<hsize_t>::max();
+  const std::uintmax_t size = std::filesystem::file_size(content.head.name);
+  for (const DataSet& set : content.sets) rows = std::min(rows, set.RowsWithin(size));
+  return rows;
+}
+
 }  // namespace
 
-Recording ReadHdf5(const std::filesystem::path& path) {
+void ReadHdf5(const std::filesystem::path& path, std::size_t rows,
+              const std::function<void(Recording& block)>& use) {
   const QuietHdf5 quiet;
-  Recording recording;
-  recording.name = path.string();
-  const OpenFile open = Open(recording.name);
-  CheckVersion(open.file.id(), recording.name);
-  recording.header = Text(open.file.id(), kHeaderAttribute, recording.name);
-  const std::vector<DataSet> sets = OpenColumns(open.file.id(), recording.name);
-  if (open.trouble.empty()) {
-    for (const DataSet& set : sets) {
-      recording.columns.push_back({set.name(), set.Read(set.rows(), recording.name)});
+  const Content content = OpenRecording(path.string());
+  const hsize_t all = RowsOf(content);
+  RowCheck check(Places{path.string()});
+  Recording block = content.head;
+  for (bool more = true; more;) {
+    const hsize_t wanted = std::min<hsize_t>(rows, all - block.first_row);
+    for (std::size_t i = 0; i < content.sets.size(); ++i) {
+      content.sets[i].Read(block.first_row, wanted, block.name, block.columns[i].values);
     }
-  } else {
-    hsize_t rows = std::numeric_limits<hsize_t>::max();
-    const std::uintmax_t size = std::filesystem::file_size(path);
-    for (const DataSet& set : sets) rows = std::min(rows, set.RowsWithin(size));
-    for (const DataSet& set : sets) {
-      recording.columns.push_back({set.name(), set.Read(rows, recording.name)});
+    if (!content.open.trouble.empty()) KeepWholeRows(block);
+    const std::size_t next = block.first_row + block.rows();
+    more = block.rows() == wanted && next < all;
+    if (!more && !content.open.trouble.empty()) {
+      block.warnings.push_back(fmt::format(
+          "{}: was not closed, for its recorder was killed or still records: the {} rows "
+          "that reached the disk are kept",
+          block.name, next));
     }
-    KeepWholeRows(recording);
-    recording.warnings.push_back(
-        fmt::format("{}: was not closed, for its recorder was killed or still records: the {} rows "
-                    "that reached the disk are kept",
-                    recording.name, recording.rows()));
+    check.Take(block);
+    use(block);
+    block.first_row = next;
   }
-  Check(recording, Places{recording.name});
-  return recording;
+}
+
+Recording ReadHdf5Head(const std::filesystem::path& path) {
+  const QuietHdf5 quiet;
+  return OpenRecording(path.string()).head;
 }
 
 }  // namespace abbe::recording

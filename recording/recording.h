@@ -37,7 +37,8 @@ struct Recording {
   std::string header;  // TOML text, without the leading "# " of the CSV form, one key a line
   std::vector<Column> columns;
   std::vector<std::string>
-      warnings;  // e.g. "the file ends in the middle of row 812: that row is dropped"
+      warnings;               // e.g. "the file ends in the middle of row 812: that row is dropped"
+  std::size_t first_row = 0;  // of the file: a block of a longer recording begins there
 
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
 

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
+#include <utility>
 
 #include "recording/background_writer.h"
 #include "recording/check.h"
@@ -21,6 +23,8 @@ namespace abbe::recording {
 namespace {
 
 constexpr std::string_view kHdf5Begin = "\x89HDF\r\n\x1a\n";
+
+constexpr std::size_t kWhole = std::numeric_limits<std::size_t>::max();  // rows of a block
 
 enum class Form { kCsv, kHdf5 };
 
@@ -58,6 +62,22 @@ std::string Begin(const std::filesystem::path& path) {
   return begin;
 }
 
+// The form of the name and of the content, which must be one.
+Form FoundForm(const std::filesystem::path& path) {
+  const Form form = FormOf(path);
+  const bool hdf5 = Begin(path) == kHdf5Begin;
+  if (form == Form::kCsv && hdf5) {
+    throw InputError(fmt::format(
+        "{}: is an HDF5 file under the name of a CSV file; rename it to .h5", path.string()));
+  }
+  if (form == Form::kHdf5 && !hdf5) {
+    throw InputError(
+        fmt::format("{}: is not an HDF5 file; check the path, or rename it if it is a CSV file",
+                    path.string()));
+  }
+  return form;
+}
+
 // A header as both forms keep it: lines that end in "\n".
 std::string KeptHeader(std::string_view header) {
   std::string kept;
@@ -74,18 +94,18 @@ std::string KeptHeader(std::string_view header) {
 }  // namespace
 
 Recording Read(const std::filesystem::path& path) {
-  const Form form = FormOf(path);
-  const bool hdf5 = Begin(path) == kHdf5Begin;
-  if (form == Form::kCsv && hdf5) {
-    throw InputError(fmt::format(
-        "{}: is an HDF5 file under the name of a CSV file; rename it to .h5", path.string()));
-  }
-  if (form == Form::kHdf5 && !hdf5) {
-    throw InputError(
-        fmt::format("{}: is not an HDF5 file; check the path, or rename it if it is a CSV file",
-                    path.string()));
-  }
-  return hdf5 ? ReadHdf5(path) : ReadCsv(path);
+  Recording whole;
+  const auto take = [&](Recording& block) { whole = std::move(block); };
+  (FoundForm(path) == Form::kCsv ? ReadCsv : ReadHdf5)(path, kWhole, take);
+  return whole;
+}
+
+void ReadBlocks(const std::filesystem::path& path, const UseBlock& use, std::size_t rows) {
+  (FoundForm(path) == Form::kCsv ? ReadCsv : ReadHdf5)(path, rows, use);
+}
+
+Recording ReadHead(const std::filesystem::path& path) {
+  return (FoundForm(path) == Form::kCsv ? ReadCsvHead : ReadHdf5Head)(path);
 }
 
 void Write(const Recording& recording, const std::filesystem::path& path) {

@@ -6,18 +6,29 @@
 // was killed, opens with a warning. docs/recordings.md has every rule.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "recording/blocks.h"
 #include "recording/recording.h"
 
 namespace abbe::recording {
 
 // The whole recording. Its `warnings` are for the person who asked for it.
 Recording Read(const std::filesystem::path& path);
+
+// The same block by block (recording/blocks.h), each of `rows` rows but the last: `use` has been
+// called already when a later row is refused.
+inline constexpr std::size_t kBlockRows = 16384;
+void ReadBlocks(const std::filesystem::path& path, const UseBlock& use,
+                std::size_t rows = kBlockRows);
+
+// Name, header and columns, without a row.
+Recording ReadHead(const std::filesystem::path& path);
 
 // Writes the whole recording, over what is there; the file appears under its name only when it is
 // complete. InputError for a recording that Read() would refuse, DeviceError when the disk is full.

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "settings/toml_text.h"
 #include "settings/unit.h"
 
 namespace abbe::recording {
@@ -209,27 +210,18 @@ double ForwardDirection(const TargetTable& table) {
   return sign;
 }
 
-std::string Quoted(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 std::string Header(const TargetTable& table, const std::string& axis, char small) {
   std::string header = fmt::format(
       "kind = \"reference\"\naxis = \"{}\"\ntime = \"order\"\nimported_from = "
       "{}\n",
-      axis, Quoted(std::filesystem::path(table.file).filename().string()));
+      axis, settings::Quoted(std::filesystem::path(table.file).filename().string()));
   if (table.target_source.empty() && table.reference_source.empty()) return header;
   header += "[sources]\n";
   if (!table.target_source.empty()) {
-    header += fmt::format("{}_mm = {}\n", small, Quoted(table.target_source));
+    header += fmt::format("{}_mm = {}\n", small, settings::Quoted(table.target_source));
   }
   if (!table.reference_source.empty()) {
-    header += fmt::format("ref_{}_mm = {}\n", small, Quoted(table.reference_source));
+    header += fmt::format("ref_{}_mm = {}\n", small, settings::Quoted(table.reference_source));
   }
   return header;
 }

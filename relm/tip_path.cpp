@@ -37,8 +37,8 @@ Column TemperatureColumn(const recording::Recording& recording, const LinkageSet
 double Finite(const recording::Recording& recording, Column column, std::size_t row,
               const std::string& name) {
   if (std::isfinite(column[row])) return column[row];
-  throw InputError(
-      fmt::format("{}: row {}: {} is no number and has no flag", recording.name, row + 1, name));
+  throw InputError(fmt::format("{}: row {}: {} is no number and has no flag", recording.name,
+                               recording.first_row + row + 1, name));
 }
 
 // An encoder turns less than half a turn from row to row, or its counter has wrapped or slipped.
@@ -52,7 +52,8 @@ void RefuseJump(const recording::Recording& recording, const GoodReadings& good,
   throw InputError(fmt::format(
       "{}: row {}: pivot_{}_rad jumps by {:.4f} rad: the encoder's counter has wrapped or slipped; "
       "check counts_per_turn and the range of the node, and record again",
-      recording.name, good.rows[static_cast<std::size_t>(pose)] + 1, joint + 1, step[joint]));
+      recording.name, recording.first_row + good.rows[static_cast<std::size_t>(pose)] + 1,
+      joint + 1, step[joint]));
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // A long run of the linkage gathered into cells of the travel: what a million rows on moving paths
 // say, kept in a few thousand poses.
 //
-//   CellMeans means(run_of_all_rows, cell);
-//   means.Add(pose, gap, weight);                     // for each pose
-//   const LinkageRun cells = means.Run();   means.gap;   // one pose and mean gap for each cell
+//   CellMeans means(cell);
+//   means.Add(part, pose, gap, weight);               // for each pose of each part of the run
+//   const LinkageRun cells = means.Run();   means.Gaps();     // one pose, mean gap for each cell
 //
 // A pose of the result stands at the mean position and mean angles of its rows. The mean of their
 // gaps is not the gap at the mean: the machine's errors and the linkage bend within a cell. So the
@@ -17,9 +17,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
-#include <vector>
 
 #include "simulation/linkage_run.h"
 
@@ -27,29 +27,27 @@ namespace abbe::simulation {
 
 class CellMeans {
  public:
-  CellMeans(const LinkageRun& run, double cell);
+  explicit CellMeans(double cell) : cell_(cell) {}
 
   // `gap`: of the pose, m; `weight` above 0.
-  void Add(Eigen::Index pose, const Eigen::Vector3d& gap, double weight);
+  void Add(const LinkageRun& part, Eigen::Index pose, const Eigen::Vector3d& gap, double weight);
 
   LinkageRun Run() const;
   Eigen::Matrix3Xd Gaps() const;  // mean of each pose of Run()
 
  private:
   struct Sums {
-    Eigen::Index first;  // pose
+    std::size_t row;               // of the first pose, and its
+    Eigen::VectorXd first_angles;  // angles
+    Eigen::Vector3d reference_sd;
     double weight = 0.0, squares = 0.0, encoder = 0.0, time = 0.0, warmth = 0.0;
     Eigen::Vector3d commanded = Eigen::Vector3d::Zero(), gap = Eigen::Vector3d::Zero();
     Eigen::VectorXd angles;  // off those of the first
   };
 
-  const LinkageRun& run_;
   double cell_;
+  LinkageRun like_;  // without poses
   std::map<std::array<std::int64_t, 3>, Sums> cells_;
 };
-
-// Poses of a run in their order: all of them, or of more than `most` a sample of `count` without a
-// rhythm of its own.
-std::vector<Eigen::Index> SampleOf(Eigen::Index poses, Eigen::Index most, Eigen::Index count);
 
 }  // namespace abbe::simulation

@@ -5,13 +5,14 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "failure/failure.h"
+#include "machine/volumetric_jacobian.h"
 #include "simulation/axes_in_travel.h"
 #include "simulation/linkage_cells.h"
 
@@ -24,12 +25,11 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr Index kMostPoses = 4096, kSample = 1024;  // in a fit
-constexpr Index kAtOnce = 4096;                     // rows of a long run
 constexpr double kFewestCells = 16.0;               // along a travel
 constexpr double kLeastGap = 5e-3;                  // m: what no tolerance explains
 constexpr auto kLoss = estimation::RobustLoss::Huber(kPullsNoMore);
 
-class LinkageOnMachine : public estimation::Residual {
+class LinkageOnMachine : public Responsive {
  public:
   LinkageOnMachine(machine::VolumetricModel model, Vector3d ball, LinkageSimulation linkage,
                    LinkageRun run)
@@ -37,7 +37,8 @@ class LinkageOnMachine : public estimation::Residual {
         ball_(std::move(ball)),
         linkage_(std::move(linkage)),
         run_(std::move(run)),
-        noise_(linkage_.GapNoise(run_)) {
+        noise_(linkage_.GapNoise(run_)),
+        constant_(Matrix3Xd::Zero(3, run_.poses())) {
     run_.commanded = AxesInTravel(model_, run_.commanded, run_.name, run_.rows);
   }
 
@@ -47,32 +48,24 @@ class LinkageOnMachine : public estimation::Residual {
     return noise_.middleCols<3>(3 * pose).triangularView<Eigen::Lower>();
   }
 
+  const LinkageRun& run() const { return run_; }
+
   // What is left of the gaps, not whitened.
   Matrix3Xd Left(const VectorXd& x) const {
     machine::VolumetricModel model = model_;
     model.SetParameters(x.tail(model_.ParameterCount()));
     Matrix3Xd left;
     linkage_.Gap(run_, x.head(linkage_.parameters()), left);
-    return left - model.Errors(run_.commanded, ball_);
+    left -= model.Errors(run_.commanded, ball_);
+    return left + constant_;
   }
 
-  // Turns the angles of each pose until what is left at x is `wanted`.
-  void MoveAngles(const VectorXd& x, const Matrix3Xd& wanted) {
-    constexpr int kSteps = 2;  // the first one leaves 1e-6 of what is moved
-    const VectorXd own = x.head(linkage_.parameters());
-    const VectorXd values = own.tail(linkage_.model().parameters());
-    const Eigen::Matrix3d R = BaseAt(linkage_.settings().X_MB, own.head<6>()).R;
-    const VectorXd& warmth = run_.readings.warmth;
-    for (int step = 0; step < kSteps; ++step) {
-      const Matrix3Xd missing = wanted - Left(x);
-      for (Index pose = 0; pose < run_.poses(); ++pose) {
-        auto angles = run_.readings.angles.col(pose);
-        const auto at =
-            linkage_.model().Differentiate(angles, warmth.size() == 0 ? 0.0 : warmth[pose], values);
-        const Eigen::MatrixXd J = R * at.J_tip_q;
-        angles += J.completeOrthogonalDecomposition().solve(Vector3d(missing.col(pose)));
-      }
-    }
+  // Turns the angles of each pose until x closes its gap, and adds `left` as a constant: at x the
+  // same gap, with derivatives that do not know the noise of the angles (linkage_on_machine.h).
+  void Recentre(const VectorXd& x, const Matrix3Xd& left) {
+    constant_.setZero();
+    CloseGaps(x);
+    constant_ = left - Left(x);
   }
 
   void Evaluate(const VectorXd& x, VectorXd& values,
@@ -85,7 +78,7 @@ class LinkageOnMachine : public estimation::Residual {
     linkage_.Gap(run_, x.head(own), gap, jacobian == nullptr ? nullptr : &J);
     for (Index pose = 0; pose < run_.poses(); ++pose) {
       const auto lower = Noise(pose);
-      Vector3d left = gap.col(pose);
+      Vector3d left = gap.col(pose) + constant_.col(pose);
       if (jacobian == nullptr) {
         left -= model.Error(run_.commanded.col(pose), ball_);
       } else {
@@ -100,13 +93,106 @@ class LinkageOnMachine : public estimation::Residual {
     }
   }
 
+  std::shared_ptr<const Response> At(const VectorXd& x) const override;
+
  private:
+  void CloseGaps(const VectorXd& x) {
+    constexpr int kSteps = 2;  // the first one leaves 1e-6 of the gap
+    const VectorXd own = x.head(linkage_.parameters());
+    const VectorXd values = own.tail(linkage_.model().parameters());
+    const Eigen::Matrix3d R = BaseAt(linkage_.settings().X_MB, own.head<6>()).R;
+    const VectorXd& warmth = run_.readings.warmth;
+    for (int step = 0; step < kSteps; ++step) {
+      const Matrix3Xd left = Left(x);
+      for (Index pose = 0; pose < run_.poses(); ++pose) {
+        auto angles = run_.readings.angles.col(pose);
+        const auto at =
+            linkage_.model().Differentiate(angles, warmth.size() == 0 ? 0.0 : warmth[pose], values);
+        const Eigen::MatrixXd J = R * at.J_tip_q;
+        angles -= J.completeOrthogonalDecomposition().solve(Vector3d(left.col(pose)));
+      }
+    }
+  }
+
   machine::VolumetricModel model_;
   Vector3d ball_;
   LinkageSimulation linkage_;
   LinkageRun run_;
-  Matrix3Xd noise_;
+  Matrix3Xd noise_, constant_;
 };
+
+// Where the machine and the ball in its cap bring the ball, less where the linkage finds it.
+class GapResponse : public Response {
+ public:
+  GapResponse(Eigen::MatrixXd by_stage, Eigen::MatrixXd angles)
+      : by_stage_(std::move(by_stage)), angles_(std::move(angles)) {}
+
+  Eigen::MatrixXd Columns(const std::vector<Disturbance>& disturbances) const override {
+    Eigen::MatrixXd columns =
+        Eigen::MatrixXd::Zero(by_stage_.rows(), static_cast<Index>(disturbances.size()));
+    for (Index d = 0; d < columns.cols(); ++d) {
+      for (const auto& [stage, values] : disturbances[static_cast<std::size_t>(d)].stages()) {
+        for (Index pose = 0; pose < values.size(); ++pose) {
+          if (values[pose] == 0.0) continue;
+          columns.col(d).segment<3>(3 * pose) +=
+              values[pose] * by_stage_.col(stage).segment<3>(3 * pose);
+        }
+      }
+    }
+    return columns;
+  }
+
+  Eigen::MatrixXd Readings(const VectorXd& left) const override {
+    Eigen::MatrixXd angles = angles_;
+    for (Index pose = 0; pose < angles.cols(); ++pose) {
+      const Eigen::MatrixXd by_angles = by_stage_.middleRows<3>(3 * pose).rightCols(angles.rows());
+      angles.col(pose) -=
+          by_angles.completeOrthogonalDecomposition().solve(Vector3d(left.segment<3>(3 * pose)));
+    }
+    return angles;
+  }
+
+  RowScores ScoresOf(Index stage, const VectorXd& left) const override {
+    const VectorXd column = by_stage_.col(stage);
+    return {column.cwiseProduct(left).reshaped(3, angles_.cols()).colwise().sum(),
+            column.cwiseAbs2().reshaped(3, angles_.cols()).colwise().sum()};
+  }
+
+ private:
+  Eigen::MatrixXd by_stage_;  // whitened, rows x stages
+  Eigen::MatrixXd angles_;
+};
+
+std::shared_ptr<const Response> LinkageOnMachine::At(const VectorXd& x) const {
+  const Index own = linkage_.parameters(), pivots = run_.readings.angles.rows();
+  machine::VolumetricModel model = model_;
+  model.SetParameters(x.tail(model_.ParameterCount()));
+  const Eigen::Matrix3d R_MB = BaseAt(linkage_.settings().X_MB, x.head<6>()).R;
+  const VectorXd of_linkage = x.segment(6, own - 6);
+  Eigen::MatrixXd by_stage = Eigen::MatrixXd::Zero(Rows(), kStages + pivots);
+  for (Index pose = 0; pose < run_.poses(); ++pose) {
+    const Vector3d command = run_.commanded.col(pose);
+    const auto machine =
+        machine::VolumetricErrorAndJacobian(model.chain(), command, ball_, model.Motions(command));
+    const double warmth = run_.readings.warmth.size() == 0 ? 0.0 : run_.readings.warmth[pose];
+    const auto tip =
+        linkage_.model().Differentiate(run_.readings.angles.col(pose), warmth, of_linkage);
+    auto rows = by_stage.middleRows<3>(3 * pose);
+    rows.leftCols<kToolStage>() = machine.J_error_motions;
+    rows.middleCols<3>(kToolStage).setIdentity();
+    rows.middleCols<3>(kTipStage) = -R_MB;
+    rows.rightCols(pivots) = R_MB * tip.J_tip_q;
+    Noise(pose).solveInPlace(rows);
+  }
+  return std::make_shared<GapResponse>(std::move(by_stage), run_.readings.angles);
+}
+
+// The commanded position is where the ball is meant to be, as well as it repeats there.
+LinkageRun Given(LinkageRun run, const LinkageSimulation& linkage) {
+  run.reference = run.commanded;
+  run.reference_sd.setConstant(linkage.settings().noise.repeatability);
+  return run;
+}
 
 // A quarter of the correlation length, if the knots of the functions are half of it apart; on a
 // machine of many such cells, as many as a fit takes.
@@ -128,24 +214,22 @@ double CellOf(const machine::VolumetricModel& model) {
   return std::max(cell, std::cbrt(volume / kMostPoses));
 }
 
-// All rows at x, gathered into cells; a row that does not fit x counts with the weight of its loss.
+// All poses at x, gathered into cells; one that does not fit x counts with the weight of its loss.
 std::shared_ptr<const LinkageOnMachine> Gather(const machine::VolumetricModel& model,
                                                const Vector3d& ball,
                                                const LinkageSimulation& linkage,
-                                               const LinkageRun& run, const VectorXd& x) {
-  CellMeans means(run, CellOf(model));
-  for (Index first = 0; first < run.poses(); first += kAtOnce) {
-    std::vector<Index> poses(static_cast<std::size_t>(std::min(kAtOnce, run.poses() - first)));
-    std::iota(poses.begin(), poses.end(), first);
-    const LinkageOnMachine rows(model, ball, linkage, Selection(run, poses));
-    const Matrix3Xd left = rows.Left(x);
+                                               const LinkageParts& parts, const VectorXd& x) {
+  CellMeans means(CellOf(model));
+  parts([&](const LinkageRun& part) {
+    const LinkageOnMachine poses(model, ball, linkage, Given(part, linkage));
+    const Matrix3Xd left = poses.Left(x);
     for (Index i = 0; i < left.cols(); ++i) {
-      const Vector3d white = rows.Noise(i).solve(Vector3d(left.col(i)));
-      means.Add(first + i, left.col(i), kLoss.Weight(white.cwiseAbs().maxCoeff()));
+      const Vector3d white = poses.Noise(i).solve(Vector3d(left.col(i)));
+      means.Add(poses.run(), i, left.col(i), kLoss.Weight(white.cwiseAbs().maxCoeff()));
     }
-  }
+  });
   auto cells = std::make_shared<LinkageOnMachine>(model, ball, linkage, means.Run());
-  cells->MoveAngles(x, means.Gaps());
+  cells->Recentre(x, means.Gaps());
   return cells;
 }
 
@@ -169,21 +253,29 @@ void RefuseOtherChain(const LinkageSimulation& linkage, const LinkageRun& run,
 }  // namespace
 
 SimulatedRun SimulateLinkage(const machine::VolumetricModel& model, const Vector3d& reference,
-                             const LinkageSimulation& linkage, LinkageRun run) {
-  run.reference = run.commanded;
-  run.reference_sd.setConstant(linkage.settings().noise.repeatability);
-  SimulatedRun simulated{run.name, "linkage", linkage.Blocks(), nullptr, kLoss};
-  simulated.blocks[0].name = BaseBlock(run.mounting);
-  simulated.blocks[1].name = BaseTurnBlock(run.mounting);
+                             const LinkageSimulation& linkage, const LinkageParts& parts) {
+  const auto [sample, all] = SampleOf(parts, kMostPoses, kSample);
+  const LinkageRun fitted = Given(sample, linkage);
+  SimulatedRun simulated{fitted.name, "linkage", linkage.Blocks(), nullptr, kLoss};
+  simulated.blocks[0].name = BaseBlock(fitted.mounting);
+  simulated.blocks[1].name = BaseTurnBlock(fitted.mounting);
   for (auto& block : model.Blocks()) simulated.blocks.push_back(std::move(block));
-  const LinkageRun fitted = Selection(run, SampleOf(run.poses(), kMostPoses, kSample));
   RefuseOtherChain(linkage, fitted, model.chain());
-  simulated.residual = std::make_shared<LinkageOnMachine>(model, -reference, linkage, fitted);
-  if (fitted.poses() == run.poses()) return simulated;
-  simulated.condense =
-      [model, reference, linkage, all = std::make_shared<const LinkageRun>(std::move(run))](
-          const VectorXd& x) { return Gather(model, -reference, linkage, *all, x); };
+  const auto residual = std::make_shared<LinkageOnMachine>(model, -reference, linkage, fitted);
+  simulated.residual = simulated.response = residual;
+  simulated.condense = [=, gathers = all > fitted.poses()](const VectorXd& x) {
+    if (gathers) return Gather(model, -reference, linkage, parts, x);
+    auto recentred = std::make_shared<LinkageOnMachine>(*residual);
+    recentred->Recentre(x, residual->Left(x));
+    return std::shared_ptr<const LinkageOnMachine>(recentred);
+  };
   return simulated;
+}
+
+SimulatedRun SimulateLinkage(const machine::VolumetricModel& model, const Vector3d& reference,
+                             const LinkageSimulation& linkage, const LinkageRun& run) {
+  return SimulateLinkage(model, reference, linkage,
+                         [run](const std::function<void(const LinkageRun&)>& use) { use(run); });
 }
 
 }  // namespace abbe::simulation

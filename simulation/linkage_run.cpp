@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -55,16 +56,6 @@ void Resize(LinkageRun& run, Index joints, Index poses, bool warmth) {
   run.readings.warmth.resize(warmth ? poses : 0);
 }
 
-// An empty run with the name, the mounting and the columns of `run`.
-LinkageRun Like(const LinkageRun& run, Index poses) {
-  LinkageRun other;
-  other.name = run.name;
-  other.mounting = run.mounting;
-  other.referenced = run.referenced;
-  Resize(other, run.readings.angles.rows(), poses, run.readings.warmth.size() > 0);
-  return other;
-}
-
 }  // namespace
 
 LinkageRun ReadLinkageRun(const recording::Recording& recording,
@@ -101,6 +92,7 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
                                                     : settings.noise.machine);
     if (stated && reference) run.reference_sd.row(row) = Take(recording, kStated, run.rows);
   }
+  for (std::size_t& row : run.rows) row += recording.first_row;
   return run;
 }
 
@@ -108,7 +100,7 @@ LinkageRun MeansOfStays(LinkageRun run, double window) {
   if (run.poses() == 0) return run;
   const std::vector<Index> starts = StartsOfStays(run, window);
   if (static_cast<Index>(starts.size()) == run.poses() + 1) return run;  // it never stands
-  LinkageRun means = Like(run, static_cast<Index>(starts.size()) - 1);
+  LinkageRun means = Blank(run, static_cast<Index>(starts.size()) - 1);
   for (Index stay = 0; stay < means.poses(); ++stay) {
     const Index first = starts[static_cast<std::size_t>(stay)];
     const Index count = starts[static_cast<std::size_t>(stay) + 1] - first;
@@ -145,7 +137,7 @@ LinkageRun RunAt(const Eigen::Matrix3Xd& positions, const relm::LinkageSettings&
 }
 
 LinkageRun Selection(const LinkageRun& run, const std::vector<Index>& poses) {
-  LinkageRun chosen = Like(run, static_cast<Index>(poses.size()));
+  LinkageRun chosen = Blank(run, static_cast<Index>(poses.size()));
   for (Index i = 0; i < chosen.poses(); ++i) {
     const Index pose = poses[static_cast<std::size_t>(i)];
     chosen.rows[static_cast<std::size_t>(i)] = run.rows[static_cast<std::size_t>(pose)];
@@ -158,6 +150,32 @@ LinkageRun Selection(const LinkageRun& run, const std::vector<Index>& poses) {
     chosen.samples[i] = run.samples[pose];
   }
   return chosen;
+}
+
+LinkageRun Joined(const LinkageRun& run, const LinkageRun& next) {
+  LinkageRun both = Blank(run, run.poses() + next.poses());
+  std::copy(run.rows.begin(), run.rows.end(), both.rows.begin());
+  std::copy(next.rows.begin(), next.rows.end(),
+            both.rows.begin() + static_cast<std::ptrdiff_t>(run.rows.size()));
+  both.time << run.time, next.time;
+  both.commanded << run.commanded, next.commanded;
+  both.reference << run.reference, next.reference;
+  both.reference_sd << run.reference_sd, next.reference_sd;
+  both.readings.angles << run.readings.angles, next.readings.angles;
+  if (both.readings.warmth.size() > 0) {
+    both.readings.warmth << run.readings.warmth, next.readings.warmth;
+  }
+  both.samples << run.samples, next.samples;
+  return both;
+}
+
+LinkageRun Blank(const LinkageRun& run, Index poses) {
+  LinkageRun blank;
+  blank.name = run.name;
+  blank.mounting = run.mounting;
+  blank.referenced = run.referenced;
+  Resize(blank, run.readings.angles.rows(), poses, run.readings.warmth.size() > 0);
+  return blank;
 }
 
 }  // namespace abbe::simulation

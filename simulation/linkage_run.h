@@ -7,12 +7,12 @@
 // column has the commanded position and `referenced` false. `reference_sd` is what is stated of
 // either in the machine file (linkage.noise), or the column ref_u_um; it is not averaged in a stay.
 // Units: m, rad, s, K. Shapes: one column or entry per pose; `rows` tells the row of the recording,
-// or the first row of a stay. Rows with a flag are left out.
-// Failure: InputError with the recording's name for another kind of recording, a missing column, or
-// a number that is not finite in a row without a flag; see relm/tip_path.h for the angles.
-// Validity: a stay is a sequence of rows whose commanded position keeps within `window` of that of
-// its first row; its mean is as good as its rows as long as the errors of the linkage do not change
-// over the window.
+// or the first row of a stay, of the whole file also where the recording is a block of it. Rows
+// with a flag are left out. Failure: InputError with the recording's name for another kind of
+// recording, a missing column, or a number that is not finite in a row without a flag; see
+// relm/tip_path.h for the angles. Validity: a stay is a sequence of rows whose commanded position
+// keeps within `window` of that of its first row; its mean is as good as its rows as long as the
+// errors of the linkage do not change over the window.
 #pragma once
 
 #include <Eigen/Core>
@@ -53,5 +53,11 @@ LinkageRun RunAt(const Eigen::Matrix3Xd& positions, const relm::LinkageSettings&
 
 // The poses with the given indices, in that order.
 LinkageRun Selection(const LinkageRun& run, const std::vector<Eigen::Index>& poses);
+
+// The poses of both, parts of one run.
+LinkageRun Joined(const LinkageRun& run, const LinkageRun& next);
+
+// So many poses, not filled in, with the name, the mounting and the columns of `run`.
+LinkageRun Blank(const LinkageRun& run, Eigen::Index poses);
 
 }  // namespace abbe::simulation

@@ -29,16 +29,6 @@ constexpr double kMet = 1e-14;      // m: below the rounding of a chain of half 
 constexpr double kReached = 1e-11;  // m: far below any noise
 constexpr double kBranch = 0.3;     // rad: a step that keeps to the branch
 
-// exp(w + dw) = exp(w) exp(J dw) to first order: the right Jacobian of the rotations.
-Matrix3d RightJacobian(const Vector3d& w) {
-  const double square = w.squaredNorm();
-  const Matrix3d W = geometry::Skew(w);
-  if (square < 1e-8) return Matrix3d::Identity() - 0.5 * W + W * W / 6.0;
-  const double angle = std::sqrt(square);
-  return Matrix3d::Identity() - (1.0 - std::cos(angle)) / square * W +
-         (angle - std::sin(angle)) / (square * angle) * W * W;
-}
-
 double WarmthOf(const LinkageRun& run, Index pose) {
   return run.readings.warmth.size() == 0 ? 0.0 : run.readings.warmth[pose];
 }
@@ -75,7 +65,8 @@ void JacobianInMachine(const geometry::Transform<double>& nominal_X_MB, const Ve
                        const Matrix3Xd& p_BT, const estimation::RowMatrix& J_tip_x,
                        estimation::RowMatrix& J) {
   const Matrix3d R = BaseAt(nominal_X_MB, x.head<6>()).R;
-  const Matrix3d right = RightJacobian(x.segment<3>(3));
+  // exp(w + dw) = exp(w) exp(right dw): the left Jacobian of the way back.
+  const Matrix3d right = geometry::ExpRotationJacobian<double>(-x.segment<3>(3));
   J.resize(J_tip_x.rows(), x.size());
   for (Index pose = 0; pose < p_BT.cols(); ++pose) {
     auto rows = J.middleRows<3>(3 * pose);

@@ -58,6 +58,7 @@ class LinkageSimulation {
  public:
   LinkageSimulation(machine::Chain chain, relm::LinkageSettings settings, relm::LinkageModel model);
 
+  const machine::Chain& chain() const { return chain_; }
   const relm::LinkageModel& model() const { return model_; }
   const relm::LinkageSettings& settings() const { return settings_; }
   Eigen::Index parameters() const { return kBase + model_.parameters(); }

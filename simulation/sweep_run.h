@@ -2,11 +2,14 @@
 //
 //   const SweepRun run = ReadSweepRun(recording, head, noise);
 //
-// One row is the mean of all dwells at one station and in one direction of approach, with the
-// covariance that white noise and drift leave (probes/sweep_stations.h): what a sweep of any length
-// says of the machine, kept in a few hundred numbers.
-// Units: m. Shapes: one entry or column per row; covariance rows x rows for each probe.
-// Failure: InputError for a recording that is no sweep or has fewer than three stations.
+// Station means: one row is the mean of all dwells at one station and in one direction of approach,
+// with the covariance that white noise and drift leave (probes/sweep_stations.h): what a sweep of
+// any length says of the machine, kept in a few hundred numbers. Dwells: one row is one dwell, in
+// the order of time, for whoever looks for what changes from pass to pass; the covariance is that
+// of the machine file's drift and the scatter within the dwells. Gap steps: at some stations the
+// axes that stand in a sweep step by a known way, which moves every gap. Units: m. Shapes: one
+// entry or column per row; covariance rows x rows for each probe. Failure: InputError for a
+// recording that is no sweep or has fewer than three stations.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,6 +18,7 @@
 #include <vector>
 
 #include "probes/head_settings.h"
+#include "recording/blocks.h"
 #include "recording/recording.h"
 
 namespace abbe::simulation {
@@ -23,8 +27,12 @@ struct SweepRun {
   std::string name;      // of the recording, for messages
   std::string mounting;  // header `mounting`: sweeps that share it share the mounted target
   char axis = 'X';
-  Eigen::Vector3d start;                // [x y z] when the sweep began
-  Eigen::VectorXd position;             // of the swept axis
+  Eigen::Vector3d start;        // [x y z] when the sweep began
+  Eigen::Matrix3Xd steps = {};  // of the other axes from the start, in each row; or empty
+  Eigen::Matrix<double, 6, 3> slopes = Eigen::Matrix<double, 6, 3>::Zero();  // ReadGapSteps
+  Eigen::VectorXd position;                                                  // of the swept axis
+  Eigen::VectorXd time;                 // s, of each row, or of its first dwell
+  std::vector<int> pass;                // 0: a mean over passes
   std::vector<int> direction;           // +1, -1
   std::vector<std::size_t> first_rows;  // of the recording: of the first dwell of each row
   Eigen::Matrix<double, probes::kProbes, Eigen::Dynamic> gap;  // as read
@@ -33,6 +41,7 @@ struct SweepRun {
   Eigen::Index rows() const { return position.size(); }
   Eigen::Vector3d AxesAt(Eigen::Index row) const {
     Eigen::Vector3d axes = start;
+    if (steps.cols() > 0) axes += steps.col(row);
     axes[axis - 'X'] = position[row];
     return axes;
   }
@@ -40,5 +49,17 @@ struct SweepRun {
 
 SweepRun ReadSweepRun(const recording::Recording& recording, const probes::HeadSettings& head,
                       const probes::ProbeNoise& noise);
+// Of any length: `recording` needs no rows.
+SweepRun ReadSweepRun(const recording::Recording& recording, const recording::Blocks& blocks,
+                      const probes::HeadSettings& head, const probes::ProbeNoise& noise);
+// A recording that holds still (kind dwell): one row is one reading, its first kStillReadings.
+inline constexpr std::size_t kStillReadings = 120;
+SweepRun ReadStillReadings(const recording::Recording& recording, const probes::ProbeNoise& noise);
+SweepRun ReadSweepDwells(const recording::Recording& recording, const probes::HeadSettings& head,
+                         const probes::ProbeNoise& noise);
+// Gap steps (kind gap-steps): one row is one standstill, whichever axis stepped to it. `slopes`:
+// standard deviation of the slope of each error motion of X, Y, Z over a step, 1 and rad/m.
+SweepRun ReadGapSteps(const recording::Recording& recording, const probes::ProbeNoise& noise,
+                      const Eigen::Matrix<double, 6, 3>& slopes);
 
 }  // namespace abbe::simulation

@@ -17,6 +17,8 @@
 //   head_turn AXIS, head_place AXIS                           installation for the axis and
 //   mounting target_tilt, target_squareness                            of the target, of the
 //   mounting probe_zero RUN   a ... e, m                               nothing known of it
+//   step_slope RUN   EXX ... ECZ of the two axes that step, gap steps only: the slope of each of
+//                    their error motions at the start
 // The zero takes in the height of each electrode, the place of head and faces along their normal
 // and the error of the machine at the start, so a sweep says nothing of these.
 //
@@ -25,7 +27,7 @@
 //
 // Units: m, rad. Failure: InputError for a head without frame for the axis, and for a gap that no
 // electrode can read. Validity: errors of the axes that stand still during the sweep are constant
-// and go into the zeros.
+// and go into the zeros; over gap steps they are straight lines.
 #pragma once
 
 #include "machine/volumetric_model.h"

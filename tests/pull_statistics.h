@@ -41,15 +41,15 @@ struct Pulls {
     inside.Add(std::abs(error) < coverage * u ? 1.0 : 0.0);
   }
 
-  // Mean 0, variance 1 and coverage 95 % within 99 % bands.
-  void ExpectTrueUncertainties() const {
+  // Mean 0, variance 1 and coverage 95 % within bands of k standard deviations.
+  void ExpectTrueUncertainties(double k = k99) const {
     const double n = pull.count;
-    EXPECT_NEAR(pull.mean(), 0.0, k99 / std::sqrt(n));
+    EXPECT_NEAR(pull.mean(), 0.0, k / std::sqrt(n));
     // Chi-squared / n by Wilson and Hilferty.
     const double q = 2.0 / (9.0 * n);
-    EXPECT_GT(square.mean(), std::pow(1.0 - q - k99 * std::sqrt(q), 3));
-    EXPECT_LT(square.mean(), std::pow(1.0 - q + k99 * std::sqrt(q), 3));
-    EXPECT_NEAR(inside.mean(), 0.95, k99 * std::sqrt(0.95 * 0.05 / n));
+    EXPECT_GT(square.mean(), std::pow(1.0 - q - k * std::sqrt(q), 3));
+    EXPECT_LT(square.mean(), std::pow(1.0 - q + k * std::sqrt(q), 3));
+    EXPECT_NEAR(inside.mean(), 0.95, k * std::sqrt(0.95 * 0.05 / n));
   }
 };
 

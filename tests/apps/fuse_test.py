@@ -106,6 +106,16 @@ class FuseTest(ProgramCase):
         text = self.done(*runs[:4], wrong, "--machine", self.machine, "-o", map_file, "--json", json_file)
         self.assertIn("CONTRADICTION: ", text)
         self.assertIn("wrong.csv", json.loads(json_file.read_text())["contradictions"][0])
+        # Encoders that are five times as noisy as the machine file says.
+        quiet = self.path / "quiet.toml"
+        stated = self.machine.read_text().replace("encoder_urad = 3.0", "encoder_urad = 0.6", 1)
+        self.assertNotEqual(stated, self.machine.read_text())
+        quiet.write_text(stated)
+        text = self.done(*runs, "--machine", quiet, "-o", map_file, "--json", json_file)
+        self.assertEqual(text.count("DOES NOT FIT: "), 1)
+        self.assertIn("volume.csv", text.partition("DOES NOT FIT: ")[2].splitlines()[0])
+        self.assertEqual([pathlib.Path(name).name for name in json.loads(json_file.read_text())["misfits"]],
+                         ["volume.csv"])
         # Nothing to map.
         empty = self.path / "empty.toml"
         empty.write_text(self.machine.read_text().replace("travel_mm = [0.0, 60.0]", "travel_mm = [30.0, 30.0]", 1))
@@ -119,6 +129,7 @@ class FuseTest(ProgramCase):
         foreign.write_text('# abbe-recording = 1\n# kind = "length"\n# machine = "other"\n'
                            "x_mm,y_mm,z_mm,pass,length_mm,u_length_um\n0,0,0,1,0,0.1\n10,0,0,1,10,0.1\n")
         self.refuse(foreign, "--machine", MACHINE, saying=['machine "other"', "give the file of that machine"])
+        self.refuse(foreign, self.path / "." / "foreign.csv", "--machine", MACHINE, saying=["foreign.csv", "given twice"])
         header = '# abbe-recording = 1\n# kind = "length"\nx_mm,y_mm,z_mm,pass,length_mm,u_length_um\n'
         for rows, saying in (("0,0,0,1,5,0.1\n9,0,0,1,10,0.1\n", "row 1: the first length of a pass must be 0"),
                              ("0,0,0,1,0,0.1\n", "a pass of one row"),

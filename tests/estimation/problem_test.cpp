@@ -315,6 +315,7 @@ TEST(Problem, SaysWhatDoesNotSettle) {
   const std::string words = Words<NumericalError>([&] { problem.Solve({.max_iterations = 5}); });
   EXPECT_THAT(words, HasSubstr("did not settle in 5 passes"));
   EXPECT_THAT(words, HasSubstr("parameter p.x moves most, source 'runaway' pulls most"));
+  EXPECT_THAT(words, HasSubstr("the rows of 'runaway' scatter at least"));
 }
 
 TEST(Problem, ResultStartsAsNotRun) {

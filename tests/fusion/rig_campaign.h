@@ -2,6 +2,8 @@
 // few stations, the linkage on a grid over nearly the whole volume, one interferometer line.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <filesystem>
 #include <fstream>
@@ -50,13 +52,9 @@ struct Campaign {
             rig::Linkage(rig::ReadLinkage(document.Root()), seed)) {}
 
   recording::Recording SweepRecording(char axis, std::uint64_t run = 1) const {
-    rig::CampaignOptions options;
-    options.rate = 50.0;
-    options.moving = false;
-    options.run = run;
-    options.mounting = "A";
+    const rig::CampaignOptions options{.rate = 50.0, .moving = false, .run = run, .mounting = "A"};
     auto recording = rig::RecordSweep(rig.world(), axis, channels, options);
-    recording.name = std::string("sweep ") + axis;
+    recording.name = fmt::format("sweep {}", axis);
     return recording;
   }
 
@@ -89,7 +87,7 @@ struct Campaign {
   recording::Recording LengthRecording(char axis) const {
     auto recording =
         rig::RecordLengths(rig, {.axis = axis, .at = Eigen::Vector3d::Constant(0.030)});
-    recording.name = std::string("length ") + axis;
+    recording.name = fmt::format("length {}", axis);
     return recording;
   }
   simulation::SimulatedRun Length(char axis) const {

@@ -1,4 +1,6 @@
 // The rules of each kind, told by the row that breaks them.
+#include "recording/check.h"
+
 #include <cmath>
 #include <limits>
 
@@ -139,6 +141,22 @@ TEST(Check, NamesTheLineOfACsv) {
             "a.csv:7: time_s: goes back from 2 to 1");
   Put(scratch / "a.csv", "# abbe-recording = 1\n# kind = \"dwell\"\ntime_s,temp_a_c\n0,1\n2,\n");
   ExpectHas(MessageOf<InputError>([&] { Read(scratch / "a.csv"); }), "a.csv:5: temp_a_c: is nan");
+}
+
+// Row 5 stands in the second block.
+TEST(RowCheck, RemembersTheBlockBefore) {
+  Recording first = Dwell(4), second = Dwell(2);
+  second.first_row = 4;
+  const auto take = [&] {
+    RowCheck check(Places{"a.h5"});
+    check.Take(first);
+    check.Take(second);
+  };
+  ExpectHas(MessageOf<InputError>(take), "a.h5: row 5: time_s: goes back from 0.015 to 0");
+  for (double& time : second.columns[0].values) time += 1.0;
+  take();
+  second.columns[1].values[1] = std::numeric_limits<double>::quiet_NaN();
+  ExpectHas(MessageOf<InputError>(take), "a.h5: row 6: temp_column_c: is nan");
 }
 
 TEST(Check, RefusesColumnsOfTwoLengths) {

@@ -107,6 +107,9 @@ TEST_P(Crash, KeepsEveryRowThatWasFlushed) {
     recorder.Kill();
     const Recording recording = Read(path);
     ExpectRows(recording, recorder.progress().flushed);
+    const Recording joined = Joined([&](const UseBlock& use) { ReadBlocks(path, use, 500); });
+    ExpectRows(joined, recording.rows());
+    EXPECT_EQ(joined.warnings, recording.warnings);
     flushed += recorder.progress().flushed;
     if (HasFatalFailure()) return;
   }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -109,6 +110,28 @@ RC_GTEST_PROP(RoundTrip, IsExactForFilesThatGrow, ()) {
     }
     writer->Close();
     AssertSame(Read(scratch / file), recording);
+  }
+}
+
+RC_GTEST_PROP(Blocks, AreTheWhole, ()) {
+  const Recording recording = AnyRecording();
+  const auto rows = *rc::gen::inRange<std::size_t>(1, 45);
+  const Scratch scratch;
+  for (const std::string name : {"a.csv", "a.h5"}) {
+    Write(recording, scratch / name);
+    std::size_t largest = 0;
+    AssertSame(Joined([&](const UseBlock& use) {
+                 const auto see = [&](const Recording& block) {
+                   largest = std::max(largest, block.rows());
+                   use(block);
+                 };
+                 ReadBlocks(scratch / name, see, rows);
+               }),
+               recording);
+    RC_ASSERT(largest == std::min(rows, recording.rows()));
+    Recording head = recording;
+    for (Column& column : head.columns) column.values.clear();
+    AssertSame(ReadHead(scratch / name), head);
   }
 }
 

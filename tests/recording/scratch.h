@@ -9,8 +9,10 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
-#include "recording/recording.h"
+#include "recording/blocks.h"
 
 namespace abbe::recording {
 
@@ -56,6 +58,22 @@ std::string MessageOf(const Action& action) {
 
 inline void ExpectHas(std::string_view text, std::string_view part) {
   EXPECT_NE(text.find(part), std::string_view::npos) << "`" << text << "` lacks `" << part << "`";
+}
+
+// The blocks of a recording put together again.
+inline Recording Joined(const Blocks& blocks) {
+  Recording whole;
+  blocks([&](const Recording& block) {
+    EXPECT_EQ(block.first_row, whole.rows());
+    EXPECT_TRUE(whole.warnings.empty()) << "before the last block";
+    const std::vector<Column> before = std::move(whole.columns);
+    whole = block;
+    for (std::size_t c = 0; c < before.size(); ++c) {
+      auto& values = whole.columns[c].values;
+      values.insert(values.begin(), before[c].values.begin(), before[c].values.end());
+    }
+  });
+  return whole;
 }
 
 // A dwell with a time and a temperature.

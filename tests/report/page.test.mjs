@@ -81,7 +81,7 @@ test(
         'X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning', 'Circular test, XY plane',
         'Square path', 'Calibration of the linkage', 'Error map',
         'Performance simulation: circle', 'Corrected program: part_corrected.ngc', 'Export: isg',
-        'rig-compare \u00b7 X'
+        'Diagnosis: what the simulation lacks', 'rig-compare \u00b7 X'
       ]);
       assert.equal(await page.title(), 'Geometric errors of demo-mill');
       assert.equal(await page.locator('nav a').count(), sample_names.length + 1);
@@ -116,8 +116,8 @@ test(
       // Three whole sweeps of 5 + 2 + 2 + 1 + 2 panels, one early one with its roll, one
       // positioning test, polar plot, space and harmonics of two circles, one square, residuals
       // before and after and the cells of a calibration; a map in space, its slices and their
-      // uncertainty, 18 functions and the squarenesses; a performance simulation.
-      assert.equal(figures.length, 3 * 12 + 1 + 1 + 2 * 3 + 1 + 3 + (1 + 6 + 19) + 1);
+      // uncertainty, 18 functions and the squarenesses; a performance simulation; where a cause shows.
+      assert.equal(figures.length, 3 * 12 + 1 + 1 + 2 * 3 + 1 + 3 + (1 + 6 + 19) + 1 + 1);
       for (const {about, traces, drawn, height} of figures) {
         assert.ok(about.length > 20, about);
         assert.ok(traces > 0 && drawn >= traces, about);
@@ -229,6 +229,21 @@ test(
       const row = section.locator('tr', {hasText: 'G(b)'}).first();
       assert.match(await row.textContent(), /5\.62\u00b10\.20/);
       assert.match(await section.locator('dl').textContent(), /linkage\.toml.*0\.200/);
+    }));
+
+test(
+    'a diagnosis tells what it found, what else it could be and what it cannot show',
+    () => withPage({}, async (page) => {
+      const section = page.locator('section.result', {hasText: 'what the simulation lacks'});
+      assert.match(await section.locator('.summary').textContent(), /Backlash, axis X; Probe gain/);
+      const backlash = section.locator('section.group', {hasText: 'Backlash, axis X'}).first();
+      assert.match(await backlash.locator('tr', {hasText: 'Width'}).textContent(), /6\.020\u00b10\.080/);
+      assert.match(await backlash.locator('dl').textContent(), /over 99\.9.*Preload or replace/);
+      const rivals = section.locator('tr', {hasText: 'Probe crosstalk'}).first();
+      assert.match(await rivals.textContent(), /probe b and probe c.*62\.0.*move the gap.*99\.9/);
+      assert.match(await section.locator('[role=note]').textContent(), /Squareness, axes X and Z/);
+      const gain = section.locator('tr', {hasText: 'rows that took no part'});
+      assert.match(await gain.textContent(), /1.240.*1\.880.*1\.030/);
     }));
 
 test(

@@ -509,6 +509,71 @@ export function exportResult() {
   };
 }
 
+// A machine with 6 um of backlash in X that is certain, and a gain that could be crosstalk too.
+export function diagnosisResult() {
+  const steps = Array.from({length: 60}, (unused, index) => index);
+  return {
+    abbe: '0.1.0',
+    command: 'diagnose',
+    machine: 'demo-mill',
+    recordings: ['01_sweep_X.h5', '04_circle_XY.h5'],
+    verdict: 'ambiguous',
+    cannot_show: ['probe-position:probe_a', 'squareness:XZ'],
+    findings: [
+      {
+        cause: 'backlash',
+        object: 'X',
+        probability: 1,
+        log_evidence: 812.4,
+        words: {
+          what: 'the axis loses a fixed distance whenever it turns round',
+          shows: 'forward and backward runs differ by a constant',
+          check: 'play of nut, bearing and coupling',
+          remedy: 'preload or replace the nut'
+        },
+        parameters: [{name: 'width_um', value: 6.02, unit: 'um', u95: 0.08}],
+        rms_before: 1.9,
+        rms_after: 1.01,
+        heldout_rms_before: 1.88,
+        heldout_rms_after: 1.03,
+        gain: 0.45,
+        curve: {
+          variable: 'x, mm',
+          unit: 'um',
+          x: steps,
+          before: steps.map((step) => (step % 2 ? 3 : -3) + 0.2 * Math.sin(step)),
+          after: steps.map((step) => 0.2 * Math.sin(step))
+        }
+      },
+      {
+        cause: 'probe-gain',
+        object: 'probe_b',
+        probability: 0.62,
+        log_evidence: 31.2,
+        parameters: [{name: 'delta', value: 0.0312, unit: '', u95: 0.004}]
+      }
+    ],
+    rivals: [{
+      causes: ['probe-gain:probe_b', 'probe-crosstalk:probe_b+probe_c'],
+      odds: [0.62, 0.37],
+      next_run: 'move the gap of probe b alone',
+      expected_odds: [0.999, 0.001]
+    }],
+    unexplained: [],
+    heldout: {rows: 1240, rms_before: 1.88, rms_after: 1.03},
+    chi2_per_row_before: 3.61,
+    chi2_per_row_after: 1.02,
+    noise_floor: 1,
+    map_change_um: null,
+    evidence: steps.slice(0, 12).map((step) => ({
+                                       cause: 'servo-lag',
+                                       object: 'XYZ'[step % 3],
+                                       log_evidence: 10 - step,
+                                       visible_sd: 4 + step
+                                     }))
+  };
+}
+
 export function writeSamples(folder) {
   mkdirSync(folder, {recursive: true});
   const write = (name, content) => writeFileSync(join(folder, name), content);
@@ -524,6 +589,7 @@ export function writeSamples(folder) {
     'simulate.json': simulateResult(),
     'correct.json': correctResult(),
     'export.json': exportResult(),
+    'diagnosis.json': diagnosisResult(),
     // A result of a later version: no section of its own, and text that tries to leave its element.
     'compare_X.json': {
       abbe: '0.1.0',

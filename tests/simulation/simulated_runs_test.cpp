@@ -6,6 +6,7 @@
 
 #include "random/counter_random.h"
 #include "rig/plate_campaign.h"
+#include "rig/probe_runs.h"
 #include "simulation/plate_simulation.h"
 #include "simulation/reference_simulation.h"
 #include "tests/fusion/rig_campaign.h"
@@ -114,6 +115,41 @@ TEST(SimulatedRuns, SweepFollowsTheHandCalculation) {
   for (Index row = 0; row < n; ++row) {
     const double d = sweep.position[row] - sweep.position[0];
     EXPECT_NEAR(tilt[row] - tilt[0], -1e-4 * d, 1e-4 * d * 1e-3 + 1e-12) << d;
+  }
+}
+
+// At each station the gaps follow the steps of the other two axes: by their way, but for what gain
+// and tilt are off by.
+TEST(SimulatedRuns, GapStepsFollowTheirWay) {
+  const auto recording = rig::RecordGapSteps(World().rig.world(), 'X', {});
+  const Eigen::Matrix<double, 6, 3> slopes = Eigen::Matrix<double, 6, 3>::Constant(1e-4);
+  SweepRun steps = ReadGapSteps(recording, World().noise, slopes);
+  const Index n = steps.rows();
+  ASSERT_EQ(n, 3 * 9);  // the second axis begins where the first one came back to
+  EXPECT_NEAR(steps.steps.row(1).maxCoeff(), 45e-6, 0.5e-6);
+  EXPECT_NEAR(steps.steps.row(2).minCoeff(), -45e-6, 0.5e-6);
+  for (auto& covariance : steps.covariance) covariance.setIdentity();
+  const SimulatedRun run =
+      SimulateSweep(World().model, World().reference, World().instrument, steps);
+  VectorXd x = NominalOf(run), left(run.residual->Rows()), sloped(run.residual->Rows());
+  estimation::RowMatrix jacobian(run.residual->Rows(), x.size());
+  run.residual->Evaluate(x, left, &jacobian);
+  for (Index slope = x.size() - 18; slope < x.size(); ++slope) {
+    x[slope] = 1e-4;
+    run.residual->Evaluate(x, sloped, nullptr);
+    x[slope] = 0.0;
+    EXPECT_LT((sloped - left - 1e-4 * jacobian.col(slope)).cwiseAbs().maxCoeff(), 1e-18);
+  }
+  EXPECT_NEAR(jacobian.col(x.size() - 18 + 6 + 1).cwiseAbs().maxCoeff(), 45e-6, 1e-6);  // EYY
+  for (Index probe = 0; probe < 5; ++probe) {
+    for (Index station = 0; station < 3; ++station) {
+      const auto own = [&](const VectorXd& values) {
+        const VectorXd part = values.segment(9 * station, 9);
+        return VectorXd(part.array() - part.mean()).cwiseAbs().maxCoeff();
+      };
+      EXPECT_GT(own(steps.gap.row(probe).transpose()), 40e-6);
+      EXPECT_LT(own(left.segment(probe * n, n)), 0.5e-6);
+    }
   }
 }
 

@@ -1,0 +1,78 @@
+// The option --causes: an extended model (abbe diagnose -o) whose causes are taken out of
+// the recordings before a command evaluates them.
+//
+//   CauseCorrection causes(path, file, kForMaps);
+//   const recording::Recording corrected = causes.Take(recording);
+//   fmt::print("{}", causes.Line());
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/machine_file.h"
+#include "simulation/correction.h"
+
+namespace abbe::apps {
+
+CLI::Option* AddCausesOption(CLI::App& command, std::filesystem::path& path);
+
+// Which seats of causes a command takes out.
+using Seats = std::vector<simulation::Seat>;
+// What the machine itself does is to be measured.
+inline const Seats kForMeasuring{simulation::Seat::kInstrument};
+// A map holds and corrects what is a function of position.
+inline const Seats kForMaps{simulation::Seat::kInstrument, simulation::Seat::kMotion};
+// The machine is the reference.
+inline const Seats kForCalibrating{simulation::Seat::kInstrument, simulation::Seat::kMotion,
+                                   simulation::Seat::kMap};
+
+class CauseCorrection {
+ public:
+  // An empty path takes nothing out.
+  CauseCorrection(const std::filesystem::path& path, const MachineFile& file, const Seats& taken);
+
+  bool Active() const { return !name_.empty(); }
+  recording::Recording Take(recording::Recording recording);
+
+  const std::vector<simulation::ModelledCause>& taken() const { return taken_; }
+  const std::vector<simulation::ModelledCause>& left() const { return left_; }
+  // "causes of mill.toml taken out: backlash:X; positions by 3 um rms, 3.1 um at most"; empty
+  // without a model.
+  std::string Line() const;
+  nlohmann::ordered_json Data() const;
+
+ private:
+  simulation::CorrectedMachine On() const;
+
+  std::string name_;
+  MachineFile file_;
+  simulation::Origin origin_;
+  std::vector<simulation::ModelledCause> taken_, left_;
+  simulation::Changes changes_;
+};
+
+// Of the commands that take a map: what it does not hold, along a path.
+class PathCauses {
+ public:
+  // An empty path: nothing.
+  PathCauses(const std::filesystem::path& path, const std::string& machine, double feed_mm_min);
+
+  bool Active() const { return !name_.empty(); }
+  // m, of the axes; 3 x points.
+  Eigen::Matrix3Xd Beside(const Eigen::Matrix3Xd& path) const;
+  std::vector<std::string> Names() const;
+  std::string Line() const;
+
+ private:
+  std::string name_;
+  double feed_ = 0.0;  // m/s
+  std::vector<simulation::ModelledCause> causes_;
+};
+
+void AddPathCauses(CLI::App& command, std::filesystem::path& path, double& feed_mm_min);
+
+}  // namespace abbe::apps

@@ -1,0 +1,115 @@
+// abbe diagnose: what the simulation gets wrong, and why.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/diagnosis_result.h"
+#include "apps/file_hash.h"
+#include "apps/machine_file.h"
+#include "apps/result_file.h"
+#include "diagnosis/found_model.h"
+#include "failure/failure.h"
+#include "recording/recording_file.h"
+
+namespace abbe::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DiagnoseArguments {
+  std::vector<fs::path> recordings;
+  fs::path machine, out, json;
+  bool quiet = false;
+};
+
+void WriteModel(simulation::ExtendedModel model, const DiagnoseArguments& arguments) {
+  for (const fs::path& path : arguments.recordings) {
+    model.sources.push_back({path.filename().string(), Sha256Of(path)});
+  }
+  WriteText(simulation::ExtendedModelText(model), arguments.out);
+}
+
+nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
+                              const diagnosis::Campaign& campaign,
+                              const diagnosis::Diagnosis& diagnosis,
+                              const diagnosis::HeldOutGain& gain) {
+  auto json = DiagnosisJson(diagnosis, gain);
+  json["abbe"] = ABBE_VERSION;
+  json["machine"] = campaign.setup().machine.name;
+  for (const fs::path& path : arguments.recordings) {
+    json["recordings"].push_back(path.filename().string());
+  }
+  if (!arguments.out.empty()) json["model"] = arguments.out.filename().string();
+  return json;
+}
+
+diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
+                              const std::vector<recording::Recording>& recordings,
+                              const std::vector<diagnosis::Candidate>& causes) {
+  if (causes.empty()) return {};
+  try {
+    return diagnosis::HoldOut(campaign, recordings, causes);
+  } catch (const NumericalError& error) {
+    fmt::print(stderr,
+               "abbe: the gain on data held out is not known, half of the runs are not "
+               "enough for a fit: {}\n",
+               error.what());
+    return {};
+  }
+}
+
+int Diagnose(const DiagnoseArguments& arguments) {
+  const MachineFile file = ReadMachineFile(arguments.machine);
+  const auto& setup = file.sweep_setup;
+  diagnosis::Campaign campaign(
+      {setup.machine, setup.head, setup.target, setup.noise, file.linkage});
+  std::vector<recording::Recording> recordings;
+  for (const fs::path& path : arguments.recordings) {
+    recordings.push_back(recording::Read(path));
+    for (const std::string& warning : recordings.back().warnings) {
+      fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
+    }
+    campaign.Add(recordings.back());
+  }
+  const diagnosis::Diagnosis diagnosis = diagnosis::Diagnose(campaign);
+  std::vector<diagnosis::Candidate> causes;
+  for (const auto& finding : diagnosis.findings) {
+    const auto& cause = finding.score.candidate;
+    if (cause.cause->columns || cause.cause->widens) causes.push_back(cause);
+  }
+  const diagnosis::HeldOutGain gain = GainOf(campaign, recordings, causes);
+  if (!arguments.out.empty()) {
+    WriteModel(diagnosis::FoundModel(diagnosis, campaign, gain), arguments);
+  }
+  if (!arguments.json.empty())
+    WriteResult(JsonOf(arguments, campaign, diagnosis, gain), arguments.json);
+  if (!arguments.quiet) fmt::print("{}", DiagnosisText(diagnosis, gain));
+  return kDone;
+}
+
+}  // namespace
+
+void AddDiagnose(CLI::App& program, int& exit_code) {
+  auto arguments = std::make_shared<DiagnoseArguments>();
+  CLI::App* command = program.add_subcommand(
+      "diagnose", "What the simulation of the runs gets wrong, and which cause explains it");
+  command
+      ->add_option("recordings", arguments->recordings,
+                   "Recordings of one machine: sweeps, linkage, length")
+      ->required();
+  command->add_option("--machine", arguments->machine, "Machine file")->required();
+  command->add_option("-o,--out", arguments->out,
+                      "Extended model (TOML) with what was found, for --causes of other commands");
+  command->add_option("--json", arguments->json, "File for the result as data");
+  command->add_flag("--quiet", arguments->quiet, "No tables");
+  command->footer(
+      "Example: abbe diagnose sweep_X.csv circle.csv cube.csv --machine mill.toml -o "
+      "mill.causes.toml");
+  command->callback([arguments, &exit_code] { exit_code = Diagnose(*arguments); });
+}
+
+}  // namespace abbe::apps

@@ -1,0 +1,188 @@
+#include "apps/diagnosis_result.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "diagnosis/found_model.h"
+
+namespace abbe::apps {
+namespace {
+
+using diagnosis::Candidate;
+using diagnosis::Diagnosis;
+using diagnosis::Finding;
+using diagnosis::Leftover;
+using diagnosis::Score;
+using Eigen::Index;
+using nlohmann::ordered_json;
+
+constexpr double kMicro = 1e-6;
+constexpr std::size_t kEvidenceShown = 8;
+
+std::string NameOf(const Candidate& candidate) {
+  const auto [object, sensor] = simulation::Split(candidate.object);
+  return candidate.cause->id + ":" + object + (sensor.empty() ? "" : " (" + sensor + ")");
+}
+
+// The unit that the name of a key ends in: "width_um" -> "um", "..._nm_per_mm2" -> "nm/mm2".
+std::string UnitOf(const std::string& key) {
+  constexpr std::array<std::string_view, 2> kWithout{"delta", "coefficient"};
+  if (std::find(kWithout.begin(), kWithout.end(), key) != kWithout.end()) return "";
+  const std::size_t line = key.find('_');
+  if (line == std::string::npos) return "";
+  const std::string unit = key.substr(line + 1);
+  constexpr std::string_view kPer = "_per_";
+  const auto per = unit.find(kPer);
+  if (per == std::string::npos) return unit;
+  return fmt::format("{}/{}", unit.substr(0, per), unit.substr(per + kPer.size()));
+}
+
+struct Told {
+  std::string name, unit;
+  double value, u95;
+};
+
+// The parameters of a finding in their own units.
+std::vector<Told> ParametersOf(const Score& score) {
+  const simulation::ModelledCause found = diagnosis::FoundCause(score);
+  std::vector<Told> told;
+  for (std::size_t i = 0; i < found.cause->keys.size(); ++i) {
+    const auto& key = found.cause->keys[i];
+    const auto at = static_cast<Index>(i);
+    told.push_back(
+        {key.name, UnitOf(key.name), found.values[at] / key.unit, found.u95[at] / key.unit});
+  }
+  return told;
+}
+
+ordered_json FindingJson(const Finding& finding, const Diagnosis& diagnosis,
+                         const diagnosis::HeldOutGain& gain) {
+  const auto [object, sensor] = simulation::Split(finding.score.candidate.object);
+  ordered_json json{{"cause", finding.score.candidate.cause->id},
+                    {"object", object},
+                    {"probability", finding.probability},
+                    {"log_evidence", finding.score.log_evidence}};
+  for (const Told& each : ParametersOf(finding.score)) {
+    json["parameters"].push_back(
+        {{"name", each.name}, {"value", each.value}, {"unit", each.unit}, {"u95", each.u95}});
+  }
+  const auto& words = finding.score.candidate.cause->words;
+  json["words"] = {{"what", words.what},
+                   {"shows", words.shows},
+                   {"check", words.check},
+                   {"remedy", words.remedy}};
+  // Of all that was found together.
+  json["rms_before"] = std::sqrt(diagnosis.chi_before);
+  json["rms_after"] = std::sqrt(diagnosis.chi_after);
+  if (gain.rows > 0) {
+    json["heldout_rms_before"] = gain.before;
+    json["heldout_rms_after"] = gain.after;
+    json["gain"] = 1.0 - gain.after / gain.before;
+  }
+  if (!sensor.empty()) json["parameters"].push_back({{"name", "sensor"}, {"value", sensor}});
+  return json;
+}
+
+std::string FindingText(const Finding& finding) {
+  std::string text = fmt::format("\n{}, probability {:.3f}\n", NameOf(finding.score.candidate),
+                                 finding.probability);
+  for (const Told& each : ParametersOf(finding.score)) {
+    text += fmt::format("  {:<28}{:>12.4g} +- {:.2g}\n", each.name, each.value, each.u95);
+  }
+  const auto& words = finding.score.candidate.cause->words;
+  text +=
+      fmt::format("  what it is   {}\n  how it shows {}\n  check        {}\n  what to do   {}\n",
+                  words.what, words.shows, words.check, words.remedy);
+  for (const auto& rival : finding.rivals) {
+    text +=
+        fmt::format("  or {}, probability {:.3f}\n", NameOf(rival.candidate), rival.probability);
+  }
+  return text;
+}
+
+std::string EvidenceText(const Diagnosis& diagnosis) {
+  std::string text = fmt::format("\n{:<44}{:>14}{:>22}\n", "candidates, alone", "log evidence",
+                                 "would be seen at");
+  std::vector<Score> scores = diagnosis.evidence;
+  std::sort(scores.begin(), scores.end(),
+            [](const Score& a, const Score& b) { return a.log_evidence > b.log_evidence; });
+  for (std::size_t i = 0; i < std::min(kEvidenceShown, scores.size()); ++i) {
+    text += fmt::format("{:<44}{:>14.1f}{:>19.1f} sd\n", NameOf(scores[i].candidate),
+                        scores[i].log_evidence, scores[i].visible);
+  }
+  return text;
+}
+
+}  // namespace
+
+ordered_json DiagnosisJson(const Diagnosis& diagnosis, const diagnosis::HeldOutGain& gain) {
+  ordered_json json{{"command", "diagnose"},
+                    {"verdict", Name(diagnosis.verdict)},
+                    {"cannot_show", diagnosis.cannot_show},
+                    {"findings", ordered_json::array()},
+                    {"rivals", ordered_json::array()},
+                    {"unexplained", ordered_json::array()},
+                    {"chi2_per_row_before", diagnosis.chi_before},
+                    {"chi2_per_row_after", diagnosis.chi_after},
+                    {"noise_floor", 1.0},
+                    {"map_change_um", nullptr}};
+  for (const Finding& finding : diagnosis.findings) {
+    json["findings"].push_back(FindingJson(finding, diagnosis, gain));
+    if (finding.rivals.empty()) continue;
+    ordered_json rivals{{"causes", {finding.score.candidate.Name()}},
+                        {"odds", {finding.probability}}};
+    for (const auto& rival : finding.rivals) {
+      rivals["causes"].push_back(rival.candidate.Name());
+      rivals["odds"].push_back(rival.probability);
+    }
+    json["rivals"].push_back(rivals);
+  }
+  if (gain.rows > 0) {
+    json["heldout"] = {{"rows", gain.rows}, {"rms_before", gain.before}, {"rms_after", gain.after}};
+  }
+  for (const Leftover& leftover : diagnosis.leftovers) {
+    json["unexplained"].push_back({{"variable", leftover.variable},
+                                   {"object", leftover.object},
+                                   {"amplitude", leftover.amplitude / kMicro},
+                                   {"unit", leftover.unit},
+                                   {"p_value", leftover.p_value}});
+  }
+  for (const Score& score : diagnosis.evidence) {
+    json["evidence"].push_back({{"cause", score.candidate.cause->id},
+                                {"object", score.candidate.object},
+                                {"log_evidence", score.log_evidence},
+                                {"visible_sd", score.visible}});
+  }
+  return json;
+}
+
+std::string DiagnosisText(const Diagnosis& diagnosis, const diagnosis::HeldOutGain& gain) {
+  std::string text =
+      fmt::format("verdict: {}\nchi-square per row {:.3f}, with what was found {:.3f}\n",
+                  Name(diagnosis.verdict), diagnosis.chi_before, diagnosis.chi_after);
+  for (const Finding& finding : diagnosis.findings) text += FindingText(finding);
+  if (gain.rows > 0) {
+    text += fmt::format(
+        "\nheld out: {} rows, rms {:.3f} of the stated noise without what was found, {:.3f} with "
+        "it\n",
+        gain.rows, gain.before, gain.after);
+  }
+  for (const Leftover& leftover : diagnosis.leftovers) {
+    text += fmt::format(
+        "\nUNEXPLAINED: {} varies with {} by {:.3g} {} (p {:.1g}); no known cause does that\n",
+        leftover.object, leftover.variable, leftover.amplitude / kMicro, leftover.unit,
+        leftover.p_value);
+  }
+  text += EvidenceText(diagnosis);
+  if (!diagnosis.cannot_show.empty()) {
+    text += fmt::format("\nThese runs cannot show: {}\n", fmt::join(diagnosis.cannot_show, ", "));
+  }
+  return text;
+}
+
+}  // namespace abbe::apps

@@ -1,0 +1,12 @@
+// The SHA-256 of a file: by it data is known again, whatever it is called.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace abbe::apps {
+
+// 64 hexadecimal digits, as sha256sum prints them. InputError when the file cannot be read.
+std::string Sha256Of(const std::filesystem::path& path);
+
+}  // namespace abbe::apps

@@ -1,0 +1,75 @@
+// The runs of one machine as the diagnosis takes them: each with its simulation and its trace.
+//
+//   Campaign campaign(setup);
+//   for (const recording::Recording& recording : recordings) campaign.Add(recording);
+//   const Scene scene = campaign.scene();
+//
+// Readings that are none (data_integrity.h) are found first and left out.
+// Sweeps enter dwell by dwell, so that what changes from pass to pass stays visible. No row is
+// weighted down by a robust loss: what looks like outliers may be the cause.
+// Failure: InputError for a recording of another machine or of a kind that the diagnosis does not
+// take, and that of the simulations.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "diagnosis/data_integrity.h"
+#include "fusion/machine_prior.h"
+#include "machine/machine.h"
+#include "probes/head_settings.h"
+#include "recording/recording.h"
+#include "relm/linkage_settings.h"
+#include "simulation/causes/cause.h"
+#include "simulation/simulated_run.h"
+#include "simulation/trace.h"
+
+namespace abbe::diagnosis {
+
+struct Setup {
+  machine::Machine machine;
+  probes::HeadSettings head;
+  probes::TargetSettings target;
+  probes::ProbeNoise noise;
+  std::optional<relm::LinkageSettings> linkage;
+};
+
+struct DiagnosedRun {
+  simulation::SimulatedRun simulated;
+  simulation::Trace trace;
+};
+
+class Campaign {
+ public:
+  // `origin`: of the whole campaign, where this is a part of one.
+  explicit Campaign(Setup setup, std::optional<simulation::Origin> origin = {});
+
+  void Add(recording::Recording recording);
+
+  simulation::Origin origin() const;
+
+  const Setup& setup() const { return setup_; }
+  const machine::VolumetricModel& model() const { return model_; }
+  const fusion::MachinePrior& prior() const { return prior_; }
+  // In the order of adding, on one clock.
+  const std::vector<DiagnosedRun>& runs() const { return runs_; }
+  simulation::Scene scene() const;
+  // What was found row by row and left out, on the clock of the campaign; each channel once.
+  std::vector<BadData> bad_data() const;
+
+ private:
+  struct BadRows {
+    double started;  // s since 1970
+    BadData data;
+  };
+
+  Setup setup_;
+  machine::VolumetricModel model_;
+  fusion::MachinePrior prior_;
+  std::optional<simulation::Origin> origin_;
+  std::vector<DiagnosedRun> runs_;
+  std::vector<BadRows> bad_;
+};
+
+}  // namespace abbe::diagnosis

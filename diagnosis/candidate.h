@@ -1,0 +1,49 @@
+// A cause at one object and with one shape, and what the data say of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "diagnosis/campaign.h"
+#include "simulation/causes/cause.h"
+
+namespace abbe::diagnosis {
+
+struct Candidate {
+  const simulation::Cause* cause;
+  std::string object;
+  Eigen::VectorXd shape;  // empty for a cause without
+  // Around which its shape is varied; empty: it is kept.
+  Eigen::VectorXd coefficients = {};
+
+  std::string Name() const { return cause->id + ":" + object; }
+  // Whether the shape is a number between those tried, to be found with the coefficients.
+  bool HasFreeShape() const {
+    return cause->shapes && !cause->fixed_shapes && coefficients.size() > 0;
+  }
+};
+
+// All causes at all objects that the scene offers, with all shapes to try. One after the other:
+// shapes of one cause and object stand together.
+std::vector<Candidate> AllCandidates(const simulation::Scene& scene);
+
+struct Score {
+  Candidate candidate;
+  Eigen::VectorXd coefficients;  // SI
+  Eigen::MatrixXd covariance;    // of the coefficients, then of the logarithm of a free shape
+  // Log of how much more probable the data are with the cause than without, all unknowns and the
+  // coefficients integrated out.
+  double log_evidence = 0.0;
+  // Standard deviations by which a cause of plausible size stands out of everything else that the
+  // simulation could be.
+  double visible = 0.0;
+};
+
+// The keys of a score, SI, with their standard uncertainties to first order.
+struct Keys {
+  Eigen::VectorXd values, u;
+};
+Keys KeysOf(const Score& score);
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,32 @@
+// Readings that are none: a channel that repeats one value, single readings that jump.
+//
+//   for (const BadData& bad : FlagBadRows(recording)) ...     // those rows count no more
+//
+// Stuck: one value, to the last bit, in at least kLeastStuck rows while another channel of the
+// instrument changes in most of them. Outlier: a reading farther from its neighbours than kFar
+// times their usual scatter; where the axes stand from the median of the stay, where they move
+// from the cubic through the two readings before and the two after.
+// Channels: probe_*_um, pivot_*_rad. Units: s since the recording began. Rows that have a flag
+// already are passed over. Source of the scatter: 1.4826 times the median absolute deviation.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "recording/recording.h"
+
+namespace abbe::diagnosis {
+
+inline constexpr std::size_t kLeastStuck = 12;
+inline constexpr double kFar = 8.0;
+
+struct BadData {
+  std::string cause;   // "stuck-channel", "outliers"
+  std::string object;  // "probe_a", "pivot_1"
+  double from = 0.0, to = 0.0;
+  int count = 0;  // rows
+};
+
+std::vector<BadData> FlagBadRows(recording::Recording& recording);
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,236 @@
+#include "diagnosis/diagnose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "failure/failure.h"
+#include "simulation/causes/registry.h"
+
+namespace abbe::diagnosis {
+namespace {
+
+constexpr std::size_t kMostCauses = 6;
+constexpr double kNegligible = 0.01;  // probability of a rival that is not worth a word
+constexpr int kRefinements = 12;      // halvings of the step between shapes
+
+double LogSumOfExponentials(const std::vector<double>& logs) {
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double sum = 0.0;
+  for (const double each : logs) sum += std::exp(each - most);
+  return most + std::log(sum);
+}
+
+// Neighbouring shapes in the list that was tried, as a factor.
+double StepOf(const std::vector<Score>& scores, std::size_t first, std::size_t last,
+              std::size_t best) {
+  const std::size_t other = best + 1 < last ? best + 1 : best - 1;
+  if (other < first || other == best) return 1.0;
+  const double ratio = scores[other].candidate.shape[0] / scores[best].candidate.shape[0];
+  return ratio > 1.0 ? ratio : 1.0 / ratio;
+}
+
+// A cause at an object: the best of its shapes, and the evidence of all of them together.
+struct Named {
+  Score best;
+  double log_evidence = 0.0;
+  double step = 1.0;  // from the best shape to the next one tried, a factor
+};
+
+std::vector<Named> ByName(const std::vector<Score>& scores) {
+  std::vector<Named> names;
+  for (std::size_t first = 0; first < scores.size();) {
+    std::size_t last = first, best = first;
+    std::vector<double> logs;
+    const std::string name = scores[first].candidate.Name();
+    for (; last < scores.size() && scores[last].candidate.Name() == name; ++last) {
+      logs.push_back(scores[last].log_evidence);
+      if (logs.back() > scores[best].log_evidence) best = last;
+    }
+    const double mean = LogSumOfExponentials(logs) - std::log(static_cast<double>(logs.size()));
+    double visible = 0.0;
+    for (std::size_t i = first; i < last; ++i) visible = std::max(visible, scores[i].visible);
+    Named named{scores[best], mean, last - first > 1 ? StepOf(scores, first, last, best) : 1.0};
+    named.best.visible = visible;
+    names.push_back(std::move(named));
+    first = last;
+  }
+  return names;
+}
+
+// The shape with the largest evidence near the best one that was tried.
+Score Refine(const Fit& fit, const Named& named) {
+  Score best = named.best;
+  if (best.candidate.shape.size() == 0) return best;
+  double step = std::sqrt(named.step);
+  for (int i = 0; i < kRefinements; ++i, step = std::sqrt(step)) {
+    std::vector<Candidate> moved(2, best.candidate);
+    moved[0].shape *= step;
+    moved[1].shape /= step;
+    for (Score& score : ScoreAll(fit, moved)) {
+      score.visible = best.visible;
+      if (score.log_evidence > best.log_evidence) best = std::move(score);
+    }
+  }
+  return best;
+}
+
+bool Known(const std::vector<Candidate>& taken, const Candidate& candidate) {
+  return std::any_of(taken.begin(), taken.end(),
+                     [&](const Candidate& other) { return other.Name() == candidate.Name(); });
+}
+
+// Log odds that a cause is there, before any data.
+double LogPrior(std::size_t names) { return std::log(kPresent / static_cast<double>(names)); }
+
+class Search {
+ public:
+  explicit Search(const Campaign& campaign)
+      : candidates_(AllCandidates(campaign.scene())), fit_(std::make_shared<const Fit>(campaign)) {}
+
+  Diagnosis Run() {
+    diagnosis_.chi_before = fit_->chi_square() / static_cast<double>(fit_->rows());
+    while (taken_.size() < kMostCauses && TakeBest()) {
+    }
+    DropSuperfluous();
+    for (std::size_t i = 0; i < taken_.size(); ++i) {
+      const double visible = diagnosis_.findings[i].score.visible;
+      const double log_evidence = diagnosis_.findings[i].score.log_evidence;
+      diagnosis_.findings[i].score = fit_->ScoreOf(i);
+      diagnosis_.findings[i].score.visible = visible;
+      diagnosis_.findings[i].score.log_evidence = log_evidence;
+    }
+    // What was found was shown after all.
+    std::erase_if(diagnosis_.cannot_show, [&](const std::string& name) {
+      return std::any_of(taken_.begin(), taken_.end(),
+                         [&](const Candidate& cause) { return cause.Name() == name; });
+    });
+    AddBadData();
+    diagnosis_.leftovers = FindLeftovers(*fit_);
+    diagnosis_.chi_after = fit_->chi_square() / static_cast<double>(fit_->rows());
+    diagnosis_.verdict = VerdictOf(diagnosis_);
+    return std::move(diagnosis_);
+  }
+
+ private:
+  // Scores everything against the fit so far; false when nothing is probable enough.
+  bool TakeBest() {
+    std::vector<Named> names = ByName(ScoreAll(*fit_, candidates_));
+    std::sort(names.begin(), names.end(),
+              [](const Named& a, const Named& b) { return a.log_evidence > b.log_evidence; });
+    if (diagnosis_.evidence.empty()) DescribeFirstRound(names);
+    std::erase_if(names, [&](const Named& named) {
+      return Known(taken_, named.best.candidate) || Known(refused_, named.best.candidate);
+    });
+    const double prior = LogPrior(names.size());
+    std::vector<double> logs{0.0};  // nothing more
+    for (const Named& named : names) logs.push_back(named.log_evidence + prior);
+    const double all = LogSumOfExponentials(logs);
+    if (std::exp(logs.front() - all) > 1.0 - kCertain) return false;
+    Finding finding{Refine(*fit_, names.front()), std::exp(logs[1] - all), {}};
+    for (std::size_t i = 1; i < names.size(); ++i) {
+      const double probability = std::exp(logs[i + 1] - all);
+      if (probability > kNegligible) {
+        finding.rivals.push_back({names[i].best.candidate, probability});
+      }
+    }
+    std::vector<Candidate> more = taken_;
+    more.push_back(finding.score.candidate);
+    const auto fit = FitWith(more);
+    if (!fit) {
+      refused_.push_back(more.back());
+      return refused_.size() < kMostCauses;
+    }
+    taken_ = std::move(more);
+    diagnosis_.findings.push_back(std::move(finding));
+    fit_ = fit;
+    return true;
+  }
+
+  // None where the simulation cannot be fitted with these: what they explain to first order, they
+  // do not explain.
+  std::shared_ptr<const Fit> FitWith(const std::vector<Candidate>& causes) const {
+    try {
+      return std::make_shared<const Fit>(*fit_, causes);
+    } catch (const NumericalError&) {
+      return nullptr;
+    }
+  }
+
+  // Found row by row, so certain.
+  void AddBadData() {
+    for (const BadData& bad : fit_->campaign().bad_data()) {
+      const simulation::Cause& cause = simulation::CauseNamed(bad.cause);
+      Finding finding{{{&cause, bad.object, {}}, {}, {}}, 1.0, {}};
+      finding.score.coefficients =
+          cause.coefficients() == 1 ? Eigen::VectorXd::Constant(1, static_cast<double>(bad.count))
+                                    : Eigen::VectorXd(Eigen::Vector2d(bad.from, bad.to));
+      finding.score.covariance = Eigen::MatrixXd::Zero(cause.coefficients(), cause.coefficients());
+      diagnosis_.findings.push_back(std::move(finding));
+    }
+  }
+
+  void DescribeFirstRound(const std::vector<Named>& names) {
+    for (const Named& named : names) {
+      diagnosis_.evidence.push_back(named.best);
+      diagnosis_.evidence.back().log_evidence = named.log_evidence;
+      if (named.best.visible < kShowable) {
+        diagnosis_.cannot_show.push_back(named.best.candidate.Name());
+      }
+    }
+    std::sort(diagnosis_.cannot_show.begin(), diagnosis_.cannot_show.end());
+  }
+
+  // A cause that the later ones explain as well is taken out again.
+  void DropSuperfluous() {
+    for (std::size_t i = 0; taken_.size() > 1 && i < taken_.size();) {
+      std::vector<Candidate> others = taken_;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      auto without = FitWith(others);
+      if (!without ||
+          ScoreAll(*without, {taken_[i]}).front().log_evidence > -LogPrior(candidates_.size())) {
+        ++i;
+        continue;
+      }
+      taken_ = std::move(others);
+      diagnosis_.findings.erase(diagnosis_.findings.begin() + static_cast<std::ptrdiff_t>(i));
+      fit_ = std::move(without);
+    }
+  }
+
+  static Verdict VerdictOf(const Diagnosis& diagnosis) {
+    if (!diagnosis.leftovers.empty()) return Verdict::kUnexplained;
+    if (diagnosis.findings.empty()) return Verdict::kClean;
+    const bool certain =
+        std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
+                    [](const Finding& finding) { return finding.probability >= kCertain; });
+    return certain ? Verdict::kExplained : Verdict::kAmbiguous;
+  }
+
+  const std::vector<Candidate> candidates_;
+  std::vector<Candidate> taken_, refused_;
+  std::shared_ptr<const Fit> fit_;
+  Diagnosis diagnosis_;
+};
+
+}  // namespace
+
+std::string_view Name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kClean:
+      return "clean";
+    case Verdict::kExplained:
+      return "explained";
+    case Verdict::kAmbiguous:
+      return "ambiguous";
+    case Verdict::kUnexplained:
+      return "unexplained";
+  }
+  return "";
+}
+
+Diagnosis Diagnose(const Campaign& campaign) { return Search(campaign).Run(); }
+
+}  // namespace abbe::diagnosis

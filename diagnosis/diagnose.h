@@ -1,0 +1,56 @@
+// The diagnosis: which causes the simulation lacks, which rivals the data cannot tell apart, what
+// these runs cannot show, and what is left unexplained.
+//
+//   const Diagnosis diagnosis = Diagnose(campaign);
+//   diagnosis.verdict;                      // Verdict::kExplained
+//   diagnosis.findings[0].score.candidate.Name();          // "backlash:X"
+//
+// Forward selection: all candidates are scored against the fit so far; the one with the largest
+// evidence is taken in when it is more probable than kCertain although each of the n candidates had
+// only kPresent / n before; its shape is refined; everything is fitted and scored anew. Then each
+// cause is left out once: one that the others have made superfluous goes.
+// The evidence of a cause with a shape is the mean over its shapes: looking at many periods costs
+// what it should.
+// Verdict: clean, nothing found, nothing left; explained, each finding is at least kCertain among
+// its rivals and nothing is left; ambiguous, rivals; unexplained, structure is left.
+// Units: SI. Failure: that of Fit.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/evidence.h"
+#include "diagnosis/unexplained.h"
+
+namespace abbe::diagnosis {
+
+inline constexpr double kCertain = 0.99;
+inline constexpr double kPresent = 0.1;   // probability that a machine has a cause at all
+inline constexpr double kShowable = 5.0;  // standard deviations of a plausible size
+
+enum class Verdict { kClean, kExplained, kAmbiguous, kUnexplained };
+std::string_view Name(Verdict verdict);
+
+struct Rival {
+  Candidate candidate;
+  double probability = 0.0;
+};
+
+struct Finding {
+  Score score;
+  double probability = 0.0;   // among all that could stand in its place
+  std::vector<Rival> rivals;  // others above 1 %
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::kClean;
+  std::vector<Finding> findings;
+  std::vector<std::string> cannot_show;  // "probe-position:probe_a"
+  std::vector<Score> evidence;           // of the first round: best shape of each name
+  std::vector<Leftover> leftovers;
+  double chi_before = 0.0, chi_after = 0.0;  // chi-square per row of all runs
+};
+
+Diagnosis Diagnose(const Campaign& campaign);
+
+}  // namespace abbe::diagnosis

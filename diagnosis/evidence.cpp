@@ -1,0 +1,333 @@
+#include "diagnosis/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "diagnosis/extended_run.h"
+#include "failure/failure.h"
+#include "fusion/machine_problem.h"
+
+namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using estimation::Problem;
+using simulation::Disturbance;
+using simulation::SimulatedRun;
+
+// The values of a run's own blocks.
+VectorXd ValuesIn(const estimation::Result& result, const SimulatedRun& run) {
+  return fusion::ValuesFound(result, run.blocks);
+}
+
+// Where an earlier fit of the same blocks ended.
+void StartFrom(const estimation::Result& before, std::vector<estimation::ParameterBlock>& blocks) {
+  for (auto& block : blocks) {
+    const auto found = std::find_if(before.blocks.begin(), before.blocks.end(),
+                                    [&](const auto& other) { return other.name == block.name; });
+    if (found == before.blocks.end()) continue;
+    // A shape that has become free stands at the end.
+    const std::size_t known = std::min(block.entries.size(), found->entries.size());
+    for (std::size_t i = 0; i < known; ++i) block.entries[i].value = found->entries[i].value;
+  }
+}
+
+Problem ProblemOf(const Campaign& campaign, const std::vector<SimulatedRun>& runs,
+                  const std::vector<Candidate>& taken_in, const estimation::Result& start = {}) {
+  machine::VolumetricModel model = campaign.model();
+  if (!start.blocks.empty()) model.SetParameters(fusion::ValuesFound(start, model.Blocks()));
+  Problem problem =
+      fusion::MakeMachineProblem(campaign.setup().machine, model, campaign.prior(), runs);
+  // The machine's own blocks are made by the problem, not by a run.
+  for (const Candidate& cause : taken_in) {
+    if (!cause.cause->widens) continue;
+    for (const std::string& name : cause.cause->widens(cause.object)) {
+      if (!name.starts_with("squareness.")) continue;
+      auto& entry = problem.Block(problem.Find("squareness"))[name.substr(11)];
+      entry.prior_sd = std::hypot(entry.prior_sd, cause.cause->plausible[0]);
+    }
+  }
+  return problem;
+}
+
+// What is left to the minimum is in the gradient, which the evidence takes into account: where a
+// simulation that lacks something does not settle, near it is good enough.
+estimation::Result Solve(const Problem& problem) {
+  constexpr double kSettled = 0.02, kNear = 1.0;  // standard uncertainties
+  constexpr int kFewPasses = 20;
+  const auto solve = [&](double settled) {
+    return problem.Solve({.max_iterations = kFewPasses,
+                          .threads = 1,
+                          .settled = settled,
+                          .jacobian_bytes = 0,
+                          .weak_directions = false});
+  };
+  try {
+    return solve(kSettled);
+  } catch (const NumericalError&) {
+    return solve(kNear);
+  }
+}
+
+}  // namespace
+
+Fit::Fit(const Campaign& campaign) : campaign_(campaign) {
+  std::vector<SimulatedRun> runs;
+  for (const DiagnosedRun& run : campaign.runs()) runs.push_back(run.simulated);
+  const Problem problem = ProblemOf(campaign, runs, {});
+  result_ = Solve(problem);
+  Linearize(problem);
+}
+
+Fit::Fit(const Fit& before, std::vector<Candidate> taken_in)
+    : campaign_(before.campaign_), taken_in_(std::move(taken_in)), result_(before.result_) {
+  constexpr int kRounds = 4;            // the columns at the fit before, then at their own
+  constexpr double kShapeFound = 1e-3;  // relative
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<SimulatedRun> runs;
+    for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
+      const auto& at = round == 0 ? before.runs_[r].at : runs_[r].at;
+      runs.push_back(Extend(campaign_.runs()[r], at, taken_in_));
+      StartFrom(result_, runs.back().blocks);
+    }
+    const Problem problem = ProblemOf(campaign_, runs, taken_in_, result_);
+    result_ = Solve(problem);
+    Linearize(problem);
+    const double moved = FollowShapes();
+    if (round > 0 && moved < kShapeFound) break;
+  }
+}
+
+// The largest relative change.
+double Fit::FollowShapes() {
+  constexpr double kAtMost = 0.2;
+  double most = 0.0;
+  for (Candidate& cause : taken_in_) {
+    if (cause.cause->widens || cause.cause->whole) continue;
+    const VectorXd found = result_.Block(BlockOf(cause)).Values();
+    const VectorXd coefficients = found.head(cause.cause->coefficients());
+    if (cause.cause->follows_size) {
+      const double before = simulation::SizeOf(cause.shape);
+      cause.shape = coefficients.head<1>();
+      most = std::max(most, std::abs(1.0 - before / coefficients[0]));
+    } else if (cause.HasFreeShape()) {
+      const double step = std::clamp(found[found.size() - 1], -kAtMost, kAtMost);
+      cause.shape *= std::exp(step);
+      most = std::max(most, std::abs(step));
+    } else if (cause.cause->shapes && !cause.cause->fixed_shapes) {
+      most = 1.0;  // from now on its shape is free
+    }
+    cause.coefficients = coefficients;
+  }
+  return most;
+}
+
+void Fit::Linearize(const Problem& problem) {
+  const estimation::Layout layout(problem);
+  names_ = layout.names;
+  const VectorXd x = fusion::ValuesFound(result_, result_.blocks);
+  const estimation::Linearization at = estimation::Linearize(problem, layout, x, 1);
+  MatrixXd H = at.prior.information;
+  gradient_ = at.prior.gradient;
+  data_information_ = MatrixXd::Zero(H.rows(), H.cols());
+  data_gradient_ = VectorXd::Zero(H.rows());
+  for (std::size_t s = 0; s < at.sources.size(); ++s) {
+    H += at.sources[s].information;
+    gradient_ += at.sources[s].gradient;
+    if (problem.sources()[s].options.is_prior) continue;
+    data_information_ += at.sources[s].information;
+    data_gradient_ += at.sources[s].gradient;
+  }
+  scale_ = H.diagonal().cwiseSqrt().cwiseInverse();
+  H_.compute(scale_.asDiagonal() * H * scale_.asDiagonal());
+  estimation::RowEvaluator evaluator(problem, layout);
+  runs_.clear();
+  for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
+    const DiagnosedRun& run = campaign_.runs()[r];
+    const auto* rows = evaluator.Evaluate(problem.terms()[r], x, true);
+    runs_.push_back({LinearAt(run, ValuesIn(result_, run.simulated), rows->r), rows->r,
+                     rows->columns, rows->jacobian});
+  }
+}
+
+double Fit::chi_square() const {
+  double sum = 0.0;
+  for (const RunRows& run : runs_) sum += run.r.squaredNorm();
+  return sum;
+}
+
+Index Fit::rows() const {
+  Index rows = 0;
+  for (const RunRows& run : runs_) rows += run.r.size();
+  return rows;
+}
+
+Fit::Projection Fit::Finish(const MatrixXd& C_C, const MatrixXd& C_J, const VectorXd& C_r) const {
+  constexpr double kRounding = 1e-9;  // of the information of a column
+  const MatrixXd B = scale_.asDiagonal() * C_J.transpose();
+  const MatrixXd solved = H_.solve(B);
+  Projection left{C_C - B.transpose() * solved,
+                  C_r - solved.transpose() * (scale_.asDiagonal() * gradient_)};
+  for (Index c = 0; c < C_r.size(); ++c) {
+    if (left.information(c, c) > kRounding * C_C(c, c)) continue;
+    left.information.row(c).setZero();
+    left.information.col(c).setZero();
+    left.score[c] = 0.0;
+  }
+  return left;
+}
+
+simulation::Response::RowScores Fit::ScoresOf(std::size_t run, Index stage) const {
+  const RunRows& rows = runs_[run];
+  if (!rows.at.response) return {};
+  return rows.at.response->ScoresOf(stage, rows.r);
+}
+
+Fit::Projection Fit::Project(const Disturber& disturber, Index columns) const {
+  MatrixXd C_C = MatrixXd::Zero(columns, columns);
+  MatrixXd C_J = MatrixXd::Zero(columns, static_cast<Index>(names_.size()));
+  VectorXd C_r = VectorXd::Zero(columns);
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const LinearRun& run = runs_[r].at;
+    if (!run.response) continue;
+    const std::vector<Disturbance> disturbances = disturber(run.trace);
+    if (disturbances.empty()) continue;
+    const MatrixXd C = run.response->Columns(disturbances);
+    C_C += C.transpose() * C;
+    const MatrixXd of_run = C.transpose() * runs_[r].J;
+    for (std::size_t c = 0; c < runs_[r].columns.size(); ++c) {
+      C_J.col(runs_[r].columns[c]) += of_run.col(static_cast<Index>(c));
+    }
+    C_r += C.transpose() * runs_[r].r;
+  }
+  return Finish(C_C, C_J, C_r);
+}
+
+std::vector<int> Fit::ColumnsNamed(const std::string& pattern) const {
+  std::vector<int> columns;
+  for (std::size_t c = 0; c < names_.size(); ++c) {
+    if (Matches(names_[c], pattern)) columns.push_back(static_cast<int>(c));
+  }
+  return columns;
+}
+
+Fit::Projection Fit::ProjectParameters(const Candidate& candidate) const {
+  const std::vector<std::string> patterns = candidate.cause->widens(candidate.object);
+  const auto count = static_cast<Index>(patterns.size());
+  MatrixXd select = MatrixXd::Zero(count, static_cast<Index>(names_.size()));
+  for (Index i = 0; i < count; ++i) {
+    for (const int column : ColumnsNamed(patterns[static_cast<std::size_t>(i)])) {
+      select(i, column) = -1.0;
+    }
+  }
+  const MatrixXd C_J = select * data_information_;
+  return Finish(C_J * select.transpose(), C_J, select * data_gradient_);
+}
+
+Score Fit::ScoreOf(std::size_t taken_in) const {
+  const Candidate& cause = taken_in_[taken_in];
+  Score score{cause, {}, {}, 0.0, 0.0};
+  if (cause.cause->whole) {
+    score.coefficients = VectorXd::Ones(1);
+    score.covariance = MatrixXd::Zero(1, 1);
+    return score;
+  }
+  if (!cause.cause->widens) {
+    score.coefficients = result_.Block(BlockOf(cause)).Values().head(cause.cause->coefficients());
+    score.covariance = result_.Covariance(BlockOf(cause), BlockOf(cause));
+    return score;
+  }
+  const std::vector<std::string> patterns = cause.cause->widens(cause.object);
+  const auto count = static_cast<Index>(patterns.size());
+  score.coefficients = VectorXd::Zero(count);
+  score.covariance = MatrixXd::Zero(count, count);
+  for (Index i = 0; i < count; ++i) {
+    for (const int column : ColumnsNamed(patterns[static_cast<std::size_t>(i)])) {
+      const std::string& name = names_[static_cast<std::size_t>(column)];
+      const std::size_t dot = name.rfind('.');
+      const auto& entry = result_.Block(name.substr(0, dot))[name.substr(dot + 1)];
+      score.coefficients[i] = entry.value - entry.nominal;
+      score.covariance(i, i) = std::pow(result_.Uncertainty(name), 2);
+    }
+  }
+  return score;
+}
+
+namespace {
+
+constexpr Index kColumnsAtOnce = 128;  // so many share the derivatives of the simulation
+
+Score ScoreFrom(const Candidate& candidate, const Fit::Projection& projection) {
+  const auto& [S, g] = projection;
+  const VectorXd& plausible = candidate.cause->plausible;
+  if (candidate.cause->whole) {
+    return {candidate, VectorXd::Ones(1), MatrixXd::Zero(1, 1), g[0] - 0.5 * S(0, 0),
+            std::sqrt(std::max(0.0, S(0, 0)))};
+  }
+  // In units of what is plausible.
+  const MatrixXd scaled = plausible.asDiagonal() * S * plausible.asDiagonal();
+  const MatrixXd precision = scaled + MatrixXd::Identity(S.rows(), S.cols());
+  const Eigen::LLT<MatrixXd> factor(precision);
+  const VectorXd mean = factor.solve(VectorXd(plausible.asDiagonal() * g));
+  Score score{candidate, plausible.cwiseProduct(mean), {}, 0.0, 0.0};
+  score.covariance = plausible.asDiagonal() * factor.solve(MatrixXd::Identity(S.rows(), S.cols())) *
+                     plausible.asDiagonal();
+  const double log_determinant = 2.0 * MatrixXd(factor.matrixL()).diagonal().array().log().sum();
+  score.log_evidence = 0.5 * (mean.dot(plausible.cwiseProduct(g)) - log_determinant);
+  score.visible = std::sqrt(std::max(0.0, scaled.diagonal().maxCoeff()));
+  return score;
+}
+
+// Candidates with columns, together.
+void ScoreTogether(const Fit& fit, std::span<const Candidate> candidates, Index columns,
+                   std::vector<Score>& scores) {
+  const auto disturb = [&](const simulation::Trace& trace) {
+    std::vector<Disturbance> all;
+    for (const Candidate& each : candidates) {
+      auto own = each.cause->columns(trace, each.object, each.shape);
+      if (own.empty()) {
+        own.assign(static_cast<std::size_t>(each.cause->coefficients()),
+                   simulation::NoDisturbance(trace));
+      }
+      for (auto& column : own) all.push_back(std::move(column));
+    }
+    return all;
+  };
+  const Fit::Projection all = fit.Project(disturb, columns);
+  Index first = 0;
+  for (const Candidate& each : candidates) {
+    const Index count = each.cause->coefficients();
+    scores.push_back(ScoreFrom(each, {all.information.block(first, first, count, count),
+                                      all.score.segment(first, count)}));
+    first += count;
+  }
+}
+
+}  // namespace
+
+std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candidates) {
+  std::vector<Score> scores;
+  scores.reserve(candidates.size());
+  for (std::size_t first = 0; first < candidates.size();) {
+    if (candidates[first].cause->widens) {
+      scores.push_back(ScoreFrom(candidates[first], fit.ProjectParameters(candidates[first])));
+      ++first;
+      continue;
+    }
+    std::size_t last = first;
+    Index columns = 0;
+    for (; last < candidates.size() && !candidates[last].cause->widens && columns < kColumnsAtOnce;
+         ++last) {
+      columns += candidates[last].cause->coefficients();
+    }
+    ScoreTogether(fit, std::span(candidates).subspan(first, last - first), columns, scores);
+    first = last;
+  }
+  return scores;
+}
+
+}  // namespace abbe::diagnosis

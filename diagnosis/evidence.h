@@ -1,0 +1,94 @@
+// How much more probable the data are with a cause than without: all candidates against one fit.
+//
+//   const Fit fit(campaign);
+//   const std::vector<Score> scores = ScoreAll(fit, AllCandidates(campaign.scene()));
+//
+// At the fit the runs are linear in everything: r(x + dx, c) = r + J dx - C c with the coefficients
+// c of the candidate. All unknowns of the simulation have the information H, their priors included.
+// They are projected out once for all candidates; what is left of a candidate is
+//
+//   S = C'C - C'J H^-1 J'C,    g = C'r - C'J H^-1 J'r        information and score of c
+//   c ~ N((S + P)^-1 g, (S + P)^-1),    P the precision of plausible coefficients
+//   log evidence = (g' (S + P)^-1 g - log det(1 + S P^-1)) / 2
+//
+// which is the exact marginal likelihood of the linear problem, noise known. A cause that widens
+// parameters has their own columns for C. One that is there or not has c = 1 and the log evidence
+// g - S / 2.
+// Source: Rasmussen and Williams, Gaussian Processes (2006), 2.7; MacKay, Neural Computation 4
+// (1992), for the Occam factor. Units: SI. Validity: to first order at the fit; score anew after
+// each cause that was taken in.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+#include "diagnosis/campaign.h"
+#include "diagnosis/candidate.h"
+#include "diagnosis/extended_run.h"
+#include "estimation/linearization.h"
+#include "estimation/problem.h"
+
+namespace abbe::diagnosis {
+
+// The simulation fitted to all runs of a campaign, with causes taken in.
+class Fit {
+ public:
+  // The simulation as it is. NumericalError when the fit does not settle.
+  explicit Fit(const Campaign& campaign);
+  // With causes, started from an earlier fit of the same runs.
+  Fit(const Fit& before, std::vector<Candidate> taken_in);
+
+  const Campaign& campaign() const { return campaign_; }
+  const estimation::Result& result() const { return result_; }
+  const std::vector<Candidate>& taken_in() const { return taken_in_; }
+  double chi_square() const;  // of the runs
+  Eigen::Index rows() const;
+  // Coefficients of a cause that was taken in, and their covariance.
+  Score ScoreOf(std::size_t taken_in) const;
+
+  // What disturbances do to all runs, free of everything that the simulation could do instead.
+  struct Projection {
+    Eigen::MatrixXd information;  // S; 0 where nothing but rounding is left of a column
+    Eigen::VectorXd score;        // g
+  };
+  // The columns of each run with a trace, one row each; the same stages for all.
+  using Disturber =
+      std::function<std::vector<simulation::Disturbance>(const simulation::Trace& trace)>;
+  Projection Project(const Disturber& disturber, Eigen::Index columns) const;
+  // For many functions f of the rows of one stage in one run: their score is scores * f', and their
+  // information at most weights * f^2'. Empty where the run does not tell.
+  simulation::Response::RowScores ScoresOf(std::size_t run, Eigen::Index stage) const;
+  const simulation::Trace& TraceOf(std::size_t run) const { return runs_[run].at.trace; }
+  std::size_t runs() const { return runs_.size(); }
+  // Of a cause that widens parameters.
+  Projection ProjectParameters(const Candidate& candidate) const;
+
+ private:
+  struct RunRows {
+    LinearRun at;
+    Eigen::VectorXd r;
+    std::vector<int> columns;
+    Eigen::MatrixXd J;
+  };
+
+  void Linearize(const estimation::Problem& problem);
+  double FollowShapes();
+  Projection Finish(const Eigen::MatrixXd& C_C, const Eigen::MatrixXd& C_J,
+                    const Eigen::VectorXd& C_r) const;
+  std::vector<int> ColumnsNamed(const std::string& pattern) const;
+
+  const Campaign& campaign_;
+  std::vector<Candidate> taken_in_;
+  estimation::Result result_;
+  std::vector<std::string> names_;
+  std::vector<RunRows> runs_;
+  Eigen::MatrixXd data_information_;
+  Eigen::VectorXd data_gradient_, gradient_;
+  Eigen::VectorXd scale_;  // H = scale^-1 (scaled) scale^-1
+  Eigen::LLT<Eigen::MatrixXd> H_;
+};
+
+std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candidates);
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,138 @@
+#include "diagnosis/extended_run.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+class ExtendedResidual : public estimation::Residual {
+ public:
+  // values = base - always - columns * (the last of x).
+  ExtendedResidual(std::shared_ptr<const estimation::Residual> base, VectorXd always,
+                   MatrixXd columns)
+      : base_(std::move(base)), always_(std::move(always)), columns_(std::move(columns)) {}
+
+  Index Rows() const override { return base_->Rows(); }
+
+  void Evaluate(const VectorXd& x, VectorXd& values,
+                estimation::RowMatrix* jacobian) const override {
+    const Index own = x.size() - columns_.cols();
+    if (jacobian == nullptr) {
+      base_->Evaluate(x.head(own), values, nullptr);
+    } else {
+      estimation::RowMatrix J(Rows(), own);
+      base_->Evaluate(x.head(own), values, &J);
+      jacobian->leftCols(own) = J;
+      jacobian->rightCols(columns_.cols()) = -columns_;
+    }
+    values -= always_ + columns_ * x.tail(columns_.cols());
+  }
+
+ private:
+  std::shared_ptr<const estimation::Residual> base_;
+  VectorXd always_;
+  MatrixXd columns_;
+};
+
+void Widen(const Candidate& cause, std::vector<estimation::ParameterBlock>& blocks) {
+  const std::vector<std::string> patterns = cause.cause->widens(cause.object);
+  for (auto& block : blocks) {
+    for (std::size_t i = 0; i < block.entries.size(); ++i) {
+      for (std::size_t p = 0; p < patterns.size(); ++p) {
+        if (!Matches(block.FullName(i), patterns[p])) continue;
+        auto& entry = block.entries[i];
+        entry.prior_sd = std::hypot(entry.prior_sd, cause.cause->plausible[static_cast<Index>(p)]);
+      }
+    }
+  }
+}
+
+constexpr double kShapeFree = 1.0;  // e-fold: no bound
+
+// By the logarithm of the shape.
+VectorXd ByShape(const LinearRun& at, const Candidate& cause) {
+  constexpr double kStep = 1e-4;
+  Candidate more = cause, less = cause;
+  more.shape *= std::exp(kStep);
+  less.shape *= std::exp(-kStep);
+  return (at.Columns(more) - at.Columns(less)) * cause.coefficients / (2.0 * kStep);
+}
+
+}  // namespace
+
+std::string BlockOf(const Candidate& cause) { return fmt::format("cause {}", cause.Name()); }
+
+bool Matches(const std::string& full_name, const std::string& pattern) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string::npos) return full_name == pattern;
+  return full_name.starts_with(pattern.substr(0, star)) &&
+         full_name.ends_with(pattern.substr(star + 1));
+}
+
+MatrixXd LinearRun::Columns(const Candidate& cause) const {
+  if (!response || cause.cause->widens) return {};
+  const auto disturbances = cause.cause->columns(trace, cause.object, cause.shape);
+  return disturbances.empty() ? MatrixXd{} : response->Columns(disturbances);
+}
+
+LinearRun LinearAt(const DiagnosedRun& run, const VectorXd& x, const VectorXd& left) {
+  LinearRun at{run.trace, nullptr};
+  if (!run.simulated.response) return at;
+  at.response = run.simulated.response->At(x);
+  if (left.size() == 0) return at;
+  const MatrixXd readings = at.response->Readings(left);
+  if (at.trace.pivots() > 0) {
+    at.trace.SetAngles(readings);
+  } else {
+    at.trace.gap = readings;
+  }
+  return at;
+}
+
+simulation::SimulatedRun Extend(const DiagnosedRun& run, const LinearRun& at,
+                                const std::vector<Candidate>& causes) {
+  simulation::SimulatedRun extended = run.simulated;
+  const Index rows = run.simulated.residual->Rows();
+  VectorXd always = VectorXd::Zero(rows);
+  MatrixXd columns(rows, 0);
+  for (const Candidate& cause : causes) {
+    if (cause.cause->widens) {
+      Widen(cause, extended.blocks);
+      continue;
+    }
+    // What is there or not is undone in the readings themselves, noise and all.
+    const MatrixXd own =
+        cause.cause->whole ? LinearRun{run.trace, at.response}.Columns(cause) : at.Columns(cause);
+    if (own.size() == 0) continue;
+    if (cause.cause->whole) {
+      always += own;
+      continue;
+    }
+    estimation::ParameterBlock block(BlockOf(cause), {"", 1.0}, {});
+    for (Index i = 0; i < own.cols(); ++i) {
+      block.entries.push_back(
+          {.name = fmt::format("c{}", i), .prior_sd = cause.cause->plausible[i]});
+    }
+    extended.blocks.push_back(std::move(block));
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + own.cols());
+    columns.rightCols(own.cols()) = own;
+    if (!cause.HasFreeShape()) continue;
+    extended.blocks.back().entries.push_back({.name = kShapeEntry, .prior_sd = kShapeFree});
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    columns.rightCols<1>() = ByShape(at, cause);
+  }
+  if (columns.cols() == 0 && always.isZero(0.0)) return extended;
+  extended.residual = std::make_shared<ExtendedResidual>(run.simulated.residual, std::move(always),
+                                                         std::move(columns));
+  return extended;
+}
+
+}  // namespace abbe::diagnosis

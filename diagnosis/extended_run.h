@@ -1,0 +1,47 @@
+// A simulated run that knows causes: its residual less what they add, with their coefficients as
+// parameters of their own (block "cause backlash:X").
+//
+//   const LinearRun at = LinearAt(run, x);
+//   const SimulatedRun knows = Extend(run, at, causes);
+//
+// The columns are those of the run at `x`, the parameters of its own blocks; the coefficients have
+// their plausible deviation as prior. A cause that is there or not has no parameter; one that
+// widens parameters changes their priors instead. Units, failure: those of
+// simulation/simulated_run.h. Validity: linear in the coefficients.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnosis/campaign.h"
+#include "diagnosis/candidate.h"
+
+namespace abbe::diagnosis {
+
+// A run at one x: what disturbances do to it there (nullptr for a run that does not tell), and its
+// trace with the readings that it would show without noise.
+struct LinearRun {
+  simulation::Trace trace;
+  std::shared_ptr<const simulation::Response> response;
+
+  // Of a cause; empty when it does not act on this run.
+  Eigen::MatrixXd Columns(const Candidate& cause) const;
+};
+// `left`: what the simulation leaves of the run, whitened, causes included; empty: the readings
+// stay as they are.
+LinearRun LinearAt(const DiagnosedRun& run, const Eigen::VectorXd& x, const Eigen::VectorXd& left);
+
+simulation::SimulatedRun Extend(const DiagnosedRun& run, const LinearRun& at,
+                                const std::vector<Candidate>& causes);
+
+inline constexpr const char* kShapeEntry = "log_shape";  // beside where it was taken
+
+// The name of the block of a cause.
+std::string BlockOf(const Candidate& cause);
+
+// Whether a parameter "head_turn X.u" is meant by "head_turn *.u".
+bool Matches(const std::string& full_name, const std::string& pattern);
+
+}  // namespace abbe::diagnosis

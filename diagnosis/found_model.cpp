@@ -1,0 +1,33 @@
+#include "diagnosis/found_model.h"
+
+#include <cmath>
+
+namespace abbe::diagnosis {
+namespace {
+
+constexpr double kCoverage = 2.0;
+
+}  // namespace
+
+simulation::ModelledCause FoundCause(const Score& score) {
+  const auto [values, u] = KeysOf(score);
+  const Eigen::Index count = score.coefficients.size();
+  return {score.candidate.cause, score.candidate.object, values, kCoverage * u,
+          score.covariance.topLeftCorner(count, count)};
+}
+
+simulation::ExtendedModel FoundModel(const Diagnosis& diagnosis, const Campaign& campaign,
+                                     const HeldOutGain& gain) {
+  simulation::ExtendedModel model;
+  model.machine = campaign.setup().machine.name;
+  model.origin = campaign.origin();
+  model.gain = {gain.rows, gain.before, gain.after, std::sqrt(diagnosis.chi_before),
+                std::sqrt(diagnosis.chi_after)};
+  for (const Finding& finding : diagnosis.findings) {
+    const simulation::Cause& cause = *finding.score.candidate.cause;
+    if (cause.columns || cause.widens) model.causes.push_back(FoundCause(finding.score));
+  }
+  return model;
+}
+
+}  // namespace abbe::diagnosis

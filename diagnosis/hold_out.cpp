@@ -1,0 +1,114 @@
+#include "diagnosis/hold_out.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "diagnosis/evidence.h"
+#include "diagnosis/extended_run.h"
+#include "fusion/machine_problem.h"
+
+namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using recording::Recording;
+
+constexpr std::size_t kBlocks = 8;
+
+Recording RowsWhere(const Recording& recording, const std::function<bool(std::size_t)>& wanted) {
+  Recording part = recording;
+  for (auto& column : part.columns) column.values.clear();
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    if (!wanted(row)) continue;
+    for (std::size_t c = 0; c < part.columns.size(); ++c) {
+      part.columns[c].values.push_back(recording.columns[c].values[row]);
+    }
+  }
+  return part;
+}
+
+// Runs of the linkage on one base that are held out whole: every second one, when there are enough.
+// A part of a run would not know which way its axes last turned.
+std::set<const Recording*> HeldRuns(const std::vector<Recording>& recordings) {
+  constexpr std::size_t kEnough = 3;
+  std::map<std::string, std::vector<const Recording*>> by_base;
+  for (const Recording& recording : recordings) {
+    if (recording.Kind() != "linkage") continue;
+    by_base[recording.HeaderText("mounting.base").value_or("")].push_back(&recording);
+  }
+  std::set<const Recording*> held;
+  for (const auto& [base, runs] : by_base) {
+    if (runs.size() < kEnough) continue;
+    for (std::size_t i = 1; i < runs.size(); i += 2) held.insert(runs[i]);
+  }
+  return held;
+}
+
+// Which rows are held out; empty: none.
+std::function<bool(std::size_t)> HeldRows(const Recording& recording) {
+  if (recording.Kind() != "sweep" && recording.Kind() != "linkage") return {};
+  const auto pass = recording.Find("pass");
+  const std::set<double> passes =
+      pass ? std::set<double>(pass->begin(), pass->end()) : std::set<double>{};
+  if (passes.size() > 1) {
+    return [pass](std::size_t row) { return std::lround((*pass)[row]) % 2 == 0; };
+  }
+  if (recording.Kind() == "sweep") return {};
+  const std::size_t block = recording.rows() / kBlocks + 1;
+  return [block](std::size_t row) { return (row / block) % 2 == 1; };
+}
+
+// The simulation of a run at the solution of another fit.
+VectorXd ResidualAt(const Fit& fit, const DiagnosedRun& run) {
+  const LinearRun at = LinearAt(run, fusion::ValuesFound(fit.result(), run.simulated.blocks), {});
+  const auto extended = Extend(run, at, fit.taken_in());
+  VectorXd residual(extended.residual->Rows());
+  extended.residual->Evaluate(fusion::ValuesFound(fit.result(), extended.blocks), residual,
+                              nullptr);
+  return residual;
+}
+
+double RmsOf(const Campaign& held, const Fit& fit, Index& rows) {
+  double sum = 0.0;
+  rows = 0;
+  for (const DiagnosedRun& run : held.runs()) {
+    const VectorXd residual = ResidualAt(fit, run);
+    sum += residual.squaredNorm();
+    rows += residual.size();
+  }
+  return std::sqrt(sum / static_cast<double>(rows));
+}
+
+}  // namespace
+
+HeldOutGain HoldOut(const Campaign& campaign, const std::vector<Recording>& recordings,
+                    const std::vector<Candidate>& causes) {
+  Campaign kept(campaign.setup(), campaign.origin()), held(campaign.setup(), campaign.origin());
+  const std::set<const Recording*> whole = HeldRuns(recordings);
+  for (const Recording& recording : recordings) {
+    if (!whole.empty() && recording.Kind() == "linkage") {
+      (whole.contains(&recording) ? held : kept).Add(recording);
+      continue;
+    }
+    const auto is_held = HeldRows(recording);
+    if (!is_held) {
+      kept.Add(recording);
+      continue;
+    }
+    kept.Add(RowsWhere(recording, [&](std::size_t row) { return !is_held(row); }));
+    held.Add(RowsWhere(recording, is_held));
+  }
+  HeldOutGain gain;
+  if (held.runs().empty()) return gain;
+  const Fit baseline(kept);
+  gain.before = RmsOf(held, baseline, gain.rows);
+  gain.after = RmsOf(held, Fit(baseline, causes), gain.rows);
+  return gain;
+}
+
+}  // namespace abbe::diagnosis

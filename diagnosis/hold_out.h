@@ -1,0 +1,32 @@
+// The gain of an extended simulation on data that it did not see.
+//
+//   const HeldOutGain gain = HoldOut(campaign, recordings, causes);
+//   gain.after / gain.before
+//
+// Every other pass of each sweep is held out, and every other run of the linkage on one base; where
+// it has fewer than three, every other pass, or every other of kBlocks blocks in time, so that
+// neighbouring rows stay together. A sweep with one pass and runs of other kinds take no part. The
+// simulation is fitted to the rest, once as it is and once with the causes, and asked for the rows
+// that were held out: rms of (measured - simulated) / stated deviation, 1 for the noise floor.
+// Failure: that of Fit.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "diagnosis/campaign.h"
+#include "diagnosis/candidate.h"
+#include "recording/recording.h"
+
+namespace abbe::diagnosis {
+
+struct HeldOutGain {
+  Eigen::Index rows = 0;  // held out; 0: the runs have no passes to hold out
+  double before = 0.0, after = 0.0;
+};
+
+// `recordings`: those of the campaign.
+HeldOutGain HoldOut(const Campaign& campaign, const std::vector<recording::Recording>& recordings,
+                    const std::vector<Candidate>& causes);
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,299 @@
+#include "diagnosis/unexplained.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "simulation/causes/cause.h"
+
+namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+using simulation::Disturbance;
+using simulation::Scene;
+using simulation::Trace;
+
+constexpr Index kTerms = 8;
+constexpr double kAbsorbed = 1e-4;  // of the most information: what is left is rounding
+constexpr Index kLines = 400;
+constexpr double kOfAWave = 0.4;  // over the range, from one line to the next
+
+struct Channel {
+  std::string object;
+  Index stage;
+  const char* unit;
+  bool of_probes, of_linkage;
+};
+
+std::vector<Channel> ChannelsOf(const Scene& scene) {
+  std::vector<Channel> channels;
+  for (const std::string& probe : simulation::ProbesOf(scene)) {
+    channels.push_back(
+        {probe, simulation::kReadingStage + simulation::ProbeOf(probe), "um", true, false});
+  }
+  for (const std::string& pivot : simulation::PivotsOf(scene)) {
+    channels.push_back(
+        {pivot, simulation::kEncoderStage + simulation::PivotOf(pivot), "urad", false, true});
+  }
+  for (const std::string& axis : simulation::AxesOf(scene)) {
+    channels.push_back(
+        {axis, simulation::Positioning(simulation::AxisOf(axis[0])), "um", true, true});
+  }
+  return channels;
+}
+
+bool Feels(const Channel& channel, const Trace& trace) {
+  return trace.gap.size() > 0 ? channel.of_probes : channel.of_linkage;
+}
+
+// The values of a variable in the rows of a run; empty where the run does not have it.
+RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
+  if (variable == "time") return trace.clock.transpose();
+  if (variable == "feed") return trace.velocity.colwise().norm();
+  if (variable.size() == 1) return trace.axes.row(variable[0] - 'x');
+  if (variable.size() == 3) {
+    const double sign = variable[1] == '+' ? 1.0 : -1.0;
+    return trace.axes.row(variable[0] - 'x') + sign * trace.axes.row(variable[2] - 'x');
+  }
+  if (variable.starts_with("pivot_")) {
+    if (trace.pivots() == 0) return {};
+    return trace.angles.row(simulation::PivotOf(variable));
+  }
+  const auto sensor = std::find(trace.sensors.begin(), trace.sensors.end(), variable);
+  if (sensor == trace.sensors.end()) return {};
+  return trace.temperature.row(sensor - trace.sensors.begin());
+}
+
+// Of what a channel may be a smooth function.
+std::vector<std::string> VariablesOf(const Scene& scene) {
+  std::vector<std::string> variables{"time", "x", "y", "z", "feed"};
+  for (const std::string& pivot : simulation::PivotsOf(scene)) variables.push_back(pivot);
+  for (const std::string& sensor : scene.Sensors()) variables.push_back(sensor);
+  return variables;
+}
+
+// In what a channel may be a line.
+std::vector<std::string> PeriodicVariablesOf(const Scene& scene) {
+  std::vector<std::string> variables{"time", "x",   "y",   "z",   "x+y",
+                                     "x-y",  "x+z", "x-z", "y+z", "y-z"};
+  for (const std::string& pivot : simulation::PivotsOf(scene)) variables.push_back(pivot);
+  return variables;
+}
+
+struct Range {
+  double first = std::numeric_limits<double>::infinity();
+  double last = -std::numeric_limits<double>::infinity();
+};
+
+Range RangeOf(const std::string& variable, const Channel& channel, const Scene& scene) {
+  Range range;
+  for (const Trace* trace : scene.traces) {
+    if (!Feels(channel, *trace)) continue;
+    const RowVectorXd values = ValuesOf(variable, *trace);
+    if (values.size() == 0) continue;
+    range.first = std::min(range.first, values.minCoeff());
+    range.last = std::max(range.last, values.maxCoeff());
+  }
+  return range;
+}
+
+struct Answer {
+  double chi_square = 0.0;
+  int freedom = 0;
+  double amplitude = 0.0;
+  double lines = 1.0;  // among which this is the strongest
+  double period = 0.0;
+
+  // Natural logarithm of the probability of as much by chance.
+  double LogProbability() const {
+    if (freedom == 0) return 0.0;
+    const boost::math::chi_squared distribution(freedom);
+    const double one = boost::math::cdf(boost::math::complement(distribution, chi_square));
+    const double log_one = one > 0.0 ? std::log(one) : -0.5 * chi_square;
+    return std::min(0.0, log_one + std::log(lines));
+  }
+};
+
+// What the projected columns explain.
+Answer Ask(const Fit::Projection& projection) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(projection.information);
+  const double most = eigen.eigenvalues().maxCoeff();
+  Answer answer;
+  VectorXd found = VectorXd::Zero(projection.score.size());
+  for (Index i = 0; i < found.size(); ++i) {
+    const double value = eigen.eigenvalues()[i];
+    if (!(value > kAbsorbed * most) || value <= 0.0) continue;
+    const double along = eigen.eigenvectors().col(i).dot(projection.score);
+    answer.chi_square += along * along / value;
+    found += along / value * eigen.eigenvectors().col(i);
+    ++answer.freedom;
+  }
+  answer.amplitude = found.norm() / std::numbers::sqrt2;
+  return answer;
+}
+
+class Questions {
+ public:
+  explicit Questions(const Fit& fit)
+      : fit_(fit), scene_(fit.campaign().scene()), channels_(ChannelsOf(scene_)) {}
+
+  std::vector<Leftover> AskAll() {
+    for (const Channel& channel : channels_) AskSmooth(channel);
+    for (const std::string& variable : PeriodicVariablesOf(scene_)) AskLines(variable);
+    std::sort(found_.begin(), found_.end(),
+              [](const Found& a, const Found& b) { return a.log_probability < b.log_probability; });
+    std::vector<Leftover> leftovers;
+    for (Found& each : found_) {
+      const auto same = [&](const Leftover& other) { return other.object == each.leftover.object; };
+      if (std::any_of(leftovers.begin(), leftovers.end(), same)) continue;
+      each.leftover.p_value =
+          std::min(1.0, std::exp(each.log_probability) * static_cast<double>(found_.size()));
+      if (each.leftover.p_value < kDoubt) leftovers.push_back(std::move(each.leftover));
+    }
+    return leftovers;
+  }
+
+ private:
+  struct Question {
+    std::string variable;
+    Range range;
+  };
+  struct Found {
+    Leftover leftover;
+    double log_probability;
+  };
+
+  void Note(const Channel& channel, const std::string& variable, const Answer& answer) {
+    found_.push_back(
+        {{variable, channel.object, answer.amplitude, channel.unit, 1.0, answer.period},
+         answer.LogProbability()});
+  }
+
+  // kTerms cosines of each variable.
+  void AskSmooth(const Channel& channel) {
+    std::vector<Question> questions;
+    for (const std::string& variable : VariablesOf(scene_)) {
+      const Range range = RangeOf(variable, channel, scene_);
+      if (range.last > range.first) questions.push_back({variable, range});
+    }
+    const auto disturb = [&](const Trace& trace) -> std::vector<Disturbance> {
+      if (!Feels(channel, trace)) return {};
+      std::vector<Disturbance> columns;
+      for (const Question& question : questions) {
+        const RowVectorXd values = ValuesOf(question.variable, trace);
+        const double length = question.range.last - question.range.first;
+        for (Index term = 1; term <= kTerms; ++term) {
+          if (values.size() == 0) {
+            columns.push_back(simulation::NoDisturbance(trace));
+            continue;
+          }
+          const double waves = std::numbers::pi * static_cast<double>(term) / length;
+          columns.push_back(simulation::InStage(
+              trace, channel.stage, (waves * (values.array() - question.range.first)).cos()));
+        }
+      }
+      return columns;
+    };
+    const auto all = fit_.Project(disturb, static_cast<Index>(questions.size()) * kTerms);
+    for (std::size_t q = 0; q < questions.size(); ++q) {
+      const auto first = static_cast<Index>(q) * kTerms;
+      Note(channel, questions[q].variable,
+           Ask({all.information.block(first, first, kTerms, kTerms),
+                all.score.segment(first, kTerms)}));
+    }
+  }
+
+  // The lines of each channel are weighed with the largest information that they could have; the
+  // strongest is then asked as it should be. Channels of one kind of run share range and waves.
+  void AskLines(const std::string& variable) {
+    for (const bool of_probes : {true, false}) {
+      std::vector<const Channel*> channels;
+      for (const Channel& channel : channels_) {
+        if (of_probes ? channel.of_probes : !channel.of_probes || channel.of_linkage) {
+          channels.push_back(&channel);
+        }
+      }
+      if (channels.empty()) continue;
+      const Range range = RangeOf(variable, *channels.back(), scene_);
+      if (!(range.last > range.first)) continue;
+      const std::vector<double> waves =
+          StrongestWaves(variable, channels, of_probes,
+                         2.0 * std::numbers::pi * kOfAWave / (range.last - range.first));
+      for (std::size_t c = 0; c < channels.size(); ++c) {
+        if (waves[c] > 0.0) Note(*channels[c], variable, AskLine(variable, *channels[c], waves[c]));
+      }
+    }
+  }
+
+  std::vector<double> StrongestWaves(const std::string& variable,
+                                     const std::vector<const Channel*>& channels, bool of_probes,
+                                     double step) const {
+    const auto count = static_cast<Index>(channels.size());
+    MatrixXd scores(count, 0), weights(count, 0);
+    RowVectorXd values;
+    for (std::size_t run = 0; run < fit_.runs(); ++run) {
+      const Trace& trace = fit_.TraceOf(run);
+      if (trace.rows() == 0 || (trace.gap.size() > 0) != of_probes) continue;
+      const RowVectorXd own = ValuesOf(variable, trace);
+      if (own.size() == 0) continue;
+      for (MatrixXd* matrix : {&scores, &weights}) {
+        matrix->conservativeResize(Eigen::NoChange, matrix->cols() + own.size());
+      }
+      values.conservativeResize(values.size() + own.size());
+      values.tail(own.size()) = own;
+      for (Index c = 0; c < count; ++c) {
+        const auto of_run = fit_.ScoresOf(run, channels[static_cast<std::size_t>(c)]->stage);
+        scores.row(c).tail(own.size()) = of_run.scores;
+        weights.row(c).tail(own.size()) = of_run.weights;
+      }
+    }
+    std::vector<double> found(channels.size(), 0.0), strongest(channels.size(), 0.0);
+    if (values.size() == 0) return found;
+    for (Index line = 1; line <= kLines; ++line) {
+      const double wave = step * static_cast<double>(line);
+      const VectorXd sine = (wave * values.array()).sin().matrix().transpose();
+      const VectorXd cosine = (wave * values.array()).cos().matrix().transpose();
+      const Eigen::ArrayXd power =
+          (scores * sine).array().square() / (weights * sine.cwiseAbs2()).array().max(1e-300) +
+          (scores * cosine).array().square() / (weights * cosine.cwiseAbs2()).array().max(1e-300);
+      for (std::size_t c = 0; c < channels.size(); ++c) {
+        if (power[static_cast<Index>(c)] <= strongest[c]) continue;
+        strongest[c] = power[static_cast<Index>(c)];
+        found[c] = wave;
+      }
+    }
+    return found;
+  }
+
+  Answer AskLine(const std::string& variable, const Channel& channel, double wave) const {
+    const auto disturb = [&](const Trace& trace) -> std::vector<Disturbance> {
+      if (!Feels(channel, trace)) return {};
+      const RowVectorXd values = ValuesOf(variable, trace);
+      if (values.size() == 0) return {};
+      return simulation::WaveInStage(trace, channel.stage, wave * values);
+    };
+    Answer answer = Ask(fit_.Project(disturb, 2));
+    answer.lines = static_cast<double>(kLines);
+    answer.period = 2.0 * std::numbers::pi / wave;
+    return answer;
+  }
+
+  const Fit& fit_;
+  const Scene scene_;
+  const std::vector<Channel> channels_;
+  std::vector<Found> found_;
+};
+
+}  // namespace
+
+std::vector<Leftover> FindLeftovers(const Fit& fit) { return Questions(fit).AskAll(); }
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,38 @@
+// What is left of the data after all causes: structure that no known cause explains.
+//
+//   for (const Leftover& leftover : FindLeftovers(fit)) ...       // nothing: all is explained
+//
+// Each channel (the readings of a probe, the angle of a pivot, the positioning of an axis) is asked
+// of each recorded variable (time, the position of an axis and sums of two, the angle of a pivot, a
+// temperature, the feed) whether
+//   a smooth function of it, kTerms cosines over its range, or
+//   a line of its periodogram, sine and cosine of one of up to kLines wave numbers,
+// would make the channel fit better, free of everything that the simulation could be instead
+// (evidence.h). What it then explains is chi-square distributed when nothing is there; of a
+// periodogram the strongest line counts, as one of so many.
+// Reported is the strongest answer of each channel whose probability, times the number of questions
+// asked, is below `kDoubt`; the strongest first. Source: score test, Rao (1948); periodogram with
+// unequal times, Lomb (1976).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/evidence.h"
+
+namespace abbe::diagnosis {
+
+struct Leftover {
+  std::string variable;    // "time", "x", "x+y", "pivot_2", "temp_table_c", "feed"
+  std::string object;      // channel
+  double amplitude = 0.0;  // m or rad, rms over the rows
+  std::string unit;        // "um", "urad"
+  double p_value = 1.0;    // corrected for the number of questions
+  double period = 0.0;     // of a line, in the unit of the variable (s, m, rad); 0: smooth
+};
+
+inline constexpr double kDoubt = 1e-3;
+
+std::vector<Leftover> FindLeftovers(const Fit& fit);
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,38 @@
+// Some rows of another residual: to hold the others out.
+//
+//   run.residual = std::make_shared<ChosenRows>(run.residual, rows);
+//
+// Shapes: the rows in the order in which they are named. Cost: that of all rows.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "estimation/residual.h"
+
+namespace abbe::estimation {
+
+class ChosenRows : public Residual {
+ public:
+  ChosenRows(std::shared_ptr<const Residual> all, std::vector<Eigen::Index> rows)
+      : all_(std::move(all)), rows_(std::move(rows)) {}
+
+  Eigen::Index Rows() const override { return static_cast<Eigen::Index>(rows_.size()); }
+
+  void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& values,
+                RowMatrix* jacobian) const override {
+    Eigen::VectorXd all(all_->Rows());
+    RowMatrix J(jacobian == nullptr ? 0 : all_->Rows(), x.size());
+    all_->Evaluate(x, all, jacobian == nullptr ? nullptr : &J);
+    values = all(rows_);
+    if (jacobian != nullptr) *jacobian = J(rows_, Eigen::all);
+  }
+
+ private:
+  std::shared_ptr<const Residual> all_;
+  std::vector<Eigen::Index> rows_;
+};
+
+}  // namespace abbe::estimation

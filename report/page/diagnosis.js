@@ -1,0 +1,217 @@
+// The section of a diagnosis: what the machine has, what it could have instead, what the runs
+// cannot show, and what is left.
+
+const VERDICTS = {
+  clean: 'Nothing was found, and nothing is left that would need a cause.',
+  explained: 'What was found explains the runs; nothing is left over.',
+  ambiguous: 'Something is there, but these runs cannot tell which of several causes it is.',
+  unexplained: 'Something is left that no known cause explains.',
+};
+const EVIDENCE_SHOWN = 8;   // candidates before the list is folded
+
+const kindOfCause = (id) => capital(String(id).replaceAll('-', ' '));
+
+// "X" -> "axis X", "XY" -> "axes X and Y", "probe_a+probe_b" -> "probe a and probe b"
+function objectName(object) {
+  const text = String(object);
+  if (/^[XYZ]$/.test(text)) return `axis ${text}`;
+  if (/^[XYZ]{2}$/.test(text)) return `axes ${text[0]} and ${text[1]}`;
+  return text.split('+').map((one) => one.replaceAll('_', ' ')).join(' and ');
+}
+
+// "backlash:X" -> "Backlash, axis X"
+function candidateName(text) {
+  const [cause, object] = String(text).split(':');
+  return object ? `${kindOfCause(cause)}, ${objectName(object)}` : kindOfCause(cause);
+}
+
+const findingName = ({cause, object}) => candidateName(`${cause}:${object}`);
+const percent = (share) =>
+    isNumber(share) ? share > 0.999 ? 'over 99.9\u00a0%' : `${fixed(100 * share, 1)}\u00a0%` : null;
+
+function diagnosisSummary(result) {
+  const found = (result.findings ?? []).map(findingName);
+  const verdict = VERDICTS[result.verdict] ?? capital(String(result.verdict ?? ''));
+  return found.length ? `${verdict} Found: ${found.join('; ')}.` : verdict;
+}
+
+// "delta" without a unit, "width_um" with it: the unit has a column of its own.
+const parameterName = ({name, unit}) =>
+    capital((unit ? name.slice(0, name.length - unit.length - 1) : name).replaceAll('_', ' '));
+
+function findingParameters({parameters}) {
+  const told = (parameters ?? []).filter(({value}) => isNumber(value));
+  if (!told.length) return null;
+  return table({
+    caption: 'Size, with its expanded uncertainty',
+    columns: [{head: 'Size'}, {head: 'Value', numeric: true}, {head: 'Unit'}],
+    rows: told.map(
+        (one) =>
+            [parameterName(one), quantity(one.value, one.u95),
+             micro(one.unit)]),
+  });
+}
+
+function findingWords({probability, words = {}, parameters}) {
+  const sensor = (parameters ?? []).find(({name}) => name === 'sensor')?.value;
+  return factList([
+    ['Probability', percent(probability)], ['Follows the sensor', sensor],
+    ['What it is', words.what && capital(words.what), true],
+    ['How it shows', words.shows && capital(words.shows), true],
+    ['What to check', words.check && capital(words.check), true],
+    ['What to do', words.remedy && capital(words.remedy), true]
+  ]);
+}
+
+// Measured less simulated on the variable where the cause lives, without and with it.
+function findingCurve(finding) {
+  const {variable, unit, x, before, after} = finding.curve ?? {};
+  if (!x?.length) return null;
+  const shown = micro(unit);
+  const curves = [
+    ['before', 'without the cause', before, 'backward'], ['after', 'with the cause', after, 'mean']
+  ];
+  const panel = {
+    name: 'Measured less simulated',
+    unit: shown,
+    height: 280,
+    about: `Measured less simulated over ${variable} in ${shown}, without and with ${
+        findingName(finding)}; the values follow as a table.`,
+    draw: (colours, on) => ({
+      data: curves.filter(([key, , y]) => y && on.has(key))
+                .map(
+                    ([, label, y, colour]) => lineTrace(
+                        label, x, y, colours[colour], shown,
+                        {mode: 'markers', marker: {size: 4, color: colours[colour]}})),
+      layout: figureLayout(colours, {x: variable}),
+    }),
+    values: () => ({
+      columns: [
+        {head: variable, numeric: true},
+        ...curves.map(([, label]) => ({head: capital(label), unit: shown, numeric: true}))
+      ],
+      rows: x.map((at, i) => [plain(at), significant(before?.[i]), significant(after?.[i])]),
+    }),
+  };
+  return figureGroup({
+    title: 'Where it shows',
+    items: [
+      {key: 'before', label: 'Without the cause', swatch: 'backward'},
+      {key: 'after', label: 'With the cause', swatch: 'mean'}
+    ],
+    panels: [panel],
+  });
+}
+
+const findingGroup = (finding) => element(
+    'section', {class: 'group'}, element('h3', {}, findingName(finding)), findingWords(finding),
+    findingParameters(finding), findingCurve(finding));
+
+function rivalsTable(result) {
+  const rivals = result.rivals ?? [];
+  if (!rivals.length) return null;
+  const list = (items) =>
+      element('ul', {class: 'plain'}, items.map((one) => element('li', {}, one)));
+  return table({
+    caption: 'What else it could be, and the run that tells',
+    columns: [
+      {head: 'Causes'}, {head: 'Probability', numeric: true}, {head: 'Run to make next'},
+      {head: 'Expected then', numeric: true}
+    ],
+    rows: rivals.map(
+        ({causes, odds, next_run: next, expected_odds: then}) =>
+            [list((causes ?? []).map(candidateName)), list((odds ?? []).map(percent)), next ?? null,
+             Array.isArray(then) ? list(then.map(percent)) :
+                 isNumber(then)  ? percent(then) :
+                                   null]),
+  });
+}
+
+function evidenceTable(result) {
+  const all = [...(result.evidence ?? [])].sort((a, b) => b.log_evidence - a.log_evidence);
+  if (!all.length) return null;
+  const made = (caption, rows) => table({
+    caption,
+    columns: [
+      {head: 'Cause, alone'}, {head: 'Evidence for it', unit: 'ln', numeric: true},
+      {head: 'A usual size stands out by', unit: 'std. dev.', numeric: true}
+    ],
+    rows: rows.map(
+        (one) =>
+            [findingName(one), fixed(one.log_evidence, 1),
+             fixed(one.visible_sd, one.visible_sd < 10 ? 1 : 0)]),
+  });
+  const rest = all.slice(EVIDENCE_SHOWN);
+  return [
+    made('All candidates against the runs, the most probable first', all.slice(0, EVIDENCE_SHOWN)),
+    rest.length ? element(
+                      'details', {class: 'values group'},
+                      element('summary', {}, `${rest.length} more candidates`),
+                      made('The other candidates', rest)) :
+                  null,
+  ];
+}
+
+function cannotShowBlock(result) {
+  return notesBlock(
+      'These runs cannot show, so nothing is said of them:',
+      (result.cannot_show ?? []).map(candidateName));
+}
+
+function leftoverBlock(result) {
+  return notesBlock(
+      'Left unexplained:',
+      (result.unexplained ?? [])
+          .map(
+              ({variable, object, amplitude, unit, p_value: p}) =>
+                  `${capital(objectName(object))} varies with ${variable} by ${
+                      significant(amplitude)}\u00a0${
+                      micro(unit)} in a way that no known cause makes (p = ${
+                      plain(Number(p?.toPrecision(1)))})`));
+}
+
+function gainTable(result) {
+  const {heldout, chi2_per_row_before: before, chi2_per_row_after: after} = result;
+  const rows = [
+    isNumber(before) ? ['All runs', Math.sqrt(before), Math.sqrt(after)] : null,
+    heldout ?
+        [`${grouped(heldout.rows)} rows that took no part`, heldout.rms_before, heldout.rms_after] :
+        null
+  ].filter(Boolean);
+  if (!rows.length || !result.findings?.length) return null;
+  return table({
+    caption: 'Measured less simulated, in units of the stated noise (1: nothing is left but noise)',
+    columns: [
+      {head: 'Rows'}, {head: 'Without what was found', numeric: true},
+      {head: 'With it', numeric: true}
+    ],
+    rows: rows.map(([name, ...both]) => [name, ...both.map((one) => fixed(one, 3))]),
+  });
+}
+
+registerSection({
+  command: 'diagnose',
+  title: () => 'Diagnosis: what the simulation lacks',
+  short: () => 'Diagnosis',
+  summary: diagnosisSummary,
+  facts: (result) => [
+      ['Verdict', capital(String(result.verdict ?? ''))],
+      ['Recordings', (result.recordings ?? []).join(', '), true], ['Extended model', result.model]],
+  body: (result) => [leftoverBlock(result), ...(result.findings ?? []).map(findingGroup),
+                     rivalsTable(result), gainTable(result), evidenceTable(result),
+                     cannotShowBlock(result)]
+                        .flat()
+                        .filter(Boolean),
+  overview: {
+    title: 'Diagnosis',
+    columns: [
+      {head: 'Verdict'}, {head: 'Found'}, {head: 'Held out, without', numeric: true},
+      {head: 'Held out, with', numeric: true}
+    ],
+    row: (result) =>
+        [capital(String(result.verdict ?? '')),
+         (result.findings ?? []).map(findingName).join('; ') || 'nothing',
+         ...['rms_before', 'rms_after'].map(
+             (key) => isNumber(result.heldout?.[key]) ? fixed(result.heldout[key], 3) : null)],
+  },
+});

@@ -1,0 +1,28 @@
+// What a writer of TOML files puts behind the "=".
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace abbe::settings {
+
+// A text in quotes; blanks for characters that TOML does not allow there.
+std::string Quoted(std::string_view text);
+
+// A float, in the shortest form that reads back the same.
+std::string Float(double value);
+
+// "[1.0, 2.5]"
+std::string Floats(std::span<const double> values);
+// The same of a vector that has data() and size().
+template <typename Vector>
+std::string Floats(const Vector& values) {
+  return Floats(std::span<const double>(values.data(), static_cast<std::size_t>(values.size())));
+}
+
+// ["a", "b"]
+std::string QuotedList(std::span<const std::string> texts);
+
+}  // namespace abbe::settings

@@ -1,0 +1,120 @@
+#include "simulation/causes/cause.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace abbe::simulation {
+
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+bool Scene::HasSweeps() const {
+  return std::any_of(traces.begin(), traces.end(),
+                     [](const Trace* trace) { return trace->gap.size() > 0; });
+}
+
+Eigen::Index Scene::Pivots() const {
+  Eigen::Index pivots = 0;
+  for (const Trace* trace : traces) pivots = std::max(pivots, trace->pivots());
+  return pivots;
+}
+
+std::vector<std::string> Scene::Sensors() const {
+  std::vector<std::string> sensors;
+  for (const Trace* trace : traces) {
+    for (const std::string& sensor : trace->sensors) {
+      if (std::find(sensors.begin(), sensors.end(), sensor) == sensors.end()) {
+        sensors.push_back(sensor);
+      }
+    }
+  }
+  return sensors;
+}
+
+VectorXd Cause::ValuesOf(const VectorXd& found, const VectorXd& shape) const {
+  if (tell) return tell(found, shape);
+  if (follows_size) return found;
+  VectorXd values(found.size() + shape.size());
+  values << found, shape;
+  return values;
+}
+
+Recalled Cause::RecallFrom(const VectorXd& values) const {
+  if (whole) return {VectorXd::Ones(1), {}};
+  if (follows_size) return {values, values};
+  if (recall) return recall(values);
+  return {values.head(coefficients()), values.tail(values.size() - coefficients())};
+}
+
+Seat Cause::SeatAt(const std::string& object) const {
+  if (in_map) return Seat::kMap;
+  const bool of_axes = object.find_first_not_of("XYZ") != 0;  // "X", "XY", "X temp_table_c"
+  return of_axes ? Seat::kMotion : Seat::kInstrument;
+}
+
+std::vector<std::string> AxesOf(const Scene&) { return {"X", "Y", "Z"}; }
+
+std::vector<std::string> AxisPairsOf(const Scene&) { return {"XY", "XZ", "YZ"}; }
+
+std::vector<std::string> ProbesOf(const Scene& scene) {
+  if (!scene.HasSweeps()) return {};
+  return {"probe_a", "probe_b", "probe_c", "probe_d", "probe_e"};
+}
+
+std::vector<std::string> PivotsOf(const Scene& scene) {
+  std::vector<std::string> pivots;
+  for (Eigen::Index i = 1; i <= scene.Pivots(); ++i)
+    pivots.push_back(std::string("pivot_") + std::to_string(i));
+  return pivots;
+}
+
+int AxisOf(char letter) { return letter - 'X'; }
+
+int ProbeOf(const std::string& object) { return object.back() - 'a'; }
+
+int PivotOf(const std::string& object) { return std::stoi(object.substr(6)) - 1; }
+
+int Positioning(int axis) { return MotionStage(axis, axis); }
+
+ObjectName Split(const std::string& object) {
+  const std::size_t blank = object.find(' ');
+  if (blank == std::string::npos) return {object, ""};
+  return {object.substr(0, blank), object.substr(blank + 1)};
+}
+
+double SizeOf(const VectorXd& shape) { return shape.size() == 0 ? 0.0 : shape[0]; }
+
+Disturbance InStage(const Trace& trace, Eigen::Index stage, const RowVectorXd& values) {
+  Disturbance disturbance = NoDisturbance(trace);
+  disturbance.row(stage) = values;
+  return disturbance;
+}
+
+std::vector<Disturbance> WaveInStage(const Trace& trace, Eigen::Index stage,
+                                     const RowVectorXd& phase) {
+  return {InStage(trace, stage, phase.array().sin()), InStage(trace, stage, phase.array().cos())};
+}
+
+// amplitude sin(t + phase) = amplitude cos(phase) sin t + amplitude sin(phase) cos t
+Eigen::Vector2d AmplitudeAndPhase(const VectorXd& sine_cosine) {
+  return {sine_cosine.norm(), std::atan2(sine_cosine[1], sine_cosine[0])};
+}
+
+Eigen::Vector2d SineAndCosine(double amplitude, double phase) {
+  return {amplitude * std::cos(phase), amplitude * std::sin(phase)};
+}
+
+std::vector<VectorXd> ShapesOf(const std::vector<double>& numbers) {
+  std::vector<VectorXd> shapes;
+  shapes.reserve(numbers.size());
+  for (const double number : numbers) shapes.push_back(VectorXd::Constant(1, number));
+  return shapes;
+}
+
+std::vector<VectorXd> GeometricShapes(double first, double last, double ratio) {
+  std::vector<double> numbers;
+  for (double number = first; number <= last; number *= ratio) numbers.push_back(number);
+  return ShapesOf(numbers);
+}
+
+}  // namespace abbe::simulation

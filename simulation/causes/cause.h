@@ -1,0 +1,138 @@
+// A physical cause: something that the simulation leaves out, and what it would do to every run.
+//
+//   for (const Cause& cause : Causes())                                   // registry.h
+//     for (const std::string& object : cause.objects(scene))
+//       columns = cause.columns(trace, object, shape);                    // one per coefficient
+//
+// A cause acts at one stage (simulation/disturbance.h) and is written once, for every kind of run
+// that it touches. It is linear in its coefficients (a width, a gain, a sine and a cosine) and may
+// have a shape besides (a period, a time constant, an order, an instant), which is searched over
+// `shapes`. Where what it does is not quite in proportion to its size (a play, a delay), the shape
+// is the size around which the column is taken, and none for a small one: `follows_size`.
+// All coefficients are 0 when the cause is absent.
+// Some causes are already parameters of the simulation, within a tolerance (squareness, the
+// eccentricity of an encoder): these name the parameters that they set free in `widens` and have no
+// columns.
+// Keys: the names, units and signs by which files and reports know a cause; `tell` works them out
+// of coefficients and shape, `recall` goes back. Units: SI inside; CauseKey::unit is what one unit
+// of the key is in SI.
+// A new cause is one file here and one line in registry.cpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "simulation/trace.h"
+
+namespace abbe::simulation {
+
+// What the runs at hand consist of.
+struct Scene {
+  std::vector<const Trace*> traces;
+  Eigen::Vector3d travel;  // m, lengths
+
+  bool HasSweeps() const;
+  Eigen::Index Pivots() const;  // 0 without a linkage
+  std::vector<std::string> Sensors() const;
+};
+
+struct CauseKey {
+  std::string name;  // "width_um"
+  double unit;       // 1e-6
+  // In the unit of the key: what is beyond is no such cause.
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+};
+
+struct CauseWords {
+  std::string what;   // it is
+  std::string shows;  // in the data
+  std::string check;  // on the machine
+  std::string remedy;
+};
+
+// What the columns and the search know of a cause.
+struct Recalled {
+  Eigen::VectorXd coefficients, shape;
+};
+
+// Where a cause sits decides who has to deal with it: an instrument is read without it; a motion
+// that is no function of position is taken out before a map is made, which cannot hold it; what a
+// map can hold stays there, to be compensated.
+enum class Seat { kInstrument, kMotion, kMap };
+
+struct Cause {
+  using Objects = std::function<std::vector<std::string>(const Scene&)>;
+  using Columns = std::function<std::vector<Disturbance>(const Trace&, const std::string& object,
+                                                         const Eigen::VectorXd& shape)>;
+  using Shapes = std::function<std::vector<Eigen::VectorXd>(const Scene&)>;
+  using Widens = std::function<std::vector<std::string>(const std::string& object)>;
+  using Tell = std::function<Eigen::VectorXd(const Eigen::VectorXd& coefficients,
+                                             const Eigen::VectorXd& shape)>;
+  using Recall = std::function<Recalled(const Eigen::VectorXd& values)>;
+
+  std::string id;
+  CauseWords words;
+  std::vector<CauseKey> keys;
+  Eigen::VectorXd plausible;  // standard deviation of each coefficient where the cause is present
+  Objects objects;
+  Columns columns = {};
+  Shapes shapes = {};  // none: no shape
+  Widens widens = {};  // none: columns
+  Tell tell = {};      // none: the coefficients are the keys, then the shape
+  bool follows_size = false;
+  bool fixed_shapes = false;  // nothing between those tried
+  bool one_event = false;     // cannot be held against other passes
+  bool whole = false;         // there or not: its one coefficient is 1
+  Recall recall = {};         // of the values that `tell` gives; none: as without `tell`
+  bool in_map = false;        // one of the 21 errors, a function of position
+
+  Eigen::Index coefficients() const { return plausible.size(); }
+  // SI values in the order of the keys.
+  Eigen::VectorXd ValuesOf(const Eigen::VectorXd& found, const Eigen::VectorXd& shape) const;
+  // The way back.
+  Recalled RecallFrom(const Eigen::VectorXd& values) const;
+  Seat SeatAt(const std::string& object) const;
+};
+
+// The objects that a scene offers: "X" ..., "XY" ..., "probe_a" ..., "pivot_1" ...
+std::vector<std::string> AxesOf(const Scene& scene);
+std::vector<std::string> AxisPairsOf(const Scene& scene);
+std::vector<std::string> ProbesOf(const Scene& scene);
+std::vector<std::string> PivotsOf(const Scene& scene);
+
+// "X temp_table_c" is the object X and the sensor temp_table_c.
+struct ObjectName {
+  std::string object, sensor;
+};
+ObjectName Split(const std::string& object);
+
+// 0, 1, 2 of 'X', 'Y', 'Z'; 0 ... 4 of "probe_a" ...; 0 ... of "pivot_1" ...
+int AxisOf(char letter);
+int ProbeOf(const std::string& object);
+int PivotOf(const std::string& object);
+
+// Of the positioning error of an axis: EXX, EYY, EZZ.
+int Positioning(int axis);
+
+// The size that the column is to be taken around; 0: a small one.
+double SizeOf(const Eigen::VectorXd& shape);
+
+// A disturbance with one row that is not zero.
+Disturbance InStage(const Trace& trace, Eigen::Index stage, const Eigen::RowVectorXd& values);
+
+// The sine and the cosine of a phase in one stage, and how they are told: amplitude and phase.
+std::vector<Disturbance> WaveInStage(const Trace& trace, Eigen::Index stage,
+                                     const Eigen::RowVectorXd& phase);
+Eigen::Vector2d AmplitudeAndPhase(const Eigen::VectorXd& sine_cosine);
+Eigen::Vector2d SineAndCosine(double amplitude, double phase);
+
+// One shape for each number.
+std::vector<Eigen::VectorXd> ShapesOf(const std::vector<double>& numbers);
+// From first to last, each next one `ratio` times the one before.
+std::vector<Eigen::VectorXd> GeometricShapes(double first, double last, double ratio);
+
+}  // namespace abbe::simulation

@@ -1,0 +1,28 @@
+// Channel sign: Delta is inverted. The coefficient is 1.
+#include "simulation/causes/registry.h"
+
+namespace abbe::simulation {
+
+Cause ChannelSign() {
+  return {
+      .id = "channel-sign",
+      .words = {.what = "a channel counts the wrong way",
+                .shows = "a channel mirrors what it should show",
+                .check = "polarity of the amplifier, sign of the scale in the machine file",
+                .remedy = "correct the sign in the machine file"},
+      .keys = {},
+      .plausible = Eigen::VectorXd::Constant(1, 1.0),
+      .objects = ProbesOf,
+      .columns = [](const Trace& trace, const std::string& object,
+                    const Eigen::VectorXd&) -> std::vector<Disturbance> {
+        if (trace.gap.size() == 0) return {};
+        const int probe = ProbeOf(object);
+        return {InStage(trace, kReadingStage + probe,
+                        2.0 * (trace.gap.row(probe).array() - trace.zero[probe]))};
+      },
+      .tell = [](const Eigen::VectorXd&, const Eigen::VectorXd&) -> Eigen::VectorXd { return {}; },
+      .whole = true,
+  };
+}
+
+}  // namespace abbe::simulation

@@ -1,0 +1,52 @@
+// Encoder count slip: a step of the angle at one instant of the campaign.
+#include "simulation/causes/registry.h"
+
+namespace abbe::simulation {
+
+namespace {
+
+constexpr Eigen::Index kAtMost = 24;  // instants for each run of the linkage
+
+std::vector<Eigen::VectorXd> InstantsTried(const Scene& scene) {
+  std::vector<double> instants;
+  for (const Trace* trace : scene.traces) {
+    if (trace->pivots() == 0) continue;
+    const Eigen::Index step = std::max<Eigen::Index>(1, trace->rows() / kAtMost);
+    for (Eigen::Index row = 0; row < trace->rows(); row += step) {
+      instants.push_back(trace->clock[row]);
+    }
+  }
+  return ShapesOf(instants);
+}
+
+}  // namespace
+
+Cause EncoderCountSlip() {
+  return {
+      .id = "encoder-count-slip",
+      .words = {.what = "an encoder lost or gained counts at one instant",
+                .shows = "a step in one pivot, constant afterwards",
+                .check = "cable and connector of the encoder, its supply, speed limits",
+                .remedy = "replace the cable; take a new position reference after the instant"},
+      .keys = {{"time_s", 1.0, -1e7, 1e7}, {"angle_urad", 1e-6, -1e6, 1e6}},
+      .plausible = Eigen::VectorXd::Constant(1, 500e-6),
+      .objects = PivotsOf,
+      .columns = [](const Trace& trace, const std::string& object,
+                    const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
+        if (trace.pivots() == 0) return {};
+        return {InStage(trace, kEncoderStage + PivotOf(object),
+                        (trace.clock.transpose().array() >= shape[0]).cast<double>())};
+      },
+      .shapes = InstantsTried,
+      .tell = [](const Eigen::VectorXd& found, const Eigen::VectorXd& shape) -> Eigen::VectorXd {
+        return Eigen::Vector2d(shape[0], found[0]);
+      },
+      .fixed_shapes = true,
+      .one_event = true,
+      .recall = [](const Eigen::VectorXd& values) -> Recalled {
+        return {values.tail(1), values.head(1)};
+      },
+  };
+}
+
+}  // namespace abbe::simulation

@@ -1,0 +1,24 @@
+// Gravity: a pivot gives under the weight of its link, compliance times the cosine of the
+// elevation.
+#include "simulation/causes/registry.h"
+
+namespace abbe::simulation {
+
+Cause LinkGravityBend() {
+  return {
+      .id = "link-gravity-bend",
+      .words = {.what = "a link or pivot gives under its own weight",
+                .shows = "the ball sags where the link lies flat",
+                .check = "preload of the pivot's bearing, balance weight",
+                .remedy =
+                    "balance the link, or keep the compliance as a parameter of the calibration"},
+      .keys = {{"compliance_urad", 1e-6, -20000.0, 20000.0}},
+      .plausible = Eigen::VectorXd::Constant(1, 200e-6),
+      .objects = PivotsOf,
+      .widens = [](const std::string& object) -> std::vector<std::string> {
+        return {std::string("compliance.") + object};
+      },
+  };
+}
+
+}  // namespace abbe::simulation

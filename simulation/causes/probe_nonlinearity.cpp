@@ -1,0 +1,27 @@
+// Probe nonlinearity: Delta + q Delta^2 instead of Delta; Delta = zero gap - gap.
+#include "simulation/causes/registry.h"
+
+namespace abbe::simulation {
+
+Cause ProbeNonlinearity() {
+  return {
+      .id = "probe-nonlinearity",
+      .words = {.what = "the sensitivity of a probe changes over its range",
+                .shows = "the error of the probe grows with the square of its gap",
+                .check = "linearity certificate of probe and amplifier, stray capacitance",
+                .remedy = "linearise the probe against gauge steps, or keep nearer to the middle "
+                          "of its range"},
+      .keys = {{"quadratic_per_mm", 1e3, -20.0, 20.0}},
+      .plausible = Eigen::VectorXd::Constant(1, 200.0),
+      .objects = ProbesOf,
+      .columns = [](const Trace& trace, const std::string& object,
+                    const Eigen::VectorXd&) -> std::vector<Disturbance> {
+        if (trace.gap.size() == 0) return {};
+        const int probe = ProbeOf(object);
+        return {InStage(trace, kReadingStage + probe,
+                        -(trace.gap.row(probe).array() - trace.zero[probe]).square())};
+      },
+  };
+}
+
+}  // namespace abbe::simulation

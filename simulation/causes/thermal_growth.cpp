@@ -1,0 +1,42 @@
+// Thermal growth: coefficient (T - T at start) position in the positioning error.
+// The object names the axis and the sensor: "X temp_table_c".
+#include "simulation/causes/registry.h"
+
+namespace abbe::simulation {
+
+namespace {
+
+std::vector<std::string> AxesWithSensors(const Scene& scene) {
+  std::vector<std::string> objects;
+  for (const std::string& axis : AxesOf(scene)) {
+    for (const std::string& sensor : scene.Sensors()) objects.push_back(axis + " " + sensor);
+  }
+  return objects;
+}
+
+}  // namespace
+
+Cause ThermalGrowth() {
+  return {
+      .id = "thermal-growth",
+      .words = {.what = "the axis grows with a temperature that was recorded",
+                .shows = "the scale of the axis follows the temperature",
+                .check =
+                    "heat sources near the axis, whether the scale is compensated for temperature",
+                .remedy = "warm up before measuring, or compensate with this sensor"},
+      .keys = {{"coefficient_ppm_per_c", 1e-6, -100.0, 100.0}},
+      .plausible = Eigen::VectorXd::Constant(1, 10e-6),
+      .objects = AxesWithSensors,
+      .columns = [](const Trace& trace, const std::string& object,
+                    const Eigen::VectorXd&) -> std::vector<Disturbance> {
+        const int axis = AxisOf(object[0]);
+        const auto sensor = std::find(trace.sensors.begin(), trace.sensors.end(), object.substr(2));
+        if (sensor == trace.sensors.end()) return {};
+        const auto row = static_cast<Eigen::Index>(sensor - trace.sensors.begin());
+        return {InStage(trace, Positioning(axis),
+                        trace.warming.row(row).cwiseProduct(trace.axes.row(axis)))};
+      },
+  };
+}
+
+}  // namespace abbe::simulation

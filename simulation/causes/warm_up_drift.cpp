@@ -1,0 +1,39 @@
+// Warm-up: amplitude (1 - exp(-t / time constant)), t since the first run began.
+#include "simulation/causes/registry.h"
+
+namespace abbe::simulation {
+
+namespace {
+
+std::vector<std::string> AxesAndProbes(const Scene& scene) {
+  std::vector<std::string> objects = AxesOf(scene);
+  for (std::string& probe : ProbesOf(scene)) objects.push_back(std::move(probe));
+  return objects;
+}
+
+}  // namespace
+
+Cause WarmUpDrift() {
+  return {
+      .id = "warm-up-drift",
+      .words = {.what = "something warms up from the start of the campaign on and creeps towards "
+                        "its final state",
+                .shows = "passes and runs move away from the first one, fast at first, then slower",
+                .check = "spindle, drives, electronics: what was switched on shortly before",
+                .remedy = "let it warm up for five times the time constant before measuring"},
+      .keys = {{"amplitude_um", 1e-6, -1000.0, 1000.0}, {"time_constant_s", 1.0, 1.0, 1e6}},
+      .plausible = Eigen::VectorXd::Constant(1, 3e-6),
+      .objects = AxesAndProbes,
+      .columns = [](const Trace& trace, const std::string& object,
+                    const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
+        const Eigen::RowVectorXd warm = 1.0 - (-trace.clock.transpose().array() / shape[0]).exp();
+        if (!object.starts_with("probe_"))
+          return {InStage(trace, Positioning(AxisOf(object[0])), warm)};
+        if (trace.gap.size() == 0) return {};
+        return {InStage(trace, kReadingStage + ProbeOf(object), warm)};
+      },
+      .shapes = [](const Scene&) { return GeometricShapes(20.0, 20000.0, 1.7); },
+  };
+}
+
+}  // namespace abbe::simulation

@@ -1,0 +1,63 @@
+// A recording without what causes add to it: how an extended model reaches everything that works on
+// recordings.
+//
+//   Correction corrected = Correct(recording, causes, origin, {machine, head, &linkage});
+//   abbe::probes::ReduceSweep(corrected.recording, ...);
+//
+// Where the stages of a cause go (simulation/disturbance.h):
+//   reading   off the gaps of the probes
+//   encoder   off the angles of the pivots
+//   tool, tip into the angles: to first order those at which the nominal linkage finds the ball
+//             where it would be without the cause; likewise a late clock, and a cause that widens
+//             parameters of the linkage
+//   motion    of an axis: to the positions, for there the axes really were. In a sweep only that
+//             along the swept axis; what the others do the probes see: off the gaps, as the nominal
+//             head sees it
+// Rows with a flag stay as they are, and so do recordings of kinds that know no causes (length,
+// plate, dwell). What a cause does to a reading is worked out from the reading itself: what is
+// neglected is its square (a gain of 1 % beside a swap: 1e-4 of the gap's change).
+// Units: `changes` in m and rad. Failure: InputError as for the run itself; a cause of the linkage
+// on a recording of the linkage without `linkage`.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "machine/machine.h"
+#include "probes/head_settings.h"
+#include "recording/recording.h"
+#include "relm/linkage_settings.h"
+#include "simulation/extended_model.h"
+
+namespace abbe::simulation {
+
+// By how much the numbers of one kind were moved.
+struct Change {
+  double squares = 0.0, largest = 0.0;
+  Eigen::Index count = 0;
+
+  void Add(double moved);
+  double rms() const;
+};
+
+struct Changes {
+  Change positions, gaps, angles;
+};
+
+struct Correction {
+  recording::Recording recording;
+  Changes changes;
+};
+
+struct CorrectedMachine {
+  const machine::Machine& machine;
+  const probes::HeadSettings& head;
+  const relm::LinkageSettings* linkage;  // null: the machine file has none
+};
+
+// `origin`: of the model; a recording begins its own where it says nothing.
+Correction Correct(const recording::Recording& recording, const std::vector<ModelledCause>& causes,
+                   const Origin& origin, const CorrectedMachine& on);
+
+}  // namespace abbe::simulation

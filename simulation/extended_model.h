@@ -1,0 +1,62 @@
+// What a diagnosis found, as a file that every other command takes: the causes that the simulation
+// of a machine lacked, with their sizes. A person may edit it; a table that is deleted is a cause
+// that is gone. docs/diagnose.md describes the keys.
+//
+//   const ExtendedModel model = ReadExtendedModel("mill.causes.toml", {"demo-mill", true, 3});
+//   Correct(recording, model.causes, ...);               // simulation/correction.h
+//
+// Units: values and deviations SI, in the order of the cause's keys. Failure: InputError with file,
+// line and key for an unknown cause, object or key, a missing key, a number that is not finite or
+// beyond what is plausible, the model of another machine, a file that is no extended model.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "simulation/causes/cause.h"
+#include "simulation/trace.h"
+
+namespace abbe::simulation {
+
+struct ModelledCause {
+  const Cause* cause;
+  std::string object;          // as the cause knows it: "X", "X temp_table_c"
+  Eigen::VectorXd values;      // of the keys
+  Eigen::VectorXd u95;         // of the values; empty: not stated
+  Eigen::MatrixXd covariance;  // of the coefficients; empty: not stated
+
+  std::string Name() const;  // "backlash:X", "thermal-growth:X (temp_table_c)"
+};
+
+struct ModelSource {
+  std::string file, sha256;
+};
+
+// Root mean squares of measured minus simulated, in units of the stated noise.
+struct ModelGain {
+  Eigen::Index heldout_rows = 0;  // 0: nothing was held out
+  double heldout_before = 0.0, heldout_after = 0.0;
+  double fitted_before = 0.0, fitted_after = 0.0;
+};
+
+struct ExtendedModel {
+  std::string machine;
+  Origin origin;  // from when on time counts, and how warm it was
+  ModelGain gain;
+  std::vector<ModelSource> sources;
+  std::vector<ModelledCause> causes;
+};
+
+// What a machine offers as objects of causes.
+struct CauseObjects {
+  std::string machine;
+  bool head = true;
+  Eigen::Index pivots = 0;
+};
+
+ExtendedModel ReadExtendedModel(const std::filesystem::path& path, const CauseObjects& objects);
+std::string ExtendedModelText(const ExtendedModel& model);
+
+}  // namespace abbe::simulation

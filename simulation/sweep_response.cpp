@@ -1,0 +1,125 @@
+#include "simulation/sweep_response.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <utility>
+
+#include "failure/failure.h"
+
+namespace abbe::simulation {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// cov of the readings of the probes of one face: noise of each, form of the face for all.
+MatrixXd FaceCovariance(const SweepPlan& plan, const SweepInstrument& instrument,
+                        const SweepRun& run, std::size_t first, std::size_t count) {
+  const Index n = run.rows();
+  const auto probes_of_face = static_cast<Index>(count);
+  const bool target_moves = plan.chain.CarriesTarget(run.axis);
+  const double sign = (target_moves ? -1.0 : 1.0) * plan.R_MH.col(0)[plan.axis];
+  const double variance = instrument.target.form * instrument.target.form;
+  const double length = instrument.target.form_length;
+  MatrixXd V(n * probes_of_face, n * probes_of_face);
+  for (std::size_t p = 0; p < count; ++p) {
+    for (std::size_t q = 0; q < count; ++q) {
+      const Eigen::Vector2d apart =
+          PlaceOf(instrument.head.layout, first + p) - PlaceOf(instrument.head.layout, first + q);
+      auto block = V.block(static_cast<Index>(p) * n, static_cast<Index>(q) * n, n, n);
+      for (Index h = 0; h < n; ++h) {
+        for (Index g = 0; g < n; ++g) {
+          const double along = apart[0] + sign * (run.position[g] - run.position[h]);
+          const double square = along * along + apart[1] * apart[1];
+          block(g, h) =
+              variance == 0.0 ? 0.0 : variance * std::exp(-0.5 * square / (length * length));
+        }
+      }
+      if (p == q) block += run.covariance[first + p];
+    }
+  }
+  return V;
+}
+
+}  // namespace
+
+FaceNoise FaceNoiseOf(const SweepPlan& plan, const SweepInstrument& instrument,
+                      const SweepRun& run) {
+  const std::array<std::size_t, 3> bounds{0, kTopProbes, kProbes};
+  FaceNoise noise{{}, VectorXd(static_cast<Index>(kProbes) * run.rows())};
+  for (std::size_t face = 0; face < noise.factors.size(); ++face) {
+    const std::size_t first = bounds[face], count = bounds[face + 1] - first;
+    auto& factor = noise.factors[face];
+    factor.compute(FaceCovariance(plan, instrument, run, first, count));
+    if (factor.info() != Eigen::Success) {
+      throw InputError(fmt::format(
+          "{}: the probes have no noise; state probe_nm in [noise] of the machine file", run.name));
+    }
+    const Index rows = factor.rows();
+    noise.weights.segment(static_cast<Index>(first) * run.rows(), rows) =
+        factor.matrixL().solve(MatrixXd::Identity(rows, rows)).colwise().squaredNorm();
+  }
+  return noise;
+}
+
+ReadingResponse::ReadingResponse(MatrixXd by_motions, MatrixXd gaps,
+                                 std::shared_ptr<const FaceNoise> noise)
+    : by_motions_(std::move(by_motions)), gaps_(std::move(gaps)), noise_(std::move(noise)) {}
+
+MatrixXd ReadingResponse::Columns(const std::vector<Disturbance>& disturbances) const {
+  const Index rows = gaps_.cols();
+  MatrixXd columns = MatrixXd::Zero(gaps_.size(), static_cast<Index>(disturbances.size()));
+  for (Index d = 0; d < columns.cols(); ++d) {
+    for (const auto& [stage, values] : disturbances[static_cast<std::size_t>(d)].stages()) {
+      if (stage >= kReadingStage && stage < kEncoderStage) {
+        columns.col(d).segment((stage - kReadingStage) * rows, rows) += values.transpose();
+      }
+      if (stage >= kToolStage) continue;
+      for (Index row = 0; row < rows; ++row) {
+        for (Index probe = 0; probe < gaps_.rows(); ++probe) {
+          columns(probe * rows + row, d) +=
+              by_motions_(probe, row * kToolStage + stage) * values[row];
+        }
+      }
+    }
+  }
+  WhitenRows(*noise_, columns);
+  return columns;
+}
+
+MatrixXd ReadingResponse::Readings(const VectorXd& left) const {
+  VectorXd off(left.size());
+  Index first = 0;
+  for (const auto& factor : noise_->factors) {
+    off.segment(first, factor.rows()) = factor.matrixL() * left.segment(first, factor.rows());
+    first += factor.rows();
+  }
+  return gaps_ - off.reshaped(gaps_.cols(), gaps_.rows()).transpose();
+}
+
+Response::RowScores ReadingResponse::ScoresOf(Index stage, const VectorXd& left) const {
+  const Index rows = gaps_.cols();
+  VectorXd scores(left.size());
+  Index first = 0;
+  for (const auto& factor : noise_->factors) {
+    const Index count = factor.rows();
+    scores.segment(first, count) = factor.matrixU().solve(left.segment(first, count));
+    first += count;
+  }
+  RowScores of_stage{Eigen::RowVectorXd::Zero(rows), Eigen::RowVectorXd::Zero(rows)};
+  for (Index probe = 0; probe < gaps_.rows(); ++probe) {
+    for (Index row = 0; row < rows; ++row) {
+      double slope = stage == kReadingStage + probe ? 1.0 : 0.0;
+      if (stage < kToolStage) slope = by_motions_(probe, row * kToolStage + stage);
+      of_stage.scores[row] += slope * scores[probe * rows + row];
+      of_stage.weights[row] += slope * slope * noise_->weights[probe * rows + row];
+    }
+  }
+  return of_stage;
+}
+
+}  // namespace abbe::simulation

@@ -1,0 +1,82 @@
+// Does the diagnosis find what the rig hides, and nothing where nothing is hidden?
+// Worlds: ABBE_SEEDS, ABBE_SHARD.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/hidden_effects/hidden_world.h"
+#include "tests/hidden_effects/judgement.h"
+#include "tests/seeds.h"
+
+namespace abbe {
+namespace {
+
+TEST(HiddenEffects, AreNotSeenWhereThereAreNone) {
+  const HiddenWorlds worlds(rig::CampaignKind::kStandard);
+  const Seeds seeds = SeedsFromEnvironment();
+  Rate alarms;
+  for (std::uint64_t seed = seeds.first; seed <= seeds.last; seed += seeds.step) {
+    alarms.Add(DiagnosisOf(worlds, seed, worlds.Record(seed, {})).verdict != Verdict::kClean);
+  }
+  EXPECT_LE(alarms.Low(), 0.01) << alarms.Text();
+}
+
+// What a standard campaign shows far above its noise. The width of a joint's hysteresis comes out 7
+// % too small (docs/diagnose.md), so it is only asked for by name.
+struct Shown {
+  const char* hidden;
+  std::vector<std::pair<std::string, double>> keys = {};
+};
+
+class ShownEffects : public testing::TestWithParam<Shown> {};
+
+TEST_P(ShownEffects, AreNamedFirstWithTheirSize) {
+  const HiddenWorlds worlds(rig::CampaignKind::kStandard);
+  const std::uint64_t seed = 3;
+  const auto world = worlds.Record(seed, {GetParam().hidden});
+  const Diagnosis diagnosis = DiagnosisOf(worlds, seed, world);
+  ASSERT_FALSE(diagnosis.findings.empty());
+  const Finding& first = diagnosis.findings.front();
+  EXPECT_TRUE(Names(first, world.hidden.front())) << first.score.candidate.Name();
+  const auto keys = KeysOf(first.score);
+  for (const auto& [name, truth] : GetParam().keys) {
+    for (Eigen::Index i = 0; i < keys.values.size(); ++i) {
+      const auto& key = first.score.candidate.cause->keys[static_cast<std::size_t>(i)];
+      // 99.99 % of normal errors.
+      if (key.name != name) continue;
+      EXPECT_NEAR(keys.values[i] / key.unit, truth, 3.9 * keys.u[i] / key.unit);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfAStandardCampaign, ShownEffects,
+    testing::Values(Shown{"backlash:object=X:width_um=6", {{"width_um", 6.0}}},
+                    Shown{"leadscrew-cyclic:object=Y:pitch_mm=6:amplitude_um=1:phase_rad=1",
+                          {{"pitch_mm", 6.0}, {"amplitude_um", 1.0}, {"phase_rad", 1.0}}},
+                    Shown{"joint-hysteresis:object=pivot_1:width_urad=30"},
+                    Shown{"cap-friction:object=cap:displacement_um=2", {{"displacement_um", 2.0}}},
+                    Shown{"load-coupling:object=XY:coefficient_nm_per_mm2=2",
+                          {{"coefficient_nm_per_mm2", 2.0}}},
+                    Shown{"mains-pickup:object=probe_b:frequency_hz=50:amplitude_um=0.2",
+                          {{"frequency_hz", 50.0}, {"amplitude_um", 0.2}}},
+                    Shown{"stuck-channel:object=probe_c"}));
+
+class UnknownEffects : public testing::TestWithParam<Shown> {};
+
+TEST_P(UnknownEffects, AreSaidToBeUnexplained) {
+  const HiddenWorlds worlds(rig::CampaignKind::kStandard);
+  const std::uint64_t seed = 5;
+  const auto world = worlds.Record(seed, {GetParam().hidden});
+  const Diagnosis diagnosis = DiagnosisOf(worlds, seed, world);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kUnexplained);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfAStandardCampaign, UnknownEffects,
+                         testing::Values(Shown{"unknown-hum:object=probe_a"},
+                                         Shown{"unknown-step-and-back:object=probe_d"}));
+
+}  // namespace
+}  // namespace abbe

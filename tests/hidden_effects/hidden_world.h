@@ -1,0 +1,97 @@
+// A world of the virtual rig that hides something, and what the diagnosis says of its recordings.
+//
+// The seed picks the machine, the cause, its object and its sizes; the diagnosis sees the machine
+// file and the recordings only. Nothing here knows a model that is under test.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/diagnose.h"
+#include "machine/machine.h"
+#include "probes/head_settings.h"
+#include "random/counter_random.h"
+#include "relm/linkage_settings.h"
+#include "rig/measuring_campaign.h"
+#include "settings/document.h"
+
+namespace abbe {
+
+// The demonstration machine, reduced, its ball without drag in the cap: that drag is a cause.
+class HiddenWorlds {
+ public:
+  explicit HiddenWorlds(rig::CampaignKind kind)
+      : document_(settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) /
+                                           "machines/demo_mill.toml")),
+        machine_(rig::ReadCampaignMachine(document_.Root())),
+        setup_{machine::ReadMachine(document_.Root()), probes::ReadHeadSettings(document_.Root()),
+               probes::ReadTargetSettings(document_.Root()),
+               probes::ReadProbeNoise(document_.Root()),
+               relm::ReadLinkageSettings(document_.Root())},
+        kind_(kind) {
+    machine_.rig.cap = 0.0;
+  }
+
+  const rig::Sensors& sensors() const { return machine_.sensors; }
+
+  rig::Campaign Record(std::uint64_t seed, const std::vector<std::string>& hidden) const {
+    rig::HiddenEffects effects;
+    for (const std::string& text : hidden) {
+      effects.push_back(rig::ParseHidden(text, seed, machine_.sensors));
+    }
+    return rig::RecordCampaign(machine_, seed, std::move(effects),
+                               {.kind = kind_, .reduced = true});
+  }
+
+  diagnosis::Campaign Recordings(const rig::Campaign& world) const {
+    diagnosis::Campaign campaign(setup_);
+    for (const auto& recording : world.recordings) campaign.Add(recording);
+    return campaign;
+  }
+
+ private:
+  settings::Document document_;
+  rig::CampaignMachine machine_;
+  diagnosis::Setup setup_;
+  rig::CampaignKind kind_;
+};
+
+// Text for Record(): a cause that is known (or not), with an object it can act on; sizes are left
+// to the rig.
+inline std::string DrawHidden(const random::CounterRandom& random, std::uint64_t first,
+                              bool known) {
+  static const std::vector<std::pair<unsigned, std::vector<std::string>>> kObjects = {
+      {rig::kAxisObject, {"X", "Y", "Z"}},
+      {rig::kPairObject, {"XY", "XZ", "YZ"}},
+      {rig::kProbeObject, {"probe_a", "probe_b", "probe_c", "probe_d", "probe_e"}},
+      {rig::kProbePairObject, {"probe_a+probe_b", "probe_d+probe_e", "probe_b+probe_d"}},
+      {rig::kPivotObject, {"pivot_1", "pivot_2", "pivot_3"}},
+      {rig::kLinkObject, {"link_1", "link_2"}},
+      {rig::kHeadObject, {"head"}},
+      {rig::kFaceObject, {"target_top", "target_side"}},
+      {rig::kCapObject, {"cap"}},
+      {rig::kSourceObject, {"linkage", "probes"}}};
+  std::vector<std::pair<std::string_view, std::string>> choices;
+  std::vector<std::string_view> names;
+  for (const rig::CauseEntry& entry : rig::EffectCatalogue()) {
+    if (entry.variable.empty() != known) continue;
+    names.push_back(entry.name);
+    for (const auto& [kind, objects] : kObjects) {
+      if ((entry.objects & kind) == 0) continue;
+      for (const std::string& object : objects) choices.emplace_back(entry.name, object);
+    }
+  }
+  // Each cause alike, then its objects.
+  const auto pick = [&](std::uint64_t index, std::size_t count) {
+    return static_cast<std::size_t>(random.Uniform(first + index, 0.0, 1.0) *
+                                    static_cast<double>(count));
+  };
+  const std::string_view name = names[pick(0, names.size())];
+  std::erase_if(choices, [&](const auto& choice) { return choice.first != name; });
+  const auto& [cause, object] = choices[pick(1, choices.size())];
+  return std::string(cause) + ":object=" + object;
+}
+
+}  // namespace abbe

@@ -1,0 +1,71 @@
+// Judging what the diagnosis says of worlds.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <boost/math/distributions/binomial.hpp>
+#include <cstdio>
+#include <string>
+
+#include "tests/hidden_effects/hidden_world.h"
+
+namespace abbe {
+
+using diagnosis::Diagnosis;
+using diagnosis::Finding;
+using diagnosis::Verdict;
+
+// A rate is met when its 99 % binomial interval does not contradict what was asked for.
+struct Rate {
+  int worlds = 0, met = 0;
+
+  void Add(bool is_met) {
+    ++worlds;
+    met += is_met ? 1 : 0;
+  }
+  // The lower end of the interval.
+  double Low() const {
+    return met == 0
+               ? 0.0
+               : boost::math::binomial_distribution<>::find_lower_bound_on_p(worlds, met, 0.005);
+  }
+  std::string Text() const { return fmt::format("{} of {}", met, worlds); }
+};
+
+// Whether a finding is this effect; a thermal cause names its sensor behind the axis.
+inline bool Names(const Finding& finding, const rig::HiddenEffect& effect) {
+  const auto& candidate = finding.score.candidate;
+  return candidate.cause->id == effect.entry->name && candidate.object.starts_with(effect.object);
+}
+
+// One world in one line, for whoever looks for what went wrong.
+inline void Print(std::uint64_t seed, const rig::Campaign& world, const Diagnosis& diagnosis) {
+  std::string line = fmt::format("{}", seed);
+  for (const auto& effect : rig::TruthOf(world.hidden)) line += fmt::format(" {}", effect.dump());
+  line += fmt::format(" -> {}, chi2 {:.3f} {:.3f}", Name(diagnosis.verdict), diagnosis.chi_before,
+                      diagnosis.chi_after);
+  for (const Finding& finding : diagnosis.findings) {
+    const auto keys = KeysOf(finding.score);
+    line += fmt::format("; {} p={:.3f}", finding.score.candidate.Name(), finding.probability);
+    for (Eigen::Index i = 0; i < keys.values.size(); ++i) {
+      const auto& key = finding.score.candidate.cause->keys[static_cast<std::size_t>(i)];
+      line += fmt::format(" {}={:.4g}+-{:.2g}", key.name, keys.values[i] / key.unit,
+                          2.0 * keys.u[i] / key.unit);
+    }
+  }
+  for (const auto& leftover : diagnosis.leftovers) {
+    line += fmt::format("; left {} of {} p={:.1g}", leftover.variable, leftover.object,
+                        leftover.p_value);
+  }
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
+}
+
+inline Diagnosis DiagnosisOf(const HiddenWorlds& worlds, std::uint64_t seed,
+                             const rig::Campaign& world) {
+  const Diagnosis diagnosis = diagnosis::Diagnose(worlds.Recordings(world));
+  Print(seed, world, diagnosis);
+  return diagnosis;
+}
+
+}  // namespace abbe

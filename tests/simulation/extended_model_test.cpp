@@ -1,0 +1,166 @@
+// A model as a file: what is written is read, and what a person gets wrong is said with its place.
+#include "simulation/extended_model.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "failure/failure.h"
+#include "simulation/causes/registry.h"
+#include "simulation/instant.h"
+
+namespace abbe::simulation {
+namespace {
+
+using Eigen::VectorXd;
+
+const CauseObjects kMill{"mill", true, 3};
+
+std::filesystem::path Written(const std::string& text) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "extended_model_test.toml";
+  std::ofstream(path) << text;
+  return path;
+}
+
+ExtendedModel Read(const std::string& causes) {
+  return ReadExtendedModel(Written("extended_model = 1\nmachine = \"mill\"\n" + causes), kMill);
+}
+
+void ExpectRefused(const std::string& causes, const std::vector<std::string>& words) {
+  try {
+    Read(causes);
+    ADD_FAILURE() << "read:\n" << causes;
+  } catch (const InputError& error) {
+    for (const std::string& word : words) EXPECT_THAT(error.what(), testing::HasSubstr(word));
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+  }
+}
+
+ExtendedModel SomeModel() {
+  ExtendedModel model;
+  model.machine = "mill";
+  model.origin.started = 1795248000.0;
+  model.origin.temperature = {{"temp_table_c", 20.125}};
+  model.gain = {120, 1.75, 1.01, 1.6, 1.0};
+  model.sources = {{"01_sweep_X.h5", std::string(64, 'a')}};
+  const Cause& backlash = CauseNamed("backlash");
+  const Cause& cyclic = CauseNamed("leadscrew-cyclic");
+  const Cause& growth = CauseNamed("thermal-growth");
+  model.causes.push_back({&backlash, "X", VectorXd::Constant(1, 6.1e-6),
+                          VectorXd::Constant(1, 5e-8), Eigen::MatrixXd::Constant(1, 1, 6.25e-16)});
+  Eigen::MatrixXd covariance(2, 2);
+  covariance << 4e-16, 1e-16, 1e-16, 9e-16;
+  model.causes.push_back({&cyclic, "Y", Eigen::Vector3d(5e-3, 2e-6, 0.5),
+                          Eigen::Vector3d(0.0, 4e-8, 0.02), covariance});
+  model.causes.push_back({&growth, "Z temp_table_c", VectorXd::Constant(1, 1e-5), {}, {}});
+  return model;
+}
+
+TEST(ExtendedModel, IsReadAsItWasWritten) {
+  const ExtendedModel model = SomeModel();
+  const ExtendedModel read = ReadExtendedModel(Written(ExtendedModelText(model)), kMill);
+  EXPECT_EQ(read.origin.started, model.origin.started);
+  EXPECT_EQ(read.origin.temperature, model.origin.temperature);
+  EXPECT_EQ(read.gain.heldout_rows, 120);
+  EXPECT_EQ(read.gain.heldout_after, 1.01);
+  ASSERT_EQ(read.sources.size(), 1U);
+  EXPECT_EQ(read.sources[0].sha256, model.sources[0].sha256);
+  ASSERT_EQ(read.causes.size(), model.causes.size());
+  for (std::size_t i = 0; i < read.causes.size(); ++i) {
+    const ModelledCause &one = read.causes[i], &other = model.causes[i];
+    EXPECT_EQ(one.Name(), other.Name());
+    EXPECT_EQ(one.object, other.object);
+    EXPECT_LT((one.values - other.values).norm(), 1e-15 * other.values.norm());
+    EXPECT_EQ(one.u95.size(), other.u95.size());
+    EXPECT_EQ(one.covariance, other.covariance);
+  }
+  EXPECT_EQ(read.causes[2].Name(), "thermal-growth:Z (temp_table_c)");
+}
+
+TEST(ExtendedModel, ATableThatIsDeletedIsACauseThatIsGone) {
+  std::string text = ExtendedModelText(SomeModel());
+  const std::size_t first = text.find("[[cause]]");
+  text.erase(first, text.find("[[cause]]", first + 1) - first);
+  const ExtendedModel read = ReadExtendedModel(Written(text), kMill);
+  ASSERT_EQ(read.causes.size(), 2U);
+  EXPECT_EQ(read.causes[0].cause->id, "leadscrew-cyclic");
+}
+
+TEST(ExtendedModel, EveryCauseCanBeWrittenDown) {
+  ExtendedModel model;
+  model.machine = "mill";
+  Trace head, linkage;
+  head.gap.resize(5, 1);
+  head.sensors = {"temp_table_c"};
+  linkage.angles.resize(3, 1);
+  const Scene scene{{&head, &linkage}, Eigen::Vector3d::Constant(0.06)};
+  for (const Cause& cause : Causes()) {
+    if (cause.objects(scene).empty()) continue;  // found row by row
+    VectorXd values(static_cast<Eigen::Index>(cause.keys.size()));
+    for (std::size_t i = 0; i < cause.keys.size(); ++i) {
+      const CauseKey& key = cause.keys[i];
+      values[static_cast<Eigen::Index>(i)] = key.unit * 0.5 * (key.least + key.most);
+    }
+    model.causes.push_back({&cause, cause.objects(scene).front(), values, {}, {}});
+  }
+  const ExtendedModel read = ReadExtendedModel(Written(ExtendedModelText(model)), kMill);
+  ASSERT_EQ(read.causes.size(), model.causes.size());
+  for (std::size_t i = 0; i < read.causes.size(); ++i) {
+    EXPECT_EQ(read.causes[i].cause, model.causes[i].cause) << model.causes[i].cause->id;
+    EXPECT_EQ(read.causes[i].object, model.causes[i].object);
+  }
+}
+
+TEST(ExtendedModel, SaysWhatIsWrongAndWhere) {
+  ExpectRefused("[[cause]]\nid = \"backlush\"\nobject = \"X\"\n",
+                {"test.toml:4:", "backlush", "the nearest is \"backlash\""});
+  ExpectRefused("[[cause]]\nid = \"backlash\"\nobject = \"X\"\nwidth = 6.0\n",
+                {"width_um", "is missing"});
+  ExpectRefused("[[cause]]\nid = \"backlash\"\nobject = \"X\"\nwidth_um = 6.0\nwidth_umm = 1.0\n",
+                {"test.toml:7:", "width_umm", "did you mean \"width_um\""});
+  ExpectRefused("[[cause]]\nid = \"backlash\"\nobject = \"X\"\nwidth_um = 9e6\n",
+                {"test.toml:6:", "9000000 um", "at most 1000 um"});
+  ExpectRefused("[[cause]]\nid = \"backlash\"\nobject = \"X\"\nwidth_um = nan\n",
+                {"test.toml:6:", "finite"});
+  ExpectRefused("[[cause]]\nid = \"joint-hysteresis\"\nobject = \"pivot_4\"\nwidth_urad = 9.0\n",
+                {"test.toml:5:", "machine \"mill\" has no \"pivot_4\"", "nearest is \"pivot_"});
+  ExpectRefused("[[cause]]\nid = \"thermal-growth\"\nobject = \"X\"\n", {"sensor"});
+  ExpectRefused(
+      "[[cause]]\nid = \"backlash\"\nobject = \"X\"\nwidth_um = 6.0\ncovariance = [1.0, 2.0]",
+      {"covariance", "1 numbers"});
+  ExpectRefused("started = \"yesterday\"\n", {"test.toml:3:", "is no time"});
+}
+
+TEST(ExtendedModel, OfAnotherMachineOrNoModelAtAllIsRefused) {
+  const auto other = Written("extended_model = 1\nmachine = \"lathe\"\n");
+  EXPECT_THAT([&] { ReadExtendedModel(other, kMill); },
+              testing::ThrowsMessage<InputError>(testing::AllOf(testing::HasSubstr("test.toml:2:"),
+                                                                testing::HasSubstr("\"lathe\""),
+                                                                testing::HasSubstr("\"mill\""))));
+  const auto none = Written("name = \"mill\"\n");
+  EXPECT_THAT([&] { ReadExtendedModel(none, kMill); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("is no extended model")));
+}
+
+TEST(ExtendedModel, TheLinkageIsNothingToAMachineWithoutOne) {
+  const auto path = Written(
+      "extended_model = 1\nmachine = \"mill\"\n[[cause]]\nid = \"cap-friction\"\nobject = \"cap\"\n"
+      "displacement_um = 1.0\n");
+  EXPECT_THAT(
+      [&] {
+        ReadExtendedModel(path, {"mill", true, 0});
+      },
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("delete the table")));
+}
+
+TEST(Instant, IsWrittenAsItIsRead) {
+  EXPECT_EQ(SecondsOf("1970-01-02T00:00:01Z"), 86401.0);
+  EXPECT_EQ(InstantText(86401.0), "1970-01-02T00:00:01Z");
+  EXPECT_FALSE(SecondsOf("yesterday"));
+}
+
+}  // namespace
+}  // namespace abbe::simulation

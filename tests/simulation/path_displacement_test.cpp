@@ -1,0 +1,58 @@
+#include "simulation/path_displacement.h"
+
+#include <gtest/gtest.h>
+
+#include "simulation/causes/registry.h"
+
+namespace abbe::simulation {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::VectorXd;
+
+ModelledCause Of(const char* id, const char* object, const VectorXd& values) {
+  return {&CauseNamed(id), object, values, {}, {}};
+}
+
+// X to 5 mm and back, 1 mm a point; Y and Z stand.
+Matrix3Xd ToAndFro() {
+  Matrix3Xd path = Matrix3Xd::Constant(3, 11, 20e-3);
+  for (int i = 0; i < 11; ++i) path(0, i) = 1e-3 * (i <= 5 ? i : 10 - i);
+  return path;
+}
+
+TEST(PathDisplacement, PlayLagsByHalfOnBothWays) {
+  const Matrix3Xd beside =
+      PathDisplacement(ToAndFro(), 0.0, {Of("backlash", "X", VectorXd::Constant(1, 6e-6))});
+  EXPECT_EQ(beside.bottomRows<2>().norm(), 0.0);
+  for (int i = 1; i <= 5; ++i) EXPECT_NEAR(beside(0, i), -3e-6, 1e-15) << i;
+  for (int i = 6; i <= 10; ++i) EXPECT_NEAR(beside(0, i), 3e-6, 1e-15) << i;
+}
+
+TEST(PathDisplacement, LagNeedsAFeed) {
+  const std::vector<ModelledCause> lag{Of("servo-lag", "X", VectorXd::Constant(1, 2e-3))};
+  EXPECT_EQ(PathDisplacement(ToAndFro(), 0.0, lag).norm(), 0.0);
+  const Matrix3Xd beside = PathDisplacement(ToAndFro(), 10e-3, lag);
+  EXPECT_NEAR(beside(0, 2), -20e-6, 1e-12);
+  EXPECT_NEAR(beside(0, 8), 20e-6, 1e-12);
+}
+
+TEST(PathDisplacement, LoadCouplingIsAFunctionOfTwoAxes) {
+  const Matrix3Xd path = ToAndFro();
+  const Matrix3Xd beside =
+      PathDisplacement(path, 0.0, {Of("load-coupling", "XY", VectorXd::Constant(1, 3e-3))});
+  for (int i = 0; i < 11; ++i) EXPECT_NEAR(beside(2, i), -3e-3 * path(0, i) * path(1, i), 1e-18);
+}
+
+TEST(PathDisplacement, InstrumentsTheMapAndDriftDoNothing) {
+  const Matrix3Xd beside =
+      PathDisplacement(ToAndFro(), 10e-3,
+                       {Of("scale-error", "X", VectorXd::Constant(1, 1e-4)),
+                        Of("probe-gain", "probe_a", VectorXd::Constant(1, 0.1)),
+                        Of("warm-up-drift", "X", Eigen::Vector2d(1e-5, 10.0)),
+                        Of("thermal-growth", "X temp_table_c", VectorXd::Constant(1, 1e-5))});
+  EXPECT_EQ(beside.norm(), 0.0);
+}
+
+}  // namespace
+}  // namespace abbe::simulation

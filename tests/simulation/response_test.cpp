@@ -1,0 +1,116 @@
+// A disturbance that does what a parameter does must answer with the parameter's own derivative.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "simulation/trace.h"
+#include "tests/fusion/rig_campaign.h"
+
+namespace abbe::simulation {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// The derivative of a run by the parameter of this name, at x.
+VectorXd ByParameter(const SimulatedRun& run, const VectorXd& x, const std::string& name) {
+  VectorXd values(run.residual->Rows());
+  estimation::RowMatrix J(values.size(), x.size());
+  run.residual->Evaluate(x, values, &J);
+  Index column = 0;
+  for (const auto& block : run.blocks) {
+    for (std::size_t i = 0; i < block.entries.size(); ++i, ++column) {
+      if (block.FullName(i) == name) return J.col(column);
+    }
+  }
+  throw std::runtime_error("no parameter " + name);
+}
+
+VectorXd StartOf(const SimulatedRun& run) {
+  std::vector<double> x;
+  for (const auto& block : run.blocks) {
+    for (const auto& entry : block.entries) x.push_back(entry.value);
+  }
+  return Eigen::Map<VectorXd>(x.data(), static_cast<Index>(x.size()));
+}
+
+void ExpectSame(const VectorXd& one, const VectorXd& other) {
+  ASSERT_EQ(one.size(), other.size());
+  ASSERT_GT(other.norm(), 0.0);
+  EXPECT_LT((one - other).norm(), 1e-9 * other.norm());
+}
+
+class Response : public testing::Test {
+ protected:
+  const settings::Document document = fusion::CampaignMachine();
+  const fusion::Campaign campaign{document, 3};
+};
+
+TEST_F(Response, OfASweepToItsOwnMotionsIsThatOfTheCoefficients) {
+  auto recording = rig::RecordSweep(campaign.rig.world(), 'X', campaign.channels,
+                                    {.rate = 50.0, .moving = false});
+  const SweepRun sweep = ReadSweepDwells(recording, campaign.instrument.head, campaign.noise);
+  const SimulatedRun run =
+      SimulateSweep(campaign.model, campaign.reference, campaign.instrument, sweep);
+  // Aligned as meant, the probes would not see the axis go along at all.
+  const VectorXd x = StartOf(run).array() + 1e-5;
+  for (int motion = 0; motion < machine::kMotions; ++motion) {
+    const auto& function = campaign.model.Function(0, motion);
+    VectorXd gradient(function.size());
+    Disturbance moved(sweep.rows());
+    for (Index row = 0; row < sweep.rows(); ++row) {
+      // At the end of the travel a scale trembles beyond it.
+      function.Evaluate(std::clamp(sweep.position[row], 0.0, 60e-3), nullptr, gradient.data());
+      moved.row(MotionStage(0, motion))[row] = gradient[4];
+    }
+    const std::string name = machine::MotionName(0, motion) + ".c4";
+    ExpectSame(run.response->At(x)->Columns({moved}).col(0), -ByParameter(run, x, name));
+  }
+}
+
+TEST_F(Response, OfASweepToTheHeadRisingIsThatOfTheTopProbesAlone) {
+  auto recording = rig::RecordSweep(campaign.rig.world(), 'X', campaign.channels,
+                                    {.rate = 50.0, .moving = false});
+  recording.name = "s";
+  const SweepRun sweep = ReadSweepDwells(recording, campaign.instrument.head, campaign.noise);
+  const SimulatedRun run =
+      SimulateSweep(campaign.model, campaign.reference, campaign.instrument, sweep);
+  const VectorXd x = StartOf(run);
+  Disturbance risen(sweep.rows());
+  risen.row(MotionStage(2, 2)).setOnes();
+  const VectorXd top = ByParameter(run, x, "probe_zero s.a") +
+                       ByParameter(run, x, "probe_zero s.b") +
+                       ByParameter(run, x, "probe_zero s.c");
+  ExpectSame(run.response->At(x)->Columns({risen}).col(0), -top);
+  Disturbance shown(sweep.rows());
+  shown.row(kReadingStage + 3).setOnes();
+  ExpectSame(run.response->At(x)->Columns({shown}).col(0), -ByParameter(run, x, "probe_zero s.d"));
+}
+
+TEST_F(Response, OfALinkageIsThatOfItsParameters) {
+  const LinkageSimulation nominal(
+      campaign.machine.chain, campaign.linkage,
+      relm::MakeLinkageModel(campaign.linkage, relm::ErrorModel::kComplete));
+  const auto recording = campaign.LinkageRecording(3);
+  const LinkageRun poses = MeansOfStays(ReadLinkageRun(recording, campaign.linkage));
+  const SimulatedRun run = SimulateLinkage(campaign.model, campaign.reference, nominal, poses);
+  const Trace trace = TraceOf(recording, poses, nominal);
+  const VectorXd x = StartOf(run);
+  for (int pivot = 0; pivot < 3; ++pivot) {
+    const std::string name = "pivot_" + std::to_string(pivot + 1);
+    Disturbance shown = NoDisturbance(trace);
+    shown.row(kEncoderStage + pivot).setOnes();
+    ExpectSame(run.response->At(x)->Columns({shown}).col(0),
+               ByParameter(run, x, "encoder_offset." + name));
+  }
+  // The tip moved as the ball's offset along the last link moves it.
+  Disturbance longer = NoDisturbance(trace);
+  for (int k = 0; k < 3; ++k) longer.row(kTipStage + k) = trace.link.row(6 + k);
+  ExpectSame(run.response->At(x)->Columns({longer}).col(0), -ByParameter(run, x, "ball.along"));
+  Disturbance dragged = NoDisturbance(trace);
+  dragged.row(kToolStage + 1).setOnes();
+  ExpectSame(run.response->At(x)->Columns({dragged}).col(0), ByParameter(run, x, "base.y"));
+}
+
+}  // namespace
+}  // namespace abbe::simulation
