@@ -15,6 +15,7 @@
 #include "machine/volumetric_jacobian.h"
 #include "simulation/axes_in_travel.h"
 #include "simulation/linkage_cells.h"
+#include "simulation/stage_response.h"
 
 namespace abbe::simulation {
 namespace {
@@ -122,44 +123,22 @@ class LinkageOnMachine : public Responsive {
 };
 
 // Where the machine and the ball in its cap bring the ball, less where the linkage finds it.
-class GapResponse : public Response {
+class GapResponse : public StageResponse {
  public:
   GapResponse(Eigen::MatrixXd by_stage, Eigen::MatrixXd angles)
-      : by_stage_(std::move(by_stage)), angles_(std::move(angles)) {}
-
-  Eigen::MatrixXd Columns(const std::vector<Disturbance>& disturbances) const override {
-    Eigen::MatrixXd columns =
-        Eigen::MatrixXd::Zero(by_stage_.rows(), static_cast<Index>(disturbances.size()));
-    for (Index d = 0; d < columns.cols(); ++d) {
-      for (const auto& [stage, values] : disturbances[static_cast<std::size_t>(d)].stages()) {
-        for (Index pose = 0; pose < values.size(); ++pose) {
-          if (values[pose] == 0.0) continue;
-          columns.col(d).segment<3>(3 * pose) +=
-              values[pose] * by_stage_.col(stage).segment<3>(3 * pose);
-        }
-      }
-    }
-    return columns;
-  }
+      : StageResponse(std::move(by_stage), 3), angles_(std::move(angles)) {}
 
   Eigen::MatrixXd Readings(const VectorXd& left) const override {
     Eigen::MatrixXd angles = angles_;
     for (Index pose = 0; pose < angles.cols(); ++pose) {
-      const Eigen::MatrixXd by_angles = by_stage_.middleRows<3>(3 * pose).rightCols(angles.rows());
+      const Eigen::MatrixXd by_angles = by_stage().middleRows<3>(3 * pose).rightCols(angles.rows());
       angles.col(pose) -=
           by_angles.completeOrthogonalDecomposition().solve(Vector3d(left.segment<3>(3 * pose)));
     }
     return angles;
   }
 
-  RowScores ScoresOf(Index stage, const VectorXd& left) const override {
-    const VectorXd column = by_stage_.col(stage);
-    return {column.cwiseProduct(left).reshaped(3, angles_.cols()).colwise().sum(),
-            column.cwiseAbs2().reshaped(3, angles_.cols()).colwise().sum()};
-  }
-
  private:
-  Eigen::MatrixXd by_stage_;  // whitened, rows x stages
   Eigen::MatrixXd angles_;
 };
 

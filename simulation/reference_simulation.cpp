@@ -8,8 +8,10 @@
 
 #include "failure/failure.h"
 #include "geometry/rotation.h"
-#include "machine/volumetric_error.h"
+#include "machine/volumetric_jacobian.h"
 #include "simulation/machine_points.h"
+#include "simulation/reference_noise.h"
+#include "simulation/stage_response.h"
 
 namespace abbe::simulation {
 namespace {
@@ -17,51 +19,59 @@ namespace {
 using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
+using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double kSetUp = 10e-3;  // rad: how well an instrument is aligned by hand
 
-struct Readings {
-  std::vector<Index> axes;  // that the instrument shows
-  Matrix3Xd place;          // in M; rows of absent directions are 0
-  Eigen::VectorXd sd;       // of each point
-};
-
-Readings ReadingsOf(const machine::Chain& chain, double sd, const recording::Recording& recording,
-                    const MachinePoints& points) {
-  Readings readings{{}, Matrix3Xd::Zero(3, points.count()), VectorXd::Constant(points.count(), sd)};
+std::vector<Index> AxesShown(const ReferenceRun& run) {
+  std::vector<Index> shown;
   for (Index axis = 0; axis < 3; ++axis) {
-    const std::string column = fmt::format("ref_{}_mm", "xyz"[axis]);
-    if (!recording.Find(column)) continue;
-    readings.axes.push_back(axis);
-    const double sign = chain.CarriesTarget("XYZ"[axis]) ? -1.0 : 1.0;
-    readings.place.row(axis) = sign * ColumnAt(recording, points, column);
+    if (run.shown[static_cast<std::size_t>(axis)]) shown.push_back(axis);
   }
-  if (readings.axes.empty()) {
-    throw InputError(
-        fmt::format("{}: has none of ref_x_mm, ref_y_mm, ref_z_mm: nothing says where "
-                    "the tool really was",
-                    recording.name));
-  }
-  if (recording.Find("ref_u_um")) readings.sd = ColumnAt(recording, points, "ref_u_um");
-  if (!(readings.sd.minCoeff() > 0.0)) {
-    throw InputError(
-        fmt::format("{}: the reference has no noise; state reference_um in "
-                    "[linkage.noise] or ref_u_um above 0",
-                    recording.name));
-  }
-  return readings;
+  return shown;
 }
 
-// x: place, turn, machine.
-class ReferenceResidual : public estimation::Residual {
+// In M, from axis coordinates.
+Matrix3Xd PlacesInMachine(const machine::Chain& chain, const ReferenceRun& run) {
+  Matrix3Xd places = run.place;
+  for (Index axis = 0; axis < 3; ++axis) {
+    if (chain.CarriesTarget("XYZ"[axis])) places.row(axis) *= -1.0;
+  }
+  return places;
+}
+
+class PlaceResponse : public StageResponse {
  public:
-  ReferenceResidual(PointsOnMachine points, Readings readings)
-      : points_(std::move(points)), readings_(std::move(readings)) {}
+  PlaceResponse(MatrixXd by_stage, MatrixXd places, MatrixXd sd)
+      : StageResponse(std::move(by_stage), places.rows()),
+        places_(std::move(places)),
+        sd_(std::move(sd)) {}
+
+  // Places in M, of the directions that the instrument shows.
+  MatrixXd Readings(const VectorXd& left) const override {
+    return places_ - left.reshaped(places_.rows(), places_.cols()).cwiseProduct(sd_);
+  }
+
+ private:
+  MatrixXd places_, sd_;
+};
+
+// x: place, turn, machine. Rows: the directions shown of the first point, of the next, ...
+class ReferenceResidual : public Responsive {
+ public:
+  ReferenceResidual(machine::VolumetricModel model, const Vector3d& reference,
+                    const ReferenceRun& run)
+      : model_(std::move(model)),
+        tool_(run.points.tool - reference),
+        points_(model_, reference, run.points),
+        shown_(AxesShown(run)),
+        place_(PlacesInMachine(model_.chain(), run)),
+        sd_(run.sd) {}
 
   Index Rows() const override {
-    return static_cast<Index>(readings_.axes.size()) * points_.points().count();
+    return static_cast<Index>(shown_.size()) * points_.points().count();
   }
 
   void Evaluate(const VectorXd& x, VectorXd& values,
@@ -75,26 +85,55 @@ class ReferenceResidual : public estimation::Residual {
     Index row = 0;
     for (Index i = 0; i < p.cols(); ++i) {
       const Vector3d turned = R * p.col(i);
-      const Vector3d left = readings_.place.col(i) - x.head<3>() - turned;
+      const Vector3d left = place_.col(i) - x.head<3>() - turned;
       const Matrix3d J_turn = geometry::Skew(turned) * by_turn;
-      for (const Index axis : readings_.axes) {
-        values[row] = left[axis] / readings_.sd[i];
+      for (const Index axis : shown_) {
+        values[row] = left[axis] / sd_(axis, i);
         if (jacobian != nullptr) {
           auto out = jacobian->row(row);
           out.head<3>() = -Eigen::RowVector3d::Unit(axis);
           out.segment<3>(3) = J_turn.row(axis);
           out.tail(points_.parameters()) = -R.row(axis) * J[static_cast<std::size_t>(i)];
-          out /= readings_.sd[i];
+          out /= sd_(axis, i);
         }
         ++row;
       }
     }
   }
 
+  std::shared_ptr<const Response> At(const VectorXd& x) const override {
+    machine::VolumetricModel model = model_;
+    model.SetParameters(x.tail(points_.parameters()));
+    const Matrix3d R = geometry::ExpRotation<double>(Vector3d(x.segment<3>(3)));
+    MatrixXd by_stage = MatrixXd::Zero(Rows(), kToolStage);
+    Index row = 0;
+    for (Index i = 0; i < points_.points().count(); ++i) {
+      const Vector3d command = points_.points().axes.col(i);
+      const auto machine = machine::VolumetricErrorAndJacobian(model.chain(), command, tool_,
+                                                               model.Motions(command));
+      for (const Index axis : shown_) {
+        by_stage.row(row++) = R.row(axis) * machine.J_error_motions / sd_(axis, i);
+      }
+    }
+    return std::make_shared<PlaceResponse>(std::move(by_stage), place_(shown_, Eigen::all),
+                                           sd_(shown_, Eigen::all));
+  }
+
  private:
+  machine::VolumetricModel model_;
+  Vector3d tool_;  // from the reference point
   PointsOnMachine points_;
-  Readings readings_;
+  std::vector<Index> shown_;
+  Matrix3Xd place_, sd_;
 };
+
+void RefuseNoNoise(const ReferenceRun& run) {
+  if (run.sd(AxesShown(run), Eigen::all).minCoeff() > 0.0) return;
+  throw InputError(
+      fmt::format("{}: the reference has no noise; state reference_um in [linkage.noise] of the "
+                  "machine file, u_reference_um in the header or the column ref_u_um, above 0",
+                  run.points.name));
+}
 
 estimation::ParameterBlock SetUp(const std::string& name, const estimation::PrintUnit& unit,
                                  const std::array<const char*, 3>& entries, double prior_sd) {
@@ -106,25 +145,29 @@ estimation::ParameterBlock SetUp(const std::string& name, const estimation::Prin
 }  // namespace
 
 SimulatedRun SimulateReference(const machine::VolumetricModel& model, const Vector3d& reference,
-                               double sd, const recording::Recording& recording) {
-  MachinePoints points = ReadMachinePoints(recording);
-  Readings readings = ReadingsOf(model.chain(), sd, recording, points);
+                               const ReferenceRun& run) {
+  RefuseNoNoise(run);
   SimulatedRun simulated{
-      recording.name, "reference", {}, nullptr, estimation::RobustLoss::Huber(kPullsNoMore)};
+      run.points.name, "reference", {}, nullptr, estimation::RobustLoss::Huber(kPullsNoMore)};
   simulated.blocks = {
-      SetUp("reference_place " + recording.name, {"um", 1e-6}, {"x", "y", "z"},
+      SetUp("reference_place " + run.points.name, {"um", 1e-6}, {"x", "y", "z"},
             estimation::kNoPrior),
-      SetUp("reference_turn " + recording.name, {"urad", 1e-6}, {"a", "b", "c"}, kSetUp)};
+      SetUp("reference_turn " + run.points.name, {"urad", 1e-6}, {"a", "b", "c"}, kSetUp)};
   // A direction that the instrument does not show has no place.
-  for (Index axis = 0; axis < 3; ++axis) {
-    const auto& shown = readings.axes;
-    simulated.blocks[0].entries[static_cast<std::size_t>(axis)].held =
-        std::find(shown.begin(), shown.end(), axis) == shown.end();
+  for (std::size_t axis = 0; axis < run.shown.size(); ++axis) {
+    simulated.blocks[0].entries[axis].held = !run.shown[axis];
   }
   for (auto& block : model.Blocks()) simulated.blocks.push_back(std::move(block));
-  simulated.residual = std::make_shared<ReferenceResidual>(
-      PointsOnMachine(model, reference, std::move(points)), std::move(readings));
+  const auto residual = std::make_shared<ReferenceResidual>(model, reference, run);
+  simulated.residual = simulated.response = residual;
   return simulated;
+}
+
+SimulatedRun SimulateReference(const machine::VolumetricModel& model, const Vector3d& reference,
+                               double sd, const recording::Recording& recording) {
+  ReferenceRun run = ReadReferenceRun(recording);
+  SetNoise(Vector3d::Constant(sd), run);
+  return SimulateReference(model, reference, run);
 }
 
 }  // namespace abbe::simulation

@@ -11,16 +11,22 @@
 // Unknowns: "reference_place RUN" [x y z], of which nothing is known, "reference_turn RUN" [a b c],
 // known to 10 mrad; the machine's functions and squareness. Turn and squareness together stay as
 // well determined as two or three directions of the instrument allow.
-// Noise: header-independent `sd` in each direction, or the column ref_u_um.
-// Units: m, rad. Failure: that of simulation/machine_points.h; InputError without any ref column.
+// Noise: that of the run; of a recording that states none, `sd` in each direction.
+// Units: m, rad. Failure: that of simulation/reference_run.h; InputError for no noise.
 #pragma once
 
 #include "machine/volumetric_model.h"
 #include "recording/recording.h"
+#include "simulation/reference_run.h"
 #include "simulation/simulated_run.h"
 
 namespace abbe::simulation {
 
+// `run` states its noise in all directions that it shows.
+SimulatedRun SimulateReference(const machine::VolumetricModel& model,
+                               const Eigen::Vector3d& reference, const ReferenceRun& run);
+
+// Row by row, as it was recorded.
 SimulatedRun SimulateReference(const machine::VolumetricModel& model,
                                const Eigen::Vector3d& reference, double sd,
                                const recording::Recording& recording);

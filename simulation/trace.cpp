@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
-#include "failure/failure.h"
 #include "relm/linkage_model.h"
-#include "simulation/instant.h"
+#include "simulation/trace_columns.h"
 
 namespace abbe::simulation {
 namespace {
@@ -56,6 +54,12 @@ Derivatives DerivativesOf(const MatrixXd& values, const Trace& trace) {
                            found.second.col(row) * (trace.time[row] - trace.time[middle]);
   }
   return found;
+}
+
+RowVectorXd ApproachOf(const std::vector<int>& direction) {
+  RowVectorXd heading(static_cast<Index>(direction.size()));
+  std::copy(direction.begin(), direction.end(), heading.begin());
+  return heading;
 }
 
 // Metres since the heading last changed. Before a pass began the axis moved as it then did.
@@ -113,19 +117,6 @@ RowVectorXd PlayOf(const RowVectorXd& position, const Trace& trace, double width
   return behind;
 }
 
-void AddSensors(const recording::Recording& recording, const std::vector<std::size_t>& rows,
-                Trace& trace) {
-  for (const auto& column : recording.columns) {
-    if (!column.name.starts_with("temp_")) continue;
-    trace.sensors.push_back(column.name);
-    trace.temperature.conservativeResize(static_cast<Index>(trace.sensors.size()), trace.rows());
-    for (Index row = 0; row < trace.rows(); ++row) {
-      trace.temperature(trace.temperature.rows() - 1, row) =
-          column.values[rows[static_cast<std::size_t>(row)]];
-    }
-  }
-}
-
 // Where the cap goes; while standing, where it went last.
 Eigen::Matrix3Xd WayOf(const Trace& trace, const machine::Chain& chain) {
   constexpr double kSoon = 1e-3;  // s
@@ -172,30 +163,13 @@ MatrixXd LinksOf(const LinkageRun& run, const relm::LinkageModel& model) {
   return links;
 }
 
-std::vector<int> IntegersAt(const recording::Recording& recording, const char* column,
-                            const std::vector<std::size_t>& rows) {
-  std::vector<int> integers(rows.size(), 1);
-  if (const auto values = recording.Find(column)) {
-    std::transform(rows.begin(), rows.end(), integers.begin(),
-                   [&](std::size_t row) { return static_cast<int>((*values)[row]); });
-  }
-  return integers;
-}
-
 }  // namespace
 
-double StartedOf(const recording::Recording& recording) {
-  const auto text = recording.HeaderText("started");
-  if (!text) return 0.0;
-  const auto seconds = SecondsOf(*text);
-  if (seconds) return *seconds;
-  throw InputError(fmt::format("{}: started = {} is no time; write it as 2026-11-21T09:00:00Z",
-                               recording.name, *text));
-}
-
 RowVectorXd Trace::Behind(int which, double width) const {
-  // Between the stations of a sweep any play is taken up.
-  if (kind != "linkage" || width <= 0.0) return -0.5 * heading.row(which);
+  // Between the stations of a sweep, and the targets of a test, any play is taken up.
+  const bool follows =
+      kind == "linkage" || (kind == "reference" && !velocity.row(which).isZero(0.0));
+  if (!follows || width <= 0.0) return -0.5 * heading.row(which);
   return PlayOf(axes.row(which), *this, width);
 }
 
@@ -212,7 +186,7 @@ void Trace::SetAxes(const Eigen::Matrix3Xd& path) {
   heading.resize(3, axes.cols());
   since_reversal.resize(3, axes.cols());
   for (Index i = 0; i < 3; ++i) {
-    heading.row(i) = HeadingOf(axes.row(i), kAxisBand);
+    heading.row(i) = "XYZ"[i] == axis ? ApproachOf(direction) : HeadingOf(axes.row(i), kAxisBand);
     since_reversal.row(i) = SinceReversal(*this, i);
   }
 }
@@ -262,9 +236,7 @@ Trace TraceOf(const recording::Recording& recording, const SweepRun& run) {
   trace.since_reversal = Eigen::Matrix3Xd::Constant(3, run.rows(), kLongAgo);
   const Index swept = run.axis - 'X';
   // The direction of approach, not the last difference: at the end of a pass the axis overruns.
-  for (Index row = 0; row < run.rows(); ++row) {
-    trace.heading(swept, row) = run.direction[static_cast<std::size_t>(row)];
-  }
+  trace.heading.row(swept) = ApproachOf(run.direction);
   if (trace.kind == "gap-steps") {
     for (Index k = 0; k < 3; ++k) trace.heading.row(k) = HeadingOf(trace.axes.row(k), kAxisBand);
   }
@@ -291,28 +263,6 @@ Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
   trace.link = LinksOf(run, linkage.model());
   AddSensors(recording, run.rows, trace);
   return trace;
-}
-
-Origin OriginOf(const std::vector<const Trace*>& traces) {
-  Origin origin;
-  std::vector<const Trace*> in_time = traces;
-  std::stable_sort(in_time.begin(), in_time.end(),
-                   [](const Trace* a, const Trace* b) { return a->started < b->started; });
-  if (!in_time.empty()) origin.started = in_time.front()->started;
-  for (const Trace* trace : in_time) {
-    for (std::size_t s = 0; s < trace->sensors.size(); ++s) {
-      origin.temperature.emplace(trace->sensors[s], trace->temperature(static_cast<Index>(s), 0));
-    }
-  }
-  return origin;
-}
-
-void CountFrom(const Origin& origin, Trace& trace) {
-  trace.clock = trace.time.array() + (trace.started - origin.started);
-  trace.warming = trace.temperature;
-  for (std::size_t s = 0; s < trace.sensors.size(); ++s) {
-    trace.warming.row(static_cast<Index>(s)).array() -= origin.temperature.at(trace.sensors[s]);
-  }
 }
 
 Disturbance NoDisturbance(const Trace& trace) { return Disturbance(trace.rows()); }

@@ -28,8 +28,7 @@ Cause ClockSkew() {
       .objects = SourcesOf,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd& delay) -> std::vector<Disturbance> {
-        const bool of_linkage = trace.pivots() > 0;
-        if (of_linkage != (object == "linkage")) return {};
+        if (object == "linkage" ? trace.pivots() == 0 : trace.gap.size() == 0) return {};
         Disturbance late = NoDisturbance(trace);
         for (int axis = 0; axis < 3; ++axis) {
           late.row(Positioning(axis)) =

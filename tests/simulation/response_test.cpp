@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "simulation/reference_noise.h"
+#include "simulation/reference_simulation.h"
+#include "simulation/reference_trace.h"
 #include "simulation/trace.h"
 #include "tests/fusion/rig_campaign.h"
 
@@ -85,6 +88,39 @@ TEST_F(Response, OfASweepToTheHeadRisingIsThatOfTheTopProbesAlone) {
   Disturbance shown(sweep.rows());
   shown.row(kReadingStage + 3).setOnes();
   ExpectSame(run.response->At(x)->Columns({shown}).col(0), -ByParameter(run, x, "probe_zero s.d"));
+}
+
+TEST_F(Response, OfAReferenceIsThatOfItsParameters) {
+  const auto course = rig::DwellCourse(
+      rig::GridPlaces(Eigen::Vector3d::Constant(0.03), {0.05, 0.05, 0.05}, {3, 2, 2}), 0.1, 0.1, 1);
+  const auto recording = campaign.rig.Record(
+      course, {.kind = "reference", .rate = 20.0, .keys = "tool_mm = [10.0, 20.0, -50.0]\n"});
+  ReferenceRun places = MeansOfStays(ReadReferenceRun(recording));
+  SetNoise({1e-7, 2e-7, 3e-7}, places);
+  const SimulatedRun run = SimulateReference(campaign.model, campaign.reference, places);
+  const Trace trace = TraceOf(recording, places);
+  ASSERT_EQ(trace.rows(), 12);
+  const VectorXd x = StartOf(run).array() + 1e-5;
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    for (int motion = 0; motion < machine::kMotions; ++motion) {
+      const auto& function = campaign.model.Function(axis, motion);
+      VectorXd gradient(function.size());
+      Disturbance moved = NoDisturbance(trace);
+      for (Index row = 0; row < trace.rows(); ++row) {
+        function.Evaluate(trace.axes(axis, row), nullptr, gradient.data());
+        moved.row(MotionStage(axis, motion))[row] = gradient[4];
+      }
+      const std::string name = machine::MotionName(axis, motion) + ".c4";
+      ExpectSame(run.response->At(x)->Columns({moved}).col(0), -ByParameter(run, x, name));
+    }
+  }
+  const VectorXd left = VectorXd::LinSpaced(run.residual->Rows(), -1.0, 1.0);
+  const auto of_stage = run.response->At(x)->ScoresOf(MotionStage(1, 1), left);
+  Disturbance second = NoDisturbance(trace);
+  second.row(MotionStage(1, 1))[1] = 1.0;
+  const VectorXd column = run.response->At(x)->Columns({second}).col(0);
+  EXPECT_NEAR(of_stage.scores[1], column.dot(left), 1e-9 * std::abs(of_stage.scores[1]));
+  EXPECT_NEAR(of_stage.weights[1], column.squaredNorm(), 1e-9 * of_stage.weights[1]);
 }
 
 TEST_F(Response, OfALinkageIsThatOfItsParameters) {

@@ -1,0 +1,49 @@
+// When the rows of a trace were, and how warm, counted from the beginning of a campaign.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "failure/failure.h"
+#include "simulation/instant.h"
+#include "simulation/trace.h"
+
+namespace abbe::simulation {
+
+using Eigen::Index;
+
+double StartedOf(const recording::Recording& recording) {
+  const auto text = recording.HeaderText("started");
+  if (!text) return 0.0;
+  const auto seconds = SecondsOf(*text);
+  if (seconds) return *seconds;
+  throw InputError(fmt::format("{}: started = {} is no time; write it as 2026-11-21T09:00:00Z",
+                               recording.name, *text));
+}
+
+Origin OriginOf(const std::vector<const Trace*>& traces) {
+  Origin origin;
+  std::vector<const Trace*> in_time = traces;
+  std::stable_sort(in_time.begin(), in_time.end(),
+                   [](const Trace* a, const Trace* b) { return a->started < b->started; });
+  for (const Trace* trace : in_time) {
+    if (origin.started == 0.0) origin.started = trace->started;
+  }
+  for (const Trace* trace : in_time) {
+    for (std::size_t s = 0; s < trace->sensors.size(); ++s) {
+      origin.temperature.emplace(trace->sensors[s], trace->temperature(static_cast<Index>(s), 0));
+    }
+  }
+  return origin;
+}
+
+void CountFrom(const Origin& origin, Trace& trace) {
+  // A run that does not say when it began begins its own clock.
+  const double later = trace.started == 0.0 ? 0.0 : trace.started - origin.started;
+  trace.clock = trace.time.array() + later;
+  trace.warming = trace.temperature;
+  for (std::size_t s = 0; s < trace.sensors.size(); ++s) {
+    trace.warming.row(static_cast<Index>(s)).array() -= origin.temperature.at(trace.sensors[s]);
+  }
+}
+
+}  // namespace abbe::simulation
