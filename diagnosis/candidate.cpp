@@ -7,13 +7,32 @@
 
 namespace abbe::diagnosis {
 
-std::vector<Candidate> AllCandidates(const simulation::Scene& scene) {
+namespace {
+
+// A length in the motion of an axis.
+bool ScalesWith(const simulation::Cause& cause, const std::string& object) {
+  return cause.SeatAt(object) != simulation::Seat::kInstrument &&
+         std::any_of(cause.keys.begin(), cause.keys.end(),
+                     [](const auto& key) { return key.name.ends_with("_um"); });
+}
+
+}  // namespace
+
+double CoarsenessOf(const machine::Population& population) {
+  constexpr double kFine = 2e-6;  // m
+  return std::max(1.0, population.positioning / kFine);
+}
+
+std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coarseness) {
   std::vector<Candidate> candidates;
   for (const simulation::Cause& cause : simulation::Causes()) {
     const std::vector<Eigen::VectorXd> shapes =
         cause.shapes ? cause.shapes(scene) : std::vector<Eigen::VectorXd>{Eigen::VectorXd()};
     for (const std::string& object : cause.objects(scene)) {
-      for (const Eigen::VectorXd& shape : shapes) candidates.push_back({&cause, object, shape});
+      const double own = ScalesWith(cause, object) ? coarseness : 1.0;
+      for (const Eigen::VectorXd& shape : shapes) {
+        candidates.push_back({&cause, object, shape, {}, own});
+      }
     }
   }
   return candidates;

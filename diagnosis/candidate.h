@@ -16,17 +16,24 @@ struct Candidate {
   Eigen::VectorXd shape;  // empty for a cause without
   // Around which its shape is varied; empty: it is kept.
   Eigen::VectorXd coefficients = {};
+  double coarseness = 1.0;  // times the plausible sizes of the cause
 
   std::string Name() const { return cause->id + ":" + object; }
+  Eigen::VectorXd Plausible() const { return coarseness * cause->plausible; }
   // Whether the shape is a number between those tried, to be found with the coefficients.
   bool HasFreeShape() const {
     return cause->shapes && !cause->fixed_shapes && coefficients.size() > 0;
   }
 };
 
+// How many times larger than those of the causes the lengths are that an axis may plausibly lose,
+// wave or creep by: these are for a machine whose positioning errors are of 2 um (the population of
+// its file), on a coarser one they are in proportion.
+double CoarsenessOf(const machine::Population& population);
+
 // All causes at all objects that the scene offers, with all shapes to try. One after the other:
 // shapes of one cause and object stand together.
-std::vector<Candidate> AllCandidates(const simulation::Scene& scene);
+std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coarseness = 1.0);
 
 struct Score {
   Candidate candidate;

@@ -88,7 +88,9 @@ double LogPrior(std::size_t names) { return std::log(kPresent / static_cast<doub
 class Search {
  public:
   explicit Search(const Campaign& campaign)
-      : candidates_(AllCandidates(campaign.scene())), fit_(std::make_shared<const Fit>(campaign)) {}
+      : candidates_(
+            AllCandidates(campaign.scene(), CoarsenessOf(campaign.setup().machine.population))),
+        fit_(std::make_shared<const Fit>(campaign)) {}
 
   Diagnosis Run() {
     diagnosis_.chi_before = fit_->chi_square() / static_cast<double>(fit_->rows());

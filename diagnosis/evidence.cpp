@@ -263,7 +263,7 @@ constexpr Index kColumnsAtOnce = 128;  // so many share the derivatives of the s
 
 Score ScoreFrom(const Candidate& candidate, const Fit::Projection& projection) {
   const auto& [S, g] = projection;
-  const VectorXd& plausible = candidate.cause->plausible;
+  const VectorXd plausible = candidate.Plausible();
   if (candidate.cause->whole) {
     return {candidate, VectorXd::Ones(1), MatrixXd::Zero(1, 1), g[0] - 0.5 * S(0, 0),
             std::sqrt(std::max(0.0, S(0, 0)))};

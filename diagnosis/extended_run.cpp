@@ -118,8 +118,7 @@ simulation::SimulatedRun Extend(const DiagnosedRun& run, const LinearRun& at,
     }
     estimation::ParameterBlock block(BlockOf(cause), {"", 1.0}, {});
     for (Index i = 0; i < own.cols(); ++i) {
-      block.entries.push_back(
-          {.name = fmt::format("c{}", i), .prior_sd = cause.cause->plausible[i]});
+      block.entries.push_back({.name = fmt::format("c{}", i), .prior_sd = cause.Plausible()[i]});
     }
     extended.blocks.push_back(std::move(block));
     columns.conservativeResize(Eigen::NoChange, columns.cols() + own.cols());
