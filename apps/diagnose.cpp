@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/command.h"
@@ -26,6 +28,16 @@ struct DiagnoseArguments {
   bool quiet = false;
 };
 
+// A file without [devices] describes the machine alone: enough for runs with a reference.
+diagnosis::Setup SetupOf(const fs::path& machine) {
+  if (!settings::Document::Read(machine).Root().Has("devices")) {
+    return {ReadMachineOf(machine), std::nullopt, {}, {}, std::nullopt};
+  }
+  const MachineFile file = ReadMachineFile(machine);
+  const auto& setup = file.sweep_setup;
+  return {setup.machine, setup.head, setup.target, setup.noise, file.linkage};
+}
+
 void WriteModel(simulation::ExtendedModel model, const DiagnoseArguments& arguments) {
   for (const fs::path& path : arguments.recordings) {
     model.sources.push_back({path.filename().string(), Sha256Of(path)});
@@ -43,6 +55,7 @@ nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
   for (const fs::path& path : arguments.recordings) {
     json["recordings"].push_back(path.filename().string());
   }
+  json["notes"] = campaign.notes();
   if (!arguments.out.empty()) json["model"] = arguments.out.filename().string();
   return json;
 }
@@ -63,10 +76,7 @@ diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
 }
 
 int Diagnose(const DiagnoseArguments& arguments) {
-  const MachineFile file = ReadMachineFile(arguments.machine);
-  const auto& setup = file.sweep_setup;
-  diagnosis::Campaign campaign(
-      {setup.machine, setup.head, setup.target, setup.noise, file.linkage});
+  diagnosis::Campaign campaign(SetupOf(arguments.machine));
   std::vector<recording::Recording> recordings;
   for (const fs::path& path : arguments.recordings) {
     recordings.push_back(recording::Read(path));
@@ -87,7 +97,9 @@ int Diagnose(const DiagnoseArguments& arguments) {
   }
   if (!arguments.json.empty())
     WriteResult(JsonOf(arguments, campaign, diagnosis, gain), arguments.json);
-  if (!arguments.quiet) fmt::print("{}", DiagnosisText(diagnosis, gain));
+  if (arguments.quiet) return kDone;
+  fmt::print("{}", DiagnosisText(diagnosis, gain));
+  for (const std::string& note : campaign.notes()) fmt::print("\nNote: {}\n", note);
   return kDone;
 }
 
@@ -99,7 +111,7 @@ void AddDiagnose(CLI::App& program, int& exit_code) {
       "diagnose", "What the simulation of the runs gets wrong, and which cause explains it");
   command
       ->add_option("recordings", arguments->recordings,
-                   "Recordings of one machine: sweeps, linkage, length")
+                   "Recordings of one machine: sweeps, linkage, reference, length")
       ->required();
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   command->add_option("-o,--out", arguments->out,

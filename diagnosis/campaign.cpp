@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "diagnosis/reference_in_campaign.h"
 #include "failure/failure.h"
 #include "simulation/length_simulation.h"
 #include "simulation/linkage_on_machine.h"
-#include "simulation/reference_simulation.h"
 #include "simulation/sweep_simulation.h"
 
 namespace abbe::diagnosis {
@@ -69,13 +69,17 @@ void Campaign::Add(recording::Recording recording) {
         recording.name));
   }
   if (kind == "sweep" || kind == "dwell" || kind == "gap-steps") {
+    if (!setup_.head) {
+      throw InputError(fmt::format(
+          "{}: the machine file has no table [head]; add it or leave the run out", recording.name));
+    }
     const simulation::SweepRun run =
-        kind == "sweep" ? simulation::ReadSweepDwells(recording, setup_.head, setup_.noise)
+        kind == "sweep" ? simulation::ReadSweepDwells(recording, *setup_.head, setup_.noise)
         : kind == "dwell"
             ? simulation::ReadStillReadings(recording, setup_.noise)
             : simulation::ReadGapSteps(recording, setup_.noise, SlopesOf(mill.population));
     runs_.push_back(
-        {simulation::SimulateSweep(model_, mill.reference, {setup_.head, setup_.target}, run),
+        {simulation::SimulateSweep(model_, mill.reference, {*setup_.head, setup_.target}, run),
          simulation::TraceOf(recording, run)});
   } else if (kind == "linkage") {
     if (!setup_.linkage) {
@@ -92,10 +96,12 @@ void Campaign::Add(recording::Recording recording) {
                      simulation::TraceOf(recording, run, linkage)});
   } else if (kind == "length") {
     runs_.push_back({simulation::SimulateLengths(model_, mill.reference, recording), Trace{}});
+  } else if (kind == "reference") {
+    runs_.push_back(MakeReferenceRun(recording, setup_, model_, notes_));
   } else {
     throw InputError(
-        fmt::format("{}: kind is \"{}\"; diagnose takes sweep, dwell, gap-steps, linkage "
-                    "and length",
+        fmt::format("{}: kind is \"{}\"; diagnose takes sweep, dwell, gap-steps, linkage, "
+                    "reference and length",
                     recording.name, kind));
   }
   runs_.back().simulated.loss = estimation::RobustLoss::None();

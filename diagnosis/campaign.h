@@ -7,12 +7,14 @@
 // Readings that are none (data_integrity.h) are found first and left out.
 // Sweeps enter dwell by dwell, so that what changes from pass to pass stays visible. No row is
 // weighted down by a robust loss: what looks like outliers may be the cause.
-// Failure: InputError for a recording of another machine or of a kind that the diagnosis does not
-// take, and that of the simulations.
+// Failure: InputError for a recording of another machine, of a kind that the diagnosis does not
+// take or the machine file does not describe, and that of the simulations.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "diagnosis/data_integrity.h"
@@ -29,10 +31,12 @@ namespace abbe::diagnosis {
 
 struct Setup {
   machine::Machine machine;
-  probes::HeadSettings head;
+  std::optional<probes::HeadSettings> head;
   probes::TargetSettings target;
   probes::ProbeNoise noise;
   std::optional<relm::LinkageSettings> linkage;
+  // m, of runs with a reference instrument that state none, by name; others are estimated.
+  std::map<std::string, Eigen::Vector3d> reference_noise = {};
 };
 
 struct DiagnosedRun {
@@ -55,6 +59,8 @@ class Campaign {
   // In the order of adding, on one clock.
   const std::vector<DiagnosedRun>& runs() const { return runs_; }
   simulation::Scene scene() const;
+  // What whoever reads the result has to know of how the runs were taken.
+  const std::vector<std::string>& notes() const { return notes_; }
   // What was found row by row and left out, on the clock of the campaign; each channel once.
   std::vector<BadData> bad_data() const;
 
@@ -70,6 +76,7 @@ class Campaign {
   std::optional<simulation::Origin> origin_;
   std::vector<DiagnosedRun> runs_;
   std::vector<BadRows> bad_;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace abbe::diagnosis

@@ -91,7 +91,7 @@ LinearRun LinearAt(const DiagnosedRun& run, const VectorXd& x, const VectorXd& l
   const MatrixXd readings = at.response->Readings(left);
   if (at.trace.pivots() > 0) {
     at.trace.SetAngles(readings);
-  } else {
+  } else if (at.trace.gap.size() > 0) {
     at.trace.gap = readings;
   }
   return at;

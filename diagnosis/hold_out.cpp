@@ -51,14 +51,15 @@ std::set<const Recording*> HeldRuns(const std::vector<Recording>& recordings) {
 
 // Which rows are held out; empty: none.
 std::function<bool(std::size_t)> HeldRows(const Recording& recording) {
-  if (recording.Kind() != "sweep" && recording.Kind() != "linkage") return {};
+  const std::string kind = recording.Kind();
+  if (kind != "sweep" && kind != "linkage" && kind != "reference") return {};
   const auto pass = recording.Find("pass");
   const std::set<double> passes =
       pass ? std::set<double>(pass->begin(), pass->end()) : std::set<double>{};
   if (passes.size() > 1) {
     return [pass](std::size_t row) { return std::lround((*pass)[row]) % 2 == 0; };
   }
-  if (recording.Kind() == "sweep") return {};
+  if (kind == "sweep") return {};
   const std::size_t block = recording.rows() / kBlocks + 1;
   return [block](std::size_t row) { return (row / block) % 2 == 1; };
 }

@@ -3,12 +3,12 @@
 //   const HeldOutGain gain = HoldOut(campaign, recordings, causes);
 //   gain.after / gain.before
 //
-// Every other pass of each sweep is held out, and every other run of the linkage on one base; where
-// it has fewer than three, every other pass, or every other of kBlocks blocks in time, so that
-// neighbouring rows stay together. A sweep with one pass and runs of other kinds take no part. The
-// simulation is fitted to the rest, once as it is and once with the causes, and asked for the rows
-// that were held out: rms of (measured - simulated) / stated deviation, 1 for the noise floor.
-// Failure: that of Fit.
+// Every other pass of each sweep and of each run with a reference instrument is held out, and every
+// other run of the linkage on one base; where it has fewer than three, every other pass, or every
+// other of kBlocks blocks in time, so that neighbouring rows stay together. A sweep with one pass
+// and runs of other kinds take no part. The simulation is fitted to the rest, once as it is and
+// once with the causes, and asked for the rows that were held out: rms of (measured - simulated) /
+// stated deviation, 1 for the noise floor. Failure: that of Fit.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,0 +1,99 @@
+// Does the diagnosis find in a positioning test what the rig hides, and nothing where nothing is?
+// Worlds: ABBE_SEEDS, ABBE_SHARD.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/diagnosis/positioning_world.h"
+#include "tests/hidden_effects/judgement.h"
+#include "tests/seeds.h"
+
+namespace abbe {
+namespace {
+
+Diagnosis DiagnosisOf(const PositioningWorlds& worlds, std::uint64_t seed,
+                      const rig::Campaign& world) {
+  diagnosis::Campaign campaign(worlds.setup());
+  for (const auto& recording : world.recordings) campaign.Add(recording);
+  const Diagnosis diagnosis = diagnosis::Diagnose(campaign);
+  Print(seed, world, diagnosis);
+  return diagnosis;
+}
+
+TEST(PositioningTests, ShowNothingWhereNothingIsHidden) {
+  const PositioningWorlds worlds;
+  const Seeds seeds = SeedsFromEnvironment();
+  Rate alarms;
+  for (std::uint64_t seed = seeds.first; seed <= seeds.last; seed += seeds.step) {
+    const PositioningPlan plan{.axis = static_cast<int>(seed % 3)};
+    const Diagnosis diagnosis = DiagnosisOf(worlds, seed, worlds.Record(seed, {}, plan));
+    alarms.Add(diagnosis.verdict != Verdict::kClean);
+  }
+  EXPECT_LE(alarms.Low(), 0.01) << alarms.Text();
+}
+
+// Any size that the rig draws, seen or not: it may stay hidden, or be said to be unexplained.
+TEST(PositioningTests, AreNotExplainedByAWrongCause) {
+  const std::vector<std::string> causes{"backlash",       "leadscrew-cyclic", "scale-error",
+                                        "thermal-growth", "warm-up-drift",    "reversal-spike",
+                                        "servo-lag",      "vibration"};
+  const PositioningWorlds worlds;
+  const Seeds seeds = SeedsFromEnvironment();
+  Rate wrong;
+  for (std::uint64_t seed = seeds.first; seed <= seeds.last; seed += seeds.step) {
+    const PositioningPlan plan{.axis = static_cast<int>(seed % 3)};
+    const std::string hidden =
+        fmt::format("{}:object={}", causes[seed % causes.size()], "XYZ"[plan.axis]);
+    const auto world = worlds.Record(seed, {hidden}, plan);
+    const Diagnosis diagnosis = DiagnosisOf(worlds, seed, world);
+    wrong.Add(diagnosis.verdict == Verdict::kExplained &&
+              !Names(diagnosis.findings.front(), world.hidden.front()));
+  }
+  EXPECT_LE(wrong.Low(), 0.01) << wrong.Text();
+}
+
+struct Shown {
+  const char* hidden;
+  std::vector<std::pair<std::string, double>> keys;
+  PositioningPlan plan = {};
+};
+
+class ShownInPositioning : public testing::TestWithParam<Shown> {};
+
+TEST_P(ShownInPositioning, IsNamedFirstWithItsSize) {
+  const PositioningWorlds worlds;
+  const Shown& shown = GetParam();
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const auto world = worlds.Record(seed, {shown.hidden}, shown.plan);
+    const Diagnosis diagnosis = DiagnosisOf(worlds, seed, world);
+    EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
+    ASSERT_EQ(diagnosis.findings.size(), 1U);
+    const Finding& first = diagnosis.findings.front();
+    EXPECT_TRUE(Names(first, world.hidden.front())) << first.score.candidate.Name();
+    const auto keys = KeysOf(first.score);
+    for (const auto& [name, truth] : shown.keys) {
+      for (Eigen::Index i = 0; i < keys.values.size(); ++i) {
+        const auto& key = first.score.candidate.cause->keys[static_cast<std::size_t>(i)];
+        if (key.name != name) continue;
+        // 99.99 % of normal errors.
+        EXPECT_NEAR(keys.values[i] / key.unit, truth, 3.9 * keys.u[i] / key.unit) << name;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OnTheRig, ShownInPositioning,
+    testing::Values(Shown{"backlash:object=X:width_um=3", {{"width_um", 3.0}}},
+                    Shown{"backlash:object=Z:width_um=1", {{"width_um", 1.0}}, {.axis = 2}},
+                    Shown{"leadscrew-cyclic:object=Y:pitch_mm=6:amplitude_um=2:phase_rad=1",
+                          {{"pitch_mm", 6.0}, {"amplitude_um", 2.0}, {"phase_rad", 1.0}},
+                          {.axis = 1, .targets = 40, .cycles = 3}},
+                    Shown{"warm-up-drift:object=X:amplitude_um=4:time_constant_s=100",
+                          {{"amplitude_um", 4.0}, {"time_constant_s", 100.0}}}));
+
+}  // namespace
+}  // namespace abbe
