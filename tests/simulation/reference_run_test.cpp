@@ -131,5 +131,40 @@ TEST(ReferenceTrace, HeadsAsEachTargetWasApproached) {
   EXPECT_TRUE((trace.since_reversal.array() == kLongAgo).all());
 }
 
+// To and fro by 0.1 mm a row, read on the way.
+TEST(ReferenceTrace, TakesUpAPlayWhileTheAxisMoves) {
+  recording::Recording course;
+  course.name = "line.csv";
+  course.header = "kind = \"reference\"\n";
+  course.columns = {
+      {"time_s", {}}, {"x_mm", {}}, {"pass", {}}, {"direction", {}}, {"ref_x_mm", {}}};
+  for (int row = 0; row < 40; ++row) {
+    const double at = 0.1 * (row < 20 ? row : 40 - row);
+    const double values[] = {0.1 * row, at, 1.0, 1.0, at};
+    for (std::size_t c = 0; c < std::size(values); ++c)
+      course.columns[c].values.push_back(values[c]);
+  }
+  const Trace trace = TraceOf(course, RunOf(course));
+  const double width = 0.25e-3;
+  const Eigen::RowVectorXd behind = trace.Behind(0, width);
+  EXPECT_NEAR(behind[19], -0.5, 1e-12);
+  EXPECT_NEAR(behind[21], -0.5 + 0.1e-3 / width, 1e-12);
+  EXPECT_NEAR(behind[22], -0.5 + 0.2e-3 / width, 1e-12);
+  EXPECT_NEAR(behind[23], 0.5, 1e-12);
+}
+
+TEST(ReferenceTrace, BeginsItsOwnClockWhereItDoesNotSayWhen) {
+  const auto none = [](int, int, int, int) { return 0.0; };
+  const auto plain = TestOf(none), early = TestOf(none, "started = \"2026-11-21T09:00:00Z\"\n"),
+             late = TestOf(none, "started = \"2026-11-21T09:10:00Z\"\n");
+  std::vector<Trace> traces{TraceOf(late, RunOf(late)), TraceOf(plain, RunOf(plain)),
+                            TraceOf(early, RunOf(early))};
+  const Origin origin = OriginOf({&traces[0], &traces[1], &traces[2]});
+  for (Trace& trace : traces) CountFrom(origin, trace);
+  EXPECT_EQ(traces[0].clock[3], 603.0);
+  EXPECT_EQ(traces[1].clock[3], 3.0);
+  EXPECT_EQ(traces[2].clock[3], 3.0);
+}
+
 }  // namespace
 }  // namespace abbe::simulation
