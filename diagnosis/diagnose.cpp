@@ -63,7 +63,7 @@ std::vector<Named> ByName(const std::vector<Score>& scores) {
 // The shape with the largest evidence near the best one that was tried.
 Score Refine(const Fit& fit, const Named& named) {
   Score best = named.best;
-  if (best.candidate.shape.size() == 0) return best;
+  if (best.candidate.shape.size() == 0 || best.candidate.cause->fixed_shapes) return best;
   double step = std::sqrt(named.step);
   for (int i = 0; i < kRefinements; ++i, step = std::sqrt(step)) {
     std::vector<Candidate> moved(2, best.candidate);
@@ -120,12 +120,12 @@ class Search {
   // Scores everything against the fit so far; false when nothing is probable enough.
   bool TakeBest() {
     std::vector<Named> names = ByName(ScoreAll(*fit_, candidates_));
-    std::sort(names.begin(), names.end(),
-              [](const Named& a, const Named& b) { return a.log_evidence > b.log_evidence; });
+    SortByEvidence(names);
     if (diagnosis_.evidence.empty()) DescribeFirstRound(names);
     std::erase_if(names, [&](const Named& named) {
       return Known(taken_, named.best.candidate) || Known(refused_, named.best.candidate);
     });
+    DecideByFits(names);
     const double prior = LogPrior(names.size());
     std::vector<double> logs{0.0};  // nothing more
     for (const Named& named : names) logs.push_back(named.log_evidence + prior);
@@ -149,6 +149,31 @@ class Search {
     diagnosis_.findings.push_back(std::move(finding));
     fit_ = fit;
     return true;
+  }
+
+  // What is there or not is too large for the first order: where one leads, fits with each of them
+  // decide among those that promise anything.
+  void DecideByFits(std::vector<Named>& names) const {
+    if (names.empty() || !names.front().best.candidate.cause->whole) return;
+    constexpr int kMostFits = 4;
+    int fits = 0;
+    for (Named& named : names) {
+      if (!named.best.candidate.cause->whole) continue;
+      if (named.log_evidence <= 0.0 || ++fits > kMostFits) {
+        named.log_evidence = std::min(named.log_evidence, 0.0);
+        continue;
+      }
+      std::vector<Candidate> with = taken_;
+      with.push_back(named.best.candidate);
+      const auto fit = FitWith(with);
+      named.log_evidence = fit ? fit_->cost() - fit->cost() : 0.0;
+    }
+    SortByEvidence(names);
+  }
+
+  static void SortByEvidence(std::vector<Named>& names) {
+    std::sort(names.begin(), names.end(),
+              [](const Named& a, const Named& b) { return a.log_evidence > b.log_evidence; });
   }
 
   // None where the simulation cannot be fitted with these: what they explain to first order, they

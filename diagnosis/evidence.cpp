@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -133,6 +135,7 @@ void Fit::Linearize(const Problem& problem) {
   const estimation::Linearization at = estimation::Linearize(problem, layout, x, 1);
   MatrixXd H = at.prior.information;
   gradient_ = at.prior.gradient;
+  cost_ = at.Cost();
   data_information_ = MatrixXd::Zero(H.rows(), H.cols());
   data_gradient_ = VectorXd::Zero(H.rows());
   for (std::size_t s = 0; s < at.sources.size(); ++s) {
@@ -149,8 +152,14 @@ void Fit::Linearize(const Problem& problem) {
   for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
     const DiagnosedRun& run = campaign_.runs()[r];
     const auto* rows = evaluator.Evaluate(problem.terms()[r], x, true);
-    runs_.push_back({LinearAt(run, ValuesIn(result_, run.simulated), rows->r), rows->r,
-                     rows->columns, rows->jacobian});
+    runs_.push_back({LinearAt(run, ValuesIn(result_, run.simulated), rows->r, taken_in_),
+                     rows->r,
+                     rows->columns,
+                     {}});
+    if (!runs_.back().at.response) continue;
+    MatrixXd both(rows->r.size(), rows->jacobian.cols() + 1);
+    both << rows->jacobian, rows->r;
+    runs_.back().back = runs_.back().at.response->BackToReadings(both);
   }
 }
 
@@ -166,43 +175,107 @@ Index Fit::rows() const {
   return rows;
 }
 
-Fit::Projection Fit::Finish(const MatrixXd& C_C, const MatrixXd& C_J, const VectorXd& C_r) const {
+namespace {
+
+// C'C within each group, of those columns `which` of all that act.
+void AddBlocks(const MatrixXd& C, const std::vector<Index>& which,
+               const std::vector<std::size_t>& group_of, std::vector<MatrixXd>& C_C) {
+  for (Index first = 0; first < C.cols();) {
+    const std::size_t group =
+        group_of[static_cast<std::size_t>(which[static_cast<std::size_t>(first)])];
+    const auto begin = std::find(group_of.begin(), group_of.end(), group) - group_of.begin();
+    std::vector<Index> own;
+    Index last = first;
+    for (; last < C.cols(); ++last) {
+      const Index column = which[static_cast<std::size_t>(last)];
+      if (group_of[static_cast<std::size_t>(column)] != group) break;
+      own.push_back(column - begin);
+    }
+    const auto acting = C.middleCols(first, last - first);
+    C_C[group](own, own) += acting.transpose() * acting;
+    first = last;
+  }
+}
+
+}  // namespace
+
+std::vector<Fit::Projection> Fit::Finish(const std::vector<MatrixXd>& C_C, const MatrixXd& C_J,
+                                         const VectorXd& C_r) const {
   constexpr double kRounding = 1e-9;  // of the information of a column
   const MatrixXd B = scale_.asDiagonal() * C_J.transpose();
   const MatrixXd solved = H_.solve(B);
-  Projection left{C_C - B.transpose() * solved,
-                  C_r - solved.transpose() * (scale_.asDiagonal() * gradient_)};
-  for (Index c = 0; c < C_r.size(); ++c) {
-    if (left.information(c, c) > kRounding * C_C(c, c)) continue;
-    left.information.row(c).setZero();
-    left.information.col(c).setZero();
-    left.score[c] = 0.0;
+  const VectorXd score = C_r - solved.transpose() * (scale_.asDiagonal() * gradient_);
+  std::vector<Projection> groups;
+  groups.reserve(C_C.size());
+  Index first = 0;
+  for (const MatrixXd& own : C_C) {
+    const Index count = own.rows();
+    Projection left{own - B.middleCols(first, count).transpose() * solved.middleCols(first, count),
+                    score.segment(first, count)};
+    for (Index c = 0; c < count; ++c) {
+      if (left.information(c, c) > kRounding * own(c, c)) continue;
+      left.information.row(c).setZero();
+      left.information.col(c).setZero();
+      left.score[c] = 0.0;
+    }
+    groups.push_back(std::move(left));
+    first += count;
   }
-  return left;
+  return groups;
 }
 
-simulation::Response::RowScores Fit::ScoresOf(std::size_t run, Index stage) const {
+Fit::RowScores Fit::ScoresOf(std::size_t run, Index stage) const {
   const RunRows& rows = runs_[run];
   if (!rows.at.response) return {};
-  return rows.at.response->ScoresOf(stage, rows.r);
+  return {rows.at.response->BackToStage(stage, rows.back.rightCols<1>()).transpose(),
+          rows.at.response->WeightsOf(stage)};
 }
 
-Fit::Projection Fit::Project(const Disturber& disturber, Index columns) const {
-  MatrixXd C_C = MatrixXd::Zero(columns, columns);
+MatrixXd Fit::Against(const RunRows& run, const std::vector<Disturbance>& disturbances) const {
+  std::map<Index, std::vector<Index>> acting;
+  for (std::size_t d = 0; d < disturbances.size(); ++d) {
+    for (const auto& [stage, values] : disturbances[d].stages()) {
+      acting[stage].push_back(static_cast<Index>(d));
+    }
+  }
+  MatrixXd against = MatrixXd::Zero(static_cast<Index>(disturbances.size()), run.back.cols());
+  for (const auto& [stage, who] : acting) {
+    const MatrixXd of_stage = run.at.response->BackToStage(stage, run.back);
+    MatrixXd values(static_cast<Index>(who.size()), of_stage.rows());
+    for (Index i = 0; i < values.rows(); ++i) {
+      values.row(i) =
+          disturbances[static_cast<std::size_t>(who[static_cast<std::size_t>(i)])].stages().at(
+              stage);
+    }
+    against(who, Eigen::all) += values * of_stage;
+  }
+  return against;
+}
+
+std::vector<Fit::Projection> Fit::Project(const Disturber& disturber,
+                                          const std::vector<Index>& groups) const {
+  const Index columns = std::accumulate(groups.begin(), groups.end(), Index{0});
+  std::vector<MatrixXd> C_C;
+  std::vector<std::size_t> group_of;
+  for (const Index count : groups) {
+    group_of.insert(group_of.end(), static_cast<std::size_t>(count), C_C.size());
+    C_C.push_back(MatrixXd::Zero(count, count));
+  }
   MatrixXd C_J = MatrixXd::Zero(columns, static_cast<Index>(names_.size()));
   VectorXd C_r = VectorXd::Zero(columns);
-  for (std::size_t r = 0; r < runs_.size(); ++r) {
-    const LinearRun& run = runs_[r].at;
-    if (!run.response) continue;
-    const std::vector<Disturbance> disturbances = disturber(run.trace);
-    if (disturbances.empty()) continue;
-    const MatrixXd C = run.response->Columns(disturbances);
-    C_C += C.transpose() * C;
-    const MatrixXd of_run = C.transpose() * runs_[r].J;
-    for (std::size_t c = 0; c < runs_[r].columns.size(); ++c) {
-      C_J.col(runs_[r].columns[c]) += of_run.col(static_cast<Index>(c));
+  for (const RunRows& run : runs_) {
+    if (!run.at.response) continue;
+    std::vector<Disturbance> acting = disturber(run.at.trace);
+    std::vector<Index> which;
+    for (std::size_t c = 0; c < acting.size(); ++c) {
+      if (!acting[c].stages().empty()) which.push_back(static_cast<Index>(c));
     }
-    C_r += C.transpose() * runs_[r].r;
+    if (which.empty()) continue;
+    std::erase_if(acting, [](const Disturbance& each) { return each.stages().empty(); });
+    AddBlocks(run.at.response->Columns(acting), which, group_of, C_C);
+    const MatrixXd against = Against(run, acting);
+    C_J(which, run.columns) += against.leftCols(against.cols() - 1);
+    C_r(which) += against.rightCols<1>();
   }
   return Finish(C_C, C_J, C_r);
 }
@@ -225,7 +298,7 @@ Fit::Projection Fit::ProjectParameters(const Candidate& candidate) const {
     }
   }
   const MatrixXd C_J = select * data_information_;
-  return Finish(C_J * select.transpose(), C_J, select * data_gradient_);
+  return Finish({C_J * select.transpose()}, C_J, select * data_gradient_).front();
 }
 
 Score Fit::ScoreOf(std::size_t taken_in) const {
@@ -259,7 +332,7 @@ Score Fit::ScoreOf(std::size_t taken_in) const {
 
 namespace {
 
-constexpr Index kColumnsAtOnce = 128;  // so many share the derivatives of the simulation
+constexpr Index kColumnsAtOnce = 256;  // so many share the derivatives of the simulation
 
 Score ScoreFrom(const Candidate& candidate, const Fit::Projection& projection) {
   const auto& [S, g] = projection;
@@ -283,7 +356,7 @@ Score ScoreFrom(const Candidate& candidate, const Fit::Projection& projection) {
 }
 
 // Candidates with columns, together.
-void ScoreTogether(const Fit& fit, std::span<const Candidate> candidates, Index columns,
+void ScoreTogether(const Fit& fit, std::span<const Candidate> candidates,
                    std::vector<Score>& scores) {
   const auto disturb = [&](const simulation::Trace& trace) {
     std::vector<Disturbance> all;
@@ -297,13 +370,11 @@ void ScoreTogether(const Fit& fit, std::span<const Candidate> candidates, Index 
     }
     return all;
   };
-  const Fit::Projection all = fit.Project(disturb, columns);
-  Index first = 0;
-  for (const Candidate& each : candidates) {
-    const Index count = each.cause->coefficients();
-    scores.push_back(ScoreFrom(each, {all.information.block(first, first, count, count),
-                                      all.score.segment(first, count)}));
-    first += count;
+  std::vector<Index> groups;
+  for (const Candidate& each : candidates) groups.push_back(each.cause->coefficients());
+  const std::vector<Fit::Projection> projections = fit.Project(disturb, groups);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    scores.push_back(ScoreFrom(candidates[i], projections[i]));
   }
 }
 
@@ -324,7 +395,7 @@ std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candid
          ++last) {
       columns += candidates[last].cause->coefficients();
     }
-    ScoreTogether(fit, std::span(candidates).subspan(first, last - first), columns, scores);
+    ScoreTogether(fit, std::span(candidates).subspan(first, last - first), scores);
     first = last;
   }
   return scores;

@@ -43,6 +43,8 @@ class Fit {
   const estimation::Result& result() const { return result_; }
   const std::vector<Candidate>& taken_in() const { return taken_in_; }
   double chi_square() const;  // of the runs
+  // Half of chi-square with all priors: what the fit makes small.
+  double cost() const { return cost_; }
   Eigen::Index rows() const;
   // Coefficients of a cause that was taken in, and their covariance.
   Score ScoreOf(std::size_t taken_in) const;
@@ -55,10 +57,15 @@ class Fit {
   // The columns of each run with a trace, one row each; the same stages for all.
   using Disturber =
       std::function<std::vector<simulation::Disturbance>(const simulation::Trace& trace)>;
-  Projection Project(const Disturber& disturber, Eigen::Index columns) const;
+  // The columns come in groups of so many; a projection for each.
+  std::vector<Projection> Project(const Disturber& disturber,
+                                  const std::vector<Eigen::Index>& groups) const;
   // For many functions f of the rows of one stage in one run: their score is scores * f', and their
   // information at most weights * f^2'. Empty where the run does not tell.
-  simulation::Response::RowScores ScoresOf(std::size_t run, Eigen::Index stage) const;
+  struct RowScores {
+    Eigen::RowVectorXd scores, weights;
+  };
+  RowScores ScoresOf(std::size_t run, Eigen::Index stage) const;
   const simulation::Trace& TraceOf(std::size_t run) const { return runs_[run].at.trace; }
   std::size_t runs() const { return runs_.size(); }
   // Of a cause that widens parameters.
@@ -69,13 +76,17 @@ class Fit {
     LinearRun at;
     Eigen::VectorXd r;
     std::vector<int> columns;
-    Eigen::MatrixXd J;
+    Eigen::MatrixXd back;  // [J r], back to the readings
   };
 
   void Linearize(const estimation::Problem& problem);
   double FollowShapes();
-  Projection Finish(const Eigen::MatrixXd& C_C, const Eigen::MatrixXd& C_J,
-                    const Eigen::VectorXd& C_r) const;
+  // [C'J C'r] of one run.
+  Eigen::MatrixXd Against(const RunRows& run,
+                          const std::vector<simulation::Disturbance>& disturbances) const;
+  // Groups of columns from C'C of each, C'J and C'r of all.
+  std::vector<Projection> Finish(const std::vector<Eigen::MatrixXd>& C_C,
+                                 const Eigen::MatrixXd& C_J, const Eigen::VectorXd& C_r) const;
   std::vector<int> ColumnsNamed(const std::string& pattern) const;
 
   const Campaign& campaign_;
@@ -85,6 +96,7 @@ class Fit {
   std::vector<RunRows> runs_;
   Eigen::MatrixXd data_information_;
   Eigen::VectorXd data_gradient_, gradient_;
+  double cost_ = 0.0;
   Eigen::VectorXd scale_;  // H = scale^-1 (scaled) scale^-1
   Eigen::LLT<Eigen::MatrixXd> H_;
 };

@@ -66,6 +66,16 @@ VectorXd ByShape(const LinearRun& at, const Candidate& cause) {
   return (at.Columns(more) - at.Columns(less)) * cause.coefficients / (2.0 * kStep);
 }
 
+// What a cause does to the gaps of `read` is taken out of those of `trace`.
+void Undo(const Candidate& cause, const simulation::Trace& read, simulation::Trace& trace) {
+  for (const auto& each : cause.cause->columns(read, cause.object, cause.shape)) {
+    for (const auto& [stage, values] : each.stages()) {
+      const Index probe = stage - simulation::kReadingStage;
+      if (probe >= 0 && probe < trace.gap.rows()) trace.gap.row(probe) -= values;
+    }
+  }
+}
+
 }  // namespace
 
 std::string BlockOf(const Candidate& cause) { return fmt::format("cause {}", cause.Name()); }
@@ -83,7 +93,8 @@ MatrixXd LinearRun::Columns(const Candidate& cause) const {
   return disturbances.empty() ? MatrixXd{} : response->Columns(disturbances);
 }
 
-LinearRun LinearAt(const DiagnosedRun& run, const VectorXd& x, const VectorXd& left) {
+LinearRun LinearAt(const DiagnosedRun& run, const VectorXd& x, const VectorXd& left,
+                   const std::vector<Candidate>& causes) {
   LinearRun at{run.trace, nullptr};
   if (!run.simulated.response) return at;
   at.response = run.simulated.response->At(x);
@@ -93,6 +104,9 @@ LinearRun LinearAt(const DiagnosedRun& run, const VectorXd& x, const VectorXd& l
     at.trace.SetAngles(readings);
   } else if (at.trace.gap.size() > 0) {
     at.trace.gap = readings;
+    for (const Candidate& cause : causes) {
+      if (cause.cause->whole) Undo(cause, run.trace, at.trace);
+    }
   }
   return at;
 }

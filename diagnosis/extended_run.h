@@ -30,8 +30,9 @@ struct LinearRun {
   Eigen::MatrixXd Columns(const Candidate& cause) const;
 };
 // `left`: what the simulation leaves of the run, whitened, causes included; empty: the readings
-// stay as they are.
-LinearRun LinearAt(const DiagnosedRun& run, const Eigen::VectorXd& x, const Eigen::VectorXd& left);
+// stay as they are. Of `causes` those that are there or not are undone in the readings.
+LinearRun LinearAt(const DiagnosedRun& run, const Eigen::VectorXd& x, const Eigen::VectorXd& left,
+                   const std::vector<Candidate>& causes = {});
 
 simulation::SimulatedRun Extend(const DiagnosedRun& run, const LinearRun& at,
                                 const std::vector<Candidate>& causes);

@@ -123,7 +123,7 @@ struct Answer {
 };
 
 // What the projected columns explain.
-Answer Ask(const Fit::Projection& projection) {
+Answer Explained(const Fit::Projection& projection) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(projection.information);
   const double most = eigen.eigenvalues().maxCoeff();
   Answer answer;
@@ -143,11 +143,14 @@ Answer Ask(const Fit::Projection& projection) {
 class Questions {
  public:
   explicit Questions(const Fit& fit)
-      : fit_(fit), scene_(fit.campaign().scene()), channels_(ChannelsOf(scene_)) {}
+      : fit_(fit),
+        scene_(fit.campaign().scene()),
+        channels_(ChannelsOf(scene_)),
+        lines_(channels_.size()) {}
 
   std::vector<Leftover> AskAll() {
-    for (const Channel& channel : channels_) AskSmooth(channel);
-    for (const std::string& variable : PeriodicVariablesOf(scene_)) AskLines(variable);
+    for (const std::string& variable : PeriodicVariablesOf(scene_)) FindLines(variable);
+    for (std::size_t channel = 0; channel < channels_.size(); ++channel) Ask(channel);
     std::sort(found_.begin(), found_.end(),
               [](const Found& a, const Found& b) { return a.log_probability < b.log_probability; });
     std::vector<Leftover> leftovers;
@@ -162,9 +165,13 @@ class Questions {
   }
 
  private:
+  // kTerms cosines of a variable over its range, or a line of it.
   struct Question {
     std::string variable;
     Range range;
+    double wave = 0.0;  // of the line
+
+    Index columns() const { return wave > 0.0 ? 2 : kTerms; }
   };
   struct Found {
     Leftover leftover;
@@ -177,64 +184,81 @@ class Questions {
          answer.LogProbability()});
   }
 
-  // kTerms cosines of each variable.
-  void AskSmooth(const Channel& channel) {
-    std::vector<Question> questions;
+  static std::vector<Disturbance> ColumnsOf(const Question& question, const Channel& channel,
+                                            const Trace& trace) {
+    const RowVectorXd values = ValuesOf(question.variable, trace);
+    if (values.size() == 0) {
+      return std::vector(static_cast<std::size_t>(question.columns()),
+                         simulation::NoDisturbance(trace));
+    }
+    if (question.wave > 0.0) {
+      return simulation::WaveInStage(trace, channel.stage, question.wave * values);
+    }
+    std::vector<Disturbance> columns;
+    const double length = question.range.last - question.range.first;
+    for (Index term = 1; term <= kTerms; ++term) {
+      const double waves = std::numbers::pi * static_cast<double>(term) / length;
+      columns.push_back(simulation::InStage(
+          trace, channel.stage, (waves * (values.array() - question.range.first)).cos()));
+    }
+    return columns;
+  }
+
+  // All questions of a channel together: they share its stage.
+  void Ask(std::size_t which) {
+    const Channel& channel = channels_[which];
+    std::vector<Question> questions = lines_[which];
     for (const std::string& variable : VariablesOf(scene_)) {
       const Range range = RangeOf(variable, channel, scene_);
       if (range.last > range.first) questions.push_back({variable, range});
     }
-    const auto disturb = [&](const Trace& trace) -> std::vector<Disturbance> {
-      if (!Feels(channel, trace)) return {};
+    std::vector<Index> groups;
+    for (const Question& question : questions) groups.push_back(question.columns());
+    const auto disturb = [&](const Trace& trace) {
       std::vector<Disturbance> columns;
+      if (!Feels(channel, trace)) return columns;
       for (const Question& question : questions) {
-        const RowVectorXd values = ValuesOf(question.variable, trace);
-        const double length = question.range.last - question.range.first;
-        for (Index term = 1; term <= kTerms; ++term) {
-          if (values.size() == 0) {
-            columns.push_back(simulation::NoDisturbance(trace));
-            continue;
-          }
-          const double waves = std::numbers::pi * static_cast<double>(term) / length;
-          columns.push_back(simulation::InStage(
-              trace, channel.stage, (waves * (values.array() - question.range.first)).cos()));
-        }
+        for (auto& column : ColumnsOf(question, channel, trace))
+          columns.push_back(std::move(column));
       }
       return columns;
     };
-    const auto all = fit_.Project(disturb, static_cast<Index>(questions.size()) * kTerms);
+    const auto projections = fit_.Project(disturb, groups);
     for (std::size_t q = 0; q < questions.size(); ++q) {
-      const auto first = static_cast<Index>(q) * kTerms;
-      Note(channel, questions[q].variable,
-           Ask({all.information.block(first, first, kTerms, kTerms),
-                all.score.segment(first, kTerms)}));
+      Answer answer = Explained(projections[q]);
+      if (questions[q].wave > 0.0) {
+        answer.lines = static_cast<double>(kLines);
+        answer.period = 2.0 * std::numbers::pi / questions[q].wave;
+      }
+      Note(channel, questions[q].variable, answer);
     }
   }
 
   // The lines of each channel are weighed with the largest information that they could have; the
   // strongest is then asked as it should be. Channels of one kind of run share range and waves.
-  void AskLines(const std::string& variable) {
+  void FindLines(const std::string& variable) {
     for (const bool of_probes : {true, false}) {
-      std::vector<const Channel*> channels;
-      for (const Channel& channel : channels_) {
+      std::vector<std::size_t> channels;
+      for (std::size_t c = 0; c < channels_.size(); ++c) {
+        const Channel& channel = channels_[c];
         if (of_probes ? channel.of_probes : !channel.of_probes || channel.of_linkage) {
-          channels.push_back(&channel);
+          channels.push_back(c);
         }
       }
       if (channels.empty()) continue;
-      const Range range = RangeOf(variable, *channels.back(), scene_);
+      const Range range = RangeOf(variable, channels_[channels.back()], scene_);
       if (!(range.last > range.first)) continue;
       const std::vector<double> waves =
           StrongestWaves(variable, channels, of_probes,
                          2.0 * std::numbers::pi * kOfAWave / (range.last - range.first));
       for (std::size_t c = 0; c < channels.size(); ++c) {
-        if (waves[c] > 0.0) Note(*channels[c], variable, AskLine(variable, *channels[c], waves[c]));
+        if (waves[c] > 0.0) lines_[channels[c]].push_back({variable, range, waves[c]});
       }
     }
   }
 
   std::vector<double> StrongestWaves(const std::string& variable,
-                                     const std::vector<const Channel*>& channels, bool of_probes,
+                                     const std::vector<std::size_t>& channels, bool of_probes,
                                      double step) const {
     const auto count = static_cast<Index>(channels.size());
     MatrixXd scores(count, 0), weights(count, 0);
@@ -250,17 +274,23 @@ class Questions {
       values.conservativeResize(values.size() + own.size());
       values.tail(own.size()) = own;
       for (Index c = 0; c < count; ++c) {
-        const auto of_run = fit_.ScoresOf(run, channels[static_cast<std::size_t>(c)]->stage);
+        const auto of_run =
+            fit_.ScoresOf(run, channels_[channels[static_cast<std::size_t>(c)]].stage);
         scores.row(c).tail(own.size()) = of_run.scores;
         weights.row(c).tail(own.size()) = of_run.weights;
       }
     }
     std::vector<double> found(channels.size(), 0.0), strongest(channels.size(), 0.0);
     if (values.size() == 0) return found;
+    // From line to line by the angle of a step.
+    const Eigen::ArrayXd first_cosine = (step * values.array()).cos().transpose(),
+                         first_sine = (step * values.array()).sin().transpose();
+    VectorXd cosine = VectorXd::Ones(values.size()), sine = VectorXd::Zero(values.size());
     for (Index line = 1; line <= kLines; ++line) {
       const double wave = step * static_cast<double>(line);
-      const VectorXd sine = (wave * values.array()).sin().matrix().transpose();
-      const VectorXd cosine = (wave * values.array()).cos().matrix().transpose();
+      const Eigen::ArrayXd before = cosine;
+      cosine = before * first_cosine - sine.array() * first_sine;
+      sine = before * first_sine + sine.array() * first_cosine;
       const Eigen::ArrayXd power =
           (scores * sine).array().square() / (weights * sine.cwiseAbs2()).array().max(1e-300) +
           (scores * cosine).array().square() / (weights * cosine.cwiseAbs2()).array().max(1e-300);
@@ -273,22 +303,10 @@ class Questions {
     return found;
   }
 
-  Answer AskLine(const std::string& variable, const Channel& channel, double wave) const {
-    const auto disturb = [&](const Trace& trace) -> std::vector<Disturbance> {
-      if (!Feels(channel, trace)) return {};
-      const RowVectorXd values = ValuesOf(variable, trace);
-      if (values.size() == 0) return {};
-      return simulation::WaveInStage(trace, channel.stage, wave * values);
-    };
-    Answer answer = Ask(fit_.Project(disturb, 2));
-    answer.lines = static_cast<double>(kLines);
-    answer.period = 2.0 * std::numbers::pi / wave;
-    return answer;
-  }
-
   const Fit& fit_;
   const Scene scene_;
   const std::vector<Channel> channels_;
+  std::vector<std::vector<Question>> lines_;  // the strongest, for each channel
   std::vector<Found> found_;
 };
 

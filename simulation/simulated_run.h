@@ -39,12 +39,13 @@ class Response {
   // rad), when `left` is what the simulation leaves, whitened. A disturbance made of readings
   // themselves would share their noise.
   virtual Eigen::MatrixXd Readings(const Eigen::VectorXd& left) const = 0;
-  // For many functions of one stage: the score of a disturbance d is scores * d', and its
-  // information at most weights * d^2'.
-  struct RowScores {
-    Eigen::RowVectorXd scores, weights;
-  };
-  virtual RowScores ScoresOf(Eigen::Index stage, const Eigen::VectorXd& left) const = 0;
+  // The adjoint of Columns, in two steps, for many disturbances against the same rows:
+  //   Columns({d})' left = sum over the stages of d.row(stage) * BackToStage(stage, back)'
+  // with back = BackToReadings(left), `left` whitened, rows of the residual x anything.
+  virtual Eigen::MatrixXd BackToReadings(const Eigen::MatrixXd& left) const = 0;
+  virtual Eigen::MatrixXd BackToStage(Eigen::Index stage, const Eigen::MatrixXd& back) const = 0;
+  // The information of a disturbance d of one stage is at most WeightsOf(stage) * d^2'.
+  virtual Eigen::RowVectorXd WeightsOf(Eigen::Index stage) const = 0;
 };
 
 // A residual that also tells what a disturbance of its rows does.

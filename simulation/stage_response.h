@@ -17,11 +17,15 @@ class StageResponse : public Response {
   StageResponse(Eigen::MatrixXd by_stage, Eigen::Index per_instant);
 
   Eigen::MatrixXd Columns(const std::vector<Disturbance>& disturbances) const override;
-  RowScores ScoresOf(Eigen::Index stage, const Eigen::VectorXd& left) const override;
+  // Only sorted, the derivatives being whitened: the first row of all instants, the second, ...
+  Eigen::MatrixXd BackToReadings(const Eigen::MatrixXd& left) const override;
+  Eigen::MatrixXd BackToStage(Eigen::Index stage, const Eigen::MatrixXd& back) const override;
+  Eigen::RowVectorXd WeightsOf(Eigen::Index stage) const override;
 
  protected:
   const Eigen::MatrixXd& by_stage() const { return by_stage_; }
   Eigen::Index per_instant() const { return per_instant_; }
+  Eigen::Index instants() const { return by_stage_.rows() / per_instant_; }
 
  private:
   Eigen::MatrixXd by_stage_;

@@ -101,25 +101,47 @@ MatrixXd ReadingResponse::Readings(const VectorXd& left) const {
   return gaps_ - off.reshaped(gaps_.cols(), gaps_.rows()).transpose();
 }
 
-Response::RowScores ReadingResponse::ScoresOf(Index stage, const VectorXd& left) const {
-  const Index rows = gaps_.cols();
-  VectorXd scores(left.size());
+MatrixXd ReadingResponse::BackToReadings(const MatrixXd& left) const {
+  MatrixXd back(left.rows(), left.cols());
   Index first = 0;
   for (const auto& factor : noise_->factors) {
     const Index count = factor.rows();
-    scores.segment(first, count) = factor.matrixU().solve(left.segment(first, count));
+    back.middleRows(first, count) = factor.matrixU().solve(left.middleRows(first, count));
     first += count;
   }
-  RowScores of_stage{Eigen::RowVectorXd::Zero(rows), Eigen::RowVectorXd::Zero(rows)};
+  return back;
+}
+
+VectorXd ReadingResponse::SlopesOf(Index probe, Index stage) const {
+  const Index rows = gaps_.cols();
+  if (stage >= kToolStage) {
+    return VectorXd::Constant(rows, stage == kReadingStage + probe ? 1.0 : 0.0);
+  }
+  return by_motions_(probe, Eigen::seqN(stage, rows, Index{kToolStage}));
+}
+
+MatrixXd ReadingResponse::BackToStage(Index stage, const MatrixXd& back) const {
+  const Index rows = gaps_.cols();
+  if (stage >= kReadingStage && stage < kEncoderStage) {
+    return back.middleRows((stage - kReadingStage) * rows, rows);
+  }
+  MatrixXd of_stage = MatrixXd::Zero(rows, back.cols());
+  if (stage >= kToolStage) return of_stage;
   for (Index probe = 0; probe < gaps_.rows(); ++probe) {
-    for (Index row = 0; row < rows; ++row) {
-      double slope = stage == kReadingStage + probe ? 1.0 : 0.0;
-      if (stage < kToolStage) slope = by_motions_(probe, row * kToolStage + stage);
-      of_stage.scores[row] += slope * scores[probe * rows + row];
-      of_stage.weights[row] += slope * slope * noise_->weights[probe * rows + row];
-    }
+    of_stage += SlopesOf(probe, stage).asDiagonal() * back.middleRows(probe * rows, rows);
   }
   return of_stage;
+}
+
+Eigen::RowVectorXd ReadingResponse::WeightsOf(Index stage) const {
+  const Index rows = gaps_.cols();
+  VectorXd weights = VectorXd::Zero(rows);
+  for (Index probe = 0; probe < gaps_.rows(); ++probe) {
+    weights += SlopesOf(probe, stage)
+                   .cwiseAbs2()
+                   .cwiseProduct(noise_->weights.segment(probe * rows, rows));
+  }
+  return weights.transpose();
 }
 
 }  // namespace abbe::simulation

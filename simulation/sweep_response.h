@@ -43,9 +43,14 @@ class ReadingResponse : public Response {
 
   Eigen::MatrixXd Columns(const std::vector<Disturbance>& disturbances) const override;
   Eigen::MatrixXd Readings(const Eigen::VectorXd& left) const override;
-  RowScores ScoresOf(Eigen::Index stage, const Eigen::VectorXd& left) const override;
+  Eigen::MatrixXd BackToReadings(const Eigen::MatrixXd& left) const override;
+  Eigen::MatrixXd BackToStage(Eigen::Index stage, const Eigen::MatrixXd& back) const override;
+  Eigen::RowVectorXd WeightsOf(Eigen::Index stage) const override;
 
  private:
+  // By how much a probe changes in each row.
+  Eigen::VectorXd SlopesOf(Eigen::Index probe, Eigen::Index stage) const;
+
   Eigen::MatrixXd by_motions_, gaps_;
   std::shared_ptr<const FaceNoise> noise_;
 };

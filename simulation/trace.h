@@ -46,7 +46,8 @@ struct Trace {
 
   Eigen::MatrixXd angles;     // as read, pivots x rows; of a linkage
   Eigen::MatrixXd turning;    // heading of the pivots
-  Eigen::Matrix3Xd ball_way;  // where the cap last moved, in M: a direction
+  Eigen::MatrixXd aside;      // of the pivots on their way to rows that stand: trace.cpp
+  Eigen::Matrix3Xd ball_way;  // where the cap last moved, in M: a direction; 0: nowhere
   Eigen::MatrixXd link;       // 3 pivots x rows, in B: the direction of the link after each pivot
   std::string mounting;
 

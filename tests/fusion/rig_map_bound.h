@@ -23,6 +23,7 @@
 #include "rig/rig_settings.h"
 #include "tests/fusion/rig_linkage_bound.h"
 #include "tests/fusion/rig_slopes.h"
+#include "tests/fusion/rig_stays.h"
 
 namespace abbe::fusion {
 
@@ -70,6 +71,32 @@ class RigMapBound {
     return 3.0 * sum / static_cast<double>(wanted.size());
   }
 
+  // Of all readings and places, in the order in which they were added: x, y, z of a place; the
+  // probes of a stay; x, y, z of a ball; a length.
+  MatrixXd Covariance() const {
+    const auto n = static_cast<Index>(data_.size());
+    MatrixXd K = MatrixXd::Zero(n, n);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int motion = 0; motion < 6; ++motion) {
+        VectorXd by(n);
+        for (Index i = 0; i < n; ++i)
+          by[i] = data_[static_cast<std::size_t>(i)].by.motions(axis, motion);
+        K += (by * by.transpose()).cwiseProduct(Functions(axis, motion));
+      }
+    }
+    MatrixXd shared(n, Index{RigSlopes::kSharedCount});
+    for (Index i = 0; i < n; ++i) shared.row(i) = data_[static_cast<std::size_t>(i)].by.shared;
+    K += shared * shared.transpose();
+    for (Index i = 0; i < n; ++i) {
+      for (Index j = 0; j < n; ++j) {
+        K(i, j) += Noise(data_[static_cast<std::size_t>(i)], data_[static_cast<std::size_t>(j)]);
+      }
+      const double white = data_[static_cast<std::size_t>(i)].white;
+      K(i, i) += white * white;
+    }
+    return K;
+  }
+
  private:
   struct Datum {
     Kind kind = kWanted;
@@ -92,32 +119,10 @@ class RigMapBound {
     return data;
   }
 
-  struct Stay {
-    std::size_t first, rows;
-    Vector3d position;
-    double time;
-  };
-  static std::vector<Stay> StaysOf(const recording::Recording& recording) {
-    const auto x = recording.At("x_mm"), y = recording.At("y_mm"), z = recording.At("z_mm"),
-               time = recording.At("time_s"), pass = recording.At("pass"),
-               direction = recording.At("direction");
-    std::vector<Stay> stays;
-    for (std::size_t row = 0; row < recording.rows(); ++row) {
-      const Vector3d here = 1e-3 * Vector3d(x[row], y[row], z[row]);
-      const bool same = row > 0 && (here - stays.back().position).norm() < 2e-5 &&
-                        pass[row] == pass[row - 1] && direction[row] == direction[row - 1];
-      if (!same) stays.push_back({row, 0, here, 0.0});
-      Stay& stay = stays.back();
-      ++stay.rows;
-      stay.time += (time[row] - stay.time) / static_cast<double>(stay.rows);
-    }
-    return stays;
-  }
-
   void AddLinkage(const recording::Recording& recording) {
     const Eigen::Matrix3d R = linkage_settings_.base_rotation;
-    int number = 0;
-    for (const Stay& stay : StaysOf(recording)) {
+    auto number = static_cast<int>(data_.size());  // of no other stay
+    for (const RigStay& stay : RigStaysOf(recording)) {
       const Vector3d ball = slopes_.BallAt(stay.position) - linkage_settings_.base_position;
       const Vector3d shown = linkage_.Angles(R.transpose() * ball);
       const MatrixXd J = R * linkage_.Jacobian(shown, 0.0);
@@ -141,7 +146,7 @@ class RigMapBound {
   void AddLengths(const recording::Recording& recording) {
     const auto u = recording.At("u_length_um");
     const double u_scale = 1e-6 * recording.HeaderNumber("u_scale_ppm").value_or(0.0);
-    const std::vector<Stay> stays = StaysOf(recording);
+    const std::vector<RigStay> stays = RigStaysOf(recording);
     const auto from = AtPlace(kLength, stays[0].position);
     for (std::size_t s = 1; s < stays.size(); ++s) {
       const Vector3d apart = stays[s].position - stays[0].position;
@@ -166,7 +171,7 @@ class RigMapBound {
 
   void AddSweep(const recording::Recording& recording) {
     const int axis = recording.HeaderText("axis").value()[0] - 'X';
-    for (const Stay& stay : StaysOf(recording)) {
+    for (const RigStay& stay : RigStaysOf(recording)) {
       const auto slopes = slopes_.OfProbes(axis, stay.position[axis]);
       for (std::size_t probe = 0; probe < slopes.size(); ++probe) {
         Datum datum;
@@ -231,30 +236,6 @@ class RigMapBound {
       V += std::pow(machine_.population.scale, 2) * along * along.transpose();
     }
     return V(place_of, place_of);
-  }
-
-  MatrixXd Covariance() const {
-    const auto n = static_cast<Index>(data_.size());
-    MatrixXd K = MatrixXd::Zero(n, n);
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int motion = 0; motion < 6; ++motion) {
-        VectorXd by(n);
-        for (Index i = 0; i < n; ++i)
-          by[i] = data_[static_cast<std::size_t>(i)].by.motions(axis, motion);
-        K += (by * by.transpose()).cwiseProduct(Functions(axis, motion));
-      }
-    }
-    MatrixXd shared(n, Index{RigSlopes::kSharedCount});
-    for (Index i = 0; i < n; ++i) shared.row(i) = data_[static_cast<std::size_t>(i)].by.shared;
-    K += shared * shared.transpose();
-    for (Index i = 0; i < n; ++i) {
-      for (Index j = 0; j < n; ++j) {
-        K(i, j) += Noise(data_[static_cast<std::size_t>(i)], data_[static_cast<std::size_t>(j)]);
-      }
-      const double white = data_[static_cast<std::size_t>(i)].white;
-      K(i, i) += white * white;
-    }
-    return K;
   }
 
   // What two readings of one kind have in common besides the machine and the head.

@@ -22,7 +22,9 @@ namespace abbe {
 // The demonstration machine, reduced, its ball without drag in the cap: that drag is a cause.
 class HiddenWorlds {
  public:
-  explicit HiddenWorlds(rig::CampaignKind kind)
+  enum class Noise { kAsStated, kWhite };
+
+  explicit HiddenWorlds(rig::CampaignKind kind, Noise noise = Noise::kAsStated)
       : document_(settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) /
                                            "machines/demo_mill.toml")),
         machine_(rig::ReadCampaignMachine(document_.Root())),
@@ -32,9 +34,17 @@ class HiddenWorlds {
                relm::ReadLinkageSettings(document_.Root())},
         kind_(kind) {
     machine_.rig.cap = 0.0;
+    if (noise == Noise::kWhite) machine_.rig.drift = 0.0;
   }
 
-  const rig::Sensors& sensors() const { return machine_.sensors; }
+  const rig::CampaignMachine& machine() const { return machine_; }
+
+  // The same, with encoders that do not count in steps.
+  HiddenWorlds WithoutCounts() const {
+    HiddenWorlds worlds = *this;
+    worlds.machine_.rig.encoder_counts = 1e14;
+    return worlds;
+  }
 
   rig::Campaign Record(std::uint64_t seed, const std::vector<std::string>& hidden) const {
     rig::HiddenEffects effects;

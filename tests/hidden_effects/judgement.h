@@ -6,6 +6,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cstdio>
 #include <string>
+#include <string_view>
 
 #include "tests/hidden_effects/hidden_world.h"
 
@@ -29,6 +30,16 @@ struct Rate {
                ? 0.0
                : boost::math::binomial_distribution<>::find_lower_bound_on_p(worlds, met, 0.005);
   }
+  // The upper end.
+  double High() const {
+    return met == worlds
+               ? 1.0
+               : boost::math::binomial_distribution<>::find_upper_bound_on_p(worlds, met, 0.005);
+  }
+  void Add(const Rate& other) {
+    worlds += other.worlds;
+    met += other.met;
+  }
   std::string Text() const { return fmt::format("{} of {}", met, worlds); }
 };
 
@@ -36,6 +47,25 @@ struct Rate {
 inline bool Names(const Finding& finding, const rig::HiddenEffect& effect) {
   const auto& candidate = finding.score.candidate;
   return candidate.cause->id == effect.entry->name && candidate.object.starts_with(effect.object);
+}
+
+inline std::string NameOf(const rig::HiddenEffect& effect) {
+  return fmt::format("{}:{}", effect.entry->name, effect.object);
+}
+
+// Whether something that is left depends on this: a column of the recordings, or the sum of two.
+inline bool LivesIn(const Diagnosis& diagnosis, std::string columns) {
+  const bool sensor = columns.ends_with("_c");
+  for (const char* unit : {"_mm_min", "_mm", "_rad", "_s"}) {
+    if (sensor) break;
+    for (auto at = columns.find(unit); at != std::string::npos; at = columns.find(unit)) {
+      columns.erase(at, std::string_view(unit).size());
+    }
+  }
+  for (const auto& leftover : diagnosis.leftovers) {
+    if (leftover.variable == columns) return true;
+  }
+  return false;
 }
 
 // One world in one line, for whoever looks for what went wrong.

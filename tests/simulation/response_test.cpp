@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "simulation/reference_noise.h"
 #include "simulation/reference_simulation.h"
@@ -41,6 +42,20 @@ void ExpectSame(const VectorXd& one, const VectorXd& other) {
   ASSERT_EQ(one.size(), other.size());
   ASSERT_GT(other.norm(), 0.0);
   EXPECT_LT((one - other).norm(), 1e-9 * other.norm());
+}
+
+// Columns and their adjoint, against rows that mean nothing.
+void ExpectAdjoint(const simulation::Response& response, const Disturbance& disturbance,
+                   Index rows) {
+  VectorXd left(rows);
+  for (Index i = 0; i < rows; ++i) left[i] = std::sin(0.7 * static_cast<double>(i + 1));
+  const Eigen::MatrixXd back = response.BackToReadings(left);
+  double sum = 0.0;
+  for (const auto& [stage, values] : disturbance.stages()) {
+    sum += (values * response.BackToStage(stage, back)).value();
+  }
+  const VectorXd column = response.Columns({disturbance}).col(0);
+  EXPECT_NEAR(sum, column.dot(left), 1e-12 * column.norm() * left.norm());
 }
 
 class Response : public testing::Test {
@@ -88,6 +103,8 @@ TEST_F(Response, OfASweepToTheHeadRisingIsThatOfTheTopProbesAlone) {
   Disturbance shown(sweep.rows());
   shown.row(kReadingStage + 3).setOnes();
   ExpectSame(run.response->At(x)->Columns({shown}).col(0), -ByParameter(run, x, "probe_zero s.d"));
+  shown.row(MotionStage(0, 4)).setConstant(1e-3);
+  ExpectAdjoint(*run.response->At(x), shown, run.residual->Rows());
 }
 
 TEST_F(Response, OfAReferenceIsThatOfItsParameters) {
@@ -114,13 +131,11 @@ TEST_F(Response, OfAReferenceIsThatOfItsParameters) {
       ExpectSame(run.response->At(x)->Columns({moved}).col(0), -ByParameter(run, x, name));
     }
   }
-  const VectorXd left = VectorXd::LinSpaced(run.residual->Rows(), -1.0, 1.0);
-  const auto of_stage = run.response->At(x)->ScoresOf(MotionStage(1, 1), left);
   Disturbance second = NoDisturbance(trace);
   second.row(MotionStage(1, 1))[1] = 1.0;
-  const VectorXd column = run.response->At(x)->Columns({second}).col(0);
-  EXPECT_NEAR(of_stage.scores[1], column.dot(left), 1e-9 * std::abs(of_stage.scores[1]));
-  EXPECT_NEAR(of_stage.weights[1], column.squaredNorm(), 1e-9 * of_stage.weights[1]);
+  ExpectAdjoint(*run.response->At(x), second, run.residual->Rows());
+  const double weight = run.response->At(x)->WeightsOf(MotionStage(1, 1))[1];
+  EXPECT_NEAR(weight, run.response->At(x)->Columns({second}).squaredNorm(), 1e-9 * weight);
 }
 
 TEST_F(Response, OfALinkageIsThatOfItsParameters) {
@@ -146,6 +161,9 @@ TEST_F(Response, OfALinkageIsThatOfItsParameters) {
   Disturbance dragged = NoDisturbance(trace);
   dragged.row(kToolStage + 1).setOnes();
   ExpectSame(run.response->At(x)->Columns({dragged}).col(0), ByParameter(run, x, "base.y"));
+  dragged.row(kEncoderStage + 1) = trace.time.transpose();
+  dragged.row(MotionStage(2, 3)) = trace.axes.row(1);
+  ExpectAdjoint(*run.response->At(x), dragged, run.residual->Rows());
 }
 
 }  // namespace

@@ -1,0 +1,117 @@
+// The trace of a run of the linkage: its pivots, its links and the way of its ball.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "failure/failure.h"
+#include "relm/linkage_model.h"
+#include "simulation/trace.h"
+#include "simulation/trace_columns.h"
+#include "simulation/trace_motion.h"
+
+namespace abbe::simulation {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Where the cap goes; while standing, where it went last; 0 before it moves.
+Eigen::Matrix3Xd WayOf(const Trace& trace, const machine::Chain& chain) {
+  constexpr double kSoon = 1e-3;  // s
+  const auto tip = [&](const Eigen::Vector3d& axes) { return relm::NominalTip(chain, axes); };
+  Eigen::Matrix3Xd way = Eigen::Matrix3Xd::Zero(3, trace.rows());
+  for (Index row = 0; row < trace.rows(); ++row) {
+    const Eigen::Vector3d here = trace.axes.col(row), velocity = trace.velocity.col(row);
+    Eigen::Vector3d moved = Eigen::Vector3d::Zero();
+    if (velocity.norm() > 0.0) {
+      moved = (tip(here + kSoon * velocity) - tip(here)).normalized();
+    } else if (row > 0 && (here - trace.axes.col(row - 1)).norm() > kAxisBand) {
+      moved = (tip(here) - tip(trace.axes.col(row - 1))).normalized();
+    } else if (row > 0) {
+      moved = way.col(row - 1);
+    }
+    way.col(row) = moved;
+  }
+  return way;
+}
+
+// Pivots whose axes meet have no link between them: they move the next one.
+MatrixXd LinksOf(const LinkageRun& run, const relm::LinkageModel& model) {
+  const std::vector<std::string> names = model.Names();
+  const VectorXd nominal = model.Values();
+  const Index pivots = run.readings.angles.rows();
+  MatrixXd links = MatrixXd::Zero(3 * pivots, run.poses());
+  for (Index row = 0; row < run.poses(); ++row) {
+    // What one unit of expansion does at a warmth of 1 K: the link itself.
+    const auto at = model.Differentiate(run.readings.angles.col(row), 1.0, nominal);
+    Eigen::Vector3d link = Eigen::Vector3d::Zero();
+    for (Index pivot = pivots - 1; pivot >= 0; --pivot) {
+      const auto found =
+          std::find(names.begin(), names.end(), fmt::format("expansion.after_pivot_{}", pivot + 1));
+      if (found != names.end()) {
+        const Eigen::Vector3d own = at.J_tip_x.col(found - names.begin());
+        if (own.norm() > 0.0) link = own.normalized();
+      }
+      links.block<3, 1>(3 * pivot, row) = link;
+    }
+  }
+  return links;
+}
+
+// By how much each pivot is beside a straight line between its angles in two rows that stand, when
+// the axes go straight from one to the other: kWaySteps rows for each pivot.
+MatrixXd AsideOf(const Trace& trace, const LinkageRun& run, const LinkageSimulation& linkage) {
+  std::vector<Index> stays;
+  for (Index row = 1; row < trace.rows(); ++row) {
+    const bool moved = (trace.axes.col(row) - trace.axes.col(row - 1)).norm() > kAxisBand;
+    if (moved && trace.velocity.col(row).isZero(0.0)) stays.push_back(row);
+  }
+  if (stays.empty()) return {};
+  const Index pivots = trace.pivots();
+  MatrixXd aside = MatrixXd::Zero(pivots * kWaySteps, trace.rows());
+  for (const Index row : stays) {
+    LinkageRun way = Selection(run, std::vector<Index>(kWaySteps + 1, row));
+    for (Index step = 0; step <= kWaySteps; ++step) {
+      const double s = static_cast<double>(step) / kWaySteps;
+      way.reference.col(step) = (1.0 - s) * trace.axes.col(row - 1) + s * trace.axes.col(row);
+    }
+    MatrixXd angles;
+    try {
+      angles = linkage.Readings(way, linkage.Values(), run.readings.angles.col(row - 1));
+    } catch (const NumericalError&) {
+      continue;  // not that way
+    }
+    for (Index pivot = 0; pivot < pivots; ++pivot) {
+      for (Index step = 0; step < kWaySteps; ++step) {
+        const double s = static_cast<double>(step) / kWaySteps;
+        aside(pivot * kWaySteps + step, row) =
+            angles(pivot, step) - (1.0 - s) * angles(pivot, 0) - s * angles(pivot, kWaySteps);
+      }
+    }
+  }
+  return aside;
+}
+
+}  // namespace
+
+Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
+              const LinkageSimulation& linkage) {
+  Trace trace;
+  trace.name = run.name;
+  trace.kind = "linkage";
+  trace.mounting = run.mounting;
+  trace.started = StartedOf(recording);
+  trace.time = trace.clock = run.time;
+  trace.pass = IntegersAt(recording, "pass", run.rows);
+  trace.direction = IntegersAt(recording, "direction", run.rows);
+  trace.SetAxes(run.commanded);
+  trace.SetAngles(run.readings.angles);
+  trace.aside = AsideOf(trace, run, linkage);
+  trace.ball_way = WayOf(trace, linkage.chain());
+  trace.link = LinksOf(run, linkage.model());
+  AddSensors(recording, run.rows, trace);
+  return trace;
+}
+
+}  // namespace abbe::simulation

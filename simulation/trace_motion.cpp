@@ -1,0 +1,153 @@
+#include "simulation/trace_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace abbe::simulation {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kGap = 0.5;  // s between rows: nothing is known of the way between
+
+// Whether nothing is known of the way from the row before.
+bool Begins(const Trace& trace, Index row) {
+  const auto at = static_cast<std::size_t>(row);
+  return row == 0 || trace.pass[at] != trace.pass[at - 1] ||
+         trace.direction[at] != trace.direction[at - 1] ||
+         trace.time[row] - trace.time[row - 1] > kGap;
+}
+
+// Where an axis turned or will turn at a steady acceleration, if that is less than `before` seconds
+// ago or `after` seconds ahead.
+std::optional<double> TurnNear(const Trace& trace, Index axis, Index row, double before,
+                               double after) {
+  const double velocity = trace.velocity(axis, row), acceleration = trace.acceleration(axis, row);
+  if (acceleration == 0.0) return {};
+  const double ago = velocity / acceleration;
+  if (ago < -after || ago > before) return {};
+  return trace.axes(axis, row) - 0.5 * velocity * ago;
+}
+
+}  // namespace
+
+Derivatives DerivativesOf(const MatrixXd& values, const Trace& trace) {
+  Derivatives found{MatrixXd::Zero(values.rows(), values.cols()),
+                    MatrixXd::Zero(values.rows(), values.cols())};
+  Index first = 0;
+  for (Index row = 0; row < values.cols(); ++row) {
+    if (Begins(trace, row)) first = row;
+    Index last = row;
+    while (last + 1 < values.cols() && last < row + 2 && !Begins(trace, last + 1)) ++last;
+    if (last - first < 2) continue;
+    const Index middle = std::clamp(row, first + 1, last - 1);
+    const double before = trace.time[middle] - trace.time[middle - 1];
+    const double after = trace.time[middle + 1] - trace.time[middle];
+    const VectorXd rise = (values.col(middle) - values.col(middle - 1)) / before;
+    const VectorXd next = (values.col(middle + 1) - values.col(middle)) / after;
+    found.second.col(row) = 2.0 * (next - rise) / (before + after);
+    found.first.col(row) = (rise * after + next * before) / (before + after) +
+                           found.second.col(row) * (trace.time[row] - trace.time[middle]);
+  }
+  return found;
+}
+
+RowVectorXd HeadingOf(const RowVectorXd& position, double band) {
+  RowVectorXd heading = RowVectorXd::Zero(position.size());
+  if (position.size() == 0) return heading;
+  double extreme = position[0], now = 0.0;
+  Index first = position.size();
+  for (Index row = 1; row < position.size(); ++row) {
+    const double moved = position[row] - extreme;
+    if (moved * now > 0.0 || (now == 0.0 && std::abs(moved) > band)) {
+      if (now == 0.0) first = row;
+      now = moved > 0.0 ? 1.0 : -1.0;
+      extreme = position[row];
+    } else if (moved * now < -0.0 && std::abs(moved) > band) {
+      now = -now;
+      extreme = position[row];
+    }
+    heading[row] = now;
+  }
+  if (first < position.size()) heading.head(first).setConstant(heading[first]);
+  return heading;
+}
+
+RowVectorXd HeadingOfAxis(const Trace& trace, Index axis) {
+  RowVectorXd heading = HeadingOf(trace.axes.row(axis), kAxisBand);
+  for (Index row = 0; row < heading.size(); ++row) {
+    const Index from = Begins(trace, row) ? row : row - 1;
+    if (from + 1 >= heading.size() || Begins(trace, from + 1)) continue;
+    const double way = trace.velocity(axis, row) * (trace.time[from + 1] - trace.time[from]);
+    if (std::abs(way) > kAxisBand) heading[row] = way > 0.0 ? 1.0 : -1.0;
+  }
+  return heading;
+}
+
+RowVectorXd SinceReversal(const Trace& trace, Index axis, double beyond) {
+  constexpr double kBefore = 0.5;  // s
+  const RowVectorXd& position = trace.axes.row(axis);
+  RowVectorXd since = RowVectorXd::Constant(position.size(), kLongAgo);
+  std::optional<double> turned, turns;  // it has; it will before the next row
+  for (Index row = 0; row < position.size(); ++row) {
+    if (trace.acceleration(axis, row) != 0.0 && Begins(trace, row)) {
+      turned = TurnNear(trace, axis, row, kBefore, 0.0);
+      if (!turned && row + 1 < position.size()) {
+        turns = TurnNear(trace, axis, row, 0.0, trace.time[row + 1] - trace.time[row]);
+      }
+    } else if (turns) {
+      turned = std::exchange(turns, std::nullopt);
+    } else if (row > 0 && trace.heading(axis, row) != trace.heading(axis, row - 1)) {
+      turned = TurnNear(trace, axis, row, trace.time[row] - trace.time[row - 1], 0.0);
+      if (!turned) turned = position[row - 1] + beyond * trace.heading(axis, row - 1);
+    }
+    if (turned) since[row] = std::abs(position[row] - *turned);
+  }
+  return since;
+}
+
+RowVectorXd PlayOf(const RowVectorXd& position, const Trace& trace, double width,
+                   const MatrixXd& aside) {
+  constexpr double kBefore = 0.5;  // s
+  const Derivatives motion = DerivativesOf(position, trace);
+  const double half = 0.5 * width;
+  double out = position[0];
+  const auto pull = [&](double in) { out = std::clamp(out, in - half, in + half); };
+  RowVectorXd behind(position.size());
+  for (Index row = 0; row < position.size(); ++row) {
+    const double velocity = motion.first(0, row), acceleration = motion.second(0, row);
+    const bool moves = velocity != 0.0 || acceleration != 0.0;
+    if (moves && Begins(trace, row)) {
+      out = position[row] - kBefore * velocity + 0.5 * kBefore * kBefore * acceleration;
+      for (int step = kWaySteps; step > 0; --step) {
+        const double ago = kBefore * step / kWaySteps;
+        pull(position[row] - ago * velocity + 0.5 * ago * ago * acceleration);
+      }
+    } else if (moves) {
+      const double seconds = trace.time[row] - trace.time[row - 1];
+      const double from = position[row - 1], to = position[row];
+      const double start = motion.first(0, row - 1) * seconds, end = velocity * seconds;
+      for (int step = 1; step < kWaySteps; ++step) {
+        const double s = static_cast<double>(step) / kWaySteps, r = 1.0 - s;
+        pull(r * r * (1.0 + 2.0 * s) * from + s * s * (1.0 + 2.0 * r) * to + s * r * r * start -
+             s * s * r * end);
+      }
+    } else if (row > 0 && aside.size() > 0) {
+      for (int step = 1; step < kWaySteps; ++step) {
+        const double s = static_cast<double>(step) / kWaySteps;
+        pull((1.0 - s) * position[row - 1] + s * position[row] + aside(step, row));
+      }
+    }
+    pull(position[row]);
+    behind[row] = (out - position[row]) / width;
+  }
+  return behind;
+}
+
+}  // namespace abbe::simulation

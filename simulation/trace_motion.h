@@ -1,0 +1,35 @@
+// How an axis or a pivot moved, told from the rows of a trace. For use within simulation/ only.
+// Units: m or rad, s. Shapes: one entry for each row.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "simulation/trace.h"
+
+namespace abbe::simulation {
+
+inline constexpr double kAxisBand = 2e-6;  // m: more than a scale trembles
+inline constexpr int kWaySteps = 8;        // of the way between two rows, and before the first
+
+// First and second derivative by time of each row of `values`, from the parabola through three
+// neighbours of one pass; 0 where there are none.
+struct Derivatives {
+  Eigen::MatrixXd first, second;
+};
+Derivatives DerivativesOf(const Eigen::MatrixXd& values, const Trace& trace);
+
+// Which way an axis goes, told from its speed where it moves by more than it trembles between two
+// rows, else from where it has been.
+Eigen::RowVectorXd HeadingOfAxis(const Trace& trace, Eigen::Index axis);
+
+// Metres since the heading last changed. Before a pass began the axis moved as it then did. Between
+// two rows that stand it turned `beyond` them.
+Eigen::RowVectorXd SinceReversal(const Trace& trace, Eigen::Index axis, double beyond = 0.0);
+
+// The output of a play less its input, in widths. What moved before a pass began is told from how
+// it began; between two rows the way is a cubic, between two that stand a straight line and beside
+// it `aside`, kWaySteps x rows, where it is given.
+Eigen::RowVectorXd PlayOf(const Eigen::RowVectorXd& position, const Trace& trace, double width,
+                          const Eigen::MatrixXd& aside = {});
+
+}  // namespace abbe::simulation

@@ -1,0 +1,97 @@
+// What many worlds with one hidden effect show together: rates, power against what can be seen, and
+// which names stood in for which.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "tests/hidden_effects/judgement.h"
+
+namespace abbe {
+
+class RateTable {
+ public:
+  // `visible`: standard deviations of the effect; `separable`: those that its best rival leaves;
+  // `showable`: those of the largest size that the rig hides.
+  void Add(const rig::HiddenEffect& truth, double visible, double separable, double showable,
+           const Diagnosis& diagnosis) {
+    const bool first = !diagnosis.findings.empty() && Names(diagnosis.findings.front(), truth);
+    const std::string name = NameOf(truth);
+    wrong_and_certain.Add(diagnosis.verdict == Verdict::kExplained && !first);
+    if (separable > kSeen) {
+      named_first.Add(first);
+      alone.Add(first && diagnosis.verdict == Verdict::kExplained &&
+                diagnosis.findings.size() == 1);
+      if (first) AddSizes(diagnosis.findings.front(), truth);
+      if (!first) ++stands_for_[{std::string(truth.entry->name), FirstOf(diagnosis)}];
+    }
+    if (showable < kSeen) {
+      listed.Add(std::any_of(diagnosis.cannot_show.begin(), diagnosis.cannot_show.end(),
+                             [&](const std::string& each) { return each.starts_with(name); }));
+    }
+    const auto bin = std::upper_bound(kBins.begin(), kBins.end(), std::min(visible, separable));
+    power_[static_cast<std::size_t>(bin - kBins.begin())].Add(first);
+    auto& [worlds, met] = by_cause_[std::string(truth.entry->name)];
+    worlds.Add(separable > kSeen);
+    if (separable > kSeen) met.Add(first);
+  }
+
+  void Print() const {
+    fmt::print("separable and named first: {}; with nothing beside: {}\n", named_first.Text(),
+               alone.Text());
+    fmt::print("keys of those inside U95: {}\n", inside.Text());
+    fmt::print("wrong and certain: {}\n", wrong_and_certain.Text());
+    fmt::print("cannot be shown and listed so: {}\n", listed.Text());
+    for (std::size_t bin = 0; bin < power_.size(); ++bin) {
+      fmt::print(
+          "power, {} sigma beside the best rival: {}\n",
+          bin == 0 ? fmt::format("below {}", kBins[0]) : fmt::format("from {}", kBins[bin - 1]),
+          power_[bin].Text());
+    }
+    for (const auto& [cause, rates] : by_cause_) {
+      fmt::print("{}: separable {}, of these named first {}\n", cause, rates.first.Text(),
+                 rates.second.Text());
+    }
+    for (const auto& [pair, count] : stands_for_) {
+      fmt::print("{} was named {}: {}\n", pair.first, pair.second, count);
+    }
+  }
+
+  static constexpr double kSeen = 5.0;
+
+  Rate named_first, alone, inside, wrong_and_certain, listed;
+
+ private:
+  static std::string FirstOf(const Diagnosis& diagnosis) {
+    if (diagnosis.findings.empty()) return std::string(diagnosis::Name(diagnosis.verdict));
+    return diagnosis.findings.front().score.candidate.cause->id;
+  }
+
+  void AddSizes(const Finding& finding, const rig::HiddenEffect& truth) {
+    const auto keys = KeysOf(finding.score);
+    for (Eigen::Index i = 0; i < keys.values.size(); ++i) {
+      if (!(keys.u[i] > 0.0)) continue;  // counted, not estimated
+      const std::string& name =
+          finding.score.candidate.cause->keys[static_cast<std::size_t>(i)].name;
+      const auto known = truth.values.find(name);
+      if (known == truth.values.end()) continue;
+      double off = keys.values[i] - truth.At(name);
+      if (name == "phase_rad") off = std::remainder(off, 2.0 * std::numbers::pi);
+      inside.Add(std::abs(off) <= 2.0 * keys.u[i]);
+    }
+  }
+
+  static constexpr std::array<double, 6> kBins{1.0, 2.0, 5.0, 10.0, 20.0, 100.0};
+  std::array<Rate, kBins.size() + 1> power_;
+  std::map<std::string, std::pair<Rate, Rate>> by_cause_;
+  std::map<std::pair<std::string, std::string>, int> stands_for_;
+};
+
+}  // namespace abbe
