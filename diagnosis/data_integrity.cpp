@@ -143,6 +143,45 @@ double ScatterOf(const Values& off) {
   return sizes.empty() ? 0.0 : kNormal * MedianOf(std::move(sizes));
 }
 
+double Largest(const Values& off) {
+  double most = 0.0;
+  for (const double each : off) {
+    if (std::abs(each) > most) most = std::abs(each);  // false for NaN
+  }
+  return most;
+}
+
+// A row as its neighbours would have it.
+Values Mended(const Values& values, const Off& off, std::size_t row) {
+  Values mended = values;
+  mended[row] -= off.scatter[row] * off.unit[row];
+  return mended;
+}
+
+// Where a motion begins or ends its first rows are all off alike when one of them is: that one
+// which leaves the others at peace.
+std::size_t WorstOf(const Table& table, const Values& values, const Off& off, double most) {
+  constexpr double kAlike = 0.999;
+  std::vector<std::size_t> alike;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::abs(off.scatter[i]) < kAlike * most || !std::isfinite(off.scatter[i])) continue;
+    if (alike.empty() || i < alike.front() + 5) alike.push_back(i);
+  }
+  if (alike.size() == 1) return alike.front();
+  std::size_t worst = alike.front();
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t row : alike) {
+    const std::size_t first = row - std::min<std::size_t>(row, 9);
+    Values left = OffNeighbours(table, Mended(values, off, row)).scatter;
+    left.resize(std::min(left.size(), row + 10));
+    left.erase(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(first));
+    if (Largest(left) >= least) continue;
+    least = Largest(left);
+    worst = row;
+  }
+  return worst;
+}
+
 // The worst first, for it makes its neighbours look bad too: it takes their middle meanwhile.
 std::vector<std::size_t> OutliersOf(const Table& table, Values values) {
   std::vector<std::size_t> outliers;
@@ -151,16 +190,10 @@ std::vector<std::size_t> OutliersOf(const Table& table, Values values) {
   const double usual = ScatterOf(off.scatter);
   if (usual == 0.0) return outliers;
   while (outliers.size() < at_most) {
-    std::size_t worst = 0;
-    double most = 0.0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (std::abs(off.scatter[i]) <= most) continue;
-      most = std::abs(off.scatter[i]);
-      worst = i;
-    }
+    const double most = Largest(off.scatter);
     if (most < kFar * usual) break;
-    outliers.push_back(worst);
-    values[worst] -= off.scatter[worst] * off.unit[worst];
+    outliers.push_back(WorstOf(table, values, off, most));
+    values = Mended(values, off, outliers.back());
     off = OffNeighbours(table, values);
     for (const std::size_t known : outliers) off.scatter[known] = 0.0;
   }

@@ -15,6 +15,9 @@ namespace {
 constexpr std::size_t kMostCauses = 6;
 constexpr double kNegligible = 0.01;  // probability of a rival that is not worth a word
 constexpr int kRefinements = 12;      // halvings of the step between shapes
+constexpr double kClose = 6.0;      // in log evidence: candidates that the first order may confuse
+constexpr double kWorthFits = 8.0;  // log evidence of the best below which nothing is taken in
+constexpr std::size_t kMostFits = 4;
 
 double LogSumOfExponentials(const std::vector<double>& logs) {
   const double most = *std::max_element(logs.begin(), logs.end());
@@ -60,19 +63,33 @@ std::vector<Named> ByName(const std::vector<Score>& scores) {
   return names;
 }
 
+const Score& Better(const Score& one, const Score& other) {
+  return other.log_evidence > one.log_evidence ? other : one;
+}
+
 // The shape with the largest evidence near the best one that was tried.
 Score Refine(const Fit& fit, const Named& named) {
   Score best = named.best;
-  if (best.candidate.shape.size() == 0 || best.candidate.cause->fixed_shapes) return best;
+  const simulation::Cause& cause = *best.candidate.cause;
+  const auto ask = [&](const std::vector<Candidate>& candidates) {
+    for (const Score& score : ScoreAll(fit, candidates)) best = Better(best, score);
+    best.visible = named.best.visible;
+  };
+  if (cause.nearer) {
+    std::vector<Candidate> near;
+    for (const auto& shape : cause.nearer(fit.campaign().scene(), best.candidate.shape)) {
+      near.push_back(best.candidate);
+      near.back().shape = shape;
+    }
+    ask(near);
+  }
+  if (best.candidate.shape.size() == 0 || cause.fixed_shapes) return best;
   double step = std::sqrt(named.step);
   for (int i = 0; i < kRefinements; ++i, step = std::sqrt(step)) {
     std::vector<Candidate> moved(2, best.candidate);
     moved[0].shape *= step;
     moved[1].shape /= step;
-    for (Score& score : ScoreAll(fit, moved)) {
-      score.visible = best.visible;
-      if (score.log_evidence > best.log_evidence) best = std::move(score);
-    }
+    ask(moved);
   }
   return best;
 }
@@ -151,22 +168,30 @@ class Search {
     return true;
   }
 
-  // What is there or not is too large for the first order: where one leads, fits with each of them
-  // decide among those that promise anything.
+  // Where the first order cannot tell, fits with each of the leading candidates decide: what is
+  // there or not is too large for it, and rivals are too near to each other.
   void DecideByFits(std::vector<Named>& names) const {
-    if (names.empty() || !names.front().best.candidate.cause->whole) return;
-    constexpr int kMostFits = 4;
-    int fits = 0;
+    if (names.empty()) return;
+    const bool whole = names.front().best.candidate.cause->whole;
+    const double best = names.front().log_evidence;
+    std::vector<Named*> leading;
     for (Named& named : names) {
-      if (!named.best.candidate.cause->whole) continue;
-      if (named.log_evidence <= 0.0 || ++fits > kMostFits) {
-        named.log_evidence = std::min(named.log_evidence, 0.0);
-        continue;
-      }
+      const bool like_it = whole ? named.best.candidate.cause->whole && named.log_evidence > 0.0
+                                 : named.log_evidence > best - kClose;
+      if (like_it && leading.size() < kMostFits) leading.push_back(&named);
+    }
+    if (best < kWorthFits || leading.size() < 2) return;
+    double most = 0.0;
+    for (Named* named : leading) {
       std::vector<Candidate> with = taken_;
-      with.push_back(named.best.candidate);
+      with.push_back(Refine(*fit_, *named).candidate);
       const auto fit = FitWith(with);
-      named.log_evidence = fit ? fit_->cost() - fit->cost() : 0.0;
+      named->log_evidence = fit ? fit->log_likelihood() - fit_->log_likelihood() : 0.0;
+      most = std::max(most, named->log_evidence);
+    }
+    for (Named& named : names) {
+      if (std::find(leading.begin(), leading.end(), &named) != leading.end()) continue;
+      named.log_evidence = std::min(named.log_evidence, most - kClose);
     }
     SortByEvidence(names);
   }

@@ -135,7 +135,6 @@ void Fit::Linearize(const Problem& problem) {
   const estimation::Linearization at = estimation::Linearize(problem, layout, x, 1);
   MatrixXd H = at.prior.information;
   gradient_ = at.prior.gradient;
-  cost_ = at.Cost();
   data_information_ = MatrixXd::Zero(H.rows(), H.cols());
   data_gradient_ = VectorXd::Zero(H.rows());
   for (std::size_t s = 0; s < at.sources.size(); ++s) {
@@ -147,6 +146,13 @@ void Fit::Linearize(const Problem& problem) {
   }
   scale_ = H.diagonal().cwiseSqrt().cwiseInverse();
   H_.compute(scale_.asDiagonal() * H * scale_.asDiagonal());
+  // What one prior divides by, another with the same deviation divides by too: the precisions of
+  // the parameters that have one.
+  const auto known = (at.prior.information.diagonal().array() > 0.0);
+  const double priors = known.select(at.prior.information.diagonal().array(), 1.0).log().sum();
+  const double curvature = 2.0 * MatrixXd(H_.matrixL()).diagonal().array().log().sum() -
+                           2.0 * scale_.array().log().sum();
+  log_likelihood_ = -at.Cost() + 0.5 * (priors - curvature);
   estimation::RowEvaluator evaluator(problem, layout);
   runs_.clear();
   for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {

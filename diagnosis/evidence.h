@@ -43,8 +43,9 @@ class Fit {
   const estimation::Result& result() const { return result_; }
   const std::vector<Candidate>& taken_in() const { return taken_in_; }
   double chi_square() const;  // of the runs
-  // Half of chi-square with all priors: what the fit makes small.
-  double cost() const { return cost_; }
+  // Logarithm of the marginal likelihood of the data, by Laplace's approximation at the fit; all
+  // fits to one campaign lack the same constant.
+  double log_likelihood() const { return log_likelihood_; }
   Eigen::Index rows() const;
   // Coefficients of a cause that was taken in, and their covariance.
   Score ScoreOf(std::size_t taken_in) const;
@@ -96,7 +97,7 @@ class Fit {
   std::vector<RunRows> runs_;
   Eigen::MatrixXd data_information_;
   Eigen::VectorXd data_gradient_, gradient_;
-  double cost_ = 0.0;
+  double log_likelihood_ = 0.0;
   Eigen::VectorXd scale_;  // H = scale^-1 (scaled) scale^-1
   Eigen::LLT<Eigen::MatrixXd> H_;
 };

@@ -69,6 +69,7 @@ struct Cause {
   using Columns = std::function<std::vector<Disturbance>(const Trace&, const std::string& object,
                                                          const Eigen::VectorXd& shape)>;
   using Shapes = std::function<std::vector<Eigen::VectorXd>(const Scene&)>;
+  using Nearer = std::function<std::vector<Eigen::VectorXd>(const Scene&, const Eigen::VectorXd&)>;
   using Widens = std::function<std::vector<std::string>(const std::string& object)>;
   using Tell = std::function<Eigen::VectorXd(const Eigen::VectorXd& coefficients,
                                              const Eigen::VectorXd& shape)>;
@@ -81,6 +82,7 @@ struct Cause {
   Objects objects;
   Columns columns = {};
   Shapes shapes = {};  // none: no shape
+  Nearer nearer = {};  // those about one of the shapes, closer together; none: by halving the steps
   Widens widens = {};  // none: columns
   Tell tell = {};      // none: the coefficients are the keys, then the shape
   bool follows_size = false;

@@ -1,4 +1,7 @@
 // Encoder count slip: a step of the angle at one instant of the campaign.
+#include <algorithm>
+#include <limits>
+
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
@@ -14,6 +17,25 @@ std::vector<Eigen::VectorXd> InstantsTried(const Scene& scene) {
     const Eigen::Index step = std::max<Eigen::Index>(1, trace->rows() / kAtMost);
     for (Eigen::Index row = 0; row < trace->rows(); row += step) {
       instants.push_back(trace->clock[row]);
+    }
+  }
+  return ShapesOf(instants);
+}
+
+// The rows between the instants before and after.
+std::vector<Eigen::VectorXd> InstantsNear(const Scene& scene, const Eigen::VectorXd& shape) {
+  const std::vector<Eigen::VectorXd> tried = InstantsTried(scene);
+  double before = -std::numeric_limits<double>::infinity();
+  double after = std::numeric_limits<double>::infinity();
+  for (const Eigen::VectorXd& instant : tried) {
+    if (instant[0] < shape[0]) before = std::max(before, instant[0]);
+    if (instant[0] > shape[0]) after = std::min(after, instant[0]);
+  }
+  std::vector<double> instants;
+  for (const Trace* trace : scene.traces) {
+    if (trace->pivots() == 0) continue;
+    for (const double clock : trace->clock) {
+      if (clock > before && clock < after) instants.push_back(clock);
     }
   }
   return ShapesOf(instants);
@@ -38,6 +60,7 @@ Cause EncoderCountSlip() {
                         (trace.clock.transpose().array() >= shape[0]).cast<double>())};
       },
       .shapes = InstantsTried,
+      .nearer = InstantsNear,
       .tell = [](const Eigen::VectorXd& found, const Eigen::VectorXd& shape) -> Eigen::VectorXd {
         return Eigen::Vector2d(shape[0], found[0]);
       },

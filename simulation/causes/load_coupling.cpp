@@ -1,5 +1,5 @@
-// Load coupling: Z drops by coefficient x y. The machine is not rigid; none of the 21 errors can do
-// it.
+// Load coupling: the third axis drops by a coefficient times the positions of two others (Z by x
+// y). The machine is not rigid; none of the 21 errors can do it.
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
@@ -13,11 +13,13 @@ Cause LoadCoupling() {
                 .remedy =
                     "support the machine better; limit the load; correct with the extended model"},
       .keys = {{"coefficient_nm_per_mm2", 1e-3, -100.0, 100.0}},
-      .plausible = Eigen::VectorXd::Constant(1, 0.5e-3),
-      .objects = [](const Scene&) { return std::vector<std::string>{"XY"}; },
-      .columns = [](const Trace& trace, const std::string&,
+      .plausible = Eigen::VectorXd::Constant(1, 2e-3),
+      .objects = AxisPairsOf,
+      .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        return {InStage(trace, Positioning(2), -trace.axes.row(0).cwiseProduct(trace.axes.row(1)))};
+        const int first = AxisOf(object[0]), second = AxisOf(object[1]);
+        return {InStage(trace, Positioning(3 - first - second),
+                        -trace.axes.row(first).cwiseProduct(trace.axes.row(second)))};
       },
   };
 }

@@ -25,7 +25,7 @@ Cause ProbeCrosstalk() {
                 .check = "guard rings, grounding, cables side by side, synchronised oscillators",
                 .remedy = "separate the cables, ground the target, synchronise the amplifiers"},
       .keys = {{"coefficient", 1.0, -0.9, 0.9}},
-      .plausible = Eigen::VectorXd::Constant(1, 0.01),
+      .plausible = Eigen::VectorXd::Constant(1, 0.02),
       .objects = PairsOfProbes,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {

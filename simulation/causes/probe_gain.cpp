@@ -11,7 +11,7 @@ Cause ProbeGain() {
                 .check = "calibration of probe and amplifier, the cable's capacitance",
                 .remedy = "recalibrate the probe against gauge steps"},
       .keys = {{"delta", 1.0, -0.9, 0.9}},
-      .plausible = Eigen::VectorXd::Constant(1, 0.01),
+      .plausible = Eigen::VectorXd::Constant(1, 0.02),
       .objects = ProbesOf,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
