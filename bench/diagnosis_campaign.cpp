@@ -105,7 +105,8 @@ int main(int argc, char** argv) {
   const bool reduced = argc > 1 && std::string_view(argv[1]) == "reduced";
   const auto document =
       settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml");
-  const auto machine = rig::ReadCampaignMachine(document.Root());
+  auto machine = rig::ReadCampaignMachine(document.Root());
+  machine.rig.cap = 0.0;  // a cause of its own
   const auto world = rig::RecordCampaign(
       machine, 1, {rig::ParseHidden("backlash:object=X:width_um=4", 1, machine.sensors)},
       {.kind = rig::CampaignKind::kStandard, .reduced = reduced});
@@ -141,9 +142,10 @@ int main(int argc, char** argv) {
   double worst = 0.0;
   std::size_t solved = 0;
   const double own_before = Seconds();
-  for (std::size_t i = 0; i < candidates.size(); i += kEvery, ++solved) {
+  for (std::size_t i = 0; i < candidates.size(); i += kEvery) {
     const double size = scores[i].coefficients.norm();
-    if (candidates[i].cause->whole) continue;
+    if (candidates[i].cause->whole || size == 0.0) continue;
+    ++solved;
     worst = std::max(worst, std::abs(OwnSolve(fit, linear, candidates[i]) - size) / size);
   }
   const double own = (Seconds() - own_before) / static_cast<double>(solved);

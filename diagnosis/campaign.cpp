@@ -18,7 +18,7 @@ using simulation::Trace;
 
 namespace {
 
-constexpr Eigen::Index kMostPoses = 4000;  // of one run: more tell no more of causes
+constexpr Eigen::Index kMostPoses = 1500;  // of one run: time is spent on causes, not on rows
 
 simulation::LinkageRun Thinned(const simulation::LinkageRun& run) {
   if (run.poses() <= kMostPoses) return run;
