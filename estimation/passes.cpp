@@ -20,6 +20,7 @@ using Eigen::VectorXd;
 // Far below 1: what the data hardly see may be the bottom of a curved valley, where the undamped
 // step leaves the valley and a strong damping creeps.
 constexpr double kFirstDamping = 1e-10;
+constexpr double kNegligible = 1e-3;  // standard uncertainties: what is left may be left
 constexpr double kMostDamping = 1e8;
 // A cost is a sum of many squares; two of them are equal when they agree to this.
 constexpr double kCostRounding = 1e-11;
@@ -179,6 +180,7 @@ Settled SettleByPasses(const Problem& problem, const Layout& layout, const Solve
   // One pass at least: a linear problem then is exact, however far Ceres went.
   while (now.passes == 0 || equations.Length() > Short(problem, now.at, options.settled)) {
     if (now.passes == options.max_iterations || damping > kMostDamping) {
+      if (equations.Length() < kNegligible) break;
       RefuseUnsettled(problem, layout, now.at, now.passes, trouble);
     }
     VectorXd trial = Moved(layout, now.x, equations.Step(damping));

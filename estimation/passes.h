@@ -4,7 +4,7 @@
 // -(J'J)^-1 J'r, damped after Levenberg and Marquardt while a step does not lower the cost. Its
 // length is measured in standard uncertainties, sqrt(g' (J'J)^-1 g): below `settled` no parameter
 // would move by more than that share of its own. Directions that neither data nor priors see stay
-// where they are.
+// where they are. When no pass is left, a thousandth of an uncertainty is near enough.
 // Memory: n x n per source, whatever the number of rows.
 // Failure: NumericalError when it does not settle; it names the parameter that moves most and the
 // source that pulls most.
