@@ -32,8 +32,9 @@ RowVectorXd Trace::Behind(int which, double width) const {
 
 RowVectorXd Trace::PivotBehind(int pivot, double width) const {
   if (width <= 0.0) return -0.5 * turning.row(pivot);
-  return PlayOf(angles.row(pivot), *this, width,
-                aside.size() > 0 ? aside.middleRows(pivot * kWaySteps, kWaySteps) : MatrixXd{});
+  return ShownPlayOf(
+      angles.row(pivot), *this, width,
+      aside.size() > 0 ? aside.middleRows(pivot * kWaySteps, kWaySteps) : MatrixXd{});
 }
 
 void Trace::SetAxes(const Eigen::Matrix3Xd& path) {

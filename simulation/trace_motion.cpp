@@ -112,22 +112,43 @@ RowVectorXd SinceReversal(const Trace& trace, Index axis, double beyond) {
   return since;
 }
 
-RowVectorXd PlayOf(const RowVectorXd& position, const Trace& trace, double width,
+namespace {
+
+// What is driven through a play. `shown`: what is known is not the input, but the input less what
+// the output stays behind.
+class Play {
+ public:
+  Play(double width, bool shown, double at)
+      : half_(0.5 * width), shown_(shown), in_(at), out_(at) {}
+
+  void Begin(double at) { in_ = out_ = at; }
+  void Follow(double at) {
+    in_ = shown_ ? std::clamp(0.5 * (at + out_), at - half_, at + half_) : at;
+    out_ = std::clamp(out_, in_ - half_, in_ + half_);
+  }
+  double behind() const { return out_ - in_; }
+
+ private:
+  double half_;
+  bool shown_;
+  double in_, out_;
+};
+
+// What moved before a pass began is told from how it began; between two rows the way is a cubic,
+// between two that stand a straight line and beside it `aside`.
+RowVectorXd Follow(Play play, const RowVectorXd& position, const Trace& trace,
                    const MatrixXd& aside) {
   constexpr double kBefore = 0.5;  // s
   const Derivatives motion = DerivativesOf(position, trace);
-  const double half = 0.5 * width;
-  double out = position[0];
-  const auto pull = [&](double in) { out = std::clamp(out, in - half, in + half); };
   RowVectorXd behind(position.size());
   for (Index row = 0; row < position.size(); ++row) {
     const double velocity = motion.first(0, row), acceleration = motion.second(0, row);
     const bool moves = velocity != 0.0 || acceleration != 0.0;
     if (moves && Begins(trace, row)) {
-      out = position[row] - kBefore * velocity + 0.5 * kBefore * kBefore * acceleration;
+      play.Begin(position[row] - kBefore * velocity + 0.5 * kBefore * kBefore * acceleration);
       for (int step = kWaySteps; step > 0; --step) {
         const double ago = kBefore * step / kWaySteps;
-        pull(position[row] - ago * velocity + 0.5 * ago * ago * acceleration);
+        play.Follow(position[row] - ago * velocity + 0.5 * ago * ago * acceleration);
       }
     } else if (moves) {
       const double seconds = trace.time[row] - trace.time[row - 1];
@@ -135,19 +156,30 @@ RowVectorXd PlayOf(const RowVectorXd& position, const Trace& trace, double width
       const double start = motion.first(0, row - 1) * seconds, end = velocity * seconds;
       for (int step = 1; step < kWaySteps; ++step) {
         const double s = static_cast<double>(step) / kWaySteps, r = 1.0 - s;
-        pull(r * r * (1.0 + 2.0 * s) * from + s * s * (1.0 + 2.0 * r) * to + s * r * r * start -
-             s * s * r * end);
+        play.Follow(r * r * (1.0 + 2.0 * s) * from + s * s * (1.0 + 2.0 * r) * to +
+                    s * r * r * start - s * s * r * end);
       }
     } else if (row > 0 && aside.size() > 0) {
       for (int step = 1; step < kWaySteps; ++step) {
         const double s = static_cast<double>(step) / kWaySteps;
-        pull((1.0 - s) * position[row - 1] + s * position[row] + aside(step, row));
+        play.Follow((1.0 - s) * position[row - 1] + s * position[row] + aside(step, row));
       }
     }
-    pull(position[row]);
-    behind[row] = (out - position[row]) / width;
+    play.Follow(position[row]);
+    behind[row] = play.behind();
   }
   return behind;
+}
+
+}  // namespace
+
+RowVectorXd PlayOf(const RowVectorXd& position, const Trace& trace, double width) {
+  return Follow(Play(width, false, position[0]), position, trace, {}) / width;
+}
+
+RowVectorXd ShownPlayOf(const RowVectorXd& shown, const Trace& trace, double width,
+                        const MatrixXd& aside) {
+  return Follow(Play(width, true, shown[0]), shown, trace, aside) / width;
 }
 
 }  // namespace abbe::simulation

@@ -26,10 +26,11 @@ Eigen::RowVectorXd HeadingOfAxis(const Trace& trace, Eigen::Index axis);
 // two rows that stand it turned `beyond` them.
 Eigen::RowVectorXd SinceReversal(const Trace& trace, Eigen::Index axis, double beyond = 0.0);
 
-// The output of a play less its input, in widths. What moved before a pass began is told from how
-// it began; between two rows the way is a cubic, between two that stand a straight line and beside
-// it `aside`, kWaySteps x rows, where it is given.
-Eigen::RowVectorXd PlayOf(const Eigen::RowVectorXd& position, const Trace& trace, double width,
-                          const Eigen::MatrixXd& aside = {});
+// The output of a play less its input, in widths, for an input that goes from row to row.
+Eigen::RowVectorXd PlayOf(const Eigen::RowVectorXd& position, const Trace& trace, double width);
+// The same for an encoder that shows its input and what the output stays behind. Between two rows
+// that stand the input is beside a straight line by `aside`, kWaySteps x rows, where it is given.
+Eigen::RowVectorXd ShownPlayOf(const Eigen::RowVectorXd& shown, const Trace& trace, double width,
+                               const Eigen::MatrixXd& aside);
 
 }  // namespace abbe::simulation
