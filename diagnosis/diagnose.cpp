@@ -111,6 +111,7 @@ class Search {
     diagnosis_.leftovers = FindLeftovers(*fit_);
     diagnosis_.chi_after = fit_->chi_square() / static_cast<double>(fit_->rows());
     diagnosis_.verdict = VerdictOf(diagnosis_);
+    diagnosis_.fitted = fit_->result();
     return std::move(diagnosis_);
   }
 
@@ -133,7 +134,8 @@ class Search {
     for (std::size_t i = 1; i < names.size(); ++i) {
       const double probability = std::exp(logs[i + 1] - all);
       if (probability > kNegligible) {
-        finding.rivals.push_back({names[i].best.candidate, probability});
+        const Score& other = names[i].best;
+        finding.rivals.push_back({other.candidate, probability, other.coefficients});
       }
     }
     std::vector<Candidate> more = taken_;

@@ -35,6 +35,7 @@ class HiddenWorlds {
   }
 
   const rig::Sensors& sensors() const { return machine_.sensors; }
+  const diagnosis::Setup& setup() const { return setup_; }
 
   rig::Campaign Record(std::uint64_t seed, const std::vector<std::string>& hidden) const {
     rig::HiddenEffects effects;
