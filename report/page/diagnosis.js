@@ -116,14 +116,12 @@ function rivalsTable(result) {
     caption: 'What else it could be, and the run that tells',
     columns: [
       {head: 'Causes'}, {head: 'Probability', numeric: true}, {head: 'Run to make next'},
-      {head: 'Expected then', numeric: true}
+      {head: 'The right one then', numeric: true}
     ],
     rows: rivals.map(
         ({causes, odds, next_run: next, expected_odds: then}) =>
             [list((causes ?? []).map(candidateName)), list((odds ?? []).map(percent)), next ?? null,
-             Array.isArray(then) ? list(then.map(percent)) :
-                 isNumber(then)  ? percent(then) :
-                                   null]),
+             percent(then)]),
   });
 }
 
