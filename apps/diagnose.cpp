@@ -7,13 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "apps/campaign_kinds.h"
 #include "apps/command.h"
 #include "apps/commands.h"
+#include "apps/diagnose_plan.h"
 #include "apps/diagnosis_result.h"
 #include "apps/file_hash.h"
 #include "apps/machine_file.h"
 #include "apps/result_file.h"
 #include "diagnosis/found_model.h"
+#include "diagnosis/next_run.h"
 #include "failure/failure.h"
 #include "recording/recording_file.h"
 
@@ -25,7 +28,8 @@ namespace fs = std::filesystem;
 struct DiagnoseArguments {
   std::vector<fs::path> recordings;
   fs::path machine, out, json;
-  bool quiet = false;
+  std::string campaign;  // to plan
+  bool plan = false, quiet = false;
 };
 
 // A file without [devices] describes the machine alone: enough for runs with a reference.
@@ -76,6 +80,13 @@ diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
 }
 
 int Diagnose(const DiagnoseArguments& arguments) {
+  if (arguments.plan) {
+    return DiagnosePlan({arguments.recordings, arguments.campaign, arguments.machine,
+                         arguments.json, arguments.quiet});
+  }
+  if (arguments.recordings.empty()) {
+    throw InputError("diagnose: no recording is given; name at least one, or plan with --plan");
+  }
   diagnosis::Campaign campaign(SetupOf(arguments.machine));
   std::vector<recording::Recording> recordings;
   for (const fs::path& path : arguments.recordings) {
@@ -85,7 +96,8 @@ int Diagnose(const DiagnoseArguments& arguments) {
     }
     campaign.Add(recordings.back());
   }
-  const diagnosis::Diagnosis diagnosis = diagnosis::Diagnose(campaign);
+  diagnosis::Diagnosis diagnosis = diagnosis::Diagnose(campaign);
+  diagnosis::AddNextRuns(campaign, recordings, diagnosis);
   std::vector<diagnosis::Candidate> causes;
   for (const auto& finding : diagnosis.findings) {
     const auto& cause = finding.score.candidate;
@@ -109,18 +121,28 @@ void AddDiagnose(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<DiagnoseArguments>();
   CLI::App* command = program.add_subcommand(
       "diagnose", "What the simulation of the runs gets wrong, and which cause explains it");
-  command
-      ->add_option("recordings", arguments->recordings,
-                   "Recordings of one machine: sweeps, linkage, reference, length")
-      ->required();
+  command->add_option("recordings", arguments->recordings,
+                      "Recordings of one machine: sweeps, linkage, reference, length");
   command->add_option("--machine", arguments->machine, "Machine file")->required();
-  command->add_option("-o,--out", arguments->out,
-                      "Extended model (TOML) with what was found, for --causes of other commands");
+  auto* out = command->add_option(
+      "-o,--out", arguments->out,
+      "Extended model (TOML) with what was found, for --causes of other commands");
   command->add_option("--json", arguments->json, "File for the result as data");
+  auto* plan = command->add_flag("--plan", arguments->plan,
+                                 "Before measuring: which causes runs on the paths of these "
+                                 "recordings would show, from which size on");
+  command
+      ->add_option(
+          "--campaign", arguments->campaign,
+          "With --plan: the runs of a campaign of the virtual rig: minimal, standard, full")
+      ->check(CLI::IsMember(CampaignKinds()))
+      ->needs(plan);
   command->add_flag("--quiet", arguments->quiet, "No tables");
   command->footer(
       "Example: abbe diagnose sweep_X.csv circle.csv cube.csv --machine mill.toml -o "
-      "mill.causes.toml");
+      "mill.causes.toml\n"
+      "         abbe diagnose --plan --campaign standard --machine mill.toml");
+  plan->excludes(out);
   command->callback([arguments, &exit_code] { exit_code = Diagnose(*arguments); });
 }
 

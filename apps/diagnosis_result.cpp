@@ -24,24 +24,6 @@ using nlohmann::ordered_json;
 constexpr double kMicro = 1e-6;
 constexpr std::size_t kEvidenceShown = 8;
 
-std::string NameOf(const Candidate& candidate) {
-  const auto [object, sensor] = simulation::Split(candidate.object);
-  return candidate.cause->id + ":" + object + (sensor.empty() ? "" : " (" + sensor + ")");
-}
-
-// The unit that the name of a key ends in: "width_um" -> "um", "..._nm_per_mm2" -> "nm/mm2".
-std::string UnitOf(const std::string& key) {
-  constexpr std::array<std::string_view, 2> kWithout{"delta", "coefficient"};
-  if (std::find(kWithout.begin(), kWithout.end(), key) != kWithout.end()) return "";
-  const std::size_t line = key.find('_');
-  if (line == std::string::npos) return "";
-  const std::string unit = key.substr(line + 1);
-  constexpr std::string_view kPer = "_per_";
-  const auto per = unit.find(kPer);
-  if (per == std::string::npos) return unit;
-  return fmt::format("{}/{}", unit.substr(0, per), unit.substr(per + kPer.size()));
-}
-
 struct Told {
   std::string name, unit;
   double value, u95;
@@ -102,6 +84,12 @@ std::string FindingText(const Finding& finding) {
     text +=
         fmt::format("  or {}, probability {:.3f}\n", NameOf(rival.candidate), rival.probability);
   }
+  if (finding.next_run) {
+    text += fmt::format("  to tell them apart: {}; the right one is then expected at {:.3f}\n",
+                        finding.next_run->text, finding.next_run->expected_probability);
+  } else if (!finding.rivals.empty()) {
+    text += "  no run that abbe knows of would tell them apart\n";
+  }
   return text;
 }
 
@@ -118,7 +106,30 @@ std::string EvidenceText(const Diagnosis& diagnosis) {
   return text;
 }
 
+// In its unit.
+double AmplitudeOf(const Leftover& leftover) {
+  return leftover.variable == diagnosis::kScatter ? leftover.amplitude
+                                                  : leftover.amplitude / kMicro;
+}
+
 }  // namespace
+
+std::string NameOf(const Candidate& candidate) {
+  const auto [object, sensor] = simulation::Split(candidate.object);
+  return candidate.cause->id + ":" + object + (sensor.empty() ? "" : " (" + sensor + ")");
+}
+
+std::string UnitOf(const std::string& key) {
+  constexpr std::array<std::string_view, 2> kWithout{"delta", "coefficient"};
+  if (std::find(kWithout.begin(), kWithout.end(), key) != kWithout.end()) return "";
+  const std::size_t line = key.find('_');
+  if (line == std::string::npos) return "";
+  const std::string unit = key.substr(line + 1);
+  constexpr std::string_view kPer = "_per_";
+  const auto per = unit.find(kPer);
+  if (per == std::string::npos) return unit;
+  return fmt::format("{}/{}", unit.substr(0, per), unit.substr(per + kPer.size()));
+}
 
 ordered_json DiagnosisJson(const Diagnosis& diagnosis, const diagnosis::HeldOutGain& gain) {
   ordered_json json{{"command", "diagnose"},
@@ -140,6 +151,10 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const diagnosis::HeldOutG
       rivals["causes"].push_back(rival.candidate.Name());
       rivals["odds"].push_back(rival.probability);
     }
+    if (finding.next_run) {
+      rivals["next_run"] = finding.next_run->text;
+      rivals["expected_odds"] = finding.next_run->expected_probability;
+    }
     json["rivals"].push_back(rivals);
   }
   if (gain.rows > 0) {
@@ -148,7 +163,7 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const diagnosis::HeldOutG
   for (const Leftover& leftover : diagnosis.leftovers) {
     json["unexplained"].push_back({{"variable", leftover.variable},
                                    {"object", leftover.object},
-                                   {"amplitude", leftover.amplitude / kMicro},
+                                   {"amplitude", AmplitudeOf(leftover)},
                                    {"unit", leftover.unit},
                                    {"p_value", leftover.p_value}});
   }
@@ -173,10 +188,12 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const diagnosis::HeldOutGa
         gain.rows, gain.before, gain.after);
   }
   for (const Leftover& leftover : diagnosis.leftovers) {
-    text += fmt::format(
-        "\nUNEXPLAINED: {} varies with {} by {:.3g} {} (p {:.1g}); no known cause does that\n",
-        leftover.object, leftover.variable, leftover.amplitude / kMicro, leftover.unit,
-        leftover.p_value);
+    const bool scatter = leftover.variable == diagnosis::kScatter;
+    text += fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause does that\n",
+                        leftover.object,
+                        scatter ? "scatters beyond what is stated"
+                                : fmt::format("varies with {}", leftover.variable),
+                        AmplitudeOf(leftover), leftover.unit, leftover.p_value);
   }
   text += EvidenceText(diagnosis);
   if (!diagnosis.cannot_show.empty()) {

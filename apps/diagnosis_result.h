@@ -9,6 +9,11 @@
 
 namespace abbe::apps {
 
+// "thermal-growth:X (temp_table_c)".
+std::string NameOf(const diagnosis::Candidate& candidate);
+// The unit that the name of a key ends in: "width_um" -> "um", "..._nm_per_mm2" -> "nm/mm2".
+std::string UnitOf(const std::string& key);
+
 nlohmann::ordered_json DiagnosisJson(const diagnosis::Diagnosis& diagnosis,
                                      const diagnosis::HeldOutGain& gain);
 std::string DiagnosisText(const diagnosis::Diagnosis& diagnosis,

@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "apps/campaign_kinds.h"
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/interrupt.h"
@@ -258,14 +258,10 @@ recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
 }
 
 int RecordTheCampaign(const RigOptions& options) {
-  static const std::map<std::string, rig::CampaignKind> kinds = {
-      {"minimal", rig::CampaignKind::kMinimal},
-      {"standard", rig::CampaignKind::kStandard},
-      {"full", rig::CampaignKind::kFull}};
   const Rig rig(options);
-  const rig::Campaign campaign =
-      rig::RecordCampaign(rig.machine, options.seed, Rig::HiddenOf(rig.machine, options),
-                          {.kind = kinds.at(options.campaign), .reduced = options.reduced});
+  const rig::Campaign campaign = rig::RecordCampaign(
+      rig.machine, options.seed, Rig::HiddenOf(rig.machine, options),
+      {.kind = CampaignKinds().at(options.campaign), .reduced = options.reduced});
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
   if (error) {
@@ -348,7 +344,7 @@ void AddRig(CLI::App& program, int& exit_code) {
   record
       ->add_option("--campaign", options->campaign,
                    "A whole campaign into the folder --out: minimal, standard or full")
-      ->check(CLI::IsMember({"minimal", "standard", "full"}))
+      ->check(CLI::IsMember(CampaignKinds()))
       ->excludes("--axis", "--length");
   record->add_flag("--reduced", options->reduced, "Fewer stations, places and rows in a campaign");
   record->add_flag("--plate", options->plate, "A hole plate in five set-ups");

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "diagnosis/scatter.h"
 #include "failure/failure.h"
 #include "simulation/causes/registry.h"
 
@@ -128,8 +129,10 @@ class Search {
     });
     AddBadData();
     diagnosis_.leftovers = FindLeftovers(*fit_);
+    for (Leftover& run : RunsThatScatter(*fit_)) diagnosis_.leftovers.push_back(std::move(run));
     diagnosis_.chi_after = fit_->chi_square() / static_cast<double>(fit_->rows());
     diagnosis_.verdict = VerdictOf(diagnosis_);
+    diagnosis_.fitted = fit_->result();
     return std::move(diagnosis_);
   }
 
@@ -152,7 +155,8 @@ class Search {
     for (std::size_t i = 1; i < names.size(); ++i) {
       const double probability = std::exp(logs[i + 1] - all);
       if (probability > kNegligible) {
-        finding.rivals.push_back({names[i].best.candidate, probability});
+        const Score& other = names[i].best;
+        finding.rivals.push_back({other.candidate, probability, other.coefficients});
       }
     }
     std::vector<Candidate> more = taken_;

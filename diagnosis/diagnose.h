@@ -16,6 +16,7 @@
 // Units: SI. Failure: that of Fit.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,12 +35,21 @@ std::string_view Name(Verdict verdict);
 struct Rival {
   Candidate candidate;
   double probability = 0.0;
+  Eigen::VectorXd coefficients = {};  // if it were the one
+};
+
+// The run that would tell a finding from its rivals (next_run.h).
+struct NextRun {
+  std::string text;                   // what to do
+  double expected_probability = 0.0;  // of the right one then
+  double seconds = 0.0;               // that it takes
 };
 
 struct Finding {
   Score score;
   double probability = 0.0;   // among all that could stand in its place
   std::vector<Rival> rivals;  // others above 1 %
+  std::optional<NextRun> next_run = {};
 };
 
 struct Diagnosis {
@@ -49,6 +59,7 @@ struct Diagnosis {
   std::vector<Score> evidence;           // of the first round: best shape of each name
   std::vector<Leftover> leftovers;
   double chi_before = 0.0, chi_after = 0.0;  // chi-square per row of all runs
+  estimation::Result fitted;                 // with all that was found
 };
 
 Diagnosis Diagnose(const Campaign& campaign);

@@ -57,21 +57,21 @@ Problem ProblemOf(const Campaign& campaign, const std::vector<SimulatedRun>& run
 }
 
 // What is left to the minimum is in the gradient, which the evidence takes into account: where a
-// simulation that lacks something does not settle, near it is good enough.
-estimation::Result Solve(const Problem& problem) {
-  constexpr double kSettled = 0.02, kNear = 1.0;  // standard uncertainties
+// simulation that lacks something does not settle, near it is good enough. Standard uncertainties.
+const std::vector<double> kAsItIs{0.02, 1.0, 30.0, 1000.0}, kWithCauses{0.02, 1.0};
+
+estimation::Result Solve(const Problem& problem, const std::vector<double>& settled) {
   constexpr int kFewPasses = 20;
-  const auto solve = [&](double settled) {
-    return problem.Solve({.max_iterations = kFewPasses,
-                          .threads = 1,
-                          .settled = settled,
-                          .jacobian_bytes = 0,
-                          .weak_directions = false});
-  };
-  try {
-    return solve(kSettled);
-  } catch (const NumericalError&) {
-    return solve(kNear);
+  for (auto limit = settled.begin();; ++limit) {
+    try {
+      return problem.Solve({.max_iterations = kFewPasses,
+                            .threads = 1,
+                            .settled = *limit,
+                            .jacobian_bytes = 0,
+                            .weak_directions = false});
+    } catch (const NumericalError&) {
+      if (limit + 1 == settled.end()) throw;
+    }
   }
 }
 
@@ -81,7 +81,7 @@ Fit::Fit(const Campaign& campaign) : campaign_(campaign) {
   std::vector<SimulatedRun> runs;
   for (const DiagnosedRun& run : campaign.runs()) runs.push_back(run.simulated);
   const Problem problem = ProblemOf(campaign, runs, {});
-  result_ = Solve(problem);
+  result_ = Solve(problem, kAsItIs);
   Linearize(problem);
 }
 
@@ -97,7 +97,7 @@ Fit::Fit(const Fit& before, std::vector<Candidate> taken_in)
       StartFrom(result_, runs.back().blocks);
     }
     const Problem problem = ProblemOf(campaign_, runs, taken_in_, result_);
-    result_ = Solve(problem);
+    result_ = Solve(problem, kWithCauses);
     Linearize(problem);
     const double moved = FollowShapes();
     if (round > 0 && moved < kShapeFound) break;

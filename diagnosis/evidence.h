@@ -68,6 +68,8 @@ class Fit {
   };
   RowScores ScoresOf(std::size_t run, Eigen::Index stage) const;
   const simulation::Trace& TraceOf(std::size_t run) const { return runs_[run].at.trace; }
+  // What is left of a run, whitened.
+  const Eigen::VectorXd& LeftOf(std::size_t run) const { return runs_[run].r; }
   std::size_t runs() const { return runs_.size(); }
   // Of a cause that widens parameters.
   Projection ProjectParameters(const Candidate& candidate) const;

@@ -25,13 +25,14 @@ namespace abbe::diagnosis {
 struct Leftover {
   std::string variable;    // "time", "x", "x+y", "pivot_2", "temp_table_c", "feed"
   std::string object;      // channel
-  double amplitude = 0.0;  // m or rad, rms over the rows
-  std::string unit;        // "um", "urad"
+  double amplitude = 0.0;  // m or rad, rms over the rows; of a scatter, in units of the noise
+  std::string unit;        // "um", "urad", "times the noise"
   double p_value = 1.0;    // corrected for the number of questions
   double period = 0.0;     // of a line, in the unit of the variable (s, m, rad); 0: smooth
 };
 
 inline constexpr double kDoubt = 1e-3;
+inline constexpr const char* kScatter = "scatter";  // the variable of scatter.h
 
 std::vector<Leftover> FindLeftovers(const Fit& fit);
 

@@ -7,7 +7,7 @@ const VERDICTS = {
   ambiguous: 'Something is there, but these runs cannot tell which of several causes it is.',
   unexplained: 'Something is left that no known cause explains.',
 };
-const EVIDENCE_SHOWN = 8;   // candidates before the list is folded
+const EVIDENCE_SHOWN = 8;  // candidates before the list is folded
 
 const kindOfCause = (id) => capital(String(id).replaceAll('-', ' '));
 
@@ -45,10 +45,7 @@ function findingParameters({parameters}) {
   return table({
     caption: 'Size, with its expanded uncertainty',
     columns: [{head: 'Size'}, {head: 'Value', numeric: true}, {head: 'Unit'}],
-    rows: told.map(
-        (one) =>
-            [parameterName(one), quantity(one.value, one.u95),
-             micro(one.unit)]),
+    rows: told.map((one) => [parameterName(one), quantity(one.value, one.u95), micro(one.unit)]),
   });
 }
 
@@ -116,14 +113,12 @@ function rivalsTable(result) {
     caption: 'What else it could be, and the run that tells',
     columns: [
       {head: 'Causes'}, {head: 'Probability', numeric: true}, {head: 'Run to make next'},
-      {head: 'Expected then', numeric: true}
+      {head: 'The right one then', numeric: true}
     ],
     rows: rivals.map(
         ({causes, odds, next_run: next, expected_odds: then}) =>
             [list((causes ?? []).map(candidateName)), list((odds ?? []).map(percent)), next ?? null,
-             Array.isArray(then) ? list(then.map(percent)) :
-                 isNumber(then)  ? percent(then) :
-                                   null]),
+             percent(then)]),
   });
 }
 
@@ -164,8 +159,10 @@ function leftoverBlock(result) {
       (result.unexplained ?? [])
           .map(
               ({variable, object, amplitude, unit, p_value: p}) =>
-                  `${capital(objectName(object))} varies with ${variable} by ${
-                      significant(amplitude)}\u00a0${
+                  `${capital(objectName(object))} ${
+                      variable === 'scatter' ?
+                          'scatters beyond what is stated' :
+                          `varies with ${variable}`} by ${significant(amplitude)}\u00a0${
                       micro(unit)} in a way that no known cause makes (p = ${
                       plain(Number(p?.toPrecision(1)))})`));
 }

@@ -38,6 +38,7 @@ class HiddenWorlds {
   }
 
   const rig::CampaignMachine& machine() const { return machine_; }
+  const diagnosis::Setup& setup() const { return setup_; }
 
   // The same, with encoders that do not count in steps.
   HiddenWorlds WithoutCounts() const {

@@ -557,7 +557,7 @@ export function diagnosisResult() {
       causes: ['probe-gain:probe_b', 'probe-crosstalk:probe_b+probe_c'],
       odds: [0.62, 0.37],
       next_run: 'move the gap of probe b alone',
-      expected_odds: [0.999, 0.001]
+      expected_odds: 0.999
     }],
     unexplained: [],
     heldout: {rows: 1240, rms_before: 1.88, rms_after: 1.03},

@@ -1,0 +1,19 @@
+// The campaigns that a user can name.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "rig/measuring_campaign.h"
+
+namespace abbe::apps {
+
+inline const std::map<std::string, rig::CampaignKind>& CampaignKinds() {
+  static const std::map<std::string, rig::CampaignKind> kinds{
+      {"minimal", rig::CampaignKind::kMinimal},
+      {"standard", rig::CampaignKind::kStandard},
+      {"full", rig::CampaignKind::kFull}};
+  return kinds;
+}
+
+}  // namespace abbe::apps

@@ -1,0 +1,14 @@
+// `abbe diagnose --plan`: what runs would show, as data (docs/diagnose.md) and in words.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "diagnosis/plan.h"
+
+namespace abbe::apps {
+
+nlohmann::ordered_json PlanJson(const diagnosis::Plan& plan);
+std::string PlanText(const diagnosis::Plan& plan);
+
+}  // namespace abbe::apps

@@ -1,0 +1,111 @@
+#include "diagnosis/expected_odds.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Index FirstOf(const std::vector<RivalWorld>& rivals, std::size_t rival) {
+  Index first = 0;
+  for (std::size_t i = 0; i < rival; ++i) first += rivals[i].candidate.cause->coefficients();
+  return first;
+}
+
+// Of one rival: its evidence and the derivatives of that by its score.
+struct Expected {
+  double evidence;
+  VectorXd by_score;
+};
+
+// `m`: the mean of the score.
+Expected ExpectedOf(const simulation::Cause& cause, const MatrixXd& S, const VectorXd& m) {
+  if (cause.whole) return {m[0] - 0.5 * S(0, 0), VectorXd::Ones(1)};
+  // In units of what is plausible.
+  const auto& unit = cause.plausible.asDiagonal();
+  const MatrixXd scaled = unit * S * unit;
+  const VectorXd mean = unit * m;
+  const Eigen::LLT<MatrixXd> M(scaled + MatrixXd::Identity(S.rows(), S.cols()));
+  const double log_determinant = 2.0 * MatrixXd(M.matrixL()).diagonal().array().log().sum();
+  const VectorXd solved = M.solve(mean);
+  return {0.5 * (mean.dot(solved) + M.solve(scaled).trace() - log_determinant), unit * solved};
+}
+
+// Of all rivals: evidence, and its derivatives by all scores, one column each.
+struct Outlook {
+  VectorXd evidence;
+  MatrixXd by_score;
+};
+
+Outlook OutlookOf(const MatrixXd& S, const std::vector<RivalWorld>& rivals, std::size_t truth) {
+  const Index first_true = FirstOf(rivals, truth);
+  const VectorXd& a = rivals[truth].coefficients;
+  const auto worlds = static_cast<Index>(rivals.size());
+  Outlook outlook{VectorXd(worlds), MatrixXd::Zero(S.rows(), worlds)};
+  for (Index x = 0; x < worlds; ++x) {
+    const auto rival = static_cast<std::size_t>(x);
+    const simulation::Cause& cause = *rivals[rival].candidate.cause;
+    const Index first = FirstOf(rivals, rival), count = cause.coefficients();
+    const Expected expected = ExpectedOf(cause, S.block(first, first, count, count),
+                                         S.block(first, first_true, count, a.size()) * a);
+    outlook.evidence[x] = expected.evidence;
+    outlook.by_score.col(x).segment(first, count) = expected.by_score;
+  }
+  return outlook;
+}
+
+// The mean of 1 / sum of exp(logs), logs normal with these deviations and one common deviate.
+double MeanProbability(const VectorXd& logs, const VectorXd& deviations) {
+  constexpr double kFar = 6.0, kStep = 0.05;  // standard deviations
+  double sum = 0.0, weights = 0.0;
+  for (double deviate = -kFar; deviate <= kFar; deviate += kStep) {
+    const double weight = std::exp(-0.5 * deviate * deviate);
+    sum += weight / (logs + deviate * deviations).array().exp().sum();
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+}  // namespace
+
+VectorXd ExpectedEvidence(const MatrixXd& S, const std::vector<RivalWorld>& rivals,
+                          std::size_t truth) {
+  return OutlookOf(S, rivals, truth).evidence;
+}
+
+double ExpectedProbability(const MatrixXd& before, const MatrixXd& after,
+                           const std::vector<RivalWorld>& rivals) {
+  VectorXd now(static_cast<Index>(rivals.size()));
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    now[static_cast<Index>(i)] = rivals[i].probability;
+  }
+  now /= now.sum();
+  double expected = 0.0;
+  for (std::size_t truth = 0; truth < rivals.size(); ++truth) {
+    const auto t = static_cast<Index>(truth);
+    const Outlook then = OutlookOf(after, rivals, truth);
+    const VectorXd logs =
+        now.array().log().matrix() + then.evidence - ExpectedEvidence(before, rivals, truth);
+    const MatrixXd apart = then.by_score.colwise() - then.by_score.col(t).eval();
+    const MatrixXd scatter = apart.transpose() * (after - before) * apart;
+    expected += now[t] * MeanProbability(logs.array() - logs[t],
+                                         scatter.diagonal().cwiseMax(0.0).cwiseSqrt());
+  }
+  return expected;
+}
+
+MatrixXd FreeOfOthers(const MatrixXd& S, Index count, const VectorXd& plausible) {
+  const Index others = S.rows() - count;
+  if (others == 0) return S;
+  const auto& unit = plausible.asDiagonal();
+  const MatrixXd scaled = unit * S.bottomRightCorner(others, others) * unit;
+  const MatrixXd cross = unit * S.bottomLeftCorner(others, count);
+  const Eigen::LLT<MatrixXd> factor(scaled + MatrixXd::Identity(others, others));
+  return S.topLeftCorner(count, count) - cross.transpose() * factor.solve(cross);
+}
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,157 @@
+#include "diagnosis/plan.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "diagnosis/diagnose.h"
+#include "diagnosis/drawn_machine.h"
+#include "diagnosis/linear_runs.h"
+
+namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t kAtOnce = 128;  // candidates
+
+// All runs at one machine.
+class PlannedRuns {
+ public:
+  PlannedRuns(const Campaign& campaign, const Values& machine)
+      : linear_(campaign, campaign.runs(), machine) {
+    for (std::size_t run = 0; run < linear_.count(); ++run) runs_.push_back(linear_.At(run));
+  }
+
+  MatrixXd Information(const std::vector<Candidate>& candidates) const {
+    std::vector<RunSums> sums;
+    sums.reserve(runs_.size());
+    for (const LinearizedRun& run : runs_) sums.push_back(linear_.SumsOf(run, candidates));
+    return linear_.Information(PointersTo(sums));
+  }
+
+ private:
+  LinearRuns linear_;
+  std::vector<LinearizedRun> runs_;
+};
+
+VectorXd PlausibleOf(const Candidate& candidate) {
+  return candidate.cause->whole ? VectorXd::Ones(1) : candidate.cause->plausible;
+}
+
+// The best shape of each name; shapes of one name stand together.
+void Keep(const PlannedCause& cause, std::vector<PlannedCause>& best) {
+  if (best.empty() || best.back().candidate.Name() != cause.candidate.Name()) {
+    best.push_back(cause);
+  } else if (cause.visible > best.back().visible) {
+    best.back() = cause;
+  }
+}
+
+std::vector<PlannedCause> BestOf(const PlannedRuns& runs,
+                                 const std::vector<Candidate>& candidates) {
+  std::vector<PlannedCause> best;
+  for (std::size_t first = 0; first < candidates.size(); first += kAtOnce) {
+    const auto begin = candidates.begin() + static_cast<std::ptrdiff_t>(first);
+    const std::vector<Candidate> some(
+        begin, begin + static_cast<std::ptrdiff_t>(std::min(kAtOnce, candidates.size() - first)));
+    const VectorXd information = runs.Information(some).diagonal();
+    Index at = 0;
+    for (const Candidate& each : some) {
+      const VectorXd plausible = PlausibleOf(each);
+      PlannedCause cause{each};
+      const VectorXd own = information.segment(at, plausible.size()).cwiseMax(0.0);
+      cause.visible = plausible.cwiseProduct(own.cwiseSqrt()).maxCoeff(&cause.coefficient);
+      Keep(cause, best);
+      at += plausible.size();
+    }
+  }
+  return best;
+}
+
+// The part of a block of S that stands out, as columns W with W' S W = 1.
+MatrixXd Standing(const MatrixXd& S) {
+  constexpr double kStandsOut = 1.0;  // standard deviation
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S);
+  MatrixXd W(S.rows(), 0);
+  for (Index i = 0; i < S.rows(); ++i) {
+    const double information = solver.eigenvalues()[i];
+    if (information < kStandsOut) continue;
+    W.conservativeResize(Eigen::NoChange, W.cols() + 1);
+    W.rightCols<1>() = solver.eigenvectors().col(i) / std::sqrt(information);
+  }
+  return W;
+}
+
+std::vector<Alike> AlikeOf(const PlannedRuns& runs, const std::vector<PlannedCause>& causes) {
+  std::vector<std::size_t> seen;
+  std::vector<Candidate> candidates;
+  std::vector<Index> first{0};
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    if (!causes[i].seen()) continue;
+    seen.push_back(i);
+    candidates.push_back(causes[i].candidate);
+    first.push_back(first.back() + PlausibleOf(candidates.back()).size());
+  }
+  std::vector<Alike> alike;
+  if (seen.empty()) return alike;
+  VectorXd plausible(first.back());
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    plausible.segment(first[i], first[i + 1] - first[i]) = PlausibleOf(candidates[i]);
+  }
+  const MatrixXd S = plausible.asDiagonal() * runs.Information(candidates) * plausible.asDiagonal();
+  for (std::size_t a = 0; a < seen.size(); ++a) {
+    for (std::size_t b = a + 1; b < seen.size(); ++b) {
+      const Index of_a = first[a + 1] - first[a], of_b = first[b + 1] - first[b];
+      MatrixXd both(of_a + of_b, of_a + of_b);
+      both << S.block(first[a], first[a], of_a, of_a), S.block(first[a], first[b], of_a, of_b),
+          S.block(first[b], first[a], of_b, of_a), S.block(first[b], first[b], of_b, of_b);
+      const double cosine = Likeness(both, of_a);
+      if (cosine > kAlike) alike.push_back({seen[a], seen[b], cosine});
+    }
+  }
+  return alike;
+}
+
+}  // namespace
+
+bool PlannedCause::seen() const { return visible >= kShowable; }
+
+PlannedCause::Sizes PlannedCause::sizes() const {
+  const simulation::Cause& cause = *candidate.cause;
+  const auto keys_at = [&](double size) {
+    VectorXd coefficients = VectorXd::Zero(cause.coefficients());
+    coefficients[coefficient] = size * cause.plausible[coefficient];
+    return cause.ValuesOf(coefficients, candidate.shape);
+  };
+  Sizes sizes{keys_at(1.0), keys_at(kShowable / visible)};
+  const VectorXd half = keys_at(0.5);
+  for (Index i = 0; i < half.size(); ++i) {
+    if (sizes.plausible[i] != half[i]) continue;
+    sizes.plausible[i] = sizes.seen[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+  return sizes;
+}
+
+double Likeness(const MatrixXd& S, Index count) {
+  const Index other = S.rows() - count;
+  const MatrixXd a = Standing(S.topLeftCorner(count, count));
+  const MatrixXd b = Standing(S.bottomRightCorner(other, other));
+  const Index directions = std::min(a.cols(), b.cols());
+  if (directions == 0) return 0.0;
+  const MatrixXd cross = a.transpose() * S.topRightCorner(count, other) * b;
+  return cross.norm() / std::sqrt(static_cast<double>(directions));
+}
+
+Plan PlanOf(const Campaign& campaign, const std::function<double()>& normal) {
+  const PlannedRuns runs(campaign, DrawnMachine(campaign, normal));
+  Plan plan;
+  plan.causes = BestOf(runs, AllCandidates(campaign.scene()));
+  plan.alike = AlikeOf(runs, plan.causes);
+  return plan;
+}
+
+}  // namespace abbe::diagnosis

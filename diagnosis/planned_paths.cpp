@@ -1,0 +1,162 @@
+#include "diagnosis/planned_paths.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Vector3d;
+using recording::Recording;
+
+constexpr double kMillimetre = 1e-3;
+constexpr double kFeed = kMillimetre / 60.0;  // mm/min
+
+struct Row {
+  double time;
+  Vector3d axes;
+  int pass, direction;
+  double feed = 0.0;
+};
+
+class PathMaker {
+ public:
+  PathMaker(const HeaderAbout& header, const PathAbout& about) : about_(about) {
+    path_.header = HeaderOf(header);
+    path_.name = "planned " + header.kind;
+    for (const char* name :
+         {"time_s", "x_mm", "y_mm", "z_mm", "pass", "direction", "feed_mm_min"}) {
+      path_.columns.push_back({name, {}});
+    }
+    for (const auto& [sensor, temperature] : about.temperature) {
+      path_.columns.push_back({sensor, {}});
+    }
+  }
+
+  void Add(const Row& row) {
+    std::size_t column = 0;
+    const auto put = [&](double value) { path_.columns[column++].values.push_back(value); };
+    put(row.time);
+    for (const double each : row.axes) put(each / kMillimetre);
+    put(row.pass);
+    put(row.direction);
+    put(row.feed / kFeed);
+    for (const auto& [sensor, temperature] : about_.temperature) put(temperature);
+  }
+
+  Recording Take() { return std::move(path_); }
+
+ private:
+  const PathAbout& about_;
+  Recording path_;
+};
+
+}  // namespace
+
+std::string Quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char each : text) {
+    if (each == '"' || each == '\\') quoted += '\\';
+    quoted += each;
+  }
+  return quoted + '"';
+}
+
+std::string HeaderOf(const HeaderAbout& about) {
+  const std::chrono::sys_seconds started(
+      std::chrono::seconds(static_cast<std::int64_t>(std::llround(about.started))));
+  return fmt::format(
+      "kind = \"{}\"\nmachine = {}\nstarted = \"{:%Y-%m-%dT%H:%M:%SZ}\"\n{}[mounting]\n{}",
+      about.kind, Quoted(about.machine), started, about.more, about.mounting);
+}
+
+Recording CirclePath(const CirclePlan& plan, const PathAbout& about) {
+  constexpr double kTurning = 5.0;  // s, before it goes round the other way
+  const int first = plan.plane[0] - 'X', second = plan.plane[1] - 'X';
+  PathMaker maker({"linkage", about.machine, about.started}, about);
+  const double turn = 2.0 * std::numbers::pi * plan.radius / plan.feed;
+  double begin = 0.0;
+  for (const int sense : {1, -1}) {
+    for (int row = 0; row < plan.rows; ++row) {
+      const double share = static_cast<double>(row) / plan.rows;
+      const double angle = sense * 2.0 * std::numbers::pi * share;
+      Vector3d axes = plan.centre;
+      axes[first] += plan.radius * std::cos(angle);
+      axes[second] += plan.radius * std::sin(angle);
+      maker.Add({begin + share * turn, axes, sense > 0 ? 1 : 2, sense, plan.feed});
+    }
+    begin += turn + kTurning;
+  }
+  return maker.Take();
+}
+
+Recording GapStepPath(char axis, const Vector3d& start, const std::vector<double>& stations,
+                      const PathAbout& about) {
+  constexpr double kStep = 45e-6;              // m
+  constexpr double kStand = 0.5, kMove = 1.0;  // s
+  constexpr int kReadings = 20;                // in a stand
+  PathMaker maker({"gap-steps", about.machine, about.started, fmt::format("axis = \"{}\"\n", axis)},
+                  about);
+  const int swept = axis - 'X';
+  double begin = 0.0;
+  for (std::size_t station = 0; station < stations.size(); ++station) {
+    Vector3d place = start;
+    place[swept] = stations[station];
+    for (const int other : {(swept + 1) % 3, (swept + 2) % 3}) {
+      int before = -1;
+      for (const int step : {0, 1, 0, -1, 0}) {
+        Vector3d axes = place;
+        axes[other] += step * kStep;
+        for (int reading = 0; reading < kReadings; ++reading) {
+          maker.Add({begin + kStand * reading / kReadings, axes, static_cast<int>(station) + 1,
+                     step > before ? 1 : -1});
+        }
+        before = step;
+        begin += kStand + kMove;
+      }
+    }
+  }
+  return maker.Take();
+}
+
+Recording StillPath(char axis, const Vector3d& at, const PathAbout& about) {
+  constexpr double kInterval = 0.093;  // s: no multiple of the period of the mains
+  constexpr int kReadings = 120;
+  PathMaker maker({"dwell", about.machine, about.started, fmt::format("axis = \"{}\"\n", axis)},
+                  about);
+  for (int row = 0; row < kReadings; ++row) maker.Add({row * kInterval, at, 1, 0});
+  return maker.Take();
+}
+
+Recording LengthPath(char axis, const Vector3d& middle, const machine::Travel& travel,
+                     const PathAbout& about) {
+  constexpr int kPlaces = 12;
+  constexpr double kSeconds = 5.0;          // for each
+  constexpr double kU = 0.1, kScale = 2.0;  // um, ppm
+  PathMaker maker({"length", about.machine, about.started,
+                   fmt::format("axis = \"{}\"\nu_scale_ppm = {}\n", axis, kScale)},
+                  about);
+  std::vector<double> lengths;
+  for (int place = 0; place <= kPlaces; ++place) {
+    Vector3d axes = middle;
+    const double length = (travel.last - travel.first) * place / kPlaces;
+    axes[axis - 'X'] = travel.first + length;
+    maker.Add({kSeconds * place, axes, 1, 1});
+    lengths.push_back(length / kMillimetre);
+  }
+  Recording path = maker.Take();
+  path.columns.push_back({"u_length_um", std::vector<double>(lengths.size(), kU)});
+  path.columns.push_back({"length_mm", std::move(lengths)});
+  return path;
+}
+
+double DurationOf(const Recording& recording) {
+  const auto time = recording.Find("time_s");
+  return time && !time->empty() ? time->back() - time->front() : 0.0;
+}
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,59 @@
+// Paths of runs that nobody has recorded yet, as recordings without readings (planned_run.h).
+//
+//   const PathAbout about{"demo-mill", started, {{"temp_table_c", 20.1}}};
+//   const recording::Recording circle = CirclePath({.centre = middle, .radius = 0.02}, about);
+//
+// Circle: once round in each sense, at constant feed. Gap steps: at some stations of a sweep the
+// two other axes step through 0, +45, 0, -45, 0 um, docs/recordings.md. Still: nothing moves,
+// samples 0.093 s apart. Lengths: places along an axis, with their uncertainty.
+// Units: SI; the columns those of a recording.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "machine/machine.h"
+#include "recording/recording.h"
+
+namespace abbe::diagnosis {
+
+struct PathAbout {
+  std::string machine;
+  double started = 0.0;                       // s since 1970
+  std::map<std::string, double> temperature;  // by column
+};
+
+// A recording's header: what there is to say, then its table [mounting].
+struct HeaderAbout {
+  std::string kind, machine;
+  double started = 0.0;
+  std::string more = {};      // further keys, a line each
+  std::string mounting = {};  // keys of the table [mounting]
+};
+// As TOML writes a text of one line.
+std::string Quoted(const std::string& text);
+std::string HeaderOf(const HeaderAbout& about);
+
+struct CirclePlan {
+  std::string plane = "XY";
+  Eigen::Vector3d centre;
+  double radius = 0.01;
+  double feed = 0.01;  // m/s
+  int rows = 180;      // in a turn
+};
+recording::Recording CirclePath(const CirclePlan& plan, const PathAbout& about);
+
+recording::Recording GapStepPath(char axis, const Eigen::Vector3d& start,
+                                 const std::vector<double>& stations, const PathAbout& about);
+
+recording::Recording StillPath(char axis, const Eigen::Vector3d& at, const PathAbout& about);
+
+recording::Recording LengthPath(char axis, const Eigen::Vector3d& middle,
+                                const machine::Travel& travel, const PathAbout& about);
+
+// Of a recording.
+double DurationOf(const recording::Recording& recording);
+
+}  // namespace abbe::diagnosis
