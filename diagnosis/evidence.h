@@ -3,11 +3,9 @@
 //   const Fit fit(campaign);
 //   const std::vector<Score> scores = ScoreAll(fit, AllCandidates(campaign.scene()));
 //
-// At the fit the runs are linear in everything: r(x + dx, c) = r + J dx - C c with the coefficients
-// c of the candidate. All unknowns of the simulation have the information H, their priors included.
-// They are projected out once for all candidates; what is left of a candidate is
+// From the information S and the score g of a candidate's coefficients c, all unknowns of the
+// simulation projected out (fit.h):
 //
-//   S = C'C - C'J H^-1 J'C,    g = C'r - C'J H^-1 J'r        information and score of c
 //   c ~ N((S + P)^-1 g, (S + P)^-1),    P the precision of plausible coefficients
 //   log evidence = (g' (S + P)^-1 g - log det(1 + S P^-1)) / 2
 //
@@ -19,90 +17,12 @@
 // each cause that was taken in.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <vector>
 
-#include "diagnosis/campaign.h"
 #include "diagnosis/candidate.h"
-#include "diagnosis/extended_run.h"
-#include "estimation/linearization.h"
-#include "estimation/problem.h"
+#include "diagnosis/fit.h"
 
 namespace abbe::diagnosis {
-
-// The simulation fitted to all runs of a campaign, with causes taken in.
-class Fit {
- public:
-  // The simulation as it is. NumericalError when the fit does not settle.
-  explicit Fit(const Campaign& campaign);
-  // With causes, started from an earlier fit of the same runs.
-  Fit(const Fit& before, std::vector<Candidate> taken_in);
-
-  const Campaign& campaign() const { return campaign_; }
-  const estimation::Result& result() const { return result_; }
-  const std::vector<Candidate>& taken_in() const { return taken_in_; }
-  double chi_square() const;  // of the runs
-  // Logarithm of the marginal likelihood of the data, by Laplace's approximation at the fit; all
-  // fits to one campaign lack the same constant.
-  double log_likelihood() const { return log_likelihood_; }
-  Eigen::Index rows() const;
-  // Coefficients of a cause that was taken in, and their covariance.
-  Score ScoreOf(std::size_t taken_in) const;
-
-  // What disturbances do to all runs, free of everything that the simulation could do instead.
-  struct Projection {
-    Eigen::MatrixXd information;  // S; 0 where nothing but rounding is left of a column
-    Eigen::VectorXd score;        // g
-  };
-  // The columns of each run with a trace, one row each; the same stages for all.
-  using Disturber =
-      std::function<std::vector<simulation::Disturbance>(const simulation::Trace& trace)>;
-  // The columns come in groups of so many; a projection for each.
-  std::vector<Projection> Project(const Disturber& disturber,
-                                  const std::vector<Eigen::Index>& groups) const;
-  // For many functions f of the rows of one stage in one run: their score is scores * f', and their
-  // information at most weights * f^2'. Empty where the run does not tell.
-  struct RowScores {
-    Eigen::RowVectorXd scores, weights;
-  };
-  RowScores ScoresOf(std::size_t run, Eigen::Index stage) const;
-  const simulation::Trace& TraceOf(std::size_t run) const { return runs_[run].at.trace; }
-  // What is left of a run, whitened.
-  const Eigen::VectorXd& LeftOf(std::size_t run) const { return runs_[run].r; }
-  std::size_t runs() const { return runs_.size(); }
-  // Of a cause that widens parameters.
-  Projection ProjectParameters(const Candidate& candidate) const;
-
- private:
-  struct RunRows {
-    LinearRun at;
-    Eigen::VectorXd r;
-    std::vector<int> columns;
-    Eigen::MatrixXd back;  // [J r], back to the readings
-  };
-
-  void Linearize(const estimation::Problem& problem);
-  double FollowShapes();
-  // [C'J C'r] of one run.
-  Eigen::MatrixXd Against(const RunRows& run,
-                          const std::vector<simulation::Disturbance>& disturbances) const;
-  // Groups of columns from C'C of each, C'J and C'r of all.
-  std::vector<Projection> Finish(const std::vector<Eigen::MatrixXd>& C_C,
-                                 const Eigen::MatrixXd& C_J, const Eigen::VectorXd& C_r) const;
-  std::vector<int> ColumnsNamed(const std::string& pattern) const;
-
-  const Campaign& campaign_;
-  std::vector<Candidate> taken_in_;
-  estimation::Result result_;
-  std::vector<std::string> names_;
-  std::vector<RunRows> runs_;
-  Eigen::MatrixXd data_information_;
-  Eigen::VectorXd data_gradient_, gradient_;
-  double log_likelihood_ = 0.0;
-  Eigen::VectorXd scale_;  // H = scale^-1 (scaled) scale^-1
-  Eigen::LLT<Eigen::MatrixXd> H_;
-};
 
 std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candidates);
 

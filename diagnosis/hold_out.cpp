@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "diagnosis/evidence.h"
+#include "diagnosis/fit.h"
 #include "diagnosis/extended_run.h"
 #include "fusion/machine_problem.h"
 

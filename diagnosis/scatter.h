@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "diagnosis/evidence.h"
+#include "diagnosis/fit.h"
 #include "diagnosis/unexplained.h"
 
 namespace abbe::diagnosis {

@@ -8,7 +8,7 @@
 //   a smooth function of it, kTerms cosines over its range, or
 //   a line of its periodogram, sine and cosine of one of up to kLines wave numbers,
 // would make the channel fit better, free of everything that the simulation could be instead
-// (evidence.h). What it then explains is chi-square distributed when nothing is there; of a
+// (fit.h). What it then explains is chi-square distributed when nothing is there; of a
 // periodogram the strongest line counts, as one of so many.
 // Reported is the strongest answer of each channel whose probability, times the number of questions
 // asked, is below `kDoubt`; the strongest first. Source: score test, Rao (1948); periodogram with
@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/evidence.h"
+#include "diagnosis/fit.h"
 
 namespace abbe::diagnosis {
 

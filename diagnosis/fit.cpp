@@ -1,0 +1,338 @@
+#include "diagnosis/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "diagnosis/extended_run.h"
+#include "failure/failure.h"
+#include "fusion/machine_problem.h"
+
+namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using estimation::Problem;
+using simulation::Disturbance;
+using simulation::SimulatedRun;
+
+// The values of a run's own blocks.
+VectorXd ValuesIn(const estimation::Result& result, const SimulatedRun& run) {
+  return fusion::ValuesFound(result, run.blocks);
+}
+
+// Where an earlier fit of the same blocks ended.
+void StartFrom(const estimation::Result& before, std::vector<estimation::ParameterBlock>& blocks) {
+  for (auto& block : blocks) {
+    const auto found = std::find_if(before.blocks.begin(), before.blocks.end(),
+                                    [&](const auto& other) { return other.name == block.name; });
+    if (found == before.blocks.end()) continue;
+    // A shape that has become free stands at the end.
+    const std::size_t known = std::min(block.entries.size(), found->entries.size());
+    for (std::size_t i = 0; i < known; ++i) block.entries[i].value = found->entries[i].value;
+  }
+}
+
+Problem ProblemOf(const Campaign& campaign, const std::vector<SimulatedRun>& runs,
+                  const std::vector<Candidate>& taken_in, const estimation::Result& start = {}) {
+  machine::VolumetricModel model = campaign.model();
+  if (!start.blocks.empty()) model.SetParameters(fusion::ValuesFound(start, model.Blocks()));
+  Problem problem =
+      fusion::MakeMachineProblem(campaign.setup().machine, model, campaign.prior(), runs);
+  // The machine's own blocks are made by the problem, not by a run.
+  for (const Candidate& cause : taken_in) {
+    if (!cause.cause->widens) continue;
+    for (const std::string& name : cause.cause->widens(cause.object)) {
+      if (!name.starts_with("squareness.")) continue;
+      auto& entry = problem.Block(problem.Find("squareness"))[name.substr(11)];
+      entry.prior_sd = std::hypot(entry.prior_sd, cause.cause->plausible[0]);
+    }
+  }
+  return problem;
+}
+
+// What is left to the minimum is in the gradient, which the evidence takes into account: where a
+// simulation that lacks something does not settle, near it is good enough. Standard uncertainties.
+const std::vector<double> kAsItIs{0.02, 1.0, 30.0, 1000.0}, kWithCauses{0.02, 1.0};
+
+estimation::Result Solve(const Problem& problem, const std::vector<double>& settled) {
+  constexpr int kFewPasses = 20;
+  for (auto limit = settled.begin();; ++limit) {
+    try {
+      return problem.Solve({.max_iterations = kFewPasses,
+                            .threads = 1,
+                            .settled = *limit,
+                            .jacobian_bytes = 0,
+                            .weak_directions = false});
+    } catch (const NumericalError&) {
+      if (limit + 1 == settled.end()) throw;
+    }
+  }
+}
+
+}  // namespace
+
+Fit::Fit(const Campaign& campaign) : campaign_(campaign) {
+  std::vector<SimulatedRun> runs;
+  for (const DiagnosedRun& run : campaign.runs()) runs.push_back(run.simulated);
+  const Problem problem = ProblemOf(campaign, runs, {});
+  result_ = Solve(problem, kAsItIs);
+  Linearize(problem);
+}
+
+Fit::Fit(const Fit& before, std::vector<Candidate> taken_in)
+    : campaign_(before.campaign_), taken_in_(std::move(taken_in)), result_(before.result_) {
+  constexpr int kRounds = 4;            // the columns at the fit before, then at their own
+  constexpr double kShapeFound = 1e-3;  // relative
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<SimulatedRun> runs;
+    for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
+      const auto& at = round == 0 ? before.runs_[r].at : runs_[r].at;
+      runs.push_back(Extend(campaign_.runs()[r], at, taken_in_));
+      StartFrom(result_, runs.back().blocks);
+    }
+    const Problem problem = ProblemOf(campaign_, runs, taken_in_, result_);
+    result_ = Solve(problem, kWithCauses);
+    Linearize(problem);
+    const double moved = FollowShapes();
+    if (round > 0 && moved < kShapeFound) break;
+  }
+}
+
+// The largest relative change.
+double Fit::FollowShapes() {
+  constexpr double kAtMost = 0.2;
+  double most = 0.0;
+  for (Candidate& cause : taken_in_) {
+    if (cause.cause->widens || cause.cause->whole) continue;
+    const VectorXd found = result_.Block(BlockOf(cause)).Values();
+    const VectorXd coefficients = found.head(cause.cause->coefficients());
+    if (cause.cause->follows_size) {
+      const double before = simulation::SizeOf(cause.shape);
+      cause.shape = coefficients.head<1>();
+      most = std::max(most, std::abs(1.0 - before / coefficients[0]));
+    } else if (cause.HasFreeShape()) {
+      const double step = std::clamp(found[found.size() - 1], -kAtMost, kAtMost);
+      cause.shape *= std::exp(step);
+      most = std::max(most, std::abs(step));
+    } else if (cause.cause->shapes && !cause.cause->fixed_shapes) {
+      most = 1.0;  // from now on its shape is free
+    }
+    cause.coefficients = coefficients;
+  }
+  return most;
+}
+
+void Fit::Linearize(const Problem& problem) {
+  const estimation::Layout layout(problem);
+  names_ = layout.names;
+  const VectorXd x = fusion::ValuesFound(result_, result_.blocks);
+  const estimation::Linearization at = estimation::Linearize(problem, layout, x, 1);
+  MatrixXd H = at.prior.information;
+  gradient_ = at.prior.gradient;
+  data_information_ = MatrixXd::Zero(H.rows(), H.cols());
+  data_gradient_ = VectorXd::Zero(H.rows());
+  for (std::size_t s = 0; s < at.sources.size(); ++s) {
+    H += at.sources[s].information;
+    gradient_ += at.sources[s].gradient;
+    if (problem.sources()[s].options.is_prior) continue;
+    data_information_ += at.sources[s].information;
+    data_gradient_ += at.sources[s].gradient;
+  }
+  scale_ = H.diagonal().cwiseSqrt().cwiseInverse();
+  H_.compute(scale_.asDiagonal() * H * scale_.asDiagonal());
+  // What one prior divides by, another with the same deviation divides by too: the precisions of
+  // the parameters that have one.
+  const auto known = (at.prior.information.diagonal().array() > 0.0);
+  const double priors = known.select(at.prior.information.diagonal().array(), 1.0).log().sum();
+  const double curvature = 2.0 * MatrixXd(H_.matrixL()).diagonal().array().log().sum() -
+                           2.0 * scale_.array().log().sum();
+  log_likelihood_ = -at.Cost() + 0.5 * (priors - curvature);
+  estimation::RowEvaluator evaluator(problem, layout);
+  runs_.clear();
+  for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
+    const DiagnosedRun& run = campaign_.runs()[r];
+    const auto* rows = evaluator.Evaluate(problem.terms()[r], x, true);
+    runs_.push_back({LinearAt(run, ValuesIn(result_, run.simulated), rows->r, taken_in_),
+                     rows->r,
+                     rows->columns,
+                     {}});
+    if (!runs_.back().at.response) continue;
+    MatrixXd both(rows->r.size(), rows->jacobian.cols() + 1);
+    both << rows->jacobian, rows->r;
+    runs_.back().back = runs_.back().at.response->BackToReadings(both);
+  }
+}
+
+double Fit::chi_square() const {
+  double sum = 0.0;
+  for (const RunRows& run : runs_) sum += run.r.squaredNorm();
+  return sum;
+}
+
+Index Fit::rows() const {
+  Index rows = 0;
+  for (const RunRows& run : runs_) rows += run.r.size();
+  return rows;
+}
+
+namespace {
+
+// C'C within each group, of those columns `which` of all that act.
+void AddBlocks(const MatrixXd& C, const std::vector<Index>& which,
+               const std::vector<std::size_t>& group_of, std::vector<MatrixXd>& C_C) {
+  for (Index first = 0; first < C.cols();) {
+    const std::size_t group =
+        group_of[static_cast<std::size_t>(which[static_cast<std::size_t>(first)])];
+    const auto begin = std::find(group_of.begin(), group_of.end(), group) - group_of.begin();
+    std::vector<Index> own;
+    Index last = first;
+    for (; last < C.cols(); ++last) {
+      const Index column = which[static_cast<std::size_t>(last)];
+      if (group_of[static_cast<std::size_t>(column)] != group) break;
+      own.push_back(column - begin);
+    }
+    const auto acting = C.middleCols(first, last - first);
+    C_C[group](own, own) += acting.transpose() * acting;
+    first = last;
+  }
+}
+
+}  // namespace
+
+std::vector<Fit::Projection> Fit::Finish(const std::vector<MatrixXd>& C_C, const MatrixXd& C_J,
+                                         const VectorXd& C_r) const {
+  constexpr double kRounding = 1e-9;  // of the information of a column
+  const MatrixXd B = scale_.asDiagonal() * C_J.transpose();
+  const MatrixXd solved = H_.solve(B);
+  const VectorXd score = C_r - solved.transpose() * (scale_.asDiagonal() * gradient_);
+  std::vector<Projection> groups;
+  groups.reserve(C_C.size());
+  Index first = 0;
+  for (const MatrixXd& own : C_C) {
+    const Index count = own.rows();
+    Projection left{own - B.middleCols(first, count).transpose() * solved.middleCols(first, count),
+                    score.segment(first, count)};
+    for (Index c = 0; c < count; ++c) {
+      if (left.information(c, c) > kRounding * own(c, c)) continue;
+      left.information.row(c).setZero();
+      left.information.col(c).setZero();
+      left.score[c] = 0.0;
+    }
+    groups.push_back(std::move(left));
+    first += count;
+  }
+  return groups;
+}
+
+Fit::RowScores Fit::ScoresOf(std::size_t run, Index stage) const {
+  const RunRows& rows = runs_[run];
+  if (!rows.at.response) return {};
+  return {rows.at.response->BackToStage(stage, rows.back.rightCols<1>()).transpose(),
+          rows.at.response->WeightsOf(stage)};
+}
+
+MatrixXd Fit::Against(const RunRows& run, const std::vector<Disturbance>& disturbances) const {
+  std::map<Index, std::vector<Index>> acting;
+  for (std::size_t d = 0; d < disturbances.size(); ++d) {
+    for (const auto& [stage, values] : disturbances[d].stages()) {
+      acting[stage].push_back(static_cast<Index>(d));
+    }
+  }
+  MatrixXd against = MatrixXd::Zero(static_cast<Index>(disturbances.size()), run.back.cols());
+  for (const auto& [stage, who] : acting) {
+    const MatrixXd of_stage = run.at.response->BackToStage(stage, run.back);
+    MatrixXd values(static_cast<Index>(who.size()), of_stage.rows());
+    for (Index i = 0; i < values.rows(); ++i) {
+      values.row(i) =
+          disturbances[static_cast<std::size_t>(who[static_cast<std::size_t>(i)])].stages().at(
+              stage);
+    }
+    against(who, Eigen::all) += values * of_stage;
+  }
+  return against;
+}
+
+std::vector<Fit::Projection> Fit::Project(const Disturber& disturber,
+                                          const std::vector<Index>& groups) const {
+  const Index columns = std::accumulate(groups.begin(), groups.end(), Index{0});
+  std::vector<MatrixXd> C_C;
+  std::vector<std::size_t> group_of;
+  for (const Index count : groups) {
+    group_of.insert(group_of.end(), static_cast<std::size_t>(count), C_C.size());
+    C_C.push_back(MatrixXd::Zero(count, count));
+  }
+  MatrixXd C_J = MatrixXd::Zero(columns, static_cast<Index>(names_.size()));
+  VectorXd C_r = VectorXd::Zero(columns);
+  for (const RunRows& run : runs_) {
+    if (!run.at.response) continue;
+    std::vector<Disturbance> acting = disturber(run.at.trace);
+    std::vector<Index> which;
+    for (std::size_t c = 0; c < acting.size(); ++c) {
+      if (!acting[c].stages().empty()) which.push_back(static_cast<Index>(c));
+    }
+    if (which.empty()) continue;
+    std::erase_if(acting, [](const Disturbance& each) { return each.stages().empty(); });
+    AddBlocks(run.at.response->Columns(acting), which, group_of, C_C);
+    const MatrixXd against = Against(run, acting);
+    C_J(which, run.columns) += against.leftCols(against.cols() - 1);
+    C_r(which) += against.rightCols<1>();
+  }
+  return Finish(C_C, C_J, C_r);
+}
+
+std::vector<int> Fit::ColumnsNamed(const std::string& pattern) const {
+  std::vector<int> columns;
+  for (std::size_t c = 0; c < names_.size(); ++c) {
+    if (Matches(names_[c], pattern)) columns.push_back(static_cast<int>(c));
+  }
+  return columns;
+}
+
+Fit::Projection Fit::ProjectParameters(const Candidate& candidate) const {
+  const std::vector<std::string> patterns = candidate.cause->widens(candidate.object);
+  const auto count = static_cast<Index>(patterns.size());
+  MatrixXd select = MatrixXd::Zero(count, static_cast<Index>(names_.size()));
+  for (Index i = 0; i < count; ++i) {
+    for (const int column : ColumnsNamed(patterns[static_cast<std::size_t>(i)])) {
+      select(i, column) = -1.0;
+    }
+  }
+  const MatrixXd C_J = select * data_information_;
+  return Finish({C_J * select.transpose()}, C_J, select * data_gradient_).front();
+}
+
+Score Fit::ScoreOf(std::size_t taken_in) const {
+  const Candidate& cause = taken_in_[taken_in];
+  Score score{cause, {}, {}, 0.0, 0.0};
+  if (cause.cause->whole) {
+    score.coefficients = VectorXd::Ones(1);
+    score.covariance = MatrixXd::Zero(1, 1);
+    return score;
+  }
+  if (!cause.cause->widens) {
+    score.coefficients = result_.Block(BlockOf(cause)).Values().head(cause.cause->coefficients());
+    score.covariance = result_.Covariance(BlockOf(cause), BlockOf(cause));
+    return score;
+  }
+  const std::vector<std::string> patterns = cause.cause->widens(cause.object);
+  const auto count = static_cast<Index>(patterns.size());
+  score.coefficients = VectorXd::Zero(count);
+  score.covariance = MatrixXd::Zero(count, count);
+  for (Index i = 0; i < count; ++i) {
+    for (const int column : ColumnsNamed(patterns[static_cast<std::size_t>(i)])) {
+      const std::string& name = names_[static_cast<std::size_t>(column)];
+      const std::size_t dot = name.rfind('.');
+      const auto& entry = result_.Block(name.substr(0, dot))[name.substr(dot + 1)];
+      score.coefficients[i] = entry.value - entry.nominal;
+      score.covariance(i, i) = std::pow(result_.Uncertainty(name), 2);
+    }
+  }
+  return score;
+}
+
+}  // namespace abbe::diagnosis
