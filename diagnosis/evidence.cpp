@@ -53,6 +53,7 @@ void ScoreTogether(const Fit& fit, std::span<const Candidate> candidates,
     return all;
   };
   std::vector<Index> groups;
+  groups.reserve(candidates.size());
   for (const Candidate& each : candidates) groups.push_back(each.cause->coefficients());
   const std::vector<Fit::Projection> projections = fit.Project(disturb, groups);
   for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -78,6 +78,7 @@ estimation::Result Solve(const Problem& problem, const std::vector<double>& sett
 
 Fit::Fit(const Campaign& campaign) : campaign_(campaign) {
   std::vector<SimulatedRun> runs;
+  runs.reserve(campaign.runs().size());
   for (const DiagnosedRun& run : campaign.runs()) runs.push_back(run.simulated);
   const Problem problem = ProblemOf(campaign, runs, {});
   result_ = Solve(problem, kAsItIs);
@@ -261,6 +262,7 @@ std::vector<Fit::Projection> Fit::Project(const Disturber& disturber,
                                           const std::vector<Index>& groups) const {
   const Index columns = std::accumulate(groups.begin(), groups.end(), Index{0});
   std::vector<MatrixXd> C_C;
+  C_C.reserve(groups.size());
   std::vector<std::size_t> group_of;
   for (const Index count : groups) {
     group_of.insert(group_of.end(), static_cast<std::size_t>(count), C_C.size());

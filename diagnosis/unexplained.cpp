@@ -213,6 +213,7 @@ class Questions {
       if (range.last > range.first) questions.push_back({variable, range});
     }
     std::vector<Index> groups;
+    groups.reserve(questions.size());
     for (const Question& question : questions) groups.push_back(question.columns());
     const auto disturb = [&](const Trace& trace) {
       std::vector<Disturbance> columns;
