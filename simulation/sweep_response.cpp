@@ -117,7 +117,8 @@ VectorXd ReadingResponse::SlopesOf(Index probe, Index stage) const {
   if (stage >= kToolStage) {
     return VectorXd::Constant(rows, stage == kReadingStage + probe ? 1.0 : 0.0);
   }
-  return by_motions_(probe, Eigen::seqN(stage, rows, Index{kToolStage}));
+  const Eigen::RowVectorXd slopes = by_motions_(probe, Eigen::seqN(stage, rows, Index{kToolStage}));
+  return slopes.transpose();
 }
 
 MatrixXd ReadingResponse::BackToStage(Index stage, const MatrixXd& back) const {
