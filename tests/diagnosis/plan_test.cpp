@@ -127,7 +127,8 @@ TEST_P(Promises, AreKeptByTheRig) {
   for (const auto& recording : world.recordings) {
     paths.Add(Planned(recording, recorded.setup()));
   }
-  const PlannedCause& planned = Find(PlanOf(paths), promise.name);
+  const Plan plan = PlanOf(paths);
+  const PlannedCause& planned = Find(plan, promise.name);
   const double promised_u = std::abs(planned.sizes().seen[0]) / kShowable;
   ASSERT_GT(promise.size, kShowable * promised_u);
   const Score found =
