@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "diagnosis/fit.h"
 #include "diagnosis/extended_run.h"
+#include "diagnosis/fit.h"
 #include "fusion/machine_problem.h"
 
 namespace abbe::diagnosis {
