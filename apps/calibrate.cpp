@@ -13,9 +13,9 @@
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/machine_file.h"
+#include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "fusion/calibration_file.h"
-#include "recording/recording_file.h"
 
 namespace abbe::apps {
 namespace {
@@ -77,10 +77,7 @@ class Calibration {
 
  private:
   simulation::LinkageRun Read(const fs::path& path) {
-    const recording::Recording recording = recording::Read(path);
-    for (const std::string& warning : recording.warnings) {
-      fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
-    }
+    const recording::Recording recording = ReadWithWarnings(path);
     return simulation::ReadLinkageRun(causes_.Take(recording), *file_.linkage);
   }
 

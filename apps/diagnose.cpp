@@ -14,11 +14,11 @@
 #include "apps/diagnosis_result.h"
 #include "apps/file_hash.h"
 #include "apps/machine_file.h"
+#include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "diagnosis/found_model.h"
 #include "diagnosis/next_run.h"
 #include "failure/failure.h"
-#include "recording/recording_file.h"
 
 namespace abbe::apps {
 namespace {
@@ -90,10 +90,7 @@ int Diagnose(const DiagnoseArguments& arguments) {
   diagnosis::Campaign campaign(SetupOf(arguments.machine));
   std::vector<recording::Recording> recordings;
   for (const fs::path& path : arguments.recordings) {
-    recordings.push_back(recording::Read(path));
-    for (const std::string& warning : recordings.back().warnings) {
-      fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
-    }
+    recordings.push_back(ReadWithWarnings(path));
     campaign.Add(recordings.back());
   }
   diagnosis::Diagnosis diagnosis = diagnosis::Diagnose(campaign);

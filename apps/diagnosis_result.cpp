@@ -21,7 +21,6 @@ using diagnosis::Score;
 using Eigen::Index;
 using nlohmann::ordered_json;
 
-constexpr double kMicro = 1e-6;
 constexpr std::size_t kEvidenceShown = 8;
 
 struct Told {
@@ -106,12 +105,6 @@ std::string EvidenceText(const Diagnosis& diagnosis) {
   return text;
 }
 
-// In its unit.
-double AmplitudeOf(const Leftover& leftover) {
-  return leftover.variable == diagnosis::kScatter ? leftover.amplitude
-                                                  : leftover.amplitude / kMicro;
-}
-
 }  // namespace
 
 std::string NameOf(const Candidate& candidate) {
@@ -163,8 +156,8 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const diagnosis::HeldOutG
   for (const Leftover& leftover : diagnosis.leftovers) {
     json["unexplained"].push_back({{"variable", leftover.variable},
                                    {"object", leftover.object},
-                                   {"amplitude", AmplitudeOf(leftover)},
-                                   {"unit", leftover.unit},
+                                   {"amplitude", leftover.amplitude / leftover.unit.si},
+                                   {"unit", leftover.unit.name},
                                    {"p_value", leftover.p_value}});
   }
   for (const Score& score : diagnosis.evidence) {
@@ -189,11 +182,11 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const diagnosis::HeldOutGa
   }
   for (const Leftover& leftover : diagnosis.leftovers) {
     const bool scatter = leftover.variable == diagnosis::kScatter;
-    text += fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause does that\n",
-                        leftover.object,
-                        scatter ? "scatters beyond what is stated"
-                                : fmt::format("varies with {}", leftover.variable),
-                        AmplitudeOf(leftover), leftover.unit, leftover.p_value);
+    text += fmt::format(
+        "\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause does that\n", leftover.object,
+        scatter ? "scatters beyond what is stated"
+                : fmt::format("varies with {}", leftover.variable),
+        leftover.amplitude / leftover.unit.si, leftover.unit.name, leftover.p_value);
   }
   text += EvidenceText(diagnosis);
   if (!diagnosis.cannot_show.empty()) {

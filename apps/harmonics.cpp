@@ -10,9 +10,9 @@
 
 #include "apps/command.h"
 #include "apps/commands.h"
+#include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "fusion/bearing_harmonics.h"
-#include "recording/recording_file.h"
 #include "relm/shaft_readings.h"
 #include "settings/unit.h"
 
@@ -89,8 +89,7 @@ std::string ChannelTable(const ordered_json& channel) {
 }
 
 int Harmonics(const HarmonicsArguments& arguments) {
-  const recording::Recording recording = recording::Read(arguments.recording);
-  for (const std::string& warning : recording.warnings) fmt::print(stderr, "abbe: {}\n", warning);
+  const recording::Recording recording = ReadWithWarnings(arguments.recording);
   std::vector<int> orders(static_cast<std::size_t>(arguments.orders));
   std::iota(orders.begin(), orders.end(), 1);
   ordered_json result{{"kind", "harmonics"},

@@ -6,47 +6,42 @@
 #include <memory>
 #include <string>
 
+#include "recording/made_on.h"
 #include "recording/recording_file.h"
 
 namespace abbe::apps {
 namespace {
 
-void Warn(const std::filesystem::path& path, const recording::Recording& recording) {
-  for (const std::string& warning : recording.warnings) {
-    fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
-  }
-}
-
-void RefuseOtherMachine(const machine::Machine& machine, const recording::Recording& recording) {
-  const std::string made_on = recording.HeaderText("machine").value_or(machine.name);
-  if (made_on == machine.name) return;
-  throw InputError(fmt::format(
-      "{}: was recorded on the machine \"{}\", the machine file describes \"{}\"; give the "
-      "file of that machine",
-      recording.name, made_on, machine.name));
+void Warn(const recording::Recording& recording) {
+  for (const std::string& warning : recording.warnings) fmt::print(stderr, "abbe: {}\n", warning);
 }
 
 }  // namespace
 
+recording::Recording ReadWithWarnings(const std::filesystem::path& path) {
+  recording::Recording recording = recording::Read(path);
+  Warn(recording);
+  return recording;
+}
+
 recording::Recording ReadRecordingOf(const machine::Machine& machine,
                                      const std::filesystem::path& path) {
-  recording::Recording recording = recording::Read(path);
-  Warn(path, recording);
-  RefuseOtherMachine(machine, recording);
+  recording::Recording recording = ReadWithWarnings(path);
+  recording::RefuseOtherMachine(recording, machine.name);
   return recording;
 }
 
 recording::Recording ReadHeadOf(const machine::Machine& machine,
                                 const std::filesystem::path& path) {
   recording::Recording head = recording::ReadHead(path);
-  RefuseOtherMachine(machine, head);
+  recording::RefuseOtherMachine(head, machine.name);
   return head;
 }
 
 recording::Blocks BlocksOf(const std::filesystem::path& path) {
   return [path, warned = std::make_shared<bool>(false)](const recording::UseBlock& use) {
     recording::ReadBlocks(path, [&](const recording::Recording& block) {
-      if (!*warned) Warn(path, block);
+      if (!*warned) Warn(block);
       use(block);
     });
     *warned = true;

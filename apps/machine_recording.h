@@ -9,7 +9,10 @@
 
 namespace abbe::apps {
 
-// Warnings go to standard error. InputError when the recording names another machine, and those of
+// Any recording, its warnings on standard error. Failure: that of recording/recording_file.h.
+recording::Recording ReadWithWarnings(const std::filesystem::path& path);
+
+// The same; InputError when the recording names another machine, and those of
 // recording/recording_file.h.
 recording::Recording ReadRecordingOf(const machine::Machine& machine,
                                      const std::filesystem::path& path);

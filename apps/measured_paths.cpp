@@ -4,29 +4,13 @@
 
 #include "apps/causes_option.h"
 #include "apps/linkage_reader.h"
-#include "recording/recording_file.h"
+#include "apps/machine_recording.h"
+#include "recording/made_on.h"
 
 namespace abbe::apps {
 namespace {
 
 using recording::Recording;
-
-Recording ReadWithWarnings(const std::filesystem::path& path) {
-  Recording recording = recording::Read(path);
-  for (const std::string& warning : recording.warnings) {
-    fmt::print(stderr, "abbe: {}: {}\n", path.string(), warning);
-  }
-  return recording;
-}
-
-void RefuseOtherMachine(const Recording& recording, const std::string& machine) {
-  const auto named = recording.HeaderText("machine");
-  if (!named || named == machine) return;
-  throw InputError(fmt::format(
-      "{}: was recorded on machine \"{}\", the machine file describes \"{}\"; give the file of the "
-      "machine that was measured",
-      recording.name, *named, machine));
-}
 
 // The machine file of a reference alone needs no linkage.
 struct Machine {
@@ -64,7 +48,8 @@ void Add(const Recording& recording, Machine& machine, MeasuredPaths& paths) {
                     "(ref_x_mm ...): no path to evaluate",
                     recording.name));
   }
-  if (machine.file) RefuseOtherMachine(recording, machine.file->sweep_setup.machine.name);
+  if (machine.file)
+    recording::RefuseOtherMachine(recording, machine.file->sweep_setup.machine.name);
   if (angles) paths.linkage.push_back(machine.Reader(recording).Path(recording));
   if (reference) paths.reference.push_back(relm::ReferencePath(recording));
   for (const char* key : {"machine", "started"}) {

@@ -11,11 +11,11 @@
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/machine_file.h"
+#include "apps/machine_recording.h"
 #include "apps/reduce_reference.h"
 #include "apps/reduce_sweep.h"
 #include "apps/result_file.h"
 #include "probes/sweep_reduction.h"
-#include "recording/recording_file.h"
 
 namespace abbe::apps {
 namespace {
@@ -39,10 +39,7 @@ class Reduction {
     }
     if (!options_.causes.empty()) Setup();
     for (const fs::path& path : options_.recordings) {
-      const recording::Recording recording = recording::Read(path);
-      for (const std::string& warning : recording.warnings) {
-        fmt::print(stderr, "abbe: {}\n", warning);
-      }
+      const recording::Recording recording = ReadWithWarnings(path);
       Reduce(recording, path);
     }
     if (options_.squareness) Squareness();

@@ -8,6 +8,7 @@
 
 #include "diagnosis/reference_in_campaign.h"
 #include "failure/failure.h"
+#include "recording/made_on.h"
 #include "simulation/length_simulation.h"
 #include "simulation/linkage_on_machine.h"
 #include "simulation/sweep_simulation.h"
@@ -51,13 +52,7 @@ Campaign::Campaign(Setup setup, std::optional<simulation::Origin> origin)
 
 void Campaign::Add(recording::Recording recording) {
   const machine::Machine& mill = setup_.machine;
-  const std::string machine = recording.HeaderText("machine").value_or(mill.name);
-  if (machine != mill.name) {
-    throw InputError(fmt::format(
-        "{}: was recorded on the machine \"{}\", the machine file describes \"{}\"; give the file "
-        "of that machine",
-        recording.name, machine, mill.name));
-  }
+  recording::RefuseOtherMachine(recording, mill.name);
   for (BadData& bad : FlagBadRows(recording)) {
     bad_.push_back({simulation::StartedOf(recording), std::move(bad)});
   }

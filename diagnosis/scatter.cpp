@@ -18,8 +18,12 @@ std::vector<Leftover> RunsThatScatter(const Fit& fit) {
     const double chance = boost::math::cdf(boost::math::complement(distribution, chi_square)) *
                           static_cast<double>(runs.size());
     if (chance >= kDoubt) continue;
-    found.push_back({kScatter, runs[run].simulated.name, std::sqrt(left.squaredNorm() / rows - 1.0),
-                     "times the noise", chance, 0.0});
+    found.push_back({kScatter,
+                     runs[run].simulated.name,
+                     std::sqrt(left.squaredNorm() / rows - 1.0),
+                     {"times the noise"},
+                     chance,
+                     0.0});
   }
   return found;
 }

@@ -26,10 +26,12 @@ constexpr double kAbsorbed = 1e-4;  // of the most information: what is left is 
 constexpr Index kLines = 400;
 constexpr double kOfAWave = 0.4;  // over the range, from one line to the next
 
+const estimation::PrintUnit kMicrometres{"um", 1e-6}, kMicroradians{"urad", 1e-6};
+
 struct Channel {
   std::string object;
   Index stage;
-  const char* unit;
+  estimation::PrintUnit unit;
   bool of_probes, of_linkage;
 };
 
@@ -37,15 +39,15 @@ std::vector<Channel> ChannelsOf(const Scene& scene) {
   std::vector<Channel> channels;
   for (const std::string& probe : simulation::ProbesOf(scene)) {
     channels.push_back(
-        {probe, simulation::kReadingStage + simulation::ProbeOf(probe), "um", true, false});
+        {probe, simulation::kReadingStage + simulation::ProbeOf(probe), kMicrometres, true, false});
   }
   for (const std::string& pivot : simulation::PivotsOf(scene)) {
-    channels.push_back(
-        {pivot, simulation::kEncoderStage + simulation::PivotOf(pivot), "urad", false, true});
+    channels.push_back({pivot, simulation::kEncoderStage + simulation::PivotOf(pivot),
+                        kMicroradians, false, true});
   }
   for (const std::string& axis : simulation::AxesOf(scene)) {
     channels.push_back(
-        {axis, simulation::Positioning(simulation::AxisOf(axis[0])), "um", true, true});
+        {axis, simulation::Positioning(simulation::AxisOf(axis[0])), kMicrometres, true, true});
   }
   return channels;
 }

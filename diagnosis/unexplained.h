@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "diagnosis/fit.h"
+#include "estimation/parameter.h"
 
 namespace abbe::diagnosis {
 
@@ -26,9 +27,9 @@ struct Leftover {
   std::string variable;    // "time", "x", "x+y", "pivot_2", "temp_table_c", "feed"
   std::string object;      // channel
   double amplitude = 0.0;  // m or rad, rms over the rows; of a scatter, in units of the noise
-  std::string unit;        // "um", "urad", "times the noise"
-  double p_value = 1.0;    // corrected for the number of questions
-  double period = 0.0;     // of a line, in the unit of the variable (s, m, rad); 0: smooth
+  estimation::PrintUnit unit;
+  double p_value = 1.0;  // corrected for the number of questions
+  double period = 0.0;   // of a line, in the unit of the variable (s, m, rad); 0: smooth
 };
 
 inline constexpr double kDoubt = 1e-3;

@@ -151,9 +151,7 @@ std::string Advice(const Problem& problem, const Linearization& at) {
   if (most < kFarOff) return "start nearer or state priors";
   return fmt::format(
       "the rows of '{}' scatter at least {:.1f} times the noise that is stated for them: state it "
-      "larger, "
-      "or "
-      "look whether that source belongs to this model",
+      "larger, or look whether that source belongs to this model",
       problem.sources()[worst].name, most);
 }
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "failure/failure.h"
+#include "recording/made_on.h"
 #include "standards/straightness.h"
 
 namespace abbe::probes {
@@ -154,13 +155,7 @@ SweepSetup ReadSweepSetup(const settings::Table& root) {
 }
 
 SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup& setup) {
-  const std::string machine = recording.HeaderText("machine").value_or(setup.machine.name);
-  if (machine != setup.machine.name) {
-    throw InputError(
-        fmt::format("{}: was recorded on the machine \"{}\", the machine file describes "
-                    "\"{}\"; give the file of that machine",
-                    recording.name, machine, setup.machine.name));
-  }
+  recording::RefuseOtherMachine(recording, setup.machine.name);
   const SweepDwells sweep = FindDwells(recording, DwellRuleOf(recording), setup.head.Ranges());
   const StationMeans means = FitStations(recording.name, sweep, setup.noise);
   const SweepInversion inversion(setup.machine, setup.head, sweep.axis, sweep.start);

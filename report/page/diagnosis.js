@@ -35,9 +35,10 @@ function diagnosisSummary(result) {
   return found.length ? `${verdict} Found: ${found.join('; ')}.` : verdict;
 }
 
-// "delta" without a unit, "width_um" with it: the unit has a column of its own.
+// "delta" without a unit, "width_um" and "coefficient_nm_per_mm2" with it: the unit has a column of
+// its own.
 const parameterName = ({name, unit}) =>
-    capital((unit ? name.slice(0, name.length - unit.length - 1) : name).replaceAll('_', ' '));
+    capital((unit ? name.replace(`_${unit.replace('/', '_per_')}`, '') : name).replaceAll('_', ' '));
 
 function findingParameters({parameters}) {
   const told = (parameters ?? []).filter(({value}) => isNumber(value));
