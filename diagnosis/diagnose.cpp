@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "diagnosis/line_search.h"
 #include "diagnosis/scatter.h"
 #include "failure/failure.h"
 #include "simulation/causes/registry.h"
@@ -62,6 +63,17 @@ std::vector<Named> ByName(const std::vector<Score>& scores) {
     first = last;
   }
   return names;
+}
+
+// Of a cause that is a line: its strongest one.
+void FindLine(const Fit& fit, Named& named) {
+  if (!named.best.candidate.cause->line_in) return;
+  const double visible = named.best.visible;
+  const Line line = StrongestLine(fit, named.best.candidate);
+  named.best = line.score;
+  named.best.visible = std::max(visible, line.score.visible);
+  named.log_evidence = line.score.log_evidence - std::log(line.among);
+  named.step = 1.0 + line.step / line.score.candidate.shape[0];
 }
 
 const Score& Better(const Score& one, const Score& other) {
@@ -140,6 +152,7 @@ class Search {
   // Scores everything against the fit so far; false when nothing is probable enough.
   bool TakeBest() {
     std::vector<Named> names = ByName(ScoreAll(*fit_, candidates_));
+    for (Named& named : names) FindLine(*fit_, named);
     SortByEvidence(names);
     if (diagnosis_.evidence.empty()) DescribeFirstRound(names);
     std::erase_if(names, [&](const Named& named) {

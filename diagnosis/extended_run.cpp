@@ -59,7 +59,7 @@ constexpr double kShapeFree = 1.0;  // e-fold: no bound
 
 // By the logarithm of the shape.
 VectorXd ByShape(const LinearRun& at, const Candidate& cause) {
-  constexpr double kStep = 1e-4;
+  constexpr double kStep = 1e-7;  // a frequency over an hour is known to a millionth
   Candidate more = cause, less = cause;
   more.shape *= std::exp(kStep);
   less.shape *= std::exp(-kStep);

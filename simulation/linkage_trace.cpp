@@ -36,6 +36,18 @@ Eigen::Matrix3Xd WayOf(const Trace& trace, const machine::Chain& chain) {
   return way;
 }
 
+// The time of a stay is the mean of its readings.
+VectorXd LastingOf(const recording::Recording& recording, const LinkageRun& run) {
+  VectorXd lasting = VectorXd::Zero(run.poses());
+  const auto time = recording.Find("time_s");
+  if (!time) return lasting;
+  for (Index pose = 0; pose < run.poses(); ++pose) {
+    if (run.samples[pose] == 1.0) continue;
+    lasting[pose] = 2.0 * (run.time[pose] - (*time)[run.rows[static_cast<std::size_t>(pose)]]);
+  }
+  return lasting;
+}
+
 // Pivots whose axes meet have no link between them: they move the next one.
 MatrixXd LinksOf(const LinkageRun& run, const relm::LinkageModel& model) {
   const std::vector<std::string> names = model.Names();
@@ -103,6 +115,8 @@ Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
   trace.mounting = run.mounting;
   trace.started = StartedOf(recording);
   trace.time = trace.clock = run.time;
+  trace.samples = run.samples;
+  trace.lasting = LastingOf(recording, run);
   trace.pass = IntegersAt(recording, "pass", run.rows);
   trace.direction = IntegersAt(recording, "direction", run.rows);
   trace.SetAxes(run.commanded);

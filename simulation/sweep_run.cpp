@@ -99,7 +99,15 @@ SweepRun Standing(const recording::Recording& recording, const std::vector<std::
   run.position = axes.row(swept).transpose();
   run.steps = axes.colwise() - run.start;
   run.steps.row(swept).setZero();
-  run.time = means(ColumnOf(recording, "time_s", rows).transpose()).transpose();
+  const Eigen::VectorXd time = ColumnOf(recording, "time_s", rows);
+  run.time = means(time.transpose()).transpose();
+  run.samples = readings;
+  run.lasting.resize(count);
+  for (Index row = 0; row < count; ++row) {
+    const Standstill& stands = each[static_cast<std::size_t>(row)];
+    run.lasting[row] =
+        time[static_cast<Index>(stands.last) - 1] - time[static_cast<Index>(stands.first)];
+  }
   run.pass.assign(each.size(), 1);
   run.gap.resize(probes::kProbes, count);
   for (std::size_t i = 0; i < probes::kProbes; ++i) {
@@ -127,6 +135,8 @@ SweepRun ReadSweepRun(const recording::Recording& recording, const recording::Bl
   run.covariance = std::move(means.covariance);
   run.pass.assign(static_cast<std::size_t>(run.rows()), 0);
   run.time.resize(run.rows());
+  run.samples = Eigen::VectorXd::Ones(run.rows());
+  run.lasting = Eigen::VectorXd::Zero(run.rows());
   const std::vector<int>& directions = means.directions;
   for (Index row = 0; row < run.rows(); ++row) {
     const auto group = static_cast<std::size_t>(row);
@@ -150,11 +160,15 @@ SweepRun ReadSweepDwells(const recording::Recording& recording, const probes::He
   const auto rows = static_cast<Index>(means.dwells.size());
   run.position.resize(rows);
   run.time.resize(rows);
+  run.samples.resize(rows);
+  run.lasting.resize(rows);
   run.gap.resize(probes::kProbes, rows);
   for (Index row = 0; row < rows; ++row) {
     const probes::Dwell& dwell = means.dwells[static_cast<std::size_t>(row)];
     run.position[row] = dwell.position;
     run.time[row] = dwell.time;
+    run.samples[row] = static_cast<double>(dwell.samples);
+    run.lasting[row] = dwell.duration;
     run.pass.push_back(dwell.pass);
     run.direction.push_back(dwell.direction);
     run.first_rows.push_back(dwell.first_row);

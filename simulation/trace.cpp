@@ -77,6 +77,8 @@ Trace TraceOf(const recording::Recording& recording, const SweepRun& run) {
   trace.mounting = run.mounting;
   trace.started = StartedOf(recording);
   trace.time = trace.clock = run.time;
+  trace.samples = run.samples;
+  trace.lasting = run.lasting;
   trace.pass = run.pass;
   trace.direction = run.direction;
   trace.axes.resize(3, run.rows());

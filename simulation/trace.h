@@ -32,6 +32,8 @@ struct Trace {
   double started = 0.0;   // s since 1970; 0: not stated
   Eigen::VectorXd time;   // s since the recording began
   Eigen::VectorXd clock;  // s since the first recording began; like `time` before CountFrom
+  // Readings in each row, s from the first to the last of them; empty: a row is a reading.
+  Eigen::VectorXd samples, lasting;
   std::vector<int> pass, direction;
   Eigen::Matrix3Xd axes;            // [x y z]
   Eigen::Matrix3Xd velocity;        // m/s; 0 while standing

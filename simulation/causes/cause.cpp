@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace abbe::simulation {
 
@@ -93,6 +94,22 @@ Disturbance InStage(const Trace& trace, Eigen::Index stage, const RowVectorXd& v
 std::vector<Disturbance> WaveInStage(const Trace& trace, Eigen::Index stage,
                                      const RowVectorXd& phase) {
   return {InStage(trace, stage, phase.array().sin()), InStage(trace, stage, phase.array().cos())};
+}
+
+// A sum of evenly spaced phases is that in the middle, times Dirichlet's kernel.
+std::vector<Disturbance> LineInStage(const Trace& trace, Eigen::Index stage, double frequency,
+                                     const VectorXd& clock) {
+  const double turn = 2.0 * std::numbers::pi * frequency;
+  auto waves = WaveInStage(trace, stage, turn * clock.transpose());
+  for (Eigen::Index row = 0; row < trace.samples.size(); ++row) {
+    const double n = trace.samples[row];
+    if (n <= 1.0) continue;
+    const double half = 0.5 * turn * trace.lasting[row] / (n - 1.0), sine = std::sin(half);
+    const double kept = std::abs(sine) < 1e-9 ? std::cos(n * half) / std::cos(half)
+                                              : std::sin(n * half) / (n * sine);
+    for (Disturbance& wave : waves) wave.row(stage)[row] *= kept;
+  }
+  return waves;
 }
 
 // amplitude sin(t + phase) = amplitude cos(phase) sin t + amplitude sin(phase) cos t

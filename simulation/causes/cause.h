@@ -74,6 +74,7 @@ struct Cause {
   using Tell = std::function<Eigen::VectorXd(const Eigen::VectorXd& coefficients,
                                              const Eigen::VectorXd& shape)>;
   using Recall = std::function<Recalled(const Eigen::VectorXd& values)>;
+  using LineIn = std::function<Eigen::Index(const std::string& object)>;
 
   std::string id;
   CauseWords words;
@@ -91,6 +92,9 @@ struct Cause {
   bool whole = false;         // there or not: its one coefficient is 1
   Recall recall = {};         // of the values that `tell` gives; none: as without `tell`
   bool in_map = false;        // one of the 21 errors, a function of position
+  // The stage in which it is a line in time: its shape is a frequency, looked for among all that
+  // the runs resolve; `shapes` only tells whether it would be seen.
+  LineIn line_in = {};
 
   Eigen::Index coefficients() const { return plausible.size(); }
   // SI values in the order of the keys.
@@ -129,6 +133,9 @@ Disturbance InStage(const Trace& trace, Eigen::Index stage, const Eigen::RowVect
 // The sine and the cosine of a phase in one stage, and how they are told: amplitude and phase.
 std::vector<Disturbance> WaveInStage(const Trace& trace, Eigen::Index stage,
                                      const Eigen::RowVectorXd& phase);
+// Sine and cosine of 2 pi frequency t, t of `clock`, in the mean of the readings of each row.
+std::vector<Disturbance> LineInStage(const Trace& trace, Eigen::Index stage, double frequency,
+                                     const Eigen::VectorXd& clock);
 Eigen::Vector2d AmplitudeAndPhase(const Eigen::VectorXd& sine_cosine);
 Eigen::Vector2d SineAndCosine(double amplitude, double phase);
 

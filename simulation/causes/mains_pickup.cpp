@@ -17,9 +17,8 @@ Cause MainsPickup() {
       .objects = ProbesOf,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
-        if (trace.kind != "dwell") return {};  // the means of a sweep's stays do not show it
-        return WaveInStage(trace, kReadingStage + ProbeOf(object),
-                           2.0 * std::numbers::pi * shape[0] * trace.time.transpose());
+        if (trace.gap.size() == 0) return {};
+        return LineInStage(trace, kReadingStage + ProbeOf(object), shape[0], trace.time);
       },
       .shapes =
           [](const Scene&) {

@@ -26,6 +26,7 @@ Cause ServoLag();
 Cause ServoLagMismatch();
 Cause ReversalSpike();
 Cause LoadCoupling();
+Cause Vibration();
 Cause ProbeGain();
 Cause ProbeNonlinearity();
 Cause ProbePosition();
