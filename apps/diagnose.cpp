@@ -17,6 +17,7 @@
 #include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "diagnosis/found_model.h"
+#include "diagnosis/measured_noise.h"
 #include "diagnosis/next_run.h"
 #include "failure/failure.h"
 
@@ -87,12 +88,12 @@ int Diagnose(const DiagnoseArguments& arguments) {
   if (arguments.recordings.empty()) {
     throw InputError("diagnose: no recording is given; name at least one, or plan with --plan");
   }
-  diagnosis::Campaign campaign(SetupOf(arguments.machine));
   std::vector<recording::Recording> recordings;
-  for (const fs::path& path : arguments.recordings) {
-    recordings.push_back(ReadWithWarnings(path));
-    campaign.Add(recordings.back());
-  }
+  for (const fs::path& path : arguments.recordings) recordings.push_back(ReadWithWarnings(path));
+  diagnosis::Setup setup = SetupOf(arguments.machine);
+  diagnosis::UseMeasuredNoise(recordings, setup);
+  diagnosis::Campaign campaign(std::move(setup));
+  for (const recording::Recording& recording : recordings) campaign.Add(recording);
   diagnosis::Diagnosis diagnosis = diagnosis::Diagnose(campaign);
   diagnosis::AddNextRuns(campaign, recordings, diagnosis);
   std::vector<diagnosis::Candidate> causes;

@@ -11,7 +11,9 @@
 #include "recording/made_on.h"
 #include "simulation/length_simulation.h"
 #include "simulation/linkage_on_machine.h"
+#include "simulation/reference_trace.h"
 #include "simulation/sweep_simulation.h"
+#include "simulation/target_spots.h"
 
 namespace abbe::diagnosis {
 
@@ -48,7 +50,8 @@ Campaign::Campaign(Setup setup, std::optional<simulation::Origin> origin)
     : setup_(std::move(setup)),
       model_(fusion::UnknownMachine(setup_.machine)),
       prior_(setup_.machine, model_, setup_.machine.population.smoothness),
-      origin_(std::move(origin)) {}
+      origin_(std::move(origin)),
+      notes_(setup_.notes) {}
 
 void Campaign::Add(recording::Recording recording) {
   const machine::Machine& mill = setup_.machine;
@@ -57,12 +60,6 @@ void Campaign::Add(recording::Recording recording) {
     bad_.push_back({simulation::StartedOf(recording), std::move(bad)});
   }
   const std::string kind = recording.Kind();
-  if (recording.HeaderText("mounting.head").value_or("0deg") != "0deg") {
-    throw InputError(fmt::format(
-        "{}: the head was turned (mounting.head); diagnose takes runs with the head as the machine "
-        "file says; leave this one out",
-        recording.name));
-  }
   if (kind == "sweep" || kind == "dwell" || kind == "gap-steps") {
     if (!setup_.head) {
       throw InputError(fmt::format(
@@ -76,6 +73,7 @@ void Campaign::Add(recording::Recording recording) {
     runs_.push_back(
         {simulation::SimulateSweep(model_, mill.reference, {*setup_.head, setup_.target}, run),
          simulation::TraceOf(recording, run)});
+    runs_.back().trace.spots = simulation::SpotsOnTarget(mill.chain, *setup_.head, run);
   } else if (kind == "linkage") {
     if (!setup_.linkage) {
       throw InputError(
@@ -90,7 +88,8 @@ void Campaign::Add(recording::Recording recording) {
     runs_.push_back({simulation::SimulateLinkage(model_, mill.reference, linkage, run),
                      simulation::TraceOf(recording, run, linkage)});
   } else if (kind == "length") {
-    runs_.push_back({simulation::SimulateLengths(model_, mill.reference, recording), Trace{}});
+    runs_.push_back({simulation::SimulateLengths(model_, mill.reference, recording),
+                     simulation::TraceOfLengths(recording)});
   } else if (kind == "reference") {
     runs_.push_back(MakeReferenceRun(recording, setup_, model_, notes_));
   } else {
@@ -140,6 +139,7 @@ simulation::Scene Campaign::scene() const {
     const auto& travel = setup_.machine.travels[static_cast<std::size_t>(axis)];
     scene.travel[axis] = travel.last - travel.first;
   }
+  if (setup_.head) scene.form_length = setup_.target.form_length;
   return scene;
 }
 

@@ -37,6 +37,8 @@ struct Setup {
   std::optional<relm::LinkageSettings> linkage;
   // m, of runs with a reference instrument that state none, by name; others are estimated.
   std::map<std::string, Eigen::Vector3d> reference_noise = {};
+  // What whoever reads the result has to know of it.
+  std::vector<std::string> notes = {};
 };
 
 struct DiagnosedRun {

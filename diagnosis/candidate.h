@@ -19,7 +19,10 @@ struct Candidate {
   double coarseness = 1.0;  // times the plausible sizes of the cause
 
   std::string Name() const { return cause->id + ":" + object; }
-  Eigen::VectorXd Plausible() const { return coarseness * cause->plausible; }
+  // Standard deviation of each coefficient, before any data.
+  Eigen::VectorXd Plausible() const {
+    return (cause->drawn ? shape[0] : coarseness) * cause->plausible;
+  }
   // Whether the shape is a number between those tried, to be found with the coefficients.
   bool HasFreeShape() const {
     return cause->shapes && !cause->fixed_shapes && coefficients.size() > 0;

@@ -1,7 +1,9 @@
 #include "diagnosis/evidence.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -16,8 +18,42 @@ namespace {
 
 constexpr Index kColumnsAtOnce = 256;  // so many share the derivatives of the simulation
 
-Score ScoreFrom(const Candidate& candidate, const Fit::Projection& projection) {
+// Of a cause that is drawn: the standard deviation of its draws with the largest evidence, and the
+// mean evidence of all that were tried, each as probable as the next.
+struct DrawnSize {
+  double sd, log_evidence;
+};
+
+DrawnSize SizeOfDraws(const MatrixXd& S, const VectorXd& g) {
+  constexpr double kSmallest = 0.01e-6, kLargest = 10e-6, kRatio = 1.1;  // m
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S);
+  const Eigen::ArrayXd information = solver.eigenvalues().array().max(0.0);
+  const Eigen::ArrayXd score = (solver.eigenvectors().transpose() * g).array();
+  DrawnSize best{kSmallest, -std::numeric_limits<double>::infinity()};
+  double sum = 0.0, count = 0.0;
+  for (double sd = kSmallest; sd < kLargest; sd *= kRatio, ++count) {
+    const Eigen::ArrayXd grown = 1.0 + sd * sd * information;
+    const double log_evidence = 0.5 * (sd * sd * score.square() / grown - grown.log()).sum();
+    if (log_evidence > best.log_evidence) {
+      sum *= std::exp(best.log_evidence - log_evidence);
+      best = {sd, log_evidence};
+    }
+    sum += std::exp(log_evidence - best.log_evidence);
+  }
+  best.log_evidence += std::log(sum / count);
+  return best;
+}
+
+Score ScoreFrom(Candidate candidate, const Fit::Projection& projection) {
   const auto& [S, g] = projection;
+  if (candidate.cause->drawn) {
+    const VectorXd usual = candidate.Plausible();
+    const double visible = std::sqrt(std::max(0.0, S.diagonal().dot(usual.cwiseAbs2())));
+    const DrawnSize size = SizeOfDraws(S, g);
+    candidate.shape[0] = size.sd;
+    return {std::move(candidate), VectorXd::Zero(g.size()), MatrixXd::Zero(g.size(), g.size()),
+            size.log_evidence, visible};
+  }
   const VectorXd plausible = candidate.Plausible();
   if (candidate.cause->whole) {
     return {candidate, VectorXd::Ones(1), MatrixXd::Zero(1, 1), g[0] - 0.5 * S(0, 0),

@@ -23,10 +23,11 @@ struct Expected {
 };
 
 // `m`: the mean of the score.
-Expected ExpectedOf(const simulation::Cause& cause, const MatrixXd& S, const VectorXd& m) {
-  if (cause.whole) return {m[0] - 0.5 * S(0, 0), VectorXd::Ones(1)};
+Expected ExpectedOf(const Candidate& candidate, const MatrixXd& S, const VectorXd& m) {
+  if (candidate.cause->whole) return {m[0] - 0.5 * S(0, 0), VectorXd::Ones(1)};
   // In units of what is plausible.
-  const auto& unit = cause.plausible.asDiagonal();
+  const VectorXd plausible = candidate.Plausible();
+  const auto& unit = plausible.asDiagonal();
   const MatrixXd scaled = unit * S * unit;
   const VectorXd mean = unit * m;
   const Eigen::LLT<MatrixXd> M(scaled + MatrixXd::Identity(S.rows(), S.cols()));
@@ -48,9 +49,9 @@ Outlook OutlookOf(const MatrixXd& S, const std::vector<RivalWorld>& rivals, std:
   Outlook outlook{VectorXd(worlds), MatrixXd::Zero(S.rows(), worlds)};
   for (Index x = 0; x < worlds; ++x) {
     const auto rival = static_cast<std::size_t>(x);
-    const simulation::Cause& cause = *rivals[rival].candidate.cause;
-    const Index first = FirstOf(rivals, rival), count = cause.coefficients();
-    const Expected expected = ExpectedOf(cause, S.block(first, first, count, count),
+    const Candidate& candidate = rivals[rival].candidate;
+    const Index first = FirstOf(rivals, rival), count = candidate.cause->coefficients();
+    const Expected expected = ExpectedOf(candidate, S.block(first, first, count, count),
                                          S.block(first, first_true, count, a.size()) * a);
     outlook.evidence[x] = expected.evidence;
     outlook.by_score.col(x).segment(first, count) = expected.by_score;

@@ -98,6 +98,7 @@ LinearRun LinearAt(const DiagnosedRun& run, const VectorXd& x, const VectorXd& l
   LinearRun at{run.trace, nullptr};
   if (!run.simulated.response) return at;
   at.response = run.simulated.response->At(x);
+  at.trace.tilt = at.response->Tilts();
   if (left.size() == 0) return at;
   const MatrixXd readings = at.response->Readings(left);
   if (at.trace.pivots() > 0) {

@@ -112,7 +112,11 @@ double Fit::FollowShapes() {
     if (cause.cause->widens || cause.cause->whole) continue;
     const VectorXd found = result_.Block(BlockOf(cause)).Values();
     const VectorXd coefficients = found.head(cause.cause->coefficients());
-    if (cause.cause->follows_size) {
+    if (cause.cause->drawn) {
+      const double before = cause.shape[0];
+      cause.shape[0] *= std::sqrt(coefficients.squaredNorm() / SeenOf(cause)) / before;
+      most = std::max(most, std::abs(1.0 - cause.shape[0] / before));
+    } else if (cause.cause->follows_size) {
       const double before = simulation::SizeOf(cause.shape);
       cause.shape = coefficients.head<1>();
       most = std::max(most, std::abs(1.0 - before / coefficients[0]));
@@ -126,6 +130,13 @@ double Fit::FollowShapes() {
     cause.coefficients = coefficients;
   }
   return most;
+}
+
+// How many of the draws of a cause the data determine.
+double Fit::SeenOf(const Candidate& cause) const {
+  const MatrixXd covariance = result_.Covariance(BlockOf(cause), BlockOf(cause));
+  const VectorXd known = 1.0 - (covariance.diagonal().array() / cause.Plausible().array().square());
+  return std::max(known.sum(), 1.0);
 }
 
 void Fit::Linearize(const Problem& problem) {
@@ -319,6 +330,13 @@ Score Fit::ScoreOf(std::size_t taken_in) const {
   if (!cause.cause->widens) {
     score.coefficients = result_.Block(BlockOf(cause)).Values().head(cause.cause->coefficients());
     score.covariance = result_.Covariance(BlockOf(cause), BlockOf(cause));
+    if (cause.cause->drawn) {  // so many draws tell their deviation
+      const Index count = score.coefficients.size();
+      score.covariance.conservativeResize(count + 1, count + 1);
+      score.covariance.row(count).setZero();
+      score.covariance.col(count).setZero();
+      score.covariance(count, count) = 0.5 / SeenOf(cause);
+    }
     return score;
   }
   const std::vector<std::string> patterns = cause.cause->widens(cause.object);

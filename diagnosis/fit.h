@@ -80,6 +80,7 @@ class Fit {
 
   void Linearize(const estimation::Problem& problem);
   double FollowShapes();
+  double SeenOf(const Candidate& cause) const;
   // [C'J C'r] of one run.
   Eigen::MatrixXd Against(const RunRows& run,
                           const std::vector<simulation::Disturbance>& disturbances) const;

@@ -37,7 +37,7 @@ struct Contest {
       }
       candidates.push_back(other.score.candidate);
       plausible.conservativeResize(plausible.size() + cause.coefficients());
-      plausible.tail(cause.coefficients()) = cause.plausible;
+      plausible.tail(cause.coefficients()) = other.score.candidate.Plausible();
     }
   }
 

@@ -39,7 +39,7 @@ class PlannedRuns {
 };
 
 VectorXd PlausibleOf(const Candidate& candidate) {
-  return candidate.cause->whole ? VectorXd::Ones(1) : candidate.cause->plausible;
+  return candidate.cause->whole ? VectorXd::Ones(1) : candidate.Plausible();
 }
 
 // The best shape of each name; shapes of one name stand together.
@@ -64,7 +64,9 @@ std::vector<PlannedCause> BestOf(const PlannedRuns& runs,
       const VectorXd plausible = PlausibleOf(each);
       PlannedCause cause{each};
       const VectorXd own = information.segment(at, plausible.size()).cwiseMax(0.0);
-      cause.visible = plausible.cwiseProduct(own.cwiseSqrt()).maxCoeff(&cause.coefficient);
+      const VectorXd each_visible = plausible.cwiseProduct(own.cwiseSqrt());
+      cause.visible = each_visible.maxCoeff(&cause.coefficient);
+      if (each.cause->drawn) cause.visible = each_visible.norm();
       Keep(cause, best);
       at += plausible.size();
     }
@@ -123,9 +125,10 @@ bool PlannedCause::seen() const { return visible >= kShowable; }
 PlannedCause::Sizes PlannedCause::sizes() const {
   const simulation::Cause& cause = *candidate.cause;
   const auto keys_at = [&](double size) {
-    VectorXd coefficients = VectorXd::Zero(cause.coefficients());
+    VectorXd coefficients = VectorXd::Zero(cause.coefficients()), shape = candidate.shape;
     coefficients[coefficient] = size * cause.plausible[coefficient];
-    return cause.ValuesOf(coefficients, candidate.shape);
+    if (cause.drawn) shape[0] *= size;
+    return cause.ValuesOf(coefficients, shape);
   };
   Sizes sizes{keys_at(1.0), keys_at(kShowable / visible)};
   const VectorXd half = keys_at(0.5);

@@ -2,16 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "failure/failure.h"
+#include "machine/volumetric_jacobian.h"
+#include "simulation/stage_response.h"
 
 namespace abbe::simulation {
 namespace {
 
 using Eigen::Index;
 using Eigen::Matrix3Xd;
+using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
@@ -22,10 +27,75 @@ InputError Bad(const MachinePoints& points, Index i, std::string_view what) {
                                 points.rows[static_cast<std::size_t>(i)] + 1, what));
 }
 
-class LengthResidual : public estimation::Residual {
+// What moves the points moves the lengths between them.
+class LengthResponse : public Response {
  public:
-  LengthResidual(PointsOnMachine points, std::vector<Length> lengths, bool scaled)
-      : points_(std::move(points)), lengths_(std::move(lengths)), scaled_(scaled) {}
+  // `by_stage`: of the points, 3 rows each; `along`: unit vectors of the lengths.
+  LengthResponse(MatrixXd by_stage, std::vector<Length> lengths, Matrix3Xd along)
+      : by_stage_(std::move(by_stage)),
+        points_(by_stage_, 3),
+        lengths_(std::move(lengths)),
+        along_(std::move(along)) {}
+
+  MatrixXd Columns(const std::vector<Disturbance>& disturbances) const override {
+    const MatrixXd moved = points_.Columns(disturbances);
+    MatrixXd columns(Rows(), moved.cols());
+    for (Index k = 0; k < Rows(); ++k) {
+      const Length& each = lengths_[static_cast<std::size_t>(k)];
+      columns.row(k) = ByPoint(k).transpose() *
+                       (moved.middleRows<3>(3 * each.to) - moved.middleRows<3>(3 * each.from));
+    }
+    return columns;
+  }
+  MatrixXd Readings(const VectorXd&) const override { return {}; }
+  MatrixXd BackToReadings(const MatrixXd& left) const override {
+    MatrixXd back = MatrixXd::Zero(by_stage_.rows(), left.cols());
+    for (Index k = 0; k < Rows(); ++k) {
+      const Length& each = lengths_[static_cast<std::size_t>(k)];
+      back.middleRows<3>(3 * each.to) += ByPoint(k) * left.row(k);
+      back.middleRows<3>(3 * each.from) -= ByPoint(k) * left.row(k);
+    }
+    return points_.BackToReadings(back);
+  }
+  MatrixXd BackToStage(Index stage, const MatrixXd& back) const override {
+    return points_.BackToStage(stage, back);
+  }
+  // (a - b)^2 is at most 2 a^2 + 2 b^2.
+  Eigen::RowVectorXd WeightsOf(Index stage) const override {
+    Eigen::RowVectorXd weights = Eigen::RowVectorXd::Zero(by_stage_.rows() / 3);
+    if (stage >= by_stage_.cols()) return weights;
+    for (Index k = 0; k < Rows(); ++k) {
+      const Length& each = lengths_[static_cast<std::size_t>(k)];
+      for (const Index point : {each.from, each.to}) {
+        weights[point] +=
+            2.0 * std::pow(ByPoint(k).dot(by_stage_.col(stage).segment<3>(3 * point)), 2);
+      }
+    }
+    return weights;
+  }
+
+ private:
+  Index Rows() const { return static_cast<Index>(lengths_.size()); }
+  // A longer way leaves more: the residual is what is simulated less what was measured.
+  Vector3d ByPoint(Index k) const {
+    return -along_.col(k) / lengths_[static_cast<std::size_t>(k)].u;
+  }
+
+  MatrixXd by_stage_;
+  StageResponse points_;
+  std::vector<Length> lengths_;
+  Matrix3Xd along_;
+};
+
+class LengthResidual : public Responsive {
+ public:
+  LengthResidual(const machine::VolumetricModel& model, const Vector3d& reference,
+                 MachinePoints points, std::vector<Length> lengths, bool scaled)
+      : model_(model),
+        tool_(points.tool - reference),
+        points_(model, reference, std::move(points)),
+        lengths_(std::move(lengths)),
+        scaled_(scaled) {}
 
   Index Rows() const override { return static_cast<Index>(lengths_.size()); }
 
@@ -48,7 +118,28 @@ class LengthResidual : public estimation::Residual {
     }
   }
 
+  std::shared_ptr<const Response> At(const VectorXd& x) const override {
+    machine::VolumetricModel model = model_;
+    model.SetParameters(x.head(points_.parameters()));
+    const Matrix3Xd places = points_.Places(x.head(points_.parameters()));
+    MatrixXd by_stage(3 * places.cols(), kToolStage);
+    for (Index i = 0; i < places.cols(); ++i) {
+      const Vector3d command = points_.points().axes.col(i);
+      by_stage.middleRows<3>(3 * i) =
+          machine::VolumetricErrorAndJacobian(model.chain(), command, tool_, model.Motions(command))
+              .J_error_motions;
+    }
+    Matrix3Xd along(3, Rows());
+    for (Index k = 0; k < Rows(); ++k) {
+      const Length& each = lengths_[static_cast<std::size_t>(k)];
+      along.col(k) = (places.col(each.to) - places.col(each.from)).normalized();
+    }
+    return std::make_shared<LengthResponse>(std::move(by_stage), lengths_, std::move(along));
+  }
+
  private:
+  machine::VolumetricModel model_;
+  Vector3d tool_;  // from the reference point
   PointsOnMachine points_;
   std::vector<Length> lengths_;
   bool scaled_;
@@ -96,8 +187,9 @@ SimulatedRun SimulateLengths(const machine::VolumetricModel& model, const Vector
                                 {"ppm", 1e-6},
                                 {{.name = "scale", .prior_sd = u_scale}}});
   }
-  simulated.residual = std::make_shared<LengthResidual>(
-      PointsOnMachine(model, reference, std::move(points)), std::move(lengths), u_scale > 0.0);
+  const auto residual = std::make_shared<LengthResidual>(model, reference, std::move(points),
+                                                         std::move(lengths), u_scale > 0.0);
+  simulated.residual = simulated.response = residual;
   return simulated;
 }
 

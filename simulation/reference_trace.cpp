@@ -19,4 +19,23 @@ Trace TraceOf(const recording::Recording& recording, const ReferenceRun& run) {
   return trace;
 }
 
+Trace TraceOfLengths(const recording::Recording& recording) {
+  const MachinePoints points = ReadMachinePoints(recording);
+  Trace trace;
+  trace.name = recording.name;
+  trace.kind = "length";
+  trace.started = StartedOf(recording);
+  const auto rows = static_cast<Eigen::Index>(points.count());
+  trace.time = trace.clock = recording.Find("time_s")
+                                 ? ColumnAt(recording, points, "time_s")
+                                 : Eigen::VectorXd::LinSpaced(rows, 0.0, rows - 1.0);
+  trace.pass = IntegersAt(recording, "pass", points.rows);
+  trace.direction.assign(points.rows.size(), 0);
+  trace.axes = points.axes;
+  trace.velocity = trace.acceleration = trace.heading = Eigen::Matrix3Xd::Zero(3, rows);
+  trace.since_reversal = Eigen::Matrix3Xd::Constant(3, rows, kLongAgo);
+  AddSensors(recording, points.rows, trace);
+  return trace;
+}
+
 }  // namespace abbe::simulation

@@ -39,6 +39,8 @@ class Response {
   // rad), when `left` is what the simulation leaves, whitened. A disturbance made of readings
   // themselves would share their noise.
   virtual Eigen::MatrixXd Readings(const Eigen::VectorXd& left) const = 0;
+  // Of the face against each probe, rad, probes x rows of the run; empty without probes.
+  virtual Eigen::MatrixXd Tilts() const { return {}; }
   // The adjoint of Columns, in two steps, for many disturbances against the same rows:
   //   Columns({d})' left = sum over the stages of d.row(stage) * BackToStage(stage, back)'
   // with back = BackToReadings(left), `left` whitened, rows of the residual x anything.

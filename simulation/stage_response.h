@@ -17,6 +17,8 @@ class StageResponse : public Response {
   StageResponse(Eigen::MatrixXd by_stage, Eigen::Index per_instant);
 
   Eigen::MatrixXd Columns(const std::vector<Disturbance>& disturbances) const override;
+  // Nothing, unless a run says otherwise.
+  Eigen::MatrixXd Readings(const Eigen::VectorXd&) const override { return {}; }
   // Only sorted, the derivatives being whitened: the first row of all instants, the second, ...
   Eigen::MatrixXd BackToReadings(const Eigen::MatrixXd& left) const override;
   Eigen::MatrixXd BackToStage(Eigen::Index stage, const Eigen::MatrixXd& back) const override;

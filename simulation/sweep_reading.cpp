@@ -16,9 +16,11 @@ Vector3d TravelOf(const std::string& axes, const Vector3d& position) {
 SweepPlan MakeSweepPlan(const machine::Chain& chain, const Vector3d& reference,
                         const probes::HeadSettings& head, const SweepRun& run) {
   const probes::AxisFrame& frame = head.Frame(run.axis);
+  Eigen::Matrix3d R_MH = frame.R_MH;
+  if (run.mounted.head_turned) R_MH.leftCols<2>() *= -1.0;
   SweepPlan plan{chain,
                  machine::AxisIndex(run.axis),
-                 frame.R_MH,
+                 R_MH,
                  frame.p_MH - TravelOf(chain.tool_axes(), run.start) - reference,
                  frame.p_MH - TravelOf(chain.workpiece_axes(), run.start) - reference,
                  head.electrode,

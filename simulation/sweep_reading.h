@@ -77,9 +77,20 @@ double ValueOf(const T& jet) {
   return jet.a;
 }
 
+// A probe and the face that it looks at, in W.
 template <typename T>
-T ReadingOf(const SweepPlan& plan, std::size_t probe, const geometry::Transform<T>& X_WT,
-            const Circumstances<T>& at) {
+struct Sight {
+  Eigen::Vector3<T> place, direction, normal;
+
+  // Of the face against the electrode, rad.
+  double Tilt() const {
+    return std::acos(std::min(1.0, std::abs(ValueOf(T(normal.dot(direction))))));
+  }
+};
+
+template <typename T>
+Sight<T> SightOf(const SweepPlan& plan, std::size_t probe, const geometry::Transform<T>& X_WT,
+                 const Circumstances<T>& at) {
   const Eigen::Matrix3<T> R_MH = plan.R_MH.cast<T>();
   const Eigen::Matrix3<T> R = R_MH * geometry::RotationX(at.turn.x()) *
                               geometry::RotationY(at.turn.y()) * geometry::RotationZ(at.turn.z());
@@ -91,13 +102,19 @@ T ReadingOf(const SweepPlan& plan, std::size_t probe, const geometry::Transform<
   Eigen::Vector3<T> shift = at.shift;
   shift[normal] = T(0);  // the zero takes it in: apart, the two could not be told
   const Eigen::Vector3<T> p_T = plan.head_T.cast<T>() + R * in_head + R_MH * shift;
-  const Eigen::Vector3<T> w_W = X_WT.R * Eigen::Vector3<T>(-R.col(normal));
-  const Eigen::Vector3<T> m = FaceNormal<T>(plan.R_MH.col(normal), at);
-  const T gap = m.dot(plan.corner_W.cast<T>() - X_WT * p_T) / m.dot(w_W);
+  return {X_WT * p_T, X_WT.R * Eigen::Vector3<T>(-R.col(normal)),
+          FaceNormal<T>(plan.R_MH.col(normal), at)};
+}
+
+template <typename T>
+T ReadingOf(const SweepPlan& plan, std::size_t probe, const geometry::Transform<T>& X_WT,
+            const Circumstances<T>& at) {
+  const Sight<T> sight = SightOf<T>(plan, probe, X_WT, at);
+  const T gap =
+      sight.normal.dot(plan.corner_W.cast<T>() - sight.place) / sight.normal.dot(sight.direction);
   if (plan.electrode.radius == 0.0 && plan.electrode.stray == 0.0) return at.gain * gap;
   // A tilt changes the reading in second order only: its own derivative is left out.
-  const double cosine = std::min(1.0, std::abs(ValueOf(T(m.dot(w_W)))));
-  return at.gain * probes::ElectrodeReading(plan.electrode, gap, std::acos(cosine));
+  return at.gain * probes::ElectrodeReading(plan.electrode, gap, sight.Tilt());
 }
 
 // The parts of a run of this head that no parameter changes.

@@ -66,9 +66,12 @@ FaceNoise FaceNoiseOf(const SweepPlan& plan, const SweepInstrument& instrument,
   return noise;
 }
 
-ReadingResponse::ReadingResponse(MatrixXd by_motions, MatrixXd gaps,
+ReadingResponse::ReadingResponse(MatrixXd by_motions, MatrixXd gaps, MatrixXd tilts,
                                  std::shared_ptr<const FaceNoise> noise)
-    : by_motions_(std::move(by_motions)), gaps_(std::move(gaps)), noise_(std::move(noise)) {}
+    : by_motions_(std::move(by_motions)),
+      gaps_(std::move(gaps)),
+      tilts_(std::move(tilts)),
+      noise_(std::move(noise)) {}
 
 MatrixXd ReadingResponse::Columns(const std::vector<Disturbance>& disturbances) const {
   const Index rows = gaps_.cols();

@@ -37,12 +37,13 @@ void WhitenRows(const FaceNoise& noise, Columns& columns) {
 
 class ReadingResponse : public Response {
  public:
-  // `by_motions`: 5 x 18 of each row, side by side; `gaps` as read, 5 x rows.
-  ReadingResponse(Eigen::MatrixXd by_motions, Eigen::MatrixXd gaps,
+  // `by_motions`: 5 x 18 of each row, side by side; `gaps` as read and `tilts`, 5 x rows.
+  ReadingResponse(Eigen::MatrixXd by_motions, Eigen::MatrixXd gaps, Eigen::MatrixXd tilts,
                   std::shared_ptr<const FaceNoise> noise);
 
   Eigen::MatrixXd Columns(const std::vector<Disturbance>& disturbances) const override;
   Eigen::MatrixXd Readings(const Eigen::VectorXd& left) const override;
+  Eigen::MatrixXd Tilts() const override { return tilts_; }
   Eigen::MatrixXd BackToReadings(const Eigen::MatrixXd& left) const override;
   Eigen::MatrixXd BackToStage(Eigen::Index stage, const Eigen::MatrixXd& back) const override;
   Eigen::RowVectorXd WeightsOf(Eigen::Index stage) const override;
@@ -51,7 +52,7 @@ class ReadingResponse : public Response {
   // By how much a probe changes in each row.
   Eigen::VectorXd SlopesOf(Eigen::Index probe, Eigen::Index stage) const;
 
-  Eigen::MatrixXd by_motions_, gaps_;
+  Eigen::MatrixXd by_motions_, gaps_, tilts_;
   std::shared_ptr<const FaceNoise> noise_;
 };
 

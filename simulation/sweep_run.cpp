@@ -27,6 +27,18 @@ std::string MountingOf(const recording::Recording& recording) {
   return recording.HeaderText("mounting").value_or("");
 }
 
+SweepMounting MountedOf(const recording::Recording& recording) {
+  const std::string head = recording.HeaderText("mounting.head").value_or("0deg");
+  if (head != "0deg" && head != "180deg") {
+    throw InputError(fmt::format(
+        "{}: mounting.head is \"{}\"; a head is mounted as the machine file says, \"0deg\", or "
+        "turned by half a turn, \"180deg\"",
+        recording.name, head));
+  }
+  return {head == "180deg", 1e-3 * recording.HeaderNumber("mounting.target_shift_mm").value_or(0.0),
+          recording.HeaderText("mounting.target_reversed").value_or("false") == "true"};
+}
+
 Sweep ReadMeans(const recording::Recording& recording, const recording::Blocks& blocks,
                 const probes::HeadSettings& head, const probes::ProbeNoise& noise) {
   const auto dwells =
@@ -34,6 +46,7 @@ Sweep ReadMeans(const recording::Recording& recording, const recording::Blocks& 
   Sweep sweep{{}, probes::FitStations(recording.name, dwells, noise)};
   sweep.run.name = recording.name;
   sweep.run.mounting = MountingOf(recording);
+  sweep.run.mounted = MountedOf(recording);
   sweep.run.axis = dwells.axis;
   sweep.run.start = dwells.start;
   return sweep;
@@ -78,6 +91,7 @@ SweepRun Standing(const recording::Recording& recording, const std::vector<std::
   SweepRun run;
   run.name = recording.name;
   run.mounting = MountingOf(recording);
+  run.mounted = MountedOf(recording);
   run.axis = recording.HeaderText("axis").value_or("X")[0];
   Eigen::VectorXd readings(count);
   for (Index row = 0; row < count; ++row) {

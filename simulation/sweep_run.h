@@ -23,9 +23,18 @@
 
 namespace abbe::simulation {
 
+// How head and target were set up, as the header says.
+struct SweepMounting {
+  bool head_turned = false;      // by half a turn about n
+  double target_shift = 0.0;     // m, along u
+  bool target_reversed = false;  // each face by half a turn about its normal, in the middle of what
+                                 // the head passes
+};
+
 struct SweepRun {
   std::string name;      // of the recording, for messages
   std::string mounting;  // header `mounting`: sweeps that share it share the mounted target
+  SweepMounting mounted = {};
   char axis = 'X';
   Eigen::Vector3d start;        // [x y z] when the sweep began
   Eigen::Matrix3Xd steps = {};  // of the other axes from the start, in each row; or empty

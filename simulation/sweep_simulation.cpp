@@ -94,9 +94,10 @@ class SweepResidual : public Responsive {
     return functions;
   }
 
-  // What the probes read by the error motions of all axes.
+  // What the probes read by the error motions of all axes; the tilts of the faces.
   MotionJacobian ReadingByMotions(const std::vector<machine::ErrorFunction>& functions,
-                                  const VectorXd& shared, Index row) const {
+                                  const VectorXd& shared, Index row,
+                                  double* tilts = nullptr) const {
     using Dual = estimation::DualNumber<kToolStage>;
     machine::MotionErrors<Dual> errors;
     for (int axis = 0; axis < machine::kAxes; ++axis) {
@@ -117,8 +118,9 @@ class SweepResidual : public Responsive {
       for (std::size_t k = 9; k < kLocal; ++k) {
         local[static_cast<Index>(k)] = Dual(shared[places[k]]);
       }
-      J.row(static_cast<Index>(probe)) =
-          ReadingOf<Dual>(plan_, probe, X_WT, Unpack<Dual>(local)).v.transpose();
+      const auto at = Unpack<Dual>(local);
+      J.row(static_cast<Index>(probe)) = ReadingOf<Dual>(plan_, probe, X_WT, at).v.transpose();
+      if (tilts != nullptr) tilts[probe] = SightOf<Dual>(plan_, probe, X_WT, at).Tilt();
     }
     return J;
   }
@@ -216,10 +218,13 @@ std::shared_ptr<const Response> SweepResidual::At(const VectorXd& x) const {
   const std::vector<machine::ErrorFunction> functions = FunctionsAt(x);
   const VectorXd shared = x.tail(x.size() - coefficients_);
   MatrixXd by_motions(static_cast<Index>(kProbes), kToolStage * run_.rows());
+  MatrixXd tilts(static_cast<Index>(kProbes), run_.rows());
   for (Index row = 0; row < run_.rows(); ++row) {
-    by_motions.middleCols<kToolStage>(row * kToolStage) = ReadingByMotions(functions, shared, row);
+    by_motions.middleCols<kToolStage>(row * kToolStage) =
+        ReadingByMotions(functions, shared, row, tilts.col(row).data());
   }
-  return std::make_shared<ReadingResponse>(std::move(by_motions), run_.gap, noise_);
+  return std::make_shared<ReadingResponse>(std::move(by_motions), run_.gap, std::move(tilts),
+                                           noise_);
 }
 
 ParameterBlock BlockOf(const std::string& name, const estimation::PrintUnit& unit,

@@ -27,7 +27,7 @@ inline constexpr double kLongAgo = 1.0;
 
 struct Trace {
   std::string name;       // of the recording
-  std::string kind;       // "sweep", "dwell", "gap-steps", "linkage"
+  std::string kind;       // "sweep", "dwell", "gap-steps", "linkage", "reference", "length"
   char axis = ' ';        // the swept one
   double started = 0.0;   // s since 1970; 0: not stated
   Eigen::VectorXd time;   // s since the recording began
@@ -45,6 +45,9 @@ struct Trace {
 
   Eigen::Matrix<double, 5, Eigen::Dynamic> gap;  // as read; of a sweep
   Eigen::Matrix<double, 5, 1> zero;              // gap that counts as no motion
+
+  Eigen::MatrixXd tilt;   // rad: of the face against each probe, as simulated; 5 x rows or empty
+  Eigen::MatrixXd spots;  // where the probes look at the target: target_spots.h; or empty
 
   Eigen::MatrixXd angles;     // as read, pivots x rows; of a linkage
   Eigen::MatrixXd turning;    // heading of the pivots

@@ -32,7 +32,8 @@ namespace abbe::simulation {
 // What the runs at hand consist of.
 struct Scene {
   std::vector<const Trace*> traces;
-  Eigen::Vector3d travel;  // m, lengths
+  Eigen::Vector3d travel;    // m, lengths
+  double form_length = 0.0;  // m: correlation length of the form of the target; 0: not known
 
   bool HasSweeps() const;
   Eigen::Index Pivots() const;  // 0 without a linkage
@@ -91,7 +92,10 @@ struct Cause {
   bool one_event = false;     // cannot be held against other passes
   bool whole = false;         // there or not: its one coefficient is 1
   Recall recall = {};         // of the values that `tell` gives; none: as without `tell`
-  bool in_map = false;        // one of the 21 errors, a function of position
+  // Its coefficients are draws of a random function with the standard deviation shape[0] in each:
+  // that is estimated, they are not what it is known by.
+  bool drawn = false;
+  bool in_map = false;  // one of the 21 errors, a function of position
   // The stage in which it is a line in time: its shape is a frequency, looked for among all that
   // the runs resolve; `shapes` only tells whether it would be seen.
   LineIn line_in = {};

@@ -8,37 +8,16 @@
 namespace abbe::simulation {
 
 const std::vector<Cause>& Causes() {
-  static const std::vector<Cause> causes{Backlash(),
-                                         LeadscrewCyclic(),
-                                         ScaleError(),
-                                         Squareness(),
-                                         ThermalGrowth(),
-                                         WarmUpDrift(),
-                                         PivotWarmUp(),
-                                         ServoLag(),
-                                         ServoLagMismatch(),
-                                         ReversalSpike(),
-                                         LoadCoupling(),
-                                         Vibration(),
-                                         ProbeGain(),
-                                         ProbeNonlinearity(),
-                                         ProbePosition(),
-                                         ProbeCrosstalk(),
-                                         ChannelSwap(),
-                                         ChannelSign(),
-                                         MainsPickup(),
-                                         EncoderEccentricity(),
-                                         EncoderSubdivision(),
-                                         EncoderCountSlip(),
-                                         BearingRoundness(),
-                                         LinkThermalGrowth(),
-                                         LinkGravityBend(),
-                                         JointHysteresis(),
-                                         CapFriction(),
-                                         ClockSkew(),
-                                         FixtureMisalignment(),
-                                         StuckChannel(),
-                                         Outliers()};
+  static const std::vector<Cause> causes{
+      Backlash(),         LeadscrewCyclic(),     ScaleError(),          Squareness(),
+      ThermalGrowth(),    WarmUpDrift(),         PivotWarmUp(),         ServoLag(),
+      ServoLagMismatch(), ReversalSpike(),       LoadCoupling(),        Vibration(),
+      ProbeGain(),        ProbeNonlinearity(),   ProbePosition(),       ProbeTiltResponse(),
+      ProbeCrosstalk(),   TargetForm(),          ChannelSwap(),         ChannelSign(),
+      MainsPickup(),      EncoderEccentricity(), EncoderSubdivision(),  EncoderCountSlip(),
+      BearingRoundness(), LinkThermalGrowth(),   LinkGravityBend(),     JointHysteresis(),
+      CapFriction(),      ClockSkew(),           FixtureMisalignment(), StuckChannel(),
+      Outliers()};
   return causes;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "diagnosis/diagnose.h"
+#include "diagnosis/measured_noise.h"
 #include "machine/machine.h"
 #include "probes/head_settings.h"
 #include "random/counter_random.h"
@@ -57,7 +58,9 @@ class HiddenWorlds {
   }
 
   diagnosis::Campaign Recordings(const rig::Campaign& world) const {
-    diagnosis::Campaign campaign(setup_);
+    diagnosis::Setup setup = setup_;
+    diagnosis::UseMeasuredNoise(world.recordings, setup);
+    diagnosis::Campaign campaign(std::move(setup));
     for (const auto& recording : world.recordings) campaign.Add(recording);
     return campaign;
   }

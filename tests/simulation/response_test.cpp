@@ -1,9 +1,11 @@
 // A disturbance that does what a parameter does must answer with the parameter's own derivative.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/length_simulation.h"
 #include "simulation/reference_noise.h"
 #include "simulation/reference_simulation.h"
 #include "simulation/reference_trace.h"
@@ -105,6 +107,40 @@ TEST_F(Response, OfASweepToTheHeadRisingIsThatOfTheTopProbesAlone) {
   ExpectSame(run.response->At(x)->Columns({shown}).col(0), -ByParameter(run, x, "probe_zero s.d"));
   shown.row(MotionStage(0, 4)).setConstant(1e-3);
   ExpectAdjoint(*run.response->At(x), shown, run.residual->Rows());
+}
+
+TEST_F(Response, OfLengthsIsThatOfItsParameters) {
+  recording::Recording recording;
+  recording.name = "lengths";
+  recording.header = "kind = \"length\"\ntool_mm = [10.0, 20.0, -50.0]\n";
+  recording.columns = {
+      {"x_mm", {5.0, 15.0, 30.0, 10.0, 20.0}},     {"y_mm", {10.0, 10.0, 10.0, 20.0, 35.0}},
+      {"z_mm", {20.0, 20.0, 20.0, 5.0, 15.0}},     {"pass", {1.0, 1.0, 1.0, 2.0, 2.0}},
+      {"length_mm", {0.0, 10.0, 25.0, 0.0, 20.6}}, {"u_length_um", {0.1, 0.1, 0.2, 0.1, 0.1}}};
+  const SimulatedRun run = SimulateLengths(campaign.model, campaign.reference, recording);
+  const Trace trace = TraceOfLengths(recording);
+  const VectorXd x = StartOf(run).array() + 1e-5;
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    for (int motion = 0; motion < machine::kMotions; ++motion) {
+      const auto& function = campaign.model.Function(axis, motion);
+      VectorXd gradient(function.size());
+      Index bent = 0;
+      function.Evaluate(trace.axes(axis, 2), nullptr, gradient.data());
+      gradient.maxCoeff(&bent);
+      Disturbance moved = NoDisturbance(trace);
+      for (Index row = 0; row < trace.rows(); ++row) {
+        function.Evaluate(trace.axes(axis, row), nullptr, gradient.data());
+        moved.row(MotionStage(axis, motion))[row] = gradient[bent];
+      }
+      const std::string name = fmt::format("{}.c{}", machine::MotionName(axis, motion), bent);
+      ExpectSame(run.response->At(x)->Columns({moved}).col(0), -ByParameter(run, x, name));
+    }
+  }
+  Disturbance second = NoDisturbance(trace);
+  second.row(MotionStage(0, 0))[2] = 1.0;
+  ExpectAdjoint(*run.response->At(x), second, run.residual->Rows());
+  const double weight = run.response->At(x)->WeightsOf(MotionStage(0, 0))[2];
+  EXPECT_GE(weight, run.response->At(x)->Columns({second}).squaredNorm());
 }
 
 TEST_F(Response, OfAReferenceIsThatOfItsParameters) {
