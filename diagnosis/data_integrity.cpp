@@ -1,6 +1,7 @@
 #include "diagnosis/data_integrity.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -27,6 +28,7 @@ struct Channel {
 struct Table {
   std::vector<std::size_t> rows;
   Values time;
+  std::vector<Values> axes;                 // mm
   std::vector<std::size_t> stay_end, stay;  // of each row: the row after its stay, rows in it
   std::vector<Channel> channels;
 };
@@ -51,19 +53,18 @@ Table TableOf(const recording::Recording& recording) {
   Table table;
   table.rows = recording::GoodRows(recording);
   table.time = At(recording, "time_s", table.rows);
-  std::vector<Values> axes;
   for (const char* name : {"x_mm", "y_mm", "z_mm"}) {
-    axes.push_back(At(recording, name, table.rows));
+    if (recording.Find(name)) table.axes.push_back(At(recording, name, table.rows));
   }
   table.stay_end.resize(table.rows.size());
   table.stay.resize(table.rows.size());
   for (std::size_t first = 0; first < table.rows.size();) {
     std::size_t last = first + 1;
     const auto together = [&](const Values& axis) {
-      return axis.empty() || std::abs(axis[last] - axis[first]) < kStays;
+      return std::abs(axis[last] - axis[first]) < kStays;
     };
     while (last < table.rows.size() && table.time[last] - table.time[last - 1] < kPause &&
-           std::all_of(axes.begin(), axes.end(), together)) {
+           std::all_of(table.axes.begin(), table.axes.end(), together)) {
       ++last;
     }
     std::fill(table.stay_end.begin() + static_cast<std::ptrdiff_t>(first),
@@ -97,6 +98,26 @@ std::size_t FiveAround(const Table& table, std::size_t row) {
   return table.time.size();
 }
 
+// Values at five rows less what the cubic through the other four says at the one of them: weights.
+std::array<double, 5> FromCubic(const Values& time, std::size_t first, std::size_t row) {
+  std::array<double, 5> weights{};
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const std::size_t at = first + k;
+    weights[k] = at == row ? 1.0 : -1.0;
+    for (std::size_t other = first; at != row && other < first + 5; ++other) {
+      if (other == at || other == row) continue;
+      weights[k] *= (time[row] - time[other]) / (time[at] - time[other]);
+    }
+  }
+  return weights;
+}
+
+double Applied(const std::array<double, 5>& weights, const Values& values, std::size_t first) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * values[first + k];
+  return sum;
+}
+
 // Of each reading from what its neighbours say, `unit` times what scatters alike for all; NaN where
 // they say nothing.
 struct Off {
@@ -118,18 +139,16 @@ Off OffNeighbours(const Table& table, const Values& values) {
     }
     const std::size_t first = FiveAround(table, i);
     if (first == count) continue;
-    double rest = values[i], square = 1.0;
-    for (std::size_t k = first; k < first + 5; ++k) {
-      double weight = k == i ? 0.0 : 1.0;  // of Lagrange's cubic
-      for (std::size_t other = first; other < first + 5; ++other) {
-        if (weight == 0.0 || other == k || other == i) continue;
-        weight *= (table.time[i] - table.time[other]) / (table.time[k] - table.time[other]);
-      }
-      rest -= weight * values[k];
-      square += weight * weight;
-    }
+    const auto weights = FromCubic(table.time, first, i);
+    // Where the way bends the cubic says nothing of the instruments either.
+    const auto bends = [&](const Values& axis) {
+      return std::abs(Applied(weights, axis, first)) > kStays;
+    };
+    if (std::any_of(table.axes.begin(), table.axes.end(), bends)) continue;
+    double square = 0.0;
+    for (const double weight : weights) square += weight * weight;
     off.unit[i] = std::sqrt(square);
-    off.scatter[i] = rest / off.unit[i];
+    off.scatter[i] = Applied(weights, values, first) / off.unit[i];
   }
   return off;
 }

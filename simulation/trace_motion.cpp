@@ -134,6 +134,22 @@ class Play {
   double in_, out_;
 };
 
+// The way from one row to the next as a cubic, by its slopes at both ends in ways of a step: at a
+// corner, where what moves comes to a stand, the slopes of neighbours would take it beyond and
+// back.
+std::pair<double, double> SlopesOf(double step, double start, double end) {
+  constexpr double kSteepest = 3.0;  // steps: a cubic with less does not turn (Fritsch and Carlson)
+  if (start * end < 0.0 && std::min(std::abs(start), std::abs(end)) > kAxisBand) {
+    return {start, end};  // it turns between the two
+  }
+  const auto limited = [&](double slope) {
+    return slope * step <= 0.0
+               ? 0.0
+               : std::copysign(std::min(std::abs(slope), kSteepest * std::abs(step)), step);
+  };
+  return {limited(start), limited(end)};
+}
+
 // What moved before a pass began is told from how it began; between two rows the way is a cubic,
 // between two that stand a straight line and beside it `aside`.
 RowVectorXd Follow(Play play, const RowVectorXd& position, const Trace& trace,
@@ -153,7 +169,8 @@ RowVectorXd Follow(Play play, const RowVectorXd& position, const Trace& trace,
     } else if (moves) {
       const double seconds = trace.time[row] - trace.time[row - 1];
       const double from = position[row - 1], to = position[row];
-      const double start = motion.first(0, row - 1) * seconds, end = velocity * seconds;
+      const auto [start, end] =
+          SlopesOf(to - from, motion.first(0, row - 1) * seconds, velocity * seconds);
       for (int step = 1; step < kWaySteps; ++step) {
         const double s = static_cast<double>(step) / kWaySteps, r = 1.0 - s;
         play.Follow(r * r * (1.0 + 2.0 * s) * from + s * s * (1.0 + 2.0 * r) * to +
