@@ -150,6 +150,17 @@ std::pair<double, double> SlopesOf(double step, double start, double end) {
   return {limited(start), limited(end)};
 }
 
+// Whether the axes come from rest with the first row of a recording: they all gather way at once,
+// and would have stood shortly before.
+bool FromRest(const Trace& trace, Index row) {
+  constexpr double kShortly = 0.3, kStood = 0.1;  // s; of the speed
+  if (row > 0) return false;
+  const Eigen::Vector3d velocity = trace.velocity.col(row), gain = trace.acceleration.col(row);
+  if (gain.isZero(0.0)) return false;
+  const double ago = velocity.dot(gain) / gain.squaredNorm();
+  return ago >= 0.0 && ago < kShortly && (velocity - ago * gain).norm() <= kStood * velocity.norm();
+}
+
 // What moved before a pass began is told from how it began; between two rows the way is a cubic,
 // between two that stand a straight line and beside it `aside`.
 RowVectorXd Follow(Play play, const RowVectorXd& position, const Trace& trace,
@@ -160,7 +171,9 @@ RowVectorXd Follow(Play play, const RowVectorXd& position, const Trace& trace,
   for (Index row = 0; row < position.size(); ++row) {
     const double velocity = motion.first(0, row), acceleration = motion.second(0, row);
     const bool moves = velocity != 0.0 || acceleration != 0.0;
-    if (moves && Begins(trace, row)) {
+    if (moves && FromRest(trace, row)) {
+      play.Begin(position[row]);
+    } else if (moves && Begins(trace, row)) {
       play.Begin(position[row] - kBefore * velocity + 0.5 * kBefore * kBefore * acceleration);
       for (int step = kWaySteps; step > 0; --step) {
         const double ago = kBefore * step / kWaySteps;
