@@ -139,7 +139,10 @@ simulation::Scene Campaign::scene() const {
     const auto& travel = setup_.machine.travels[static_cast<std::size_t>(axis)];
     scene.travel[axis] = travel.last - travel.first;
   }
-  if (setup_.head) scene.form_length = setup_.target.form_length;
+  if (setup_.head) {
+    scene.form = setup_.target.form;
+    scene.form_length = setup_.target.form_length;
+  }
   return scene;
 }
 

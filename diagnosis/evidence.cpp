@@ -19,28 +19,37 @@ namespace {
 constexpr Index kColumnsAtOnce = 256;  // so many share the derivatives of the simulation
 
 // Of a cause that is drawn: the standard deviation of its draws with the largest evidence, and the
-// mean evidence of all that were tried, each as probable as the next.
+// mean evidence of all that were tried, each as probable as the next, beyond that of what is
+// stated.
 struct DrawnSize {
   double sd, log_evidence;
 };
 
-DrawnSize SizeOfDraws(const MatrixXd& S, const VectorXd& g) {
+DrawnSize SizeOfDraws(const MatrixXd& S, const VectorXd& g, double stated) {
   constexpr double kSmallest = 0.01e-6, kLargest = 10e-6, kRatio = 1.1;  // m
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S);
+  std::vector<Index> seen;
+  for (Index i = 0; i < g.size(); ++i) {
+    if (S(i, i) > 0.0) seen.push_back(i);
+  }
+  if (seen.empty()) return {kSmallest, 0.0};
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S(seen, seen));
   const Eigen::ArrayXd information = solver.eigenvalues().array().max(0.0);
-  const Eigen::ArrayXd score = (solver.eigenvectors().transpose() * g).array();
+  const Eigen::ArrayXd score = (solver.eigenvectors().transpose() * g(seen)).array();
+  const auto evidence = [&](double sd) {
+    const Eigen::ArrayXd grown = 1.0 + sd * sd * information;
+    return 0.5 * (sd * sd * score.square() / grown - grown.log()).sum();
+  };
   DrawnSize best{kSmallest, -std::numeric_limits<double>::infinity()};
   double sum = 0.0, count = 0.0;
   for (double sd = kSmallest; sd < kLargest; sd *= kRatio, ++count) {
-    const Eigen::ArrayXd grown = 1.0 + sd * sd * information;
-    const double log_evidence = 0.5 * (sd * sd * score.square() / grown - grown.log()).sum();
+    const double log_evidence = evidence(sd);
     if (log_evidence > best.log_evidence) {
       sum *= std::exp(best.log_evidence - log_evidence);
       best = {sd, log_evidence};
     }
     sum += std::exp(log_evidence - best.log_evidence);
   }
-  best.log_evidence += std::log(sum / count);
+  best.log_evidence += std::log(sum / count) - std::max(0.0, evidence(stated));
   return best;
 }
 
@@ -49,7 +58,7 @@ Score ScoreFrom(Candidate candidate, const Fit::Projection& projection) {
   if (candidate.cause->drawn) {
     const VectorXd usual = candidate.Plausible();
     const double visible = std::sqrt(std::max(0.0, S.diagonal().dot(usual.cwiseAbs2())));
-    const DrawnSize size = SizeOfDraws(S, g);
+    const DrawnSize size = SizeOfDraws(S, g, candidate.shape[1]);
     candidate.shape[0] = size.sd;
     return {std::move(candidate), VectorXd::Zero(g.size()), MatrixXd::Zero(g.size(), g.size()),
             size.log_evidence, visible};

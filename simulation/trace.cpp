@@ -75,6 +75,7 @@ Trace TraceOf(const recording::Recording& recording, const SweepRun& run) {
   trace.kind = recording.Kind();
   trace.axis = run.axis;
   trace.mounting = run.mounting;
+  trace.head_turned = run.mounted.head_turned;
   trace.started = StartedOf(recording);
   trace.time = trace.clock = run.time;
   trace.samples = run.samples;

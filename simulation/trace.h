@@ -46,7 +46,8 @@ struct Trace {
   Eigen::Matrix<double, 5, Eigen::Dynamic> gap;  // as read; of a sweep
   Eigen::Matrix<double, 5, 1> zero;              // gap that counts as no motion
 
-  Eigen::MatrixXd tilt;   // rad: of the face against each probe, as simulated; 5 x rows or empty
+  Eigen::MatrixXd tilt;  // rad: of the face against each probe, as simulated; 5 x rows or empty
+  bool head_turned = false;
   Eigen::MatrixXd spots;  // where the probes look at the target: target_spots.h; or empty
 
   Eigen::MatrixXd angles;     // as read, pivots x rows; of a linkage

@@ -33,6 +33,7 @@ namespace abbe::simulation {
 struct Scene {
   std::vector<const Trace*> traces;
   Eigen::Vector3d travel;    // m, lengths
+  double form = 0.0;         // m: standard deviation of the form of the target that is stated
   double form_length = 0.0;  // m: correlation length of the form of the target; 0: not known
 
   bool HasSweeps() const;
@@ -93,7 +94,7 @@ struct Cause {
   bool whole = false;         // there or not: its one coefficient is 1
   Recall recall = {};         // of the values that `tell` gives; none: as without `tell`
   // Its coefficients are draws of a random function with the standard deviation shape[0] in each:
-  // that is estimated, they are not what it is known by.
+  // that is estimated, they are not what it is known by. Up to shape[1] it is as stated.
   bool drawn = false;
   bool in_map = false;  // one of the 21 errors, a function of position
   // The stage in which it is a line in time: its shape is a frequency, looked for among all that

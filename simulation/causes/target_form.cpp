@@ -5,10 +5,10 @@
 // all that the probes see of a face; each swept axis has its own. With k the covariance to the
 // nodes and L L' that among them, its functions are L^-1 k: draws of one standard deviation are
 // forms of that deviation (Rasmussen and Williams, Gaussian Processes (2006), 8.1). On an axis that
-// is longer than nine times 0.6 correlation lengths the length is what the grid can hold.
+// is longer than thirteen times 0.6 correlation lengths the length is what the grid can hold.
 #include <Eigen/Cholesky>
 #include <array>
-#include <limits>
+#include <set>
 
 #include "simulation/causes/registry.h"
 
@@ -21,77 +21,87 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr Index kAlong = 10, kAcross = 4, kNodes = kAlong * kAcross, kAxes = 3, kUnits = 2;
-constexpr double kUsual = 0.2e-6;    // m
-constexpr double kApart = 0.6;       // correlation lengths from node to node at most
-constexpr double kSameLine = 1e-6;   // m
-constexpr double kRounding = 1e-10;  // of the variance of a node
+constexpr Index kAlong = 14, kAcross = 4, kNodes = kAlong * kAcross, kUnits = 2;
+// Of each swept axis, and of each with the head turned: its side unit then sees the opposite face.
+constexpr Index kFaces = 6;
+constexpr double kUsual = 0.2e-6;      // m
+constexpr double kApart = 0.6;         // correlation lengths from node to node at most
+constexpr double kSamePlace = 0.1e-3;  // m
+constexpr double kRounding = 1e-10;    // of the variance of a node
 
 std::vector<Index> ProbesAt(const std::string& object) {
   return object == "target_top" ? std::vector<Index>{0, 1, 2} : std::vector<Index>{3, 4};
 }
 
-struct Range {
-  double first = std::numeric_limits<double>::infinity(), last = -first;
-
-  void Take(const RowVectorXd& values) {
-    first = std::min(first, values.minCoeff());
-    last = std::max(last, values.maxCoeff());
-  }
-  bool any() const { return last >= first; }
-};
-
 Index UnitOf(const std::string& object) { return object == "target_top" ? 0 : 1; }
 
-// [standard deviation, correlation length], then of each axis: first node and spacing along, across
+Index FaceOf(const Trace& trace, const std::string& object) {
+  return AxisOf(trace.axis) + (trace.head_turned && UnitOf(object) == 1 ? 3 : 0);
+}
+
+// All places, in order, each once.
+using Places = std::set<long>;  // kSamePlace
+void Take(const RowVectorXd& coordinate, Places& places) {
+  for (const double each : coordinate) places.insert(std::lround(each / kSamePlace));
+}
+
+// Nodes at the places themselves where these are few, the rest so far away that they do nothing;
+// else evenly over them.
+VectorXd NodesAt(const Places& places, Index count) {
+  constexpr double kFarAway = 10.0;  // m
+  VectorXd nodes(count);
+  for (Index i = 0; i < count; ++i) nodes[i] = kFarAway * static_cast<double>(i + 1);
+  if (static_cast<Index>(places.size()) > count) {
+    return VectorXd::LinSpaced(count, kSamePlace * static_cast<double>(*places.begin()),
+                               kSamePlace * static_cast<double>(*places.rbegin()));
+  }
+  Index i = 0;
+  for (const long place : places) nodes[i++] = kSamePlace * static_cast<double>(place);
+  return nodes;
+}
+
+// [standard deviation, that stated, correlation length], then of each face the nodes along, across
 // the top, across the side.
-constexpr Index kLength = 1, kFirst = 2, kOfAxis = 2 * (1 + kUnits);
+constexpr Index kLength = 2, kFirst = 3, kOfFace = kAlong + kUnits * kAcross;
 
 VectorXd GridOver(const Scene& scene) {
-  std::array<Range, kAxes> along;
-  std::array<std::array<Range, kUnits>, kAxes> across;
+  std::array<Places, kFaces> along;
+  std::array<std::array<Places, kUnits>, kFaces> across;
   for (const Trace* trace : scene.traces) {
     if (trace->spots.size() == 0) continue;
-    const auto axis = static_cast<std::size_t>(AxisOf(trace->axis));
     for (const char* object : {"target_top", "target_side"}) {
+      const auto face = static_cast<std::size_t>(FaceOf(*trace, object));
       for (const Index probe : ProbesAt(object)) {
-        along[axis].Take(trace->spots.row(2 * probe));
-        across[axis][static_cast<std::size_t>(UnitOf(object))].Take(
-            trace->spots.row(2 * probe + 1));
+        Take(trace->spots.row(2 * probe), along[face]);
+        Take(trace->spots.row(2 * probe + 1),
+             across[face][static_cast<std::size_t>(UnitOf(object))]);
       }
     }
   }
-  VectorXd grid = VectorXd::Zero(kFirst + kOfAxis * kAxes);
-  grid.head<2>() << kUsual, std::max(scene.form_length, 1e-3);
-  for (std::size_t axis = 0; axis < kAxes; ++axis) {
-    Index at = kFirst + kOfAxis * static_cast<Index>(axis);
-    const auto add = [&](const Range& range, Index nodes) {
-      if (!range.any()) return;
-      grid[at++] = range.first;
-      grid[at++] = (range.last - range.first) / static_cast<double>(nodes - 1);
-      grid[kLength] = std::max(grid[kLength], grid[at - 1] / kApart);
+  VectorXd grid = VectorXd::Zero(kFirst + kOfFace * kFaces);
+  grid.head<3>() << kUsual, scene.form, std::max(scene.form_length, kSamePlace);
+  for (std::size_t face = 0; face < kFaces; ++face) {
+    Index at = kFirst + kOfFace * static_cast<Index>(face);
+    const auto add = [&](const Places& places, Index count) {
+      grid.segment(at, count) = NodesAt(places, count);
+      if (static_cast<Index>(places.size()) > count) {
+        grid[kLength] = std::max(grid[kLength], (grid[at + 1] - grid[at]) / kApart);
+      }
+      at += count;
     };
-    add(along[axis], kAlong);
-    for (const Range& each : across[axis]) add(each, kAcross);
+    add(along[face], kAlong);
+    for (const Places& each : across[face]) add(each, kAcross);
   }
   return grid;
 }
 
-// The functions of one coordinate, nodes x rows; of a line of one place only the first.
-MatrixXd FunctionsOf(const RowVectorXd& coordinate, double first, double spacing, double length,
-                     Index nodes) {
-  if (spacing < kSameLine) {
-    MatrixXd one = MatrixXd::Zero(nodes, coordinate.size());
-    one.row(0).setOnes();
-    return one;
-  }
-  const VectorXd at =
-      VectorXd::LinSpaced(nodes, first, first + spacing * static_cast<double>(nodes - 1));
+// The functions of one coordinate, nodes x rows.
+MatrixXd FunctionsOf(const RowVectorXd& coordinate, const VectorXd& nodes, double length) {
   const auto covariance = [&](const RowVectorXd& places) -> MatrixXd {
-    const MatrixXd apart = at.replicate(1, places.size()) - places.replicate(nodes, 1);
+    const MatrixXd apart = nodes.replicate(1, places.size()) - places.replicate(nodes.size(), 1);
     return (-0.5 * (apart / length).array().square()).exp();
   };
-  MatrixXd among = covariance(at.transpose());
+  MatrixXd among = covariance(nodes.transpose());
   among.diagonal().array() += kRounding;
   return among.llt().matrixL().solve(covariance(coordinate));
 }
@@ -107,7 +117,7 @@ Cause TargetForm() {
                 .check = "flatness of the face; sweep again with the target shifted or reversed",
                 .remedy = "lap or replace the target, or state its flatness (target.form_nm)"},
       .keys = {{"rms_um", 1e-6, 0.0, 100.0}},
-      .plausible = VectorXd::Ones(kAxes * kNodes),
+      .plausible = VectorXd::Ones(kFaces * kNodes),
       .objects = [](const Scene& scene) -> std::vector<std::string> {
         if (!scene.HasSweeps()) return {};
         return {"target_top", "target_side"};
@@ -115,16 +125,16 @@ Cause TargetForm() {
       .columns = [](const Trace& trace, const std::string& object,
                     const VectorXd& shape) -> std::vector<Disturbance> {
         if (trace.spots.size() == 0) return {};
-        std::vector<Disturbance> columns(kAxes * kNodes, NoDisturbance(trace));
-        const Index axis = AxisOf(trace.axis), along_at = kFirst + kOfAxis * axis,
-                    across_at = along_at + 2 * (1 + UnitOf(object));
+        std::vector<Disturbance> columns(kFaces * kNodes, NoDisturbance(trace));
+        const Index face = FaceOf(trace, object), along_at = kFirst + kOfFace * face,
+                    across_at = along_at + kAlong + kAcross * UnitOf(object);
         for (const Index probe : ProbesAt(object)) {
-          const MatrixXd along = FunctionsOf(trace.spots.row(2 * probe), shape[along_at],
-                                             shape[along_at + 1], shape[kLength], kAlong),
-                         across = FunctionsOf(trace.spots.row(2 * probe + 1), shape[across_at],
-                                              shape[across_at + 1], shape[kLength], kAcross);
+          const MatrixXd along = FunctionsOf(trace.spots.row(2 * probe),
+                                             shape.segment(along_at, kAlong), shape[kLength]),
+                         across = FunctionsOf(trace.spots.row(2 * probe + 1),
+                                              shape.segment(across_at, kAcross), shape[kLength]);
           for (Index node = 0; node < kNodes; ++node) {
-            columns[static_cast<std::size_t>(axis * kNodes + node)].row(kReadingStage + probe) =
+            columns[static_cast<std::size_t>(face * kNodes + node)].row(kReadingStage + probe) =
                 along.row(node / kAcross).cwiseProduct(across.row(node % kAcross));
           }
         }
@@ -134,7 +144,7 @@ Cause TargetForm() {
       .tell = [](const VectorXd&, const VectorXd& shape) -> VectorXd { return shape.head(1); },
       .fixed_shapes = true,
       .recall = [](const VectorXd& values) -> Recalled {
-        return {VectorXd::Zero(kAxes * kNodes), VectorXd::Constant(1, values[0])};
+        return {VectorXd::Zero(kFaces * kNodes), VectorXd::Constant(1, values[0])};
       },
       .drawn = true,
   };

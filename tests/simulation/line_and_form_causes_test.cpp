@@ -82,7 +82,7 @@ Trace Looking() {
 TEST(TargetForm, DrawsHaveTheDeviationAndTheLengthOfTheForm) {
   constexpr double kLength = 15e-3;
   const Trace trace = Looking();
-  const Scene scene{{&trace}, Eigen::Vector3d::Constant(0.06), kLength};
+  const Scene scene{{&trace}, Eigen::Vector3d::Constant(0.06), 0.0, kLength};
   const Cause cause = TargetForm();
   const auto columns = cause.columns(trace, "target_top", cause.shapes(scene).front());
   // Form of draws of 1: covariance of the spots of probes a and b.
