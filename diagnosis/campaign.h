@@ -24,6 +24,7 @@
 #include "recording/recording.h"
 #include "relm/linkage_settings.h"
 #include "simulation/causes/cause.h"
+#include "simulation/shaft_noise.h"
 #include "simulation/simulated_run.h"
 #include "simulation/trace.h"
 
@@ -37,6 +38,8 @@ struct Setup {
   std::optional<relm::LinkageSettings> linkage;
   // m, of runs with a reference instrument that state none, by name; others are estimated.
   std::map<std::string, Eigen::Vector3d> reference_noise = {};
+  // Of runs of a shaft, by name.
+  std::map<std::string, simulation::RimRepeats> shaft_repeats = {};
 };
 
 struct DiagnosedRun {

@@ -93,6 +93,9 @@ Recording Planned(Recording path, const Setup& setup) {
     SetAngles(setup, *setup.linkage, path);
   } else if (kind == "sweep" || kind == "dwell" || kind == "gap-steps") {
     SetGaps(setup, path);
+  } else if (kind == "shaft") {
+    throw InputError(
+        fmt::format("{}: a turning shaft cannot be planned yet; leave the run out", path.name));
   }
   return path;
 }

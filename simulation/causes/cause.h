@@ -35,6 +35,7 @@ struct Scene {
   Eigen::Vector3d travel;  // m, lengths
 
   bool HasSweeps() const;
+  bool OnlyShafts() const;      // which say nothing of the axes
   Eigen::Index Pivots() const;  // 0 without a linkage
   std::vector<std::string> Sensors() const;
 };

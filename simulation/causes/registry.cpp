@@ -9,14 +9,15 @@ namespace abbe::simulation {
 
 const std::vector<Cause>& Causes() {
   static const std::vector<Cause> causes{
-      Backlash(),          LeadscrewCyclic(),  ScaleError(),          Squareness(),
-      ThermalGrowth(),     WarmUpDrift(),      PivotWarmUp(),         ServoLag(),
-      ServoLagMismatch(),  ReversalSpike(),    LoadCoupling(),        ProbeGain(),
-      ProbeNonlinearity(), ProbePosition(),    ProbeCrosstalk(),      ChannelSwap(),
-      ChannelSign(),       MainsPickup(),      EncoderEccentricity(), EncoderSubdivision(),
-      EncoderCountSlip(),  BearingRoundness(), LinkThermalGrowth(),   LinkGravityBend(),
-      JointHysteresis(),   CapFriction(),      ClockSkew(),           FixtureMisalignment(),
-      StuckChannel(),      Outliers()};
+      Backlash(),           LeadscrewCyclic(),  ScaleError(),          Squareness(),
+      ThermalGrowth(),      WarmUpDrift(),      PivotWarmUp(),         ServoLag(),
+      ServoLagMismatch(),   ReversalSpike(),    LoadCoupling(),        ProbeGain(),
+      ProbeNonlinearity(),  ProbePosition(),    ProbeCrosstalk(),      ChannelSwap(),
+      ChannelSign(),        MainsPickup(),      EncoderEccentricity(), EncoderSubdivision(),
+      EncoderCountSlip(),   BearingRoundness(), LinkThermalGrowth(),   LinkGravityBend(),
+      JointHysteresis(),    CapFriction(),      ClockSkew(),           FixtureMisalignment(),
+      TargetEccentricity(), TargetLobing(),     ShaftErrorMotion(),    SensorGain(),
+      SensorNonlinearity(), ShaftClockSkew(),   StuckChannel(),        Outliers()};
   return causes;
 }
 
