@@ -124,9 +124,9 @@ Fit::Fit(const Fit& before, std::vector<Candidate> taken_in)
     }
     const Problem problem = ProblemOf(campaign_, runs, taken_in_, result_);
     result_ = Solve(problem, kWithCauses);
-    Linearize(problem);
     const std::vector<Candidate> at = taken_in_;
     double moved = FollowShapes();
+    Linearize(problem);
     if (of_shaft) moved = std::max(moved, Moved(at, taken_in_));
     if (round > 0 && moved < kShapeFound) break;
   }

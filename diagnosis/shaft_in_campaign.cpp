@@ -56,7 +56,7 @@ DiagnosedRun MakeShaftRun(const recording::Recording& recording, Setup& setup,
   if (is_new) repeats = simulation::RepeatsOf(run);
   if (run.sense == 0) {
     simulation::SetSense(repeats.sense, run);
-    if (is_new) TellSense(run, notes);
+    if (is_new && run.rim.sensors > 1) TellSense(run, notes);
   }
   if (!(run.sd.minCoeff() > 0.0)) {
     run.sd = NoiseOf(run, repeats);

@@ -248,8 +248,20 @@ class Questions {
         answer.lines = static_cast<double>(kLines);
         answer.period = 2.0 * std::numbers::pi / questions[q].wave;
       }
+      if (channel.instruments == kRim) answer.amplitude = RmsOf(answer, channel);
       Note(channel, questions[q].variable, answer);
     }
+  }
+
+  // Of what is explained, over the rows. Where a shaft turns evenly, time and the harmonics that
+  // are known go together, and the coefficients of the answer are larger than what they do.
+  double RmsOf(const Answer& answer, const Channel& channel) const {
+    double weight = 0.0;
+    for (std::size_t run = 0; run < fit_.runs(); ++run) {
+      if (InstrumentOf(fit_.TraceOf(run)) != kRim) continue;
+      weight += fit_.ScoresOf(run, channel.stage).weights.sum();
+    }
+    return std::sqrt(answer.chi_square / weight);
   }
 
   // The lines of each channel are weighed with the largest information that they could have; the

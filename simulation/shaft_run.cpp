@@ -84,10 +84,17 @@ struct Cell {
   double time = 0.0, shaft = 0.0, gap = 0.0;
 };
 
+// In time, not in angle: while the stamps of the angle are late, too few readings would stand for
+// much of a turn.
 std::vector<Cell> CellsOf(const relm::ShaftReadings& readings) {
+  constexpr double kAside = 0.25;  // of a cell: readings at an even pace do not meet its ends
+  const auto [least, most] = std::minmax_element(readings.angle.begin(), readings.angle.end());
+  const double speed = (*most - *least) / (readings.time.back() - readings.time.front());
   std::vector<Cell> cells;
   for (std::size_t first = 0, last = 0; first < readings.time.size(); first = last) {
-    const auto cell_of = [&](std::size_t i) { return std::floor(readings.angle[i] / kCell); };
+    const auto cell_of = [&](std::size_t i) {
+      return std::floor((readings.time[i] - readings.time.front()) * speed / kCell + kAside);
+    };
     Cell sum;
     for (; last < readings.time.size() && cell_of(last) == cell_of(first); ++last) {
       sum.time += readings.time[last];

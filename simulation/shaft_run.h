@@ -7,8 +7,9 @@
 // Header: sensor_deg = [0, 120, 240], where the sensors stand round the shaft; u_gap_um, the noise
 // of a row, where it is known; shaft_sense = 1, or -1 where the shaft's angle grows against the
 // count of sensor_deg. Not stated: `sense` 0, and `place` counts as if it were 1.
-// A row is the mean of the readings of one sensor while the shaft turned by kCell; rows of one
-// sensor stand together, in time. A mean over a cell takes 0.02 % off the order 4, less off lower.
+// A row is the mean of the readings of one sensor in the time in which the shaft turns by kCell on
+// the average; rows of one sensor stand together, in time. At an even speed a mean over a cell
+// takes 0.08 % off the order 4, less off lower ones.
 // Units: m, rad, s. Failure: that of relm/shaft_readings.h; InputError with the recording's name
 // for no or too many gap columns, places that are not as many, a sense or noise that is none, less
 // than one turn under a sensor.

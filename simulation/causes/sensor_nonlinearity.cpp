@@ -1,5 +1,6 @@
 // Curved characteristic of a gap sensor at a turning shaft: it shows D + q D^2, D its gap from its
-// zero. The eccentricity then appears twice per turn too.
+// zero. The eccentricity then appears twice per turn too. A rim
+// of radius r does the same at all sensors, with q = -1 / (2 r): 0.0025 per mm at 200 mm.
 #include "simulation/causes/registry.h"
 #include "simulation/causes/shaft.h"
 

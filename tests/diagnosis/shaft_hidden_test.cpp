@@ -15,6 +15,7 @@ namespace abbe {
 namespace {
 
 constexpr double kNormal = 3.9;  // 99.99 % of normal errors
+constexpr double kLarge = 5.0;   // m: a rim so large that its curvature is none of a sensor
 
 Diagnosis DiagnosisOf(const std::vector<Wheel>& wheels, std::uint64_t seed) {
   diagnosis::Campaign campaign(SetupOfWheel());
@@ -80,7 +81,7 @@ TEST(TurningWheels, TellEccentricityLobesAndGain) {
 
 // As on the target wheel of the field test; where the first sensor is off, all others are.
 TEST(TurningWheels, TellGainsThatDifferByHalf) {
-  Wheel wheel{.eccentricity = 300e-6, .phase = -2.0, .noise = 3e-6};
+  Wheel wheel{.radius = kLarge, .eccentricity = 300e-6, .phase = -2.0, .noise = 3e-6};
   wheel.gain = {1.0, 1.55, 1.39};
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Diagnosis diagnosis = DiagnosisOf({wheel}, seed);
@@ -92,7 +93,7 @@ TEST(TurningWheels, TellGainsThatDifferByHalf) {
 }
 
 TEST(TurningWheels, TellACurvedSensor) {
-  Wheel wheel{.eccentricity = 200e-6};
+  Wheel wheel{.radius = kLarge, .eccentricity = 200e-6};
   wheel.quadratic[2] = 50.0;
   const Diagnosis diagnosis = DiagnosisOf({wheel}, 1);
   EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);

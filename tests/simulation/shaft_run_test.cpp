@@ -116,7 +116,7 @@ TEST(ShaftRun, BelievesItsHeader) {
 TEST(ShaftRun, RefusesWhatItCannotRead) {
   ExpectRefused(Shaft({.header = ""}), "sensor_deg = [0, 120, 240]");
   ExpectRefused(Shaft({.header = "sensor_deg = [0, 120, 240]\n"}), "write 2 numbers");
-  ExpectRefused(Shaft({.turns = 0.7}), "0.70 of a turn");
+  ExpectRefused(Shaft({.turns = 0.7}), "of a turn under gap_1_mm");
   ExpectRefused(Shaft({.header = "sensor_deg = [0, 90]\nshaft_sense = 2\n"}), "must be 1");
   ExpectRefused(Shaft({.header = "sensor_deg = [0, 90]\nu_gap_um = 0\n"}), "above 0");
   Recording other = Shaft();
