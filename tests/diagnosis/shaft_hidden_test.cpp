@@ -79,13 +79,14 @@ TEST(TurningWheels, TellEccentricityLobesAndGain) {
   }
 }
 
-// As on the target wheel of the field test; where the first sensor is off, all others are.
+// As on the target wheel of the field test.
 TEST(TurningWheels, TellGainsThatDifferByHalf) {
   Wheel wheel{.radius = kLarge, .eccentricity = 300e-6, .phase = -2.0, .noise = 3e-6};
   wheel.gain = {1.0, 1.55, 1.39};
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Diagnosis diagnosis = DiagnosisOf({wheel}, seed);
     EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
+    EXPECT_EQ(diagnosis.findings.size(), 3U);
     ExpectKey(diagnosis, "target-eccentricity:shaft", 0, 300e-6);
     ExpectKey(diagnosis, "sensor-gain:sensor_2", 0, 0.55);
     ExpectKey(diagnosis, "sensor-gain:sensor_3", 0, 0.39);
