@@ -22,6 +22,7 @@ struct ConvertOptions {
   std::filesystem::path to;
   recording::ImportOptions import;
   std::vector<std::string> columns;  // NAME=CHANNEL
+  std::vector<double> sensor_degrees;
   std::string machine;
   std::string device;
   bool quiet = false;
@@ -65,7 +66,7 @@ std::vector<recording::MonitoredColumn> ColumnsOf(const ConvertOptions& options)
 
 recording::Recording ReadAny(const ConvertOptions& options) {
   if (IsLog(options.from) && recording::IsMonitorLog(options.from)) {
-    return recording::ReadMonitorLog(options.from, ColumnsOf(options));
+    return recording::ReadMonitorLog(options.from, ColumnsOf(options), options.sensor_degrees);
   }
   if (IsLog(options.from)) {
     const MachineFile file = MachineOf(options);
@@ -117,6 +118,11 @@ void AddConvert(CLI::App& program, int& exit_code) {
       ->add_option("--column", options->columns,
                    "Logs of a monitor: NAME=CHANNEL, the name with its unit; may be repeated")
       ->allow_extra_args(false);
+  command
+      ->add_option("--sensor-deg", options->sensor_degrees,
+                   "Logs of a monitor at a turning shaft: where gap_1, gap_2, ... stand round it, "
+                   "with commas between")
+      ->delimiter(',');
   command->add_option("--axis", options->import.axis, "The axis of a table that does not say (X)")
       ->check(CLI::IsMember({"X", "Y", "Z"}));
   command

@@ -20,6 +20,7 @@
 #include "diagnosis/measured_noise.h"
 #include "diagnosis/next_run.h"
 #include "failure/failure.h"
+#include "settings/toml_text.h"
 
 namespace abbe::apps {
 namespace {
@@ -33,9 +34,26 @@ struct DiagnoseArguments {
   bool plan = false, quiet = false;
 };
 
-// A file without [devices] describes the machine alone: enough for runs with a reference.
+// A shaft has no axes. Those that a machine needs do not move and are asked for nothing.
+machine::Machine MachineWithoutAxes(const settings::Table& root) {
+  constexpr const char* kStands = R"(
+chain = "[w X Y b Z t]"
+axis = {X.travel_mm = [0, 1], Y.travel_mm = [0, 1], Z.travel_mm = [0, 1]}
+)";
+  const std::string name = settings::Quoted(root.Text("name"));
+  root.RefuseUnknown();
+  const std::string text = fmt::format("name = {}{}", name, kStands);
+  return machine::ReadMachine(settings::Document::Parse(text, "machine without axes").Root());
+}
+
+// A file without [devices] describes the machine alone: enough for runs with a reference. One with
+// nothing but a name is that of a shaft.
 diagnosis::Setup SetupOf(const fs::path& machine) {
-  if (!settings::Document::Read(machine).Root().Has("devices")) {
+  const auto document = settings::Document::Read(machine);
+  if (!document.Root().Has("chain") && !document.Root().Has("axis")) {
+    return {MachineWithoutAxes(document.Root()), std::nullopt, {}, {}, std::nullopt};
+  }
+  if (!document.Root().Has("devices")) {
     return {ReadMachineOf(machine), std::nullopt, {}, {}, std::nullopt};
   }
   const MachineFile file = ReadMachineFile(machine);
@@ -120,7 +138,7 @@ void AddDiagnose(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand(
       "diagnose", "What the simulation of the runs gets wrong, and which cause explains it");
   command->add_option("recordings", arguments->recordings,
-                      "Recordings of one machine: sweeps, linkage, reference, length");
+                      "Recordings of one machine: sweeps, linkage, reference, length, shaft");
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   auto* out = command->add_option(
       "-o,--out", arguments->out,

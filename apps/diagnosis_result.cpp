@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "diagnosis/found_model.h"
@@ -90,6 +91,13 @@ std::string FindingText(const Finding& finding) {
     text += "  no run that abbe knows of would tell them apart\n";
   }
   return text;
+}
+
+// Of a line at a shaft, by which form, bearing, teeth and shaking can be told apart.
+std::string PeriodText(const Leftover& leftover) {
+  if (leftover.period == 0.0 || !leftover.object.starts_with("sensor_")) return "";
+  if (leftover.variable != "shaft") return fmt::format(", every {:.3g} s,", leftover.period);
+  return fmt::format(", {:.1f} times per turn,", 2.0 * std::numbers::pi / leftover.period);
 }
 
 std::string EvidenceText(const Diagnosis& diagnosis) {
@@ -185,7 +193,7 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const diagnosis::HeldOutGa
     text += fmt::format(
         "\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause does that\n", leftover.object,
         scatter ? "scatters beyond what is stated"
-                : fmt::format("varies with {}", leftover.variable),
+                : fmt::format("varies with {}{}", leftover.variable, PeriodText(leftover)),
         leftover.amplitude / leftover.unit.si, leftover.unit.name, leftover.p_value);
   }
   text += EvidenceText(diagnosis);

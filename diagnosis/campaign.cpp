@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "diagnosis/reference_in_campaign.h"
+#include "diagnosis/shaft_in_campaign.h"
 #include "failure/failure.h"
 #include "recording/made_on.h"
 #include "simulation/length_simulation.h"
@@ -29,6 +30,13 @@ simulation::LinkageRun Thinned(const simulation::LinkageRun& run) {
   const Eigen::Index step = (run.poses() + kMostPoses - 1) / kMostPoses;
   for (Eigen::Index pose = 0; pose < run.poses(); pose += step) kept.push_back(pose);
   return simulation::Selection(run, kept);
+}
+
+// No dwell of a head has an angle of a shaft.
+std::string KindOf(const recording::Recording& recording) {
+  std::string kind = recording.Kind();
+  const bool turns = recording.Find("shaft_deg") || recording.Find("shaft_rad");
+  return kind == "dwell" && turns ? "shaft" : kind;
 }
 
 // The slope of a Gaussian process: its deviation over its length (fusion/machine_prior.h).
@@ -59,7 +67,7 @@ void Campaign::Add(recording::Recording recording) {
   for (BadData& bad : FlagBadRows(recording)) {
     bad_.push_back({simulation::StartedOf(recording), std::move(bad)});
   }
-  const std::string kind = recording.Kind();
+  const std::string kind = KindOf(recording);
   if (kind == "sweep" || kind == "dwell" || kind == "gap-steps") {
     if (!setup_.head) {
       throw InputError(fmt::format(
@@ -92,10 +100,12 @@ void Campaign::Add(recording::Recording recording) {
                      simulation::TraceOfLengths(recording)});
   } else if (kind == "reference") {
     runs_.push_back(MakeReferenceRun(recording, setup_, model_, notes_));
+  } else if (kind == "shaft") {
+    runs_.push_back(MakeShaftRun(recording, setup_, notes_));
   } else {
     throw InputError(
         fmt::format("{}: kind is \"{}\"; diagnose takes sweep, dwell, gap-steps, linkage, "
-                    "reference and length",
+                    "reference, length and shaft",
                     recording.name, kind));
   }
   runs_.back().simulated.loss = estimation::RobustLoss::None();

@@ -24,6 +24,7 @@
 #include "recording/recording.h"
 #include "relm/linkage_settings.h"
 #include "simulation/causes/cause.h"
+#include "simulation/shaft_noise.h"
 #include "simulation/simulated_run.h"
 #include "simulation/trace.h"
 
@@ -39,6 +40,8 @@ struct Setup {
   std::map<std::string, Eigen::Vector3d> reference_noise = {};
   // What whoever reads the result has to know of it.
   std::vector<std::string> notes = {};
+  // Of runs of a shaft, by name.
+  std::map<std::string, simulation::RimRepeats> shaft_repeats = {};
 };
 
 struct DiagnosedRun {

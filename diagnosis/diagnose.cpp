@@ -10,6 +10,7 @@
 #include "diagnosis/scatter.h"
 #include "failure/failure.h"
 #include "simulation/causes/registry.h"
+#include "simulation/causes/shaft.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -120,13 +121,16 @@ class Search {
   explicit Search(const Campaign& campaign)
       : candidates_(
             AllCandidates(campaign.scene(), CoarsenessOf(campaign.setup().machine.population))),
+        rim_sensors_(simulation::RimSensorsOf(campaign.scene()).size()),
         fit_(std::make_shared<const Fit>(campaign)) {}
 
   Diagnosis Run() {
     diagnosis_.chi_before = fit_->chi_square() / static_cast<double>(fit_->rows());
-    while (taken_.size() < kMostCauses && TakeBest()) {
+    // Each sensor at a shaft may have a gain and a characteristic of its own.
+    while (taken_.size() < kMostCauses + 2 * rim_sensors_ && TakeBest()) {
     }
     DropSuperfluous();
+    if (rim_sensors_ > 0) ForgiveRivalsFound();
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       const double visible = diagnosis_.findings[i].score.visible;
       const double log_evidence = diagnosis_.findings[i].score.log_evidence;
@@ -155,6 +159,7 @@ class Search {
     for (Named& named : names) FindLine(*fit_, named);
     SortByEvidence(names);
     if (diagnosis_.evidence.empty()) DescribeFirstRound(names);
+    if (rim_sensors_ > 0) NoteShown(names);
     std::erase_if(names, [&](const Named& named) {
       return Known(taken_, named.best.candidate) || Known(refused_, named.best.candidate);
     });
@@ -252,6 +257,27 @@ class Search {
     std::sort(diagnosis_.cannot_show.begin(), diagnosis_.cannot_show.end());
   }
 
+  // Gain and characteristic of a sensor show once an eccentricity is known to move its gap.
+  void NoteShown(const std::vector<Named>& names) {
+    std::erase_if(diagnosis_.cannot_show, [&](const std::string& hidden) {
+      return std::any_of(names.begin(), names.end(), [&](const Named& named) {
+        return named.best.visible >= kShowable && named.best.candidate.Name() == hidden;
+      });
+    });
+  }
+
+  // Two sensors of unequal gain were rivals for who goes first; both are there.
+  void ForgiveRivalsFound() {
+    for (Finding& finding : diagnosis_.findings) {
+      std::erase_if(finding.rivals, [&](const Rival& rival) {
+        const bool found = rival.candidate.cause == finding.score.candidate.cause &&
+                           Known(taken_, rival.candidate);
+        if (found) finding.probability = std::min(1.0, finding.probability + rival.probability);
+        return found;
+      });
+    }
+  }
+
   // A cause that the later ones explain as well is taken out again.
   void DropSuperfluous() {
     for (std::size_t i = 0; taken_.size() > 1 && i < taken_.size();) {
@@ -279,6 +305,7 @@ class Search {
   }
 
   const std::vector<Candidate> candidates_;
+  const std::size_t rim_sensors_;
   std::vector<Candidate> taken_, refused_;
   std::shared_ptr<const Fit> fit_;
   Diagnosis diagnosis_;

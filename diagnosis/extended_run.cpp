@@ -11,6 +11,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 class ExtendedResidual : public estimation::Residual {
@@ -76,6 +77,56 @@ void Undo(const Candidate& cause, const simulation::Trace& read, simulation::Tra
   }
 }
 
+// What some causes add to the readings at a shaft, m.
+template <typename Which>
+RowVectorXd AddedTo(const simulation::Trace& trace, const std::vector<Candidate>& causes,
+                    const Which& which) {
+  RowVectorXd added = RowVectorXd::Zero(trace.rows());
+  for (const Candidate& cause : causes) {
+    if (cause.coefficients.size() == 0 || !cause.cause->columns || !which(cause)) continue;
+    const auto columns = cause.cause->columns(trace, cause.object, cause.shape);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      for (const auto& [stage, values] : columns[i].stages()) {
+        const auto sensor = static_cast<int>(stage - simulation::kReadingStage);
+        if (sensor < 0) continue;
+        added += cause.coefficients[static_cast<Index>(i)] * trace.rim.Of(sensor, values);
+      }
+    }
+  }
+  return added;
+}
+
+// What the sensors see of the shaft with the causes, and what they make of it.
+void LearnFrom(const std::vector<Candidate>& causes, simulation::Trace& trace) {
+  constexpr double kStep = 1e-6, kTurn = 1e-3;  // m, rad
+  const auto of_shaft = [](const Candidate& cause) { return cause.object == "shaft"; };
+  const auto of_sensor = [&](const Candidate& cause) { return !of_shaft(cause); };
+  simulation::Trace moved = trace;
+  const RowVectorXd here = AddedTo(trace, causes, of_shaft);
+  moved.rim.shaft.array() += kTurn;
+  const RowVectorXd ahead = AddedTo(moved, causes, of_shaft);
+  moved.rim.shaft.array() -= 2.0 * kTurn;
+  const RowVectorXd behind = AddedTo(moved, causes, of_shaft);
+  trace.rim.by_angle = (ahead - behind) / (2.0 * kTurn);
+  trace.rim.by_angle_twice = (ahead - 2.0 * here + behind) / (kTurn * kTurn);
+  trace.rim.seen = AddedTo(trace, causes, of_shaft);
+  moved = trace;
+  moved.rim.seen.array() += kStep;
+  const RowVectorXd more = AddedTo(moved, causes, of_sensor) - AddedTo(trace, causes, of_sensor);
+  trace.rim.slope = 1.0 + more.array() / kStep;
+}
+
+// The columns are slopes where the causes are by now; what they do there, less what these slopes
+// make of their coefficients.
+VectorXd BesideSlopes(const LinearRun& at) {
+  const simulation::RimReadings& rim = at.trace.rim;
+  simulation::Disturbance beside = simulation::NoDisturbance(at.trace);
+  for (int sensor = 0; sensor < rim.sensors; ++sensor) {
+    beside.row(simulation::kReadingStage + sensor) = (1.0 - rim.slope.array()) * rim.seen.array();
+  }
+  return at.response->Columns({beside});
+}
+
 }  // namespace
 
 std::string BlockOf(const Candidate& cause) { return fmt::format("cause {}", cause.Name()); }
@@ -99,6 +150,7 @@ LinearRun LinearAt(const DiagnosedRun& run, const VectorXd& x, const VectorXd& l
   if (!run.simulated.response) return at;
   at.response = run.simulated.response->At(x);
   at.trace.tilt = at.response->Tilts();
+  if (at.trace.rim.sensors > 0) LearnFrom(causes, at.trace);
   if (left.size() == 0) return at;
   const MatrixXd readings = at.response->Readings(left);
   if (at.trace.pivots() > 0) {
@@ -117,6 +169,7 @@ simulation::SimulatedRun Extend(const DiagnosedRun& run, const LinearRun& at,
   simulation::SimulatedRun extended = run.simulated;
   const Index rows = run.simulated.residual->Rows();
   VectorXd always = VectorXd::Zero(rows);
+  if (at.trace.rim.sensors > 0) always += BesideSlopes(at);
   MatrixXd columns(rows, 0);
   for (const Candidate& cause : causes) {
     if (cause.cause->widens) {

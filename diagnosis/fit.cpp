@@ -9,6 +9,7 @@
 #include "diagnosis/extended_run.h"
 #include "failure/failure.h"
 #include "fusion/machine_problem.h"
+#include "simulation/causes/shaft.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -35,6 +36,27 @@ void StartFrom(const estimation::Result& before, std::vector<estimation::Paramet
     const std::size_t known = std::min(block.entries.size(), found->entries.size());
     for (std::size_t i = 0; i < known; ++i) block.entries[i].value = found->entries[i].value;
   }
+}
+
+// With the coefficients that another fit found.
+void StartFromKnown(const std::vector<Candidate>& before, std::vector<Candidate>& causes) {
+  for (Candidate& cause : causes) {
+    const auto known = std::find_if(before.begin(), before.end(), [&](const Candidate& other) {
+      return other.Name() == cause.Name();
+    });
+    if (known != before.end()) cause = *known;
+  }
+}
+
+// The largest relative change of the coefficients.
+double Moved(const std::vector<Candidate>& before, const std::vector<Candidate>& causes) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    const VectorXd& found = causes[i].coefficients;
+    if (before[i].coefficients.size() != found.size()) return 1.0;
+    most = std::max(most, (found - before[i].coefficients).norm() / found.norm());
+  }
+  return most;
 }
 
 Problem ProblemOf(const Campaign& campaign, const std::vector<SimulatedRun>& runs,
@@ -87,9 +109,13 @@ Fit::Fit(const Campaign& campaign) : campaign_(campaign) {
 
 Fit::Fit(const Fit& before, std::vector<Candidate> taken_in)
     : campaign_(before.campaign_), taken_in_(std::move(taken_in)), result_(before.result_) {
-  constexpr int kRounds = 4;            // the columns at the fit before, then at their own
+  // The columns at the fit before, then at their own. What sensors make of a shaft is a product of
+  // causes, and settles in steps.
+  const bool of_shaft = !simulation::RimSensorsOf(campaign_.scene()).empty();
+  const int rounds = of_shaft ? 12 : 4;
+  if (of_shaft) StartFromKnown(before.taken_in_, taken_in_);
   constexpr double kShapeFound = 1e-3;  // relative
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     std::vector<SimulatedRun> runs;
     for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
       const auto& at = round == 0 ? before.runs_[r].at : runs_[r].at;
@@ -98,13 +124,15 @@ Fit::Fit(const Fit& before, std::vector<Candidate> taken_in)
     }
     const Problem problem = ProblemOf(campaign_, runs, taken_in_, result_);
     result_ = Solve(problem, kWithCauses);
+    const std::vector<Candidate> at = taken_in_;
+    double moved = FollowShapes();
     Linearize(problem);
-    const double moved = FollowShapes();
+    if (of_shaft) moved = std::max(moved, Moved(at, taken_in_));
     if (round > 0 && moved < kShapeFound) break;
   }
 }
 
-// The largest relative change.
+// The largest relative change of the shapes.
 double Fit::FollowShapes() {
   constexpr double kAtMost = 0.2;
   double most = 0.0;

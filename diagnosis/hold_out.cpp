@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -52,7 +53,7 @@ std::set<const Recording*> HeldRuns(const std::vector<Recording>& recordings) {
 // Which rows are held out; empty: none.
 std::function<bool(std::size_t)> HeldRows(const Recording& recording) {
   const std::string kind = recording.Kind();
-  if (kind != "sweep" && kind != "linkage" && kind != "reference") return {};
+  if (kind != "sweep" && kind != "linkage" && kind != "reference" && kind != "shaft") return {};
   const auto pass = recording.Find("pass");
   const std::set<double> passes =
       pass ? std::set<double>(pass->begin(), pass->end()) : std::set<double>{};
@@ -64,9 +65,22 @@ std::function<bool(std::size_t)> HeldRows(const Recording& recording) {
   return [block](std::size_t row) { return (row / block) % 2 == 1; };
 }
 
+// Of a shaft the sensors are silent in other rows: its angle is needed throughout.
+Recording SpokenWhere(const Recording& recording, const std::function<bool(std::size_t)>& wanted) {
+  Recording part = recording;
+  for (auto& column : part.columns) {
+    if (!column.name.starts_with("gap_")) continue;
+    for (std::size_t row = 0; row < part.rows(); ++row) {
+      if (!wanted(row)) column.values[row] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return part;
+}
+
 // The simulation of a run at the solution of another fit.
 VectorXd ResidualAt(const Fit& fit, const DiagnosedRun& run) {
-  const LinearRun at = LinearAt(run, fusion::ValuesFound(fit.result(), run.simulated.blocks), {});
+  const VectorXd x = fusion::ValuesFound(fit.result(), run.simulated.blocks);
+  const LinearRun at = LinearAt(run, x, {}, fit.taken_in());
   const auto extended = Extend(run, at, fit.taken_in());
   VectorXd residual(extended.residual->Rows());
   extended.residual->Evaluate(fusion::ValuesFound(fit.result(), extended.blocks), residual,
@@ -101,8 +115,9 @@ HeldOutGain HoldOut(const Campaign& campaign, const std::vector<Recording>& reco
       kept.Add(recording);
       continue;
     }
-    kept.Add(RowsWhere(recording, [&](std::size_t row) { return !is_held(row); }));
-    held.Add(RowsWhere(recording, is_held));
+    const auto part = recording.Kind() == "shaft" ? SpokenWhere : RowsWhere;
+    kept.Add(part(recording, [&](std::size_t row) { return !is_held(row); }));
+    held.Add(part(recording, is_held));
   }
   HeldOutGain gain;
   if (held.runs().empty()) return gain;

@@ -5,7 +5,8 @@
 //
 // Every other pass of each sweep and of each run with a reference instrument is held out, and every
 // other run of the linkage on one base; where it has fewer than three, every other pass, or every
-// other of kBlocks blocks in time, so that neighbouring rows stay together. A sweep with one pass
+// other of kBlocks blocks in time (also of a run of a shaft), so that neighbouring rows stay
+// together. A sweep with one pass
 // and runs of other kinds take no part. The simulation is fitted to the rest, once as it is and
 // once with the causes, and asked for the rows that were held out: rms of (measured - simulated) /
 // stated deviation, 1 for the noise floor. Failure: that of Fit.

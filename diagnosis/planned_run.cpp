@@ -84,6 +84,10 @@ void SetAngles(const Setup& setup, const relm::LinkageSettings& linkage, Recordi
 
 Recording Planned(Recording path, const Setup& setup) {
   const std::string kind = path.Kind();
+  if (kind == "shaft") {
+    throw InputError(
+        fmt::format("{}: a turning shaft cannot be planned yet; leave the run out", path.name));
+  }
   SetFlags(path);
   if (kind == "linkage") {
     if (!setup.linkage) {

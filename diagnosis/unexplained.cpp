@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "simulation/causes/cause.h"
+#include "simulation/causes/shaft.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -28,37 +29,50 @@ constexpr double kOfAWave = 0.4;  // over the range, from one line to the next
 
 const estimation::PrintUnit kMicrometres{"um", 1e-6}, kMicroradians{"urad", 1e-6};
 
+// The instruments that runs are recorded with.
+enum Instrument : unsigned { kProbes = 1, kLinkage = 2, kRim = 4 };
+
+Instrument InstrumentOf(const Trace& trace) {
+  if (trace.rim.sensors > 0) return kRim;
+  return trace.gap.size() > 0 ? kProbes : kLinkage;
+}
+
 struct Channel {
   std::string object;
   Index stage;
   estimation::PrintUnit unit;
-  bool of_probes, of_linkage;
+  unsigned instruments;  // whose runs feel it
 };
 
 std::vector<Channel> ChannelsOf(const Scene& scene) {
   std::vector<Channel> channels;
   for (const std::string& probe : simulation::ProbesOf(scene)) {
     channels.push_back(
-        {probe, simulation::kReadingStage + simulation::ProbeOf(probe), kMicrometres, true, false});
+        {probe, simulation::kReadingStage + simulation::ProbeOf(probe), kMicrometres, kProbes});
   }
   for (const std::string& pivot : simulation::PivotsOf(scene)) {
-    channels.push_back({pivot, simulation::kEncoderStage + simulation::PivotOf(pivot),
-                        kMicroradians, false, true});
+    channels.push_back(
+        {pivot, simulation::kEncoderStage + simulation::PivotOf(pivot), kMicroradians, kLinkage});
   }
   for (const std::string& axis : simulation::AxesOf(scene)) {
+    channels.push_back({axis, simulation::Positioning(simulation::AxisOf(axis[0])), kMicrometres,
+                        kProbes | kLinkage});
+  }
+  for (const std::string& sensor : simulation::RimSensorsOf(scene)) {
     channels.push_back(
-        {axis, simulation::Positioning(simulation::AxisOf(axis[0])), kMicrometres, true, true});
+        {sensor, simulation::kReadingStage + simulation::RimSensorOf(sensor), kMicrometres, kRim});
   }
   return channels;
 }
 
 bool Feels(const Channel& channel, const Trace& trace) {
-  return trace.gap.size() > 0 ? channel.of_probes : channel.of_linkage;
+  return (channel.instruments & InstrumentOf(trace)) != 0;
 }
 
 // The values of a variable in the rows of a run; empty where the run does not have it.
 RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
   if (variable == "time") return trace.clock.transpose();
+  if (variable == "shaft") return trace.rim.shaft;
   if (variable == "feed") return trace.velocity.colwise().norm();
   if (variable.size() == 1) return trace.axes.row(variable[0] - 'x');
   if (variable.size() == 3) {
@@ -86,6 +100,7 @@ std::vector<std::string> VariablesOf(const Scene& scene) {
 std::vector<std::string> PeriodicVariablesOf(const Scene& scene) {
   std::vector<std::string> variables{"time", "x",   "y",   "z",   "x+y",
                                      "x-y",  "x+z", "x-z", "y+z", "y-z"};
+  for (const std::string& shaft : simulation::ShaftOf(scene)) variables.push_back(shaft);
   for (const std::string& pivot : simulation::PivotsOf(scene)) variables.push_back(pivot);
   return variables;
 }
@@ -233,26 +248,35 @@ class Questions {
         answer.lines = static_cast<double>(kLines);
         answer.period = 2.0 * std::numbers::pi / questions[q].wave;
       }
+      if (channel.instruments == kRim) answer.amplitude = RmsOf(answer, channel);
       Note(channel, questions[q].variable, answer);
     }
+  }
+
+  // Of what is explained, over the rows. Where a shaft turns evenly, time and the harmonics that
+  // are known go together, and the coefficients of the answer are larger than what they do.
+  double RmsOf(const Answer& answer, const Channel& channel) const {
+    double weight = 0.0;
+    for (std::size_t run = 0; run < fit_.runs(); ++run) {
+      if (InstrumentOf(fit_.TraceOf(run)) != kRim) continue;
+      weight += fit_.ScoresOf(run, channel.stage).weights.sum();
+    }
+    return std::sqrt(answer.chi_square / weight);
   }
 
   // The lines of each channel are weighed with the largest information that they could have; the
   // strongest is then asked as it should be. Channels of one kind of run share range and waves.
   void FindLines(const std::string& variable) {
-    for (const bool of_probes : {true, false}) {
+    for (const Instrument instrument : {kProbes, kLinkage, kRim}) {
       std::vector<std::size_t> channels;
       for (std::size_t c = 0; c < channels_.size(); ++c) {
-        const Channel& channel = channels_[c];
-        if (of_probes ? channel.of_probes : !channel.of_probes || channel.of_linkage) {
-          channels.push_back(c);
-        }
+        if ((channels_[c].instruments & instrument) != 0) channels.push_back(c);
       }
       if (channels.empty()) continue;
       const Range range = RangeOf(variable, channels_[channels.back()], scene_);
       if (!(range.last > range.first)) continue;
       const std::vector<double> waves =
-          StrongestWaves(variable, channels, of_probes,
+          StrongestWaves(variable, channels, instrument,
                          2.0 * std::numbers::pi * kOfAWave / (range.last - range.first));
       for (std::size_t c = 0; c < channels.size(); ++c) {
         if (waves[c] > 0.0) lines_[channels[c]].push_back({variable, range, waves[c]});
@@ -261,14 +285,14 @@ class Questions {
   }
 
   std::vector<double> StrongestWaves(const std::string& variable,
-                                     const std::vector<std::size_t>& channels, bool of_probes,
-                                     double step) const {
+                                     const std::vector<std::size_t>& channels,
+                                     Instrument instrument, double step) const {
     const auto count = static_cast<Index>(channels.size());
     MatrixXd scores(count, 0), weights(count, 0);
     RowVectorXd values;
     for (std::size_t run = 0; run < fit_.runs(); ++run) {
       const Trace& trace = fit_.TraceOf(run);
-      if (trace.rows() == 0 || (trace.gap.size() > 0) != of_probes) continue;
+      if (trace.rows() == 0 || InstrumentOf(trace) != instrument) continue;
       const RowVectorXd own = ValuesOf(variable, trace);
       if (own.size() == 0) continue;
       for (MatrixXd* matrix : {&scores, &weights}) {

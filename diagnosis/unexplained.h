@@ -2,9 +2,9 @@
 //
 //   for (const Leftover& leftover : FindLeftovers(fit)) ...       // nothing: all is explained
 //
-// Each channel (the readings of a probe, the angle of a pivot, the positioning of an axis) is asked
-// of each recorded variable (time, the position of an axis and sums of two, the angle of a pivot, a
-// temperature, the feed) whether
+// Each channel (the readings of a probe or of a sensor at a shaft, the angle of a pivot, the
+// positioning of an axis) is asked of each recorded variable (time, the position of an axis and
+// sums of two, the angle of a pivot or a shaft, a temperature, the feed) whether
 //   a smooth function of it, kTerms cosines over its range, or
 //   a line of its periodogram, sine and cosine of one of up to kLines wave numbers,
 // would make the channel fit better, free of everything that the simulation could be instead
@@ -24,7 +24,7 @@
 namespace abbe::diagnosis {
 
 struct Leftover {
-  std::string variable;    // "time", "x", "x+y", "pivot_2", "temp_table_c", "feed"
+  std::string variable;    // "time", "x", "x+y", "pivot_2", "shaft", "temp_table_c", "feed"
   std::string object;      // channel
   double amplitude = 0.0;  // m or rad, rms over the rows; of a scatter, in units of the noise
   estimation::PrintUnit unit;

@@ -36,6 +36,7 @@ const std::vector<KindRule>& KindRules() {
       {"length", {{"x_mm"}, {"y_mm"}, {"z_mm"}, {"length_mm"}}},
       {"plate",
        {{"x_mm"}, {"y_mm"}, {"z_mm"}, {"setup"}, {"hole"}, {"plate_x_mm"}, {"plate_y_mm"}}},
+      {"shaft", {{"time_s"}, {"shaft_deg", "shaft_rad"}}},
       {"dwell", {{"time_s"}}},
   };
   return rules;

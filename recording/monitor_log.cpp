@@ -75,8 +75,14 @@ Line LineOf(std::string_view text) {
 
 class LogReader {
  public:
-  LogReader(const std::filesystem::path& path, const std::vector<MonitoredColumn>& columns)
-      : path_(path.string()), columns_(columns), spoke_(columns.size(), false) {
+  LogReader(const std::filesystem::path& path, const std::vector<MonitoredColumn>& columns,
+            const std::vector<double>& sensor_degrees)
+      : path_(path.string()),
+        columns_(columns),
+        kind_(sensor_degrees.empty() ? std::string("kind = \"dwell\"\n")
+                                     : fmt::format("kind = \"shaft\"\nsensor_deg = [{}]\n",
+                                                   fmt::join(sensor_degrees, ", "))),
+        spoke_(columns.size(), false) {
     if (columns.empty()) {
       throw InputError(
           fmt::format("{}: the log of a monitor does not say what its channels are; name them as "
@@ -127,9 +133,8 @@ class LogReader {
   Recording Rows() const {
     Recording recording;
     recording.name = path_;
-    recording.header =
-        fmt::format("kind = \"dwell\"\nstarted = {}\nimported_from = '{}'\n[sources]\n", started_,
-                    std::filesystem::path(path_).filename().string());
+    recording.header = fmt::format("{}started = {}\nimported_from = '{}'\n[sources]\n", kind_,
+                                   started_, std::filesystem::path(path_).filename().string());
     recording.columns.push_back({"time_s", {}});
     for (const MonitoredColumn& column : columns_) {
       recording.header += fmt::format("{} = '{}'\n", column.name, column.channel);
@@ -147,6 +152,7 @@ class LogReader {
 
   std::string path_;
   const std::vector<MonitoredColumn>& columns_;
+  const std::string kind_;  // lines of the header
   std::vector<bool> spoke_;
   std::set<std::string, std::less<>> channels_;
   std::map<Nanoseconds, std::vector<double>> moments_;
@@ -162,8 +168,9 @@ bool IsMonitorLog(const std::filesystem::path& path) {
 }
 
 Recording ReadMonitorLog(const std::filesystem::path& path,
-                         const std::vector<MonitoredColumn>& columns) {
-  return LogReader(path, columns).Read();
+                         const std::vector<MonitoredColumn>& columns,
+                         const std::vector<double>& sensor_degrees) {
+  return LogReader(path, columns, sensor_degrees).Read();
 }
 
 }  // namespace abbe::recording

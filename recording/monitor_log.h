@@ -1,4 +1,5 @@
-// Reads the log of a channel monitor (EPICS camonitor) into a recording of kind "dwell".
+// Reads the log of a channel monitor (EPICS camonitor) into a recording of kind "dwell", or, with
+// the places of the sensors round a turning shaft (degrees), of kind "shaft".
 //
 //   TARGET_DU:Rotation-PosAct 2023-02-08 14:21:15.970781 94.2006
 //   channel                   date       time            value [alarm ...]
@@ -31,6 +32,7 @@ struct MonitoredColumn {
 bool IsMonitorLog(const std::filesystem::path& path);
 
 Recording ReadMonitorLog(const std::filesystem::path& path,
-                         const std::vector<MonitoredColumn>& columns);
+                         const std::vector<MonitoredColumn>& columns,
+                         const std::vector<double>& sensor_degrees = {});
 
 }  // namespace abbe::recording

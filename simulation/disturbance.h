@@ -9,7 +9,7 @@
 //   motion    18: added to the error motions of X, Y, Z, machine/error_motion.h       m, rad
 //   tool      3: the ball against the spindle, in M as the workpiece carries it       m
 //   tip       3: the ball against the linkage as it is simulated, in B                m
-//   reading   5: what the probes a ... e show beside the gap                          m
+//   reading   5: what the probes a ... e, at a shaft sensor_1 ..., show beside the gap m
 //   encoder   one for each pivot: what it shows beside its angle                      rad
 // Shapes: one entry for each row of the run. Validity: disturbances are small, their products with
 // each other and with the errors of the machine are left out (1e-4 of them).

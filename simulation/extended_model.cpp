@@ -12,6 +12,7 @@
 #include "settings/toml_text.h"
 #include "simulation/causes/registry.h"
 #include "simulation/instant.h"
+#include "simulation/shaft_run.h"
 
 namespace abbe::simulation {
 namespace {
@@ -27,11 +28,12 @@ constexpr std::int64_t kFormat = 1;
 // All objects of a machine that has this sensor.
 std::vector<std::string> ObjectsOf(const Cause& cause, const CauseObjects& machine,
                                    const std::string& sensor) {
-  Trace head, linkage;
+  Trace head, linkage, shaft;
   if (machine.head) head.gap.resize(5, 1);
   linkage.angles.resize(machine.pivots, 1);
+  shaft.rim.sensors = kMostRimSensors;  // a machine file says nothing of shafts
   if (!sensor.empty()) head.sensors = {sensor};
-  return cause.objects({{&head, &linkage}, Eigen::Vector3d::Ones()});
+  return cause.objects({{&head, &linkage, &shaft}, Eigen::Vector3d::Ones()});
 }
 
 // Causes share an id where what they do differs from object to object.

@@ -58,7 +58,7 @@ class Responsive : public estimation::Residual {
 
 struct SimulatedRun {
   std::string name;  // of the recording
-  std::string kind;  // "sweep", "linkage", "reference", "length", "plate"
+  std::string kind;  // "sweep", "linkage", "reference", "length", "plate", "shaft"
   std::vector<estimation::ParameterBlock> blocks;
   std::shared_ptr<const estimation::Residual> residual;
   estimation::RobustLoss loss = estimation::RobustLoss::None();

@@ -19,6 +19,7 @@
 #include "simulation/disturbance.h"
 #include "simulation/linkage_run.h"
 #include "simulation/linkage_simulation.h"
+#include "simulation/rim_readings.h"
 #include "simulation/sweep_run.h"
 
 namespace abbe::simulation {
@@ -26,11 +27,11 @@ namespace abbe::simulation {
 inline constexpr double kLongAgo = 1.0;
 
 struct Trace {
-  std::string name;       // of the recording
-  std::string kind;       // "sweep", "dwell", "gap-steps", "linkage", "reference", "length"
-  char axis = ' ';        // the swept one
-  double started = 0.0;   // s since 1970; 0: not stated
-  Eigen::VectorXd time;   // s since the recording began
+  std::string name;      // of the recording
+  std::string kind;      // "sweep", "dwell", "gap-steps", "linkage", "reference", "length", "shaft"
+  char axis = ' ';       // the swept one
+  double started = 0.0;  // s since 1970; 0: not stated
+  Eigen::VectorXd time;  // s since the recording began
   Eigen::VectorXd clock;  // s since the first recording began; like `time` before CountFrom
   // Readings in each row, s from the first to the last of them; empty: a row is a reading.
   Eigen::VectorXd samples, lasting;
@@ -56,6 +57,8 @@ struct Trace {
   Eigen::Matrix3Xd ball_way;  // where the cap last moved, in M: a direction; 0: nowhere
   Eigen::MatrixXd link;       // 3 pivots x rows, in B: the direction of the link after each pivot
   std::string mounting;
+
+  RimReadings rim;  // of a turning shaft
 
   Eigen::Index rows() const { return time.size(); }
   Eigen::Index pivots() const { return angles.rows(); }

@@ -14,6 +14,11 @@ bool Scene::HasSweeps() const {
                      [](const Trace* trace) { return trace->gap.size() > 0; });
 }
 
+bool Scene::OnlyShafts() const {
+  return !traces.empty() && std::all_of(traces.begin(), traces.end(),
+                                        [](const Trace* trace) { return trace->rim.sensors > 0; });
+}
+
 Eigen::Index Scene::Pivots() const {
   Eigen::Index pivots = 0;
   for (const Trace* trace : traces) pivots = std::max(pivots, trace->pivots());
@@ -53,9 +58,15 @@ Seat Cause::SeatAt(const std::string& object) const {
   return of_axes ? Seat::kMotion : Seat::kInstrument;
 }
 
-std::vector<std::string> AxesOf(const Scene&) { return {"X", "Y", "Z"}; }
+std::vector<std::string> AxesOf(const Scene& scene) {
+  if (scene.OnlyShafts()) return {};
+  return {"X", "Y", "Z"};
+}
 
-std::vector<std::string> AxisPairsOf(const Scene&) { return {"XY", "XZ", "YZ"}; }
+std::vector<std::string> AxisPairsOf(const Scene& scene) {
+  if (scene.OnlyShafts()) return {};
+  return {"XY", "XZ", "YZ"};
+}
 
 std::vector<std::string> ProbesOf(const Scene& scene) {
   if (!scene.HasSweeps()) return {};

@@ -37,6 +37,7 @@ struct Scene {
   double form_length = 0.0;  // m: correlation length of the form of the target; 0: not known
 
   bool HasSweeps() const;
+  bool OnlyShafts() const;      // which say nothing of the axes
   Eigen::Index Pivots() const;  // 0 without a linkage
   std::vector<std::string> Sensors() const;
 };

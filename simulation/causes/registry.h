@@ -46,6 +46,12 @@ Cause JointHysteresis();
 Cause CapFriction();
 Cause ClockSkew();
 Cause FixtureMisalignment();
+Cause TargetEccentricity();
+Cause TargetLobing();
+Cause ShaftErrorMotion();
+Cause SensorGain();
+Cause SensorNonlinearity();
+Cause ShaftClockSkew();
 Cause StuckChannel();
 Cause Outliers();
 

@@ -29,6 +29,7 @@ std::vector<std::string> Needs(const std::string& kind) {
   }
   if (kind == "linkage") return {"time_s", "x_mm", "y_mm", "z_mm", "pivot_1_rad"};
   if (kind == "reference") return {"x_mm", "ref_x_mm"};
+  if (kind == "shaft") return {"time_s", "shaft_deg"};
   if (kind == "length") return {"x_mm", "y_mm", "z_mm", "length_mm"};
   if (kind == "plate") return {"x_mm", "y_mm", "z_mm", "setup", "hole", "plate_x_mm", "plate_y_mm"};
   return {"time_s"};
@@ -60,7 +61,7 @@ TEST_P(EachKind, NeedsItsColumnsAndNoOther) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EachKind,
                          testing::Values("sweep", "linkage", "reference", "length", "plate",
-                                         "dwell", "gap-steps"),
+                                         "dwell", "gap-steps", "shaft"),
                          [](const auto& kind) {
                            std::string name = kind.param;
                            std::replace(name.begin(), name.end(), '-', '_');

@@ -65,6 +65,14 @@ TEST_F(MonitorLog, IsToldFromALogOfCandump) {
   EXPECT_FALSE(IsMonitorLog(path_));
 }
 
+TEST_F(MonitorLog, IsOfAShaftWhereTheSensorsStand) {
+  std::ofstream(path_) << "W:angle 2023-02-08 12:00:00.0 1\nW:gap 2023-02-08 12:00:00.1 2\n";
+  const auto recording =
+      ReadMonitorLog(path_, {{"shaft_deg", "W:angle"}, {"gap_1_mm", "W:gap"}}, {22.5});
+  EXPECT_EQ(recording.Kind(), "shaft");
+  EXPECT_EQ(recording.HeaderNumbers("sensor_deg", 1), std::vector<double>{22.5});
+}
+
 TEST_F(MonitorLog, NamesTheWrongLine) {
   EXPECT_THAT(Refusal("W:gap 2023-02-08 12:00:00.0 1\nW:gap 2023-02-30 12:00:00.0 2\n"),
               HasSubstr("log:2: no moment after \"W:gap\""));

@@ -92,11 +92,12 @@ TEST(ExtendedModel, ATableThatIsDeletedIsACauseThatIsGone) {
 TEST(ExtendedModel, EveryCauseCanBeWrittenDown) {
   ExtendedModel model;
   model.machine = "mill";
-  Trace head, linkage;
+  Trace head, linkage, shaft;
   head.gap.resize(5, 1);
   head.sensors = {"temp_table_c"};
   linkage.angles.resize(3, 1);
-  const Scene scene{{&head, &linkage}, Eigen::Vector3d::Constant(0.06)};
+  shaft.rim.sensors = 3;
+  const Scene scene{{&head, &linkage, &shaft}, Eigen::Vector3d::Constant(0.06)};
   for (const Cause& cause : Causes()) {
     if (cause.objects(scene).empty()) continue;  // found row by row
     VectorXd values(static_cast<Eigen::Index>(cause.keys.size()));

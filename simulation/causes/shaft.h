@@ -1,0 +1,19 @@
+// The objects of a turning shaft (simulation/rim_readings.h), and what its causes have in common.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulation/causes/cause.h"
+
+namespace abbe::simulation {
+
+// "shaft" and "sensor_1" ..., where one was recorded.
+std::vector<std::string> ShaftOf(const Scene& scene);
+std::vector<std::string> RimSensorsOf(const Scene& scene);
+int RimSensorOf(const std::string& object);  // 0 ...
+
+// All sensors see the rim farther away by `values`, m, one per row, and show what they show of it.
+Disturbance OnRim(const Trace& trace, const Eigen::RowVectorXd& values);
+
+}  // namespace abbe::simulation
