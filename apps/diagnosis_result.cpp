@@ -66,6 +66,20 @@ ordered_json FindingJson(const Finding& finding, const Diagnosis& diagnosis,
     json["heldout_rms_after"] = gain.after;
     json["gain"] = 1.0 - gain.after / gain.before;
   }
+  const diagnosis::Curve& curve = finding.curve;
+  if (curve.at.size() > 0) {
+    const auto listed = [](const Eigen::VectorXd& values, double unit) {
+      std::vector<double> list(values.begin(), values.end());
+      for (double& each : list) each /= unit;
+      return list;
+    };
+    json["curve"] = {
+        {"variable", fmt::format("{} in {}", curve.variable, curve.variable_unit.name)},
+        {"unit", curve.unit.name},
+        {"x", listed(curve.at, curve.variable_unit.si)},
+        {"before", listed(curve.before, curve.unit.si)},
+        {"after", listed(curve.after, curve.unit.si)}};
+  }
   if (!sensor.empty()) json["parameters"].push_back({{"name", "sensor"}, {"value", sensor}});
   return json;
 }
@@ -142,7 +156,7 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const diagnosis::HeldOutG
                     {"chi2_per_row_before", diagnosis.chi_before},
                     {"chi2_per_row_after", diagnosis.chi_after},
                     {"noise_floor", 1.0},
-                    {"map_change_um", nullptr}};
+                    {"map_change_um", 1e6 * diagnosis.map_change}};
   for (const Finding& finding : diagnosis.findings) {
     json["findings"].push_back(FindingJson(finding, diagnosis, gain));
     if (finding.rivals.empty()) continue;
@@ -187,6 +201,10 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const diagnosis::HeldOutGa
         "\nheld out: {} rows, rms {:.3f} of the stated noise without what was found, {:.3f} with "
         "it\n",
         gain.rows, gain.before, gain.after);
+  }
+  if (!diagnosis.findings.empty() && diagnosis.map_change > 0.0) {
+    text += fmt::format("the error map of the machine changes by up to {:.2g} um\n",
+                        1e6 * diagnosis.map_change);
   }
   for (const Leftover& leftover : diagnosis.leftovers) {
     const bool scatter = leftover.variable == diagnosis::kScatter;

@@ -122,7 +122,8 @@ class Search {
       : candidates_(
             AllCandidates(campaign.scene(), CoarsenessOf(campaign.setup().machine.population))),
         rim_sensors_(simulation::RimSensorsOf(campaign.scene()).size()),
-        fit_(std::make_shared<const Fit>(campaign)) {}
+        base_(std::make_shared<const Fit>(campaign)),
+        fit_(base_) {}
 
   Diagnosis Run() {
     diagnosis_.chi_before = fit_->chi_square() / static_cast<double>(fit_->rows());
@@ -137,7 +138,9 @@ class Search {
       diagnosis_.findings[i].score = fit_->ScoreOf(i);
       diagnosis_.findings[i].score.visible = visible;
       diagnosis_.findings[i].score.log_evidence = log_evidence;
+      diagnosis_.findings[i].curve = CurveOf(*base_, *fit_, i);
     }
+    diagnosis_.map_change = MapChange(*base_, *fit_);
     // What was found was shown after all.
     std::erase_if(diagnosis_.cannot_show, [&](const std::string& name) {
       return std::any_of(taken_.begin(), taken_.end(),
@@ -307,7 +310,7 @@ class Search {
   const std::vector<Candidate> candidates_;
   const std::size_t rim_sensors_;
   std::vector<Candidate> taken_, refused_;
-  std::shared_ptr<const Fit> fit_;
+  std::shared_ptr<const Fit> base_, fit_;
   Diagnosis diagnosis_;
 };
 

@@ -22,6 +22,7 @@
 
 #include "diagnosis/evidence.h"
 #include "diagnosis/unexplained.h"
+#include "diagnosis/where_it_shows.h"
 
 namespace abbe::diagnosis {
 
@@ -50,6 +51,7 @@ struct Finding {
   double probability = 0.0;   // among all that could stand in its place
   std::vector<Rival> rivals;  // others above 1 %
   std::optional<NextRun> next_run = {};
+  Curve curve = {};
 };
 
 struct Diagnosis {
@@ -59,7 +61,8 @@ struct Diagnosis {
   std::vector<Score> evidence;           // of the first round: best shape of each name
   std::vector<Leftover> leftovers;
   double chi_before = 0.0, chi_after = 0.0;  // chi-square per row of all runs
-  estimation::Result fitted;                 // with all that was found
+  double map_change = 0.0;    // m: of the volumetric error at most, by what was found
+  estimation::Result fitted;  // with all that was found
 };
 
 Diagnosis Diagnose(const Campaign& campaign);

@@ -127,6 +127,19 @@ VectorXd BesideSlopes(const LinearRun& at) {
   return at.response->Columns({beside});
 }
 
+// What an encoder shows too little at its zero, in a fit: its graduation turns with the shaft.
+VectorXd OffsetsOf(const DiagnosedRun& run, const VectorXd& x) {
+  Index first = 0;
+  for (const auto& block : run.simulated.blocks) {
+    const auto count = static_cast<Index>(block.entries.size());
+    if (block.name == "encoder_offset" && count == run.trace.pivots()) {
+      return x.segment(first, count);
+    }
+    first += count;
+  }
+  return VectorXd::Zero(run.trace.pivots());
+}
+
 }  // namespace
 
 std::string BlockOf(const Candidate& cause) { return fmt::format("cause {}", cause.Name()); }
@@ -154,7 +167,7 @@ LinearRun LinearAt(const DiagnosedRun& run, const VectorXd& x, const VectorXd& l
   if (left.size() == 0) return at;
   const MatrixXd readings = at.response->Readings(left);
   if (at.trace.pivots() > 0) {
-    at.trace.SetAngles(readings);
+    at.trace.SetAngles(readings.colwise() + OffsetsOf(run, x));
   } else if (at.trace.gap.size() > 0) {
     at.trace.gap = readings;
     for (const Candidate& cause : causes) {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "diagnosis/variables.h"
 #include "simulation/causes/cause.h"
 #include "simulation/causes/shaft.h"
 
@@ -67,42 +68,6 @@ std::vector<Channel> ChannelsOf(const Scene& scene) {
 
 bool Feels(const Channel& channel, const Trace& trace) {
   return (channel.instruments & InstrumentOf(trace)) != 0;
-}
-
-// The values of a variable in the rows of a run; empty where the run does not have it.
-RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
-  if (variable == "time") return trace.clock.transpose();
-  if (variable == "shaft") return trace.rim.shaft;
-  if (variable == "feed") return trace.velocity.colwise().norm();
-  if (variable.size() == 1) return trace.axes.row(variable[0] - 'x');
-  if (variable.size() == 3) {
-    const double sign = variable[1] == '+' ? 1.0 : -1.0;
-    return trace.axes.row(variable[0] - 'x') + sign * trace.axes.row(variable[2] - 'x');
-  }
-  if (variable.starts_with("pivot_")) {
-    if (trace.pivots() == 0) return {};
-    return trace.angles.row(simulation::PivotOf(variable));
-  }
-  const auto sensor = std::find(trace.sensors.begin(), trace.sensors.end(), variable);
-  if (sensor == trace.sensors.end()) return {};
-  return trace.temperature.row(sensor - trace.sensors.begin());
-}
-
-// Of what a channel may be a smooth function.
-std::vector<std::string> VariablesOf(const Scene& scene) {
-  std::vector<std::string> variables{"time", "x", "y", "z", "feed"};
-  for (const std::string& pivot : simulation::PivotsOf(scene)) variables.push_back(pivot);
-  for (const std::string& sensor : scene.Sensors()) variables.push_back(sensor);
-  return variables;
-}
-
-// In what a channel may be a line.
-std::vector<std::string> PeriodicVariablesOf(const Scene& scene) {
-  std::vector<std::string> variables{"time", "x",   "y",   "z",   "x+y",
-                                     "x-y",  "x+z", "x-z", "y+z", "y-z"};
-  for (const std::string& shaft : simulation::ShaftOf(scene)) variables.push_back(shaft);
-  for (const std::string& pivot : simulation::PivotsOf(scene)) variables.push_back(pivot);
-  return variables;
 }
 
 struct Range {

@@ -67,14 +67,13 @@ function findingCurve(finding) {
   if (!x?.length) return null;
   const shown = micro(unit);
   const curves = [
-    ['before', 'without the cause', before, 'backward'], ['after', 'with the cause', after, 'mean']
+    ['before', 'without what was found', before, 'backward'], ['after', 'with it', after, 'mean']
   ];
   const panel = {
     name: 'Measured less simulated',
     unit: shown,
     height: 280,
-    about: `Measured less simulated over ${variable} in ${shown}, without and with ${
-        findingName(finding)}; the values follow as a table.`,
+    about: `Measured less simulated over ${variable} in ${shown}, without and with what was found; the values follow as a table.`,
     draw: (colours, on) => ({
       data: curves.filter(([key, , y]) => y && on.has(key))
                 .map(
@@ -94,8 +93,8 @@ function findingCurve(finding) {
   return figureGroup({
     title: 'Where it shows',
     items: [
-      {key: 'before', label: 'Without the cause', swatch: 'backward'},
-      {key: 'after', label: 'With the cause', swatch: 'mean'}
+      {key: 'before', label: 'Without what was found', swatch: 'backward'},
+      {key: 'after', label: 'With it', swatch: 'mean'}
     ],
     panels: [panel],
   });

@@ -30,7 +30,7 @@ class RateTable {
       alone.Add(first && diagnosis.verdict == Verdict::kExplained &&
                 diagnosis.findings.size() == 1);
       if (first) AddSizes(diagnosis.findings.front(), truth);
-      if (!first) ++stands_for_[{std::string(truth.entry->name), FirstOf(diagnosis)}];
+      ++named_[std::string(truth.entry->name)][FirstOf(diagnosis)];
     }
     if (showable < kSeen) {
       listed.Add(std::any_of(diagnosis.cannot_show.begin(), diagnosis.cannot_show.end(),
@@ -38,9 +38,7 @@ class RateTable {
     }
     const auto bin = std::upper_bound(kBins.begin(), kBins.end(), std::min(visible, separable));
     power_[static_cast<std::size_t>(bin - kBins.begin())].Add(first);
-    auto& [worlds, met] = by_cause_[std::string(truth.entry->name)];
-    worlds.Add(separable > kSeen);
-    if (separable > kSeen) met.Add(first);
+    by_cause_[std::string(truth.entry->name)].Add(separable > kSeen);
   }
 
   void Print() const {
@@ -55,13 +53,7 @@ class RateTable {
           bin == 0 ? fmt::format("below {}", kBins[0]) : fmt::format("from {}", kBins[bin - 1]),
           power_[bin].Text());
     }
-    for (const auto& [cause, rates] : by_cause_) {
-      fmt::print("{}: separable {}, of these named first {}\n", cause, rates.first.Text(),
-                 rates.second.Text());
-    }
-    for (const auto& [pair, count] : stands_for_) {
-      fmt::print("{} was named {}: {}\n", pair.first, pair.second, count);
-    }
+    PrintConfusions();
   }
 
   static constexpr double kSeen = 5.0;
@@ -69,6 +61,22 @@ class RateTable {
   Rate named_first, alone, inside, wrong_and_certain, listed;
 
  private:
+  // One row for each cause: how many of its worlds were separable, and what was named first there.
+  void PrintConfusions() const {
+    fmt::print("| hidden | separable | named first |\n|---|---|---|\n");
+    for (const auto& [cause, separable] : by_cause_) {
+      std::string names;
+      const auto found = named_.find(cause);
+      if (found != named_.end()) {
+        for (const auto& [name, count] : found->second) {
+          names += fmt::format("{}{} {}", names.empty() ? "" : ", ",
+                               name == cause ? "itself" : name, count);
+        }
+      }
+      fmt::print("| `{}` | {} | {} |\n", cause, separable.Text(), names.empty() ? "-" : names);
+    }
+  }
+
   static std::string FirstOf(const Diagnosis& diagnosis) {
     if (diagnosis.findings.empty()) return std::string(diagnosis::Name(diagnosis.verdict));
     return diagnosis.findings.front().score.candidate.cause->id;
@@ -90,8 +98,8 @@ class RateTable {
 
   static constexpr std::array<double, 6> kBins{1.0, 2.0, 5.0, 10.0, 20.0, 100.0};
   std::array<Rate, kBins.size() + 1> power_;
-  std::map<std::string, std::pair<Rate, Rate>> by_cause_;
-  std::map<std::pair<std::string, std::string>, int> stands_for_;
+  std::map<std::string, Rate> by_cause_;
+  std::map<std::string, std::map<std::string, int>> named_;  // in separable worlds
 };
 
 }  // namespace abbe
