@@ -24,10 +24,11 @@
 namespace abbe::simulation {
 
 inline constexpr double kLongAgo = 1.0;
+inline constexpr const char* kArm = "arm";  // simulation/arm_run.h
 
 struct Trace {
   std::string name;       // of the recording
-  std::string kind;       // "sweep", "dwell", "gap-steps", "linkage"
+  std::string kind;       // "sweep", "dwell", "gap-steps", "linkage", kArm
   char axis = ' ';        // the swept one
   double started = 0.0;   // s since 1970; 0: not stated
   Eigen::VectorXd time;   // s since the recording began
@@ -67,6 +68,10 @@ struct Trace {
 Trace TraceOf(const recording::Recording& recording, const SweepRun& run);
 Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
               const LinkageSimulation& linkage);
+// Of an arm: `axes` are where the instrument finds the ball; how the arm went from pose to pose is
+// not known.
+Trace ArmTraceOf(const recording::Recording& recording, const LinkageRun& run,
+                 const LinkageSimulation& linkage);
 
 // s since 1970; 0: not stated.
 double StartedOf(const recording::Recording& recording);

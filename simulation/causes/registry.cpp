@@ -8,15 +8,37 @@
 namespace abbe::simulation {
 
 const std::vector<Cause>& Causes() {
-  static const std::vector<Cause> causes{
-      Backlash(),          LeadscrewCyclic(),  ScaleError(),          Squareness(),
-      ThermalGrowth(),     WarmUpDrift(),      PivotWarmUp(),         ServoLag(),
-      ServoLagMismatch(),  ReversalSpike(),    LoadCoupling(),        ProbeGain(),
-      ProbeNonlinearity(), ProbePosition(),    ProbeCrosstalk(),      ChannelSwap(),
-      ChannelSign(),       MainsPickup(),      EncoderEccentricity(), EncoderSubdivision(),
-      EncoderCountSlip(),  BearingRoundness(), LinkThermalGrowth(),   LinkGravityBend(),
-      JointHysteresis(),   CapFriction(),      ClockSkew(),           FixtureMisalignment(),
-      StuckChannel(),      Outliers()};
+  static const std::vector<Cause> causes{Backlash(),
+                                         LeadscrewCyclic(),
+                                         ScaleError(),
+                                         Squareness(),
+                                         ThermalGrowth(),
+                                         WarmUpDrift(),
+                                         PivotWarmUp(),
+                                         ServoLag(),
+                                         ServoLagMismatch(),
+                                         ReversalSpike(),
+                                         LoadCoupling(),
+                                         ProbeGain(),
+                                         ProbeNonlinearity(),
+                                         ProbePosition(),
+                                         ProbeCrosstalk(),
+                                         ChannelSwap(),
+                                         ChannelSign(),
+                                         MainsPickup(),
+                                         EncoderEccentricity(),
+                                         EncoderSubdivision(),
+                                         EncoderCountSlip(),
+                                         BearingRoundness(),
+                                         LinkThermalGrowth(),
+                                         LinkGravityBend(),
+                                         JointHysteresis(),
+                                         JointGain(),
+                                         CapFriction(),
+                                         ClockSkew(),
+                                         FixtureMisalignment(),
+                                         StuckChannel(),
+                                         Outliers()};
   return causes;
 }
 
