@@ -1,10 +1,12 @@
 // abbe diagnose: what the simulation gets wrong, and why.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/campaign_kinds.h"
@@ -32,10 +34,12 @@ struct DiagnoseArguments {
   bool plan = false, quiet = false;
 };
 
-// A file without [devices] describes the machine alone: enough for runs with a reference.
+// A file without [devices] is enough for runs with a reference, and for an arm.
 diagnosis::Setup SetupOf(const fs::path& machine) {
-  if (!settings::Document::Read(machine).Root().Has("devices")) {
-    return {ReadMachineOf(machine), std::nullopt, {}, {}, std::nullopt};
+  const auto document = settings::Document::Read(machine);
+  if (!document.Root().Has("devices")) {
+    MachineAlone alone = ReadMachineAlone(document);
+    return {std::move(alone.machine), std::nullopt, {}, {}, std::move(alone.linkage)};
   }
   const MachineFile file = ReadMachineFile(machine);
   const auto& setup = file.sweep_setup;
@@ -67,7 +71,10 @@ nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
 diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
                               const std::vector<recording::Recording>& recordings,
                               const std::vector<diagnosis::Candidate>& causes) {
-  if (causes.empty()) return {};
+  // How well an arm is known where it was not fitted is worth a figure also without a cause.
+  const auto is_arm = [](const diagnosis::DiagnosedRun& run) { return run.arm.has_value(); };
+  const auto& runs = campaign.runs();
+  if (causes.empty() && std::none_of(runs.begin(), runs.end(), is_arm)) return {};
   try {
     return diagnosis::HoldOut(campaign, recordings, causes);
   } catch (const NumericalError& error) {

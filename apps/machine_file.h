@@ -34,4 +34,12 @@ MachineFile ReadMachineFile(const std::filesystem::path& path);
 // machine.
 machine::Machine ReadMachineOf(const std::filesystem::path& path);
 
+// A machine as far as its file describes it without [devices], which may be missing: its axes, a
+// linkage, or a linkage alone (an arm before an instrument), which needs no `chain` and no [axis].
+struct MachineAlone {
+  machine::Machine machine;
+  std::optional<relm::LinkageSettings> linkage;
+};
+MachineAlone ReadMachineAlone(const settings::Document& document);
+
 }  // namespace abbe::apps

@@ -8,6 +8,7 @@
 
 #include "failure/failure.h"
 #include "recording/good_rows.h"
+#include "simulation/arm_run.h"
 #include "simulation/linkage_run.h"
 #include "simulation/linkage_simulation.h"
 
@@ -85,6 +86,11 @@ void SetAngles(const Setup& setup, const relm::LinkageSettings& linkage, Recordi
 Recording Planned(Recording path, const Setup& setup) {
   const std::string kind = path.Kind();
   SetFlags(path);
+  if (simulation::IsArm(path)) {
+    throw InputError(fmt::format(
+        "{}: has no axis positions x_mm, y_mm, z_mm: the poses of an arm cannot be planned with",
+        path.name));
+  }
   if (kind == "linkage") {
     if (!setup.linkage) {
       throw InputError(fmt::format(

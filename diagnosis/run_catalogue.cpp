@@ -13,6 +13,7 @@
 #include "diagnosis/repeated_run.h"
 #include "failure/failure.h"
 #include "recording/good_rows.h"
+#include "simulation/arm_run.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -67,7 +68,7 @@ class Catalogue {
     }
     if (recording.Kind() == "sweep") {
       sweeps_.emplace(recording.HeaderText("axis").value_or("X")[0], &recording);
-    } else if (recording.Kind() == "linkage") {
+    } else if (recording.Kind() == "linkage" && !simulation::IsArm(recording)) {
       const Recording*& first = Moves(recording) ? moving_ : standing_;
       if (first == nullptr) first = &recording;
     }
