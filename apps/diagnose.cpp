@@ -1,7 +1,6 @@
 // abbe diagnose: what the simulation gets wrong, and why.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -72,9 +71,7 @@ diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
                               const std::vector<recording::Recording>& recordings,
                               const std::vector<diagnosis::Candidate>& causes) {
   // How well an arm is known where it was not fitted is worth a figure also without a cause.
-  const auto is_arm = [](const diagnosis::DiagnosedRun& run) { return run.arm.has_value(); };
-  const auto& runs = campaign.runs();
-  if (causes.empty() && std::none_of(runs.begin(), runs.end(), is_arm)) return {};
+  if (causes.empty() && !campaign.HasArms()) return {};
   try {
     return diagnosis::HoldOut(campaign, recordings, causes);
   } catch (const NumericalError& error) {

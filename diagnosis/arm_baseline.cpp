@@ -132,6 +132,16 @@ double ExcessOf(const estimation::SourceResult& run, const VectorXd& left, doubl
   return excess > kNoiseIsKnown ? excess * std::sqrt(SharedBy(left)) : 1.0;
 }
 
+std::vector<double> ExcessOf(const Fit& fit) {
+  std::vector<double> excess;
+  const auto& runs = fit.campaign().runs();
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    excess.push_back(runs[r].arm ? ExcessOf(fit.result().sources[r], fit.LeftOf(r), runs[r].excess)
+                                 : 1.0);
+  }
+  return excess;
+}
+
 ArmBaseline FitArm(const LinkageRun& run, const relm::LinkageSettings& placed) {
   ArmBaseline nominal{run.mounting, placed, simulation::ArmSimulation(placed).Values(), placed, {}};
   try {

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "diagnosis/campaign.h"
+#include "diagnosis/fit.h"
 #include "estimation/result.h"
 #include "simulation/linkage_run.h"
 
@@ -41,5 +42,8 @@ Eigen::Matrix3Xd GapsOf(const simulation::LinkageRun& run, const ArmBaseline& ba
 
 // Of a fit that believed `used`; `left`: its rows in the order of the poses, whitened with that.
 double ExcessOf(const estimation::SourceResult& run, const Eigen::VectorXd& left, double used);
+
+// Of all runs of a fit; 1 of those whose noise is believed.
+std::vector<double> ExcessOf(const Fit& fit);
 
 }  // namespace abbe::diagnosis

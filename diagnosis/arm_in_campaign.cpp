@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "diagnosis/arm_baseline.h"
+#include "failure/failure.h"
 #include "simulation/arm_run.h"
 
 namespace abbe::diagnosis {
@@ -16,14 +17,15 @@ namespace {
 using Eigen::Index;
 using simulation::LinkageRun;
 
+constexpr Index kFewest = 8;      // poses
 constexpr std::size_t kTold = 5;  // poses by their row
 
 // The linkage with its base where another run with this one's mounting has it, or this run itself.
 relm::LinkageSettings PlacedFor(const LinkageRun& run, const Setup& setup) {
   for (const auto& [name, arm] : setup.arms) {
-    if (arm.mounting == run.mounting) return arm.settings;
+    if (arm.mounting == run.mounting) return simulation::HeldAtOnePlace(arm.settings, run);
   }
-  return simulation::Placed(*setup.linkage, run);
+  return simulation::HeldAtOnePlace(simulation::Placed(*setup.linkage, run), run);
 }
 
 std::string NoiseNote(const LinkageRun& kept, const ArmBaseline& baseline) {
@@ -79,6 +81,10 @@ DiagnosedRun MakeArmRun(const recording::Recording& recording, Setup& setup,
       simulation::MeansOfStays(simulation::ReadLinkageRun(recording, *setup.linkage)), kMostPoses);
   const double again = setup.linkage->noise.repeatability;
   run.reference_sd = (run.reference_sd.array().square() + again * again).sqrt();
+  if (run.poses() < kFewest && !setup.arms.contains(run.name)) {
+    throw InputError(fmt::format("{}: has {} poses; an arm is diagnosed from {} on", run.name,
+                                 run.poses(), kFewest));
+  }
   const bool is_new = !setup.arms.contains(run.name);
   if (is_new) setup.arms.emplace(run.name, FitArm(run, PlacedFor(run, setup)));
   const ArmBaseline& baseline = setup.arms.at(run.name);

@@ -130,19 +130,25 @@ simulation::Origin Campaign::origin() const {
   return origin_ ? *origin_ : simulation::OriginOf(scene().traces);
 }
 
-bool Campaign::TakeNoise(const std::vector<double>& excess) {
-  constexpr double kWorthIt = 0.95;
-  bool less = false;
+bool Campaign::HasArms() const {
+  return std::any_of(runs_.begin(), runs_.end(),
+                     [](const DiagnosedRun& run) { return run.arm.has_value(); });
+}
+
+bool Campaign::SetExcess(const std::vector<double>& excess, Change change) {
+  constexpr double kMuchMore = 1.5, kLess = 0.95;
+  bool changed = false;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     DiagnosedRun& run = runs_[r];
     if (!run.arm) continue;
+    const double ratio = excess[r] / run.excess;
+    if (change == Change::kUp ? ratio < kMuchMore : ratio > kLess) continue;
     ArmBaseline& baseline = setup_.arms.at(run.simulated.name);
-    if (excess[r] > kWorthIt * baseline.excess) continue;
     baseline.excess = run.excess = excess[r];
     run.simulated = SimulatedArm(*run.arm, baseline);
-    less = true;
+    changed = true;
   }
-  return less;
+  return changed;
 }
 
 std::vector<BadData> Campaign::bad_data() const {

@@ -75,8 +75,11 @@ class Campaign {
 
   simulation::Origin origin() const;
 
-  // Takes the noise of arms down to `excess`, one for each run; false where it is no less.
-  bool TakeNoise(const std::vector<double>& excess);
+  bool HasArms() const;
+  // Of arms, one for each run: up where it is half as much again, down by a twentieth at least;
+  // false where nothing changes.
+  enum class Change { kDown, kUp };
+  bool SetExcess(const std::vector<double>& excess, Change change);
 
   const Setup& setup() const { return setup_; }
   const machine::VolumetricModel& model() const { return model_; }

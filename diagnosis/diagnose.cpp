@@ -138,16 +138,7 @@ class Search {
     return std::move(diagnosis_);
   }
 
-  // Of each run (arm_baseline.h); 1 of runs whose noise is believed.
-  std::vector<double> ExcessLeft() const {
-    std::vector<double> left;
-    const auto& runs = fit_->campaign().runs();
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-      left.push_back(
-          runs[r].arm ? ExcessOf(fit_->result().sources[r], fit_->LeftOf(r), runs[r].excess) : 1.0);
-    }
-    return left;
-  }
+  const Fit& fit() const { return *fit_; }
 
  private:
   // Scores everything against the fit so far; false when nothing is probable enough.
@@ -315,12 +306,15 @@ std::string_view Name(Verdict verdict) {
 }
 
 Diagnosis Diagnose(const Campaign& campaign) {
-  Campaign less_noise = campaign;
+  if (!campaign.HasArms()) return Search(campaign).Run();
+  Campaign noisy = campaign;
+  // Runs that do not go together leave much more than each does alone.
+  noisy.SetExcess(ExcessOf(Fit(noisy)), Campaign::Change::kUp);
   for (;;) {
-    Search search(less_noise);
+    Search search(noisy);
     Diagnosis diagnosis = search.Run();
     // What was explained is noise of an arm no more: look again with what is left.
-    if (!less_noise.TakeNoise(search.ExcessLeft())) return diagnosis;
+    if (!noisy.SetExcess(ExcessOf(search.fit()), Campaign::Change::kDown)) return diagnosis;
   }
 }
 

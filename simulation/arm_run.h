@@ -20,11 +20,14 @@ namespace abbe::simulation {
 bool IsArm(const recording::Recording& recording);
 
 // The linkage with its base where the nominal arm fits best what the instrument saw, free to stand
-// kAnywhere and kAnyTurn off. Gravity keeps its direction in the frame of the base. A run that
-// stays within kTooNear of one place or line tells nothing of the geometry: all of it is then held,
-// but for the position of the base. Units: m, rad.
+// kAnywhere and kAnyTurn off. Gravity keeps its direction in the frame of the base.
+// Units: m, rad. Failure: InputError for poses on one line, about which the turn is open.
 inline constexpr double kAnywhere = 0.5, kAnyTurn = 1.0, kTooNear = 20e-3;
 relm::LinkageSettings Placed(relm::LinkageSettings settings, const LinkageRun& run);
+
+// A run that stays within kTooNear (rms) of one place tells nothing of the geometry: then all of it
+// is held, but for the position of the base.
+relm::LinkageSettings HeldAtOnePlace(relm::LinkageSettings placed, const LinkageRun& run);
 
 // The arm alone, with all that its machine file leaves open.
 LinkageSimulation ArmSimulation(const relm::LinkageSettings& placed);
