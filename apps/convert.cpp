@@ -90,7 +90,7 @@ recording::Recording ReadAny(const ConvertOptions& options) {
     return hal::RecordingOf(hal::ReadCandump(options.from), EncodersOf(file, options.device),
                             file.devices.stale, file.sweep_setup.machine.name);
   }
-  if (recording::IsCsvTable(options.from) && !options.columns.empty()) return ReadTable(options);
+  if (!options.columns.empty() && recording::IsCsvTable(options.from)) return ReadTable(options);
   const auto imported = recording::Import(options.from, options.import);
   return imported ? *imported : recording::Read(options.from);
 }
