@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/machine_file.h"
 #include "hal/candump_recording.h"
+#include "recording/csv_table.h"
 #include "recording/import.h"
 #include "recording/monitor_log.h"
 #include "recording/recording_file.h"
@@ -23,6 +25,8 @@ struct ConvertOptions {
   recording::ImportOptions import;
   std::vector<std::string> columns;  // NAME=CHANNEL
   std::vector<double> sensor_degrees;
+  std::vector<std::string> where;  // COLUMN=VALUE
+  std::string kind;
   std::string machine;
   std::string device;
   bool quiet = false;
@@ -51,17 +55,31 @@ MachineFile MachineOf(const ConvertOptions& options) {
       "--machine");
 }
 
+std::pair<std::string, std::string> SplitAt(const std::string& option, const std::string& text,
+                                            const char* example) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw InputError(fmt::format("{} {}: is not {}", option, text, example));
+  }
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
 std::vector<recording::MonitoredColumn> ColumnsOf(const ConvertOptions& options) {
   std::vector<recording::MonitoredColumn> columns;
   for (const std::string& text : options.columns) {
-    const auto equals = text.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      throw InputError(fmt::format(
-          "--column {}: is not NAME=CHANNEL, for example shaft_deg=TARGET:Rotation-PosAct", text));
-    }
-    columns.push_back({text.substr(0, equals), text.substr(equals + 1)});
+    auto [name, channel] =
+        SplitAt("--column", text, "NAME=CHANNEL, for example shaft_deg=TARGET:Rotation-PosAct");
+    columns.push_back({std::move(name), std::move(channel)});
   }
   return columns;
+}
+
+recording::Recording ReadTable(const ConvertOptions& options) {
+  recording::CsvTableOptions table{ColumnsOf(options), {}, options.kind};
+  for (const std::string& text : options.where) {
+    table.where.push_back(SplitAt("--where", text, "COLUMN=VALUE, for example arm=2"));
+  }
+  return recording::ReadCsvTable(options.from, table);
 }
 
 recording::Recording ReadAny(const ConvertOptions& options) {
@@ -73,6 +91,7 @@ recording::Recording ReadAny(const ConvertOptions& options) {
     return hal::RecordingOf(hal::ReadCandump(options.from), EncodersOf(file, options.device),
                             file.devices.stale, file.sweep_setup.machine.name);
   }
+  if (!options.columns.empty() && recording::IsCsvTable(options.from)) return ReadTable(options);
   const auto imported = recording::Import(options.from, options.import);
   return imported ? *imported : recording::Read(options.from);
 }
@@ -108,7 +127,7 @@ void AddConvert(CLI::App& program, int& exit_code) {
       "A recording from CSV to HDF5 or back, from a table or a log, or to a log of candump");
   command
       ->add_option("from", options->from,
-                   "A recording (.csv, .h5, .hdf5), a table (.dat, .txt), a log (.log)")
+                   "A recording (.csv, .h5, .hdf5), a table (.dat, .txt, .csv), a log (.log)")
       ->required();
   command->add_option("to", options->to, "The new recording (.csv, .h5, .hdf5), or log (.log)")
       ->required();
@@ -116,13 +135,20 @@ void AddConvert(CLI::App& program, int& exit_code) {
   command->add_option("--device", options->device, "Logs: the device, where several are on CAN");
   command
       ->add_option("--column", options->columns,
-                   "Logs of a monitor: NAME=CHANNEL, the name with its unit; may be repeated")
+                   "Logs of a monitor, tables in CSV: NAME=CHANNEL, the name with its unit; may be "
+                   "repeated")
       ->allow_extra_args(false);
   command
       ->add_option("--sensor-deg", options->sensor_degrees,
                    "Logs of a monitor at a turning shaft: where gap_1, gap_2, ... stand round it, "
                    "with commas between")
       ->delimiter(',');
+  command
+      ->add_option("--where", options->where,
+                   "Tables in CSV: COLUMN=VALUE, the rows that say so; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--kind", options->kind, "Tables in CSV: the kind of the recording (linkage)")
+      ->default_val("linkage");
   command->add_option("--axis", options->import.axis, "The axis of a table that does not say (X)")
       ->check(CLI::IsMember({"X", "Y", "Z"}));
   command
@@ -130,7 +156,11 @@ void AddConvert(CLI::App& program, int& exit_code) {
                    "Standard uncertainty of a hole centre in a table of holes")
       ->check(CLI::PositiveNumber);
   command->add_flag("--quiet", options->quiet, "Print nothing but warnings");
-  command->footer("Example: abbe convert sweep_X.csv sweep_X.h5");
+  command->footer(
+      "Example: abbe convert sweep_X.csv sweep_X.h5\n"
+      "         abbe convert poses.csv arm.csv --column pivot_1_rad=S --column ref_x_mm=x_m "
+      "--where "
+      "arm=2");
   command->callback([options, &exit_code] { exit_code = Convert(*options); });
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/campaign_kinds.h"
@@ -34,27 +35,12 @@ struct DiagnoseArguments {
   bool plan = false, quiet = false;
 };
 
-// A shaft has no axes. Those that a machine needs do not move and are asked for nothing.
-machine::Machine MachineWithoutAxes(const settings::Table& root) {
-  constexpr const char* kStands = R"(
-chain = "[w X Y b Z t]"
-axis = {X.travel_mm = [0, 1], Y.travel_mm = [0, 1], Z.travel_mm = [0, 1]}
-)";
-  const std::string name = settings::Quoted(root.Text("name"));
-  root.RefuseUnknown();
-  const std::string text = fmt::format("name = {}{}", name, kStands);
-  return machine::ReadMachine(settings::Document::Parse(text, "machine without axes").Root());
-}
-
-// A file without [devices] describes the machine alone: enough for runs with a reference. One with
-// nothing but a name is that of a shaft.
+// A file without [devices] is enough for runs with a reference, for an arm, and for a shaft.
 diagnosis::Setup SetupOf(const fs::path& machine) {
   const auto document = settings::Document::Read(machine);
-  if (!document.Root().Has("chain") && !document.Root().Has("axis")) {
-    return {MachineWithoutAxes(document.Root()), std::nullopt, {}, {}, std::nullopt};
-  }
   if (!document.Root().Has("devices")) {
-    return {ReadMachineOf(machine), std::nullopt, {}, {}, std::nullopt};
+    MachineAlone alone = ReadMachineAlone(document);
+    return {std::move(alone.machine), std::nullopt, {}, {}, std::move(alone.linkage)};
   }
   const MachineFile file = ReadMachineFile(machine);
   const auto& setup = file.sweep_setup;
@@ -86,7 +72,8 @@ nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
 diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
                               const std::vector<recording::Recording>& recordings,
                               const std::vector<diagnosis::Candidate>& causes) {
-  if (causes.empty()) return {};
+  // How well an arm is known where it was not fitted is worth a figure also without a cause.
+  if (causes.empty() && !campaign.HasArms()) return {};
   try {
     return diagnosis::HoldOut(campaign, recordings, causes);
   } catch (const NumericalError& error) {

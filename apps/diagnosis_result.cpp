@@ -175,6 +175,11 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const diagnosis::HeldOutG
   if (gain.rows > 0) {
     json["heldout"] = {{"rows", gain.rows}, {"rms_before", gain.before}, {"rms_after", gain.after}};
   }
+  if (gain.arm_poses > 0) {
+    json["heldout_arm"] = {{"poses", gain.arm_poses},
+                           {"rms_before_mm", 1e3 * gain.arm_before},
+                           {"rms_after_mm", 1e3 * gain.arm_after}};
+  }
   for (const Leftover& leftover : diagnosis.leftovers) {
     json["unexplained"].push_back({{"variable", leftover.variable},
                                    {"object", leftover.object},
@@ -205,6 +210,10 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const diagnosis::HeldOutGa
   if (!diagnosis.findings.empty() && diagnosis.map_change > 0.0) {
     text += fmt::format("the error map of the machine changes by up to {:.2g} um\n",
                         1e6 * diagnosis.map_change);
+  }
+  if (gain.arm_poses > 0) {
+    text += fmt::format("{} poses of arms held out: {:.4g} mm rms in space, {:.4g} mm with it\n",
+                        gain.arm_poses, 1e3 * gain.arm_before, 1e3 * gain.arm_after);
   }
   for (const Leftover& leftover : diagnosis.leftovers) {
     const bool scatter = leftover.variable == diagnosis::kScatter;

@@ -46,4 +46,13 @@ machine::Machine ReadMachineOf(const std::filesystem::path& path) {
   return machine;
 }
 
+MachineAlone ReadMachineAlone(const settings::Document& document) {
+  const settings::Table root = document.Root();
+  const bool bare = !root.Has("chain") && !root.Has("axis");
+  MachineAlone alone{bare ? machine::ReadMachineWithoutAxes(root) : machine::ReadMachine(root), {}};
+  if (root.Has("linkage")) alone.linkage = relm::ReadLinkageSettings(root);
+  root.RefuseUnknown();
+  return alone;
+}
+
 }  // namespace abbe::apps

@@ -34,4 +34,13 @@ MachineFile ReadMachineFile(const std::filesystem::path& path);
 // machine.
 machine::Machine ReadMachineOf(const std::filesystem::path& path);
 
+// A machine as far as its file describes it without [devices], which may be missing: its axes, a
+// linkage, a linkage alone (an arm before an instrument) or a name alone (a shaft), which need no
+// `chain` and no [axis].
+struct MachineAlone {
+  machine::Machine machine;
+  std::optional<relm::LinkageSettings> linkage;
+};
+MachineAlone ReadMachineAlone(const settings::Document& document);
+
 }  // namespace abbe::apps

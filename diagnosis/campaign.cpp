@@ -6,10 +6,12 @@
 #include <cmath>
 #include <utility>
 
+#include "diagnosis/arm_in_campaign.h"
 #include "diagnosis/reference_in_campaign.h"
 #include "diagnosis/shaft_in_campaign.h"
 #include "failure/failure.h"
 #include "recording/made_on.h"
+#include "simulation/arm_run.h"
 #include "simulation/length_simulation.h"
 #include "simulation/linkage_on_machine.h"
 #include "simulation/reference_trace.h"
@@ -21,16 +23,6 @@ namespace abbe::diagnosis {
 using simulation::Trace;
 
 namespace {
-
-constexpr Eigen::Index kMostPoses = 1500;  // of one run: time is spent on causes, not on rows
-
-simulation::LinkageRun Thinned(const simulation::LinkageRun& run) {
-  if (run.poses() <= kMostPoses) return run;
-  std::vector<Eigen::Index> kept;
-  const Eigen::Index step = (run.poses() + kMostPoses - 1) / kMostPoses;
-  for (Eigen::Index pose = 0; pose < run.poses(); pose += step) kept.push_back(pose);
-  return simulation::Selection(run, kept);
-}
 
 // No dwell of a head has an angle of a shaft.
 std::string KindOf(const recording::Recording& recording) {
@@ -52,11 +44,27 @@ Eigen::Matrix<double, 6, 3> SlopesOf(const machine::Population& population) {
   return slopes;
 }
 
+machine::VolumetricModel ModelOf(const Setup& setup) {
+  if (setup.HasAxes()) return fusion::UnknownMachine(setup.machine);
+  return {setup.machine.chain, setup.machine.travels};
+}
+
+const relm::LinkageSettings& LinkageOf(const Setup& setup, const std::string& recording) {
+  if (setup.linkage) return *setup.linkage;
+  throw InputError(fmt::format(
+      "{}: the machine file has no table [linkage]; add it or leave the run out", recording));
+}
+
 }  // namespace
+
+bool Setup::HasAxes() const {
+  return std::any_of(machine.travels.begin(), machine.travels.end(),
+                     [](const auto& travel) { return travel.last > travel.first; });
+}
 
 Campaign::Campaign(Setup setup, std::optional<simulation::Origin> origin)
     : setup_(std::move(setup)),
-      model_(fusion::UnknownMachine(setup_.machine)),
+      model_(ModelOf(setup_)),
       prior_(setup_.machine, model_, setup_.machine.population.smoothness),
       origin_(std::move(origin)),
       notes_(setup_.notes) {}
@@ -64,10 +72,17 @@ Campaign::Campaign(Setup setup, std::optional<simulation::Origin> origin)
 void Campaign::Add(recording::Recording recording) {
   const machine::Machine& mill = setup_.machine;
   recording::RefuseOtherMachine(recording, mill.name);
-  for (BadData& bad : FlagBadRows(recording)) {
-    bad_.push_back({simulation::StartedOf(recording), std::move(bad)});
-  }
   const std::string kind = KindOf(recording);
+  const bool is_arm = simulation::IsArm(recording);
+  if (!is_arm && kind != "shaft" && !setup_.HasAxes()) {
+    throw InputError(fmt::format(
+        "{}: the machine file has no axes (chain, [axis.X], [axis.Y], [axis.Z]); without them only "
+        "a turning shaft (kind shaft) and an arm before an instrument can be diagnosed: kind "
+        "linkage, with ref_x_mm, ref_y_mm, ref_z_mm and no x_mm, y_mm, z_mm",
+        recording.name));
+  }
+  // An arm may well stand with a pivot that shows one value, and its poses are no neighbours.
+  std::vector<BadData> bad = is_arm ? std::vector<BadData>{} : FlagBadRows(recording);
   if (kind == "sweep" || kind == "dwell" || kind == "gap-steps") {
     if (!setup_.head) {
       throw InputError(fmt::format(
@@ -82,17 +97,15 @@ void Campaign::Add(recording::Recording recording) {
         {simulation::SimulateSweep(model_, mill.reference, {*setup_.head, setup_.target}, run),
          simulation::TraceOf(recording, run)});
     runs_.back().trace.spots = simulation::SpotsOnTarget(mill.chain, *setup_.head, run);
+  } else if (is_arm) {
+    LinkageOf(setup_, recording.name);
+    runs_.push_back(MakeArmRun(recording, setup_, notes_, bad));
   } else if (kind == "linkage") {
-    if (!setup_.linkage) {
-      throw InputError(
-          fmt::format("{}: the machine file has no table [linkage]; add it or leave the run out",
-                      recording.name));
-    }
+    const relm::LinkageSettings& settings = LinkageOf(setup_, recording.name);
     const simulation::LinkageSimulation linkage(
-        mill.chain, *setup_.linkage,
-        relm::MakeLinkageModel(*setup_.linkage, relm::ErrorModel::kComplete));
-    const auto run =
-        Thinned(simulation::MeansOfStays(simulation::ReadLinkageRun(recording, *setup_.linkage)));
+        mill.chain, settings, relm::MakeLinkageModel(settings, relm::ErrorModel::kComplete));
+    const auto run = AtMost(
+        simulation::MeansOfStays(simulation::ReadLinkageRun(recording, settings)), kMostPoses);
     runs_.push_back({simulation::SimulateLinkage(model_, mill.reference, linkage, run),
                      simulation::TraceOf(recording, run, linkage)});
   } else if (kind == "length") {
@@ -109,6 +122,13 @@ void Campaign::Add(recording::Recording recording) {
                     recording.name, kind));
   }
   runs_.back().simulated.loss = estimation::RobustLoss::None();
+  if ((is_arm || kind == "reference") && !recording.KnowsTimes()) {
+    notes_.push_back(
+        fmt::format("{}: knows the order of its readings, not their times; one reading counts as "
+                    "one second, so what is told in s counts readings",
+                    recording.name));
+  }
+  for (BadData& each : bad) bad_.push_back({simulation::StartedOf(recording), std::move(each)});
   const simulation::Origin start = origin();
   for (DiagnosedRun& run : runs_) {
     if (run.trace.rows() > 0) simulation::CountFrom(start, run.trace);
@@ -117,6 +137,27 @@ void Campaign::Add(recording::Recording recording) {
 
 simulation::Origin Campaign::origin() const {
   return origin_ ? *origin_ : simulation::OriginOf(scene().traces);
+}
+
+bool Campaign::HasArms() const {
+  return std::any_of(runs_.begin(), runs_.end(),
+                     [](const DiagnosedRun& run) { return run.arm.has_value(); });
+}
+
+bool Campaign::SetExcess(const std::vector<double>& excess, Change change) {
+  constexpr double kMuchMore = 1.5, kLess = 0.95;
+  bool changed = false;
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    DiagnosedRun& run = runs_[r];
+    if (!run.arm) continue;
+    const double ratio = excess[r] / run.excess;
+    if (change == Change::kUp ? ratio < kMuchMore : ratio > kLess) continue;
+    ArmBaseline& baseline = setup_.arms.at(run.simulated.name);
+    baseline.excess = run.excess = excess[r];
+    run.simulated = SimulatedArm(*run.arm, baseline);
+    changed = true;
+  }
+  return changed;
 }
 
 std::vector<BadData> Campaign::bad_data() const {

@@ -16,6 +16,8 @@ bool ScalesWith(const simulation::Cause& cause, const std::string& object) {
                      [](const auto& key) { return key.name.ends_with("_um"); });
 }
 
+bool IsOfAxes(const std::string& object) { return object.find_first_of("XYZ") == 0; }
+
 }  // namespace
 
 double CoarsenessOf(const machine::Population& population) {
@@ -29,6 +31,7 @@ std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coar
     const std::vector<Eigen::VectorXd> shapes =
         cause.shapes ? cause.shapes(scene) : std::vector<Eigen::VectorXd>{Eigen::VectorXd()};
     for (const std::string& object : cause.objects(scene)) {
+      if (IsOfAxes(object) && scene.travel.isZero(0.0)) continue;
       const double own = ScalesWith(cause, object) ? coarseness : 1.0;
       for (const Eigen::VectorXd& shape : shapes) {
         candidates.push_back({&cause, object, shape, {}, own});

@@ -34,7 +34,8 @@ struct Candidate {
 // its file), on a coarser one they are in proportion.
 double CoarsenessOf(const machine::Population& population);
 
-// All causes at all objects that the scene offers, with all shapes to try. One after the other:
+// All causes at all objects that the scene offers, axes only where they travel, with all shapes to
+// try. One after the other:
 // shapes of one cause and object stand together.
 std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coarseness = 1.0);
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "diagnosis/arm_baseline.h"
 #include "diagnosis/line_search.h"
 #include "diagnosis/scatter.h"
 #include "failure/failure.h"
@@ -16,8 +17,9 @@ namespace abbe::diagnosis {
 namespace {
 
 constexpr std::size_t kMostCauses = 6;
-constexpr double kNegligible = 0.01;  // probability of a rival that is not worth a word
-constexpr int kRefinements = 12;      // halvings of the step between shapes
+constexpr std::size_t kMostRefused = 24;  // between two that are taken in
+constexpr double kNegligible = 0.01;      // probability of a rival that is not worth a word
+constexpr int kRefinements = 12;          // halvings of the step between shapes
 constexpr double kClose = 6.0;      // in log evidence: candidates that the first order may confuse
 constexpr double kWorthFits = 8.0;  // log evidence of the best below which nothing is taken in
 constexpr std::size_t kMostFits = 4;
@@ -155,6 +157,8 @@ class Search {
     return std::move(diagnosis_);
   }
 
+  const Fit& fit() const { return *fit_; }
+
  private:
   // Scores everything against the fit so far; false when nothing is probable enough.
   bool TakeBest() {
@@ -183,14 +187,28 @@ class Search {
     std::vector<Candidate> more = taken_;
     more.push_back(finding.score.candidate);
     const auto fit = FitWith(more);
-    if (!fit) {
+    if (!fit || !Predicts(*fit)) {
       refused_.push_back(more.back());
-      return refused_.size() < kMostCauses;
+      return refused_.size() < (fit ? kMostRefused : kMostCauses);
     }
+    if (OfArms()) refused_.clear();  // it may have stood in the way
     taken_ = std::move(more);
     diagnosis_.findings.push_back(std::move(finding));
     fit_ = fit;
     return true;
+  }
+
+  bool OfArms() const { return fit_->left_out() > 0.0; }
+
+  // What is left of an arm is no white noise while more than its noise is left, and evidence counts
+  // each row as if it were: then a cause has to predict the poses of an arm that took no part; a
+  // step at an instant of its own, which fits any drift, has to explain all that is left.
+  bool Predicts(const Fit& fit) const {
+    constexpr double kBetter = 0.9, kAll = 1.5;  // of chi-square
+    const auto rows = static_cast<double>(fit.rows());
+    if (!OfArms() || fit_->chi_square() < kNoiseIsKnown * kNoiseIsKnown * rows) return true;
+    if (fit.left_out() > kBetter * fit_->left_out()) return false;
+    return !fit.taken_in().back().cause->one_event || fit.chi_square() < kAll * rows;
   }
 
   // Where the first order cannot tell, fits with each of the leading candidates decide: what is
@@ -330,6 +348,17 @@ std::string_view Name(Verdict verdict) {
   return "";
 }
 
-Diagnosis Diagnose(const Campaign& campaign) { return Search(campaign).Run(); }
+Diagnosis Diagnose(const Campaign& campaign) {
+  if (!campaign.HasArms()) return Search(campaign).Run();
+  Campaign noisy = campaign;
+  // Runs that do not go together leave much more than each does alone.
+  noisy.SetExcess(ExcessOf(Fit(noisy)), Campaign::Change::kUp);
+  for (;;) {
+    Search search(noisy);
+    Diagnosis diagnosis = search.Run();
+    // What was explained is noise of an arm no more: look again with what is left.
+    if (!noisy.SetExcess(ExcessOf(search.fit()), Campaign::Change::kDown)) return diagnosis;
+  }
+}
 
 }  // namespace abbe::diagnosis

@@ -21,6 +21,8 @@ using estimation::Problem;
 using simulation::Disturbance;
 using simulation::SimulatedRun;
 
+constexpr Index kBlocks = 16;  // of consecutive poses, which share what no cause explains
+
 // The values of a run's own blocks.
 VectorXd ValuesIn(const estimation::Result& result, const SimulatedRun& run) {
   return fusion::ValuesFound(result, run.blocks);
@@ -194,6 +196,7 @@ void Fit::Linearize(const Problem& problem) {
   log_likelihood_ = -at.Cost() + 0.5 * (priors - curvature);
   estimation::RowEvaluator evaluator(problem, layout);
   runs_.clear();
+  left_out_ = 0.0;
   for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
     const DiagnosedRun& run = campaign_.runs()[r];
     const auto* rows = evaluator.Evaluate(problem.terms()[r], x, true);
@@ -202,15 +205,35 @@ void Fit::Linearize(const Problem& problem) {
                      rows->columns,
                      {}});
     if (!runs_.back().at.response) continue;
+    if (run.arm)
+      left_out_ += run.excess * run.excess * LeftOut(rows->r, rows->columns, rows->jacobian);
     MatrixXd both(rows->r.size(), rows->jacobian.cols() + 1);
     both << rows->jacobian, rows->r;
     runs_.back().back = runs_.back().at.response->BackToReadings(both);
   }
 }
 
+// Of rows B left out r_B becomes (1 - J_B H^-1 J_B')^-1 r_B: Allen, Technometrics 16 (1974).
+double Fit::LeftOut(const VectorXd& r, const std::vector<int>& columns, const MatrixXd& J) const {
+  const Index poses = r.size() / 3;
+  double sum = 0.0;
+  for (Index block = 0; block < kBlocks; ++block) {
+    const Index first = 3 * (block * poses / kBlocks), last = 3 * ((block + 1) * poses / kBlocks);
+    if (last == first) continue;
+    MatrixXd A = MatrixXd::Zero(scale_.size(), last - first);
+    A(columns, Eigen::all) = J.middleRows(first, last - first).transpose();
+    A = scale_.asDiagonal() * A;
+    const MatrixXd own = MatrixXd::Identity(A.cols(), A.cols()) - A.transpose() * H_.solve(A);
+    sum += own.ldlt().solve(VectorXd(r.segment(first, last - first))).squaredNorm();
+  }
+  return sum;
+}
+
 double Fit::chi_square() const {
   double sum = 0.0;
-  for (const RunRows& run : runs_) sum += run.r.squaredNorm();
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    sum += runs_[r].r.squaredNorm() * std::pow(campaign_.runs()[r].excess, 2);
+  }
   return sum;
 }
 
@@ -358,6 +381,12 @@ Score Fit::ScoreOf(std::size_t taken_in) const {
   if (!cause.cause->widens) {
     score.coefficients = result_.Block(BlockOf(cause)).Values().head(cause.cause->coefficients());
     score.covariance = result_.Covariance(BlockOf(cause), BlockOf(cause));
+    const std::string zero = "encoder_offset." + cause.object;
+    if (cause.cause->graduated && !ColumnsNamed(zero).empty()) {
+      const Eigen::Vector2d turned(score.coefficients[1], -score.coefficients[0]);
+      score.covariance.topLeftCorner<2, 2>() +=
+          std::pow(cause.shape[0] * result_.Uncertainty(zero), 2) * turned * turned.transpose();
+    }
     if (cause.cause->drawn) {  // so many draws tell their deviation
       const Index count = score.coefficients.size();
       score.covariance.conservativeResize(count + 1, count + 1);

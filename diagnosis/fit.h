@@ -38,7 +38,10 @@ class Fit {
   const Campaign& campaign() const { return campaign_; }
   const estimation::Result& result() const { return result_; }
   const std::vector<Candidate>& taken_in() const { return taken_in_; }
-  double chi_square() const;  // of the runs
+  double chi_square() const;  // of the runs, by their stated noise
+  // The same of the runs of arms, of rows that took no part: each of kBlocks blocks of poses is
+  // held against the fit to all others, to first order.
+  double left_out() const { return left_out_; }
   // Logarithm of the marginal likelihood of the data, by Laplace's approximation at the fit; all
   // fits to one campaign lack the same constant.
   double log_likelihood() const { return log_likelihood_; }
@@ -81,6 +84,8 @@ class Fit {
   void Linearize(const estimation::Problem& problem);
   double FollowShapes();
   double SeenOf(const Candidate& cause) const;
+  double LeftOut(const Eigen::VectorXd& r, const std::vector<int>& columns,
+                 const Eigen::MatrixXd& J) const;
   // [C'J C'r] of one run.
   Eigen::MatrixXd Against(const RunRows& run,
                           const std::vector<simulation::Disturbance>& disturbances) const;
@@ -96,7 +101,7 @@ class Fit {
   std::vector<RunRows> runs_;
   Eigen::MatrixXd data_information_;
   Eigen::VectorXd data_gradient_, gradient_;
-  double log_likelihood_ = 0.0;
+  double log_likelihood_ = 0.0, left_out_ = 0.0;
   Eigen::VectorXd scale_;  // H = scale^-1 (scaled) scale^-1
   Eigen::LLT<Eigen::MatrixXd> H_;
 };

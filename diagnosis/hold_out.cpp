@@ -11,6 +11,8 @@
 #include "diagnosis/extended_run.h"
 #include "diagnosis/fit.h"
 #include "fusion/machine_problem.h"
+#include "simulation/arm_run.h"
+#include "simulation/linkage_gaps.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -39,7 +41,7 @@ std::set<const Recording*> HeldRuns(const std::vector<Recording>& recordings) {
   constexpr std::size_t kEnough = 3;
   std::map<std::string, std::vector<const Recording*>> by_base;
   for (const Recording& recording : recordings) {
-    if (recording.Kind() != "linkage") continue;
+    if (recording.Kind() != "linkage" || simulation::IsArm(recording)) continue;
     by_base[recording.HeaderText("mounting.base").value_or("")].push_back(&recording);
   }
   std::set<const Recording*> held;
@@ -54,6 +56,10 @@ std::set<const Recording*> HeldRuns(const std::vector<Recording>& recordings) {
 std::function<bool(std::size_t)> HeldRows(const Recording& recording) {
   const std::string kind = recording.Kind();
   if (kind != "sweep" && kind != "linkage" && kind != "reference" && kind != "shaft") return {};
+  if (simulation::IsArm(recording)) {
+    constexpr std::size_t kFourth = 4;
+    return [](std::size_t row) { return row % kFourth == 0; };
+  }
   const auto pass = recording.Find("pass");
   const std::set<double> passes =
       pass ? std::set<double>(pass->begin(), pass->end()) : std::set<double>{};
@@ -88,15 +94,27 @@ VectorXd ResidualAt(const Fit& fit, const DiagnosedRun& run) {
   return residual;
 }
 
-double RmsOf(const Campaign& held, const Fit& fit, Index& rows) {
-  double sum = 0.0;
-  rows = 0;
+// Of what is left of the held rows, in units of the stated noise; of arms in space too.
+struct Left {
+  Index rows = 0, poses = 0;
+  double rms = 0.0, in_space = 0.0;
+};
+
+Left LeftOf(const Campaign& held, const Fit& fit) {
+  double sum = 0.0, in_space = 0.0;
+  Left left;
   for (const DiagnosedRun& run : held.runs()) {
     const VectorXd residual = ResidualAt(fit, run);
-    sum += residual.squaredNorm();
-    rows += residual.size();
+    sum += residual.squaredNorm() * run.excess * run.excess;
+    left.rows += residual.size();
+    const auto* gaps = dynamic_cast<const simulation::LinkageGaps*>(run.simulated.residual.get());
+    if (gaps == nullptr) continue;
+    in_space += gaps->InSpace(residual).squaredNorm();
+    left.poses += residual.size() / 3;
   }
-  return std::sqrt(sum / static_cast<double>(rows));
+  left.rms = std::sqrt(sum / static_cast<double>(left.rows));
+  if (left.poses > 0) left.in_space = std::sqrt(in_space / static_cast<double>(left.poses));
+  return left;
 }
 
 }  // namespace
@@ -106,7 +124,7 @@ HeldOutGain HoldOut(const Campaign& campaign, const std::vector<Recording>& reco
   Campaign kept(campaign.setup(), campaign.origin()), held(campaign.setup(), campaign.origin());
   const std::set<const Recording*> whole = HeldRuns(recordings);
   for (const Recording& recording : recordings) {
-    if (!whole.empty() && recording.Kind() == "linkage") {
+    if (!whole.empty() && recording.Kind() == "linkage" && !simulation::IsArm(recording)) {
       (whole.contains(&recording) ? held : kept).Add(recording);
       continue;
     }
@@ -119,12 +137,11 @@ HeldOutGain HoldOut(const Campaign& campaign, const std::vector<Recording>& reco
     kept.Add(part(recording, [&](std::size_t row) { return !is_held(row); }));
     held.Add(part(recording, is_held));
   }
-  HeldOutGain gain;
-  if (held.runs().empty()) return gain;
+  if (held.runs().empty()) return {};
   const Fit baseline(kept);
-  gain.before = RmsOf(held, baseline, gain.rows);
-  gain.after = RmsOf(held, Fit(baseline, causes), gain.rows);
-  return gain;
+  const Left before = LeftOf(held, baseline);
+  const Left after = causes.empty() ? before : LeftOf(held, Fit(baseline, causes));
+  return {before.rows, before.rms, after.rms, before.poses, before.in_space, after.in_space};
 }
 
 }  // namespace abbe::diagnosis

@@ -6,7 +6,7 @@
 // Every other pass of each sweep and of each run with a reference instrument is held out, and every
 // other run of the linkage on one base; where it has fewer than three, every other pass, or every
 // other of kBlocks blocks in time (also of a run of a shaft), so that neighbouring rows stay
-// together. A sweep with one pass
+// together. Of an arm, whose poses are measured one by one, every fourth. A sweep with one pass
 // and runs of other kinds take no part. The simulation is fitted to the rest, once as it is and
 // once with the causes, and asked for the rows that were held out: rms of (measured - simulated) /
 // stated deviation, 1 for the noise floor. Failure: that of Fit.
@@ -24,6 +24,8 @@ namespace abbe::diagnosis {
 struct HeldOutGain {
   Eigen::Index rows = 0;  // held out; 0: the runs have no passes to hold out
   double before = 0.0, after = 0.0;
+  Eigen::Index arm_poses = 0;
+  double arm_before = 0.0, arm_after = 0.0;  // m, rms in space, of the poses of arms
 };
 
 // `recordings`: those of the campaign.

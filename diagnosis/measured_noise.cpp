@@ -18,7 +18,9 @@ constexpr double kBelieved = 0.05, kCertain = 4.0;
 
 // Rows whose axes stand where they stood in the row before, by the column's own rows.
 std::vector<bool> Stands(const Recording& recording, const std::vector<std::size_t>& rows) {
-  std::vector<bool> stands(rows.size(), true);
+  const bool knows_axes =
+      recording.Find("x_mm") || recording.Find("y_mm") || recording.Find("z_mm");
+  std::vector<bool> stands(rows.size(), knows_axes);
   stands.front() = false;
   for (const char* axis : {"x_mm", "y_mm", "z_mm"}) {
     if (!recording.Find(axis)) continue;

@@ -127,6 +127,7 @@ class Prospects {
 void AddNextRuns(const Campaign& campaign, const std::vector<recording::Recording>& recordings,
                  Diagnosis& diagnosis) {
   if (std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), HasRivals)) return;
+  if (!campaign.setup().HasAxes()) return;
   const Prospects prospects(campaign, PossibleRuns(campaign, recordings),
                             ValuesOf(diagnosis.fitted));
   for (Finding& finding : diagnosis.findings) {

@@ -8,6 +8,7 @@
 
 #include "failure/failure.h"
 #include "recording/good_rows.h"
+#include "simulation/arm_run.h"
 #include "simulation/linkage_run.h"
 #include "simulation/linkage_simulation.h"
 
@@ -89,6 +90,11 @@ Recording Planned(Recording path, const Setup& setup) {
         fmt::format("{}: a turning shaft cannot be planned yet; leave the run out", path.name));
   }
   SetFlags(path);
+  if (simulation::IsArm(path)) {
+    throw InputError(fmt::format(
+        "{}: has no axis positions x_mm, y_mm, z_mm: the poses of an arm cannot be planned with",
+        path.name));
+  }
   if (kind == "linkage") {
     if (!setup.linkage) {
       throw InputError(fmt::format(

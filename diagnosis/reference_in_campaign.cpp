@@ -51,12 +51,6 @@ DiagnosedRun MakeReferenceRun(const recording::Recording& recording, Setup& setu
                                              simulation::WithAllAxes(recording, mill.travels))),
                                          kMostRows);
   if (!StatesNoise(run)) simulation::SetNoise(NoiseOf(run, setup, notes), run);
-  if (!run.timed) {
-    notes.push_back(
-        fmt::format("{}: knows the order of its readings, not their times; one reading counts as "
-                    "one second, so what is told in s counts readings",
-                    run.points.name));
-  }
   return {simulation::SimulateReference(model, mill.reference, run),
           simulation::TraceOf(recording, run)};
 }

@@ -7,9 +7,8 @@
 // the mean of its readings. Noise: what the recording states, else how well a positioning test
 // repeats (simulation/reference_noise.h), else [linkage.noise] of the machine file; what the first
 // two say goes into `setup`, so that a part of the run is held against the noise of the whole.
-// A run without times has its readings a second apart. `notes` says so, and where the noise is
-// from. Units: m, s. Failure: that of simulation/reference_run.h; InputError where no noise is
-// known.
+// A run without times has its readings a second apart. `notes` says where the noise is from. Units:
+// m, s. Failure: that of simulation/reference_run.h; InputError where no noise is known.
 #pragma once
 
 #include <string>

@@ -29,10 +29,17 @@ Recording Again(const Recording& run, const AgainAbout& about) {
     if (const auto value = run.HeaderNumber(key)) more += fmt::format("{} = {}\n", key, *value);
   }
   const std::string mounting = about.mounting.empty() ? MountingOf(run) : about.mounting;
+  const bool of_base = run.Kind() == "linkage";
+  std::string table = fmt::format("{} = {}\n", of_base ? "base" : "id", Quoted(mounting));
+  if (!of_base) {
+    const simulation::SweepMounting mounted =
+        about.mounting.empty() ? simulation::MountedOf(run) : about.mounted;
+    table += fmt::format("head = {}\ntarget_shift_mm = {}\ntarget_reversed = {}\n",
+                         Quoted(mounted.head_turned ? "180deg" : "0deg"),
+                         1e3 * mounted.target_shift, mounted.target_reversed);
+  }
   Recording again = run;
-  again.header = HeaderOf(
-      {run.Kind(), about.machine, about.started, more,
-       fmt::format("{} = {}\n", run.Kind() == "linkage" ? "base" : "id", Quoted(mounting))});
+  again.header = HeaderOf({run.Kind(), about.machine, about.started, more, table});
   return again;
 }
 

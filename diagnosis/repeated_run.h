@@ -10,6 +10,7 @@
 #include <string>
 
 #include "recording/recording.h"
+#include "simulation/sweep_run.h"
 
 namespace abbe::diagnosis {
 
@@ -17,6 +18,7 @@ struct AgainAbout {
   std::string machine;
   double started = 0.0;       // s since 1970
   std::string mounting = {};  // of the target, or of the linkage's base; empty: as it was
+  simulation::SweepMounting mounted = {};  // of head and target, where `mounting` is another one
 };
 recording::Recording Again(const recording::Recording& run, const AgainAbout& about);
 

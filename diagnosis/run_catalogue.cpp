@@ -13,6 +13,7 @@
 #include "diagnosis/repeated_run.h"
 #include "failure/failure.h"
 #include "recording/good_rows.h"
+#include "simulation/arm_run.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -24,6 +25,7 @@ constexpr double kPause = 60.0;      // s, before the next run
 constexpr double kHour = 3600.0;     // s
 constexpr double kWarmer = 3.0;      // K
 constexpr double kOtherFeed = 5.0;   // times
+constexpr double kShift = 10e-3;     // m, of the target
 constexpr double kFeed = 1e-3 / 60;  // m/s in a mm/min
 constexpr const char* kAnew = "planned anew";
 
@@ -67,14 +69,15 @@ class Catalogue {
     }
     if (recording.Kind() == "sweep") {
       sweeps_.emplace(recording.HeaderText("axis").value_or("X")[0], &recording);
-    } else if (recording.Kind() == "linkage") {
+    } else if (recording.Kind() == "linkage" && !simulation::IsArm(recording)) {
       const Recording*& first = Moves(recording) ? moving_ : standing_;
       if (first == nullptr) first = &recording;
     }
   }
 
-  Recording Later(const Recording& run, const std::string& mounting = {}) const {
-    return Again(run, {about_.machine, about_.started, mounting});
+  Recording Later(const Recording& run, const std::string& mounting = {},
+                  const simulation::SweepMounting& mounted = {}) const {
+    return Again(run, {about_.machine, about_.started, mounting, mounted});
   }
 
   Recording AnHourLater(const Recording& run) const {
@@ -89,6 +92,13 @@ class Catalogue {
     Add(fmt::format("mount the target anew, tilted by {:.0f} urad, and repeat {}", 1e6 * tilt,
                     name),
         Later(sweep, kAnew), tilt);
+    Add(fmt::format("shift the target by {:.0f} mm along the axis and repeat {}", 1e3 * kShift,
+                    name),
+        Later(sweep, kAnew, {.target_shift = kShift}));
+    Add(fmt::format("turn the target round by half a turn and repeat {}", name),
+        Later(sweep, kAnew, {.target_reversed = true}));
+    Add(fmt::format("turn the head by half a turn about its normal and repeat {}", name),
+        Later(sweep, kAnew, {.head_turned = true}));
     Add(fmt::format("repeat {} in the reverse order, from the other end", name),
         TurnedRound(Later(sweep)));
     Add(fmt::format("repeat {} an hour later, the machine {:.0f} K warmer", name, kWarmer),

@@ -6,13 +6,13 @@
 namespace abbe::diagnosis {
 
 std::vector<Leftover> RunsThatScatter(const Fit& fit) {
-  constexpr double kNoiseIsKnown = 1.05;
   std::vector<Leftover> found;
   const auto& runs = fit.campaign().runs();
   for (std::size_t run = 0; run < runs.size(); ++run) {
     const Eigen::VectorXd& left = fit.LeftOf(run);
     if (left.size() == 0) continue;
-    const double chi_square = left.squaredNorm() / (kNoiseIsKnown * kNoiseIsKnown);
+    const double stated = left.squaredNorm() * runs[run].excess * runs[run].excess;
+    const double chi_square = stated / (kNoiseIsKnown * kNoiseIsKnown);
     const auto rows = static_cast<double>(left.size());
     const boost::math::chi_squared distribution(rows);
     const double chance = boost::math::cdf(boost::math::complement(distribution, chi_square)) *
@@ -20,7 +20,7 @@ std::vector<Leftover> RunsThatScatter(const Fit& fit) {
     if (chance >= kDoubt) continue;
     found.push_back({kScatter,
                      runs[run].simulated.name,
-                     std::sqrt(left.squaredNorm() / rows - 1.0),
+                     std::sqrt(stated / rows - 1.0),
                      {"times the noise"},
                      chance,
                      0.0});

@@ -55,6 +55,7 @@ std::vector<Channel> ChannelsOf(const Scene& scene) {
     channels.push_back(
         {pivot, simulation::kEncoderStage + simulation::PivotOf(pivot), kMicroradians, kLinkage});
   }
+  if (scene.travel.isZero(0.0)) return channels;
   for (const std::string& axis : simulation::AxesOf(scene)) {
     channels.push_back({axis, simulation::Positioning(simulation::AxisOf(axis[0])), kMicrometres,
                         kProbes | kLinkage});

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "simulation/causes/shaft.h"
+
 namespace abbe::diagnosis {
 
 using Eigen::RowVectorXd;

@@ -165,7 +165,7 @@ Curve CurveOf(const Fit& base, const Fit& found, std::size_t taken_in) {
 double MapChange(const Fit& base, const Fit& found) {
   constexpr int kPlaces = 5;  // along each axis
   const Campaign& campaign = found.campaign();
-  if (simulation::AxesOf(campaign.scene()).empty()) return 0.0;
+  if (!campaign.setup().HasAxes() || simulation::AxesOf(campaign.scene()).empty()) return 0.0;
   std::array<machine::VolumetricModel, 2> models{campaign.model(), campaign.model()};
   models[0].SetParameters(fusion::ValuesFound(base.result(), models[0].Blocks()));
   models[1].SetParameters(fusion::ValuesFound(found.result(), models[1].Blocks()));

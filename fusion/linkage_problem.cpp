@@ -9,46 +9,17 @@
 
 #include "failure/failure.h"
 #include "fusion/calibration.h"
+#include "simulation/linkage_gaps.h"
 
 namespace abbe::fusion {
 namespace {
 
 using Eigen::Index;
-using Eigen::Matrix3d;
-using Eigen::Matrix3Xd;
 using Eigen::VectorXd;
 using estimation::BlockId;
 using estimation::ParameterBlock;
-using estimation::RowMatrix;
 using simulation::LinkageRun;
 using simulation::LinkageSimulation;
-
-// The gaps of a run, made white.
-class GapResidual : public estimation::Residual {
- public:
-  GapResidual(LinkageSimulation simulation, LinkageRun run)
-      : simulation_(std::move(simulation)),
-        run_(std::move(run)),
-        noise_(simulation_.GapNoise(run_)) {}
-
-  Index Rows() const override { return 3 * run_.poses(); }
-
-  void Evaluate(const VectorXd& x, VectorXd& values, RowMatrix* jacobian) const override {
-    Matrix3Xd gap;
-    simulation_.Gap(run_, x, gap, jacobian);
-    for (Index pose = 0; pose < run_.poses(); ++pose) {
-      const Matrix3d factor = noise_.middleCols<3>(3 * pose);
-      const auto lower = factor.triangularView<Eigen::Lower>();
-      values.segment<3>(3 * pose) = lower.solve(gap.col(pose));
-      if (jacobian != nullptr) lower.solveInPlace(jacobian->middleRows<3>(3 * pose));
-    }
-  }
-
- private:
-  LinkageSimulation simulation_;
-  LinkageRun run_;
-  Matrix3Xd noise_;
-};
 
 bool IsBase(const ParameterBlock& block) { return block.name.starts_with("base"); }
 
@@ -104,18 +75,17 @@ std::vector<int> ColumnsOf(const std::vector<ParameterBlock>& blocks, const std:
 }
 
 estimation::Result SolveLinkage(const estimation::Problem& problem, int threads,
-                                bool weak_directions) {
-  constexpr double kSettled = 1e-4;
+                                bool weak_directions, double settled) {
   constexpr int kFewPasses = 20;
   try {
     return problem.Solve({.max_iterations = kFewPasses,
                           .threads = threads,
-                          .settled = kSettled,
+                          .settled = settled,
                           .jacobian_bytes = 0,
                           .weak_directions = weak_directions});
   } catch (const NumericalError&) {
     return problem.Solve(
-        {.threads = threads, .settled = kSettled, .weak_directions = weak_directions});
+        {.threads = threads, .settled = settled, .weak_directions = weak_directions});
   }
 }
 
@@ -150,7 +120,7 @@ estimation::Problem MakeLinkageProblem(const LinkageSimulation& simulation,
         unique ? run.name : fmt::format("{} ({})", run.name, r + 1), {.loss = options.loss});
     const auto m = static_cast<std::size_t>(
         std::find(mountings.begin(), mountings.end(), run.mounting) - mountings.begin());
-    problem.Add(source, std::make_shared<GapResidual>(simulation, run), inputs[m], 1.0);
+    problem.Add(source, std::make_shared<simulation::LinkageGaps>(simulation, run), inputs[m], 1.0);
   }
   return problem;
 }

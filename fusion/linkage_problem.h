@@ -5,8 +5,7 @@
 //   const Result result = SolveLinkage(problem);
 //   const VectorXd x = ParametersOf(result.blocks, runs[0].mounting);   // for the simulation
 //
-// Each run is a source; its rows are the gaps of LinkageSimulation, x, y, z of pose 0, then of pose
-// 1, ..., made white with GapNoise, so they have the standard deviation 1. Runs of one mounting
+// Each run is a source; its rows are the gaps of simulation/linkage_gaps.h. Runs of one mounting
 // share the pose of the base; every mounting has base blocks of its own (fusion/calibration.h),
 // with the priors of the machine file. The displacement form knows nothing of the base position
 // beforehand: its prior is left out. That is the same as to use differences from a first pose, but
@@ -29,12 +28,13 @@ struct LinkageProblemOptions {
   estimation::RobustLoss loss = estimation::RobustLoss::Huber(3.0);
 };
 
-// A ten-thousandth of a standard uncertainty is settled: a robust loss gets no nearer on few poses.
+// A ten-thousandth of a standard uncertainty is settled, if nothing is said: a robust loss gets no
+// nearer on few poses.
 // Nearly always a few passes from the nominal linkage do; where they do not, as with a base that is
 // known to some decimetres only, the trust region goes before them. Failure: that of
 // Problem::Solve.
 estimation::Result SolveLinkage(const estimation::Problem& problem, int threads = 0,
-                                bool weak_directions = true);
+                                bool weak_directions = true, double settled = 1e-4);
 
 estimation::Problem MakeLinkageProblem(const simulation::LinkageSimulation& simulation,
                                        const std::vector<simulation::LinkageRun>& runs,

@@ -86,4 +86,12 @@ Machine ReadMachine(const settings::Table& root) {
   return machine;
 }
 
+Machine ReadMachineWithoutAxes(const settings::Table& root) {
+  return {.name = root.Text("name"),
+          .chain = Chain::Parse("[w b X Y Z t]"),
+          .reference = Eigen::Vector3d::Zero(),
+          .travels = {},
+          .population = ReadPopulation(root.Child("population"))};
+}
+
 }  // namespace abbe::machine

@@ -56,4 +56,7 @@ struct Machine {
 // InputError with file, line and key.
 Machine ReadMachine(const settings::Table& root);
 
+// Of a file that describes an arm and no axes: reads `name`; no travel, chain "[w b X Y Z t]".
+Machine ReadMachineWithoutAxes(const settings::Table& root);
+
 }  // namespace abbe::machine

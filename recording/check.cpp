@@ -31,7 +31,12 @@ const std::vector<KindRule>& KindRules() {
   static const std::vector<KindRule> rules{
       {"sweep", kProbes},
       {"gap-steps", kProbes},
-      {"linkage", {{"time_s"}, {"x_mm"}, {"y_mm"}, {"z_mm"}, {"pivot_1_rad"}}},
+      {"linkage",
+       {{"time_s"},
+        {"x_mm", "ref_x_mm"},
+        {"y_mm", "ref_y_mm"},
+        {"z_mm", "ref_z_mm"},
+        {"pivot_1_rad"}}},
       {"reference", {{"x_mm", "y_mm", "z_mm"}, {"ref_x_mm", "ref_y_mm", "ref_z_mm"}}},
       {"length", {{"x_mm"}, {"y_mm"}, {"z_mm"}, {"length_mm"}}},
       {"plate",

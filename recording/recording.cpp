@@ -81,4 +81,8 @@ std::string Recording::Kind() const {
       fmt::format("{}: the header has no kind; say which, e.g. kind = \"sweep\"", name));
 }
 
+bool Recording::KnowsTimes() const {
+  return Find("time_s") && HeaderText("time").value_or("") != "order";
+}
+
 }  // namespace abbe::recording

@@ -56,6 +56,8 @@ struct Recording {
       std::string_view path, double at_least = -std::numeric_limits<double>::infinity()) const;
   std::optional<std::vector<double>> HeaderNumbers(std::string_view path, std::size_t count) const;
   std::string Kind() const;  // HeaderText("kind"); InputError when missing
+  // Whether it says when its rows were, not only in which order (header time = "order").
+  bool KnowsTimes() const;
 };
 
 }  // namespace abbe::recording

@@ -41,10 +41,11 @@ double Finite(const recording::Recording& recording, Column column, std::size_t 
                                recording.first_row + row + 1, name));
 }
 
-// An encoder turns less than half a turn from row to row, or its counter has wrapped or slipped.
+// An encoder turns less than half a turn from row to row, or its counter has wrapped or slipped;
+// how long it had is not known where the header says that only the order of the rows is.
 void RefuseJump(const recording::Recording& recording, const GoodReadings& good,
                 Eigen::Index pose) {
-  if (pose == 0) return;
+  if (pose == 0 || recording.HeaderText("time").value_or("") == "order") return;
   const auto step = good.readings.angles.col(pose) - good.readings.angles.col(pose - 1);
   Eigen::Index joint = 0;
   const double largest = step.cwiseAbs().maxCoeff(&joint);

@@ -10,7 +10,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 // Longer endings first.
-constexpr std::array<std::pair<std::string_view, Unit>, 24> kEndings{{
+constexpr std::array<std::pair<std::string_view, Unit>, 25> kEndings{{
     {"_ppm_per_c", {"ppm/degC", 1e-6}},
     {"_nm_per_mm2", {"nm/mm^2", 1e-3}},
     {"_um_per_c", {"um/degC", 1e-6}},
@@ -31,6 +31,7 @@ constexpr std::array<std::pair<std::string_view, Unit>, 24> kEndings{{
     {"_ms", {"ms", 1e-3}},
     {"_us", {"us", 1e-6}},
     {"_hz", {"Hz", 1.0}},
+    {"_m", {"m", 1.0}},
     {"_s", {"s", 1.0}},
     {"_c", {"degC", 1.0}},
     {"_v", {"V", 1.0}},

@@ -14,8 +14,8 @@
 #include "failure/failure.h"
 #include "machine/volumetric_jacobian.h"
 #include "simulation/axes_in_travel.h"
+#include "simulation/gap_response.h"
 #include "simulation/linkage_cells.h"
-#include "simulation/stage_response.h"
 
 namespace abbe::simulation {
 namespace {
@@ -122,32 +122,13 @@ class LinkageOnMachine : public Responsive {
   Matrix3Xd noise_, constant_;
 };
 
-// Where the machine and the ball in its cap bring the ball, less where the linkage finds it.
-class GapResponse : public StageResponse {
- public:
-  GapResponse(Eigen::MatrixXd by_stage, Eigen::MatrixXd angles)
-      : StageResponse(std::move(by_stage), 3), angles_(std::move(angles)) {}
-
-  Eigen::MatrixXd Readings(const VectorXd& left) const override {
-    Eigen::MatrixXd angles = angles_;
-    for (Index pose = 0; pose < angles.cols(); ++pose) {
-      const Eigen::MatrixXd by_angles = by_stage().middleRows<3>(3 * pose).rightCols(angles.rows());
-      angles.col(pose) -=
-          by_angles.completeOrthogonalDecomposition().solve(Vector3d(left.segment<3>(3 * pose)));
-    }
-    return angles;
-  }
-
- private:
-  Eigen::MatrixXd angles_;
-};
-
 std::shared_ptr<const Response> LinkageOnMachine::At(const VectorXd& x) const {
   const Index own = linkage_.parameters(), pivots = run_.readings.angles.rows();
   machine::VolumetricModel model = model_;
   model.SetParameters(x.tail(model_.ParameterCount()));
   const Eigen::Matrix3d R_MB = BaseAt(linkage_.settings().X_MB, x.head<6>()).R;
   const VectorXd of_linkage = x.segment(6, own - 6);
+  // Where the machine and the ball in its cap bring the ball, less where the linkage finds it.
   Eigen::MatrixXd by_stage = Eigen::MatrixXd::Zero(Rows(), kStages + pivots);
   for (Index pose = 0; pose < run_.poses(); ++pose) {
     const Vector3d command = run_.commanded.col(pose);

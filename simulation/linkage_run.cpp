@@ -152,6 +152,14 @@ LinkageRun Selection(const LinkageRun& run, const std::vector<Index>& poses) {
   return chosen;
 }
 
+LinkageRun AtMost(const LinkageRun& run, Index most) {
+  if (run.poses() <= most) return run;
+  std::vector<Index> kept;
+  const Index step = (run.poses() + most - 1) / most;
+  for (Index pose = 0; pose < run.poses(); pose += step) kept.push_back(pose);
+  return Selection(run, kept);
+}
+
 LinkageRun Joined(const LinkageRun& run, const LinkageRun& next) {
   LinkageRun both = Blank(run, run.poses() + next.poses());
   std::copy(run.rows.begin(), run.rows.end(), both.rows.begin());

@@ -54,6 +54,9 @@ LinkageRun RunAt(const Eigen::Matrix3Xd& positions, const relm::LinkageSettings&
 // The poses with the given indices, in that order.
 LinkageRun Selection(const LinkageRun& run, const std::vector<Eigen::Index>& poses);
 
+// At most so many poses, evenly from the whole run.
+LinkageRun AtMost(const LinkageRun& run, Eigen::Index most);
+
 // The poses of both, parts of one run.
 LinkageRun Joined(const LinkageRun& run, const LinkageRun& next);
 

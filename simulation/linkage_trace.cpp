@@ -105,10 +105,9 @@ MatrixXd AsideOf(const Trace& trace, const LinkageRun& run, const LinkageSimulat
   return aside;
 }
 
-}  // namespace
-
-Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
-              const LinkageSimulation& linkage) {
+// All but the way of the axes and of the ball.
+Trace PivotsOfRun(const recording::Recording& recording, const LinkageRun& run,
+                  const LinkageSimulation& linkage) {
   Trace trace;
   trace.name = run.name;
   trace.kind = "linkage";
@@ -119,12 +118,29 @@ Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
   trace.lasting = LastingOf(recording, run);
   trace.pass = IntegersAt(recording, "pass", run.rows);
   trace.direction = IntegersAt(recording, "direction", run.rows);
-  trace.SetAxes(run.commanded);
   trace.SetAngles(run.readings.angles);
-  trace.aside = AsideOf(trace, run, linkage);
-  trace.ball_way = WayOf(trace, linkage.chain());
   trace.link = LinksOf(run, linkage.model());
   AddSensors(recording, run.rows, trace);
+  return trace;
+}
+
+}  // namespace
+
+Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
+              const LinkageSimulation& linkage) {
+  Trace trace = PivotsOfRun(recording, run, linkage);
+  trace.SetAxes(run.commanded);
+  trace.aside = AsideOf(trace, run, linkage);
+  trace.ball_way = WayOf(trace, linkage.chain());
+  return trace;
+}
+
+Trace ArmTraceOf(const recording::Recording& recording, const LinkageRun& run,
+                 const LinkageSimulation& linkage) {
+  Trace trace = PivotsOfRun(recording, run, linkage);
+  trace.kind = kArm;
+  trace.SetAxes(run.reference);
+  trace.ball_way = Eigen::Matrix3Xd::Zero(3, trace.rows());
   return trace;
 }
 

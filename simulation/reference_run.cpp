@@ -101,7 +101,7 @@ ReferenceRun ReadReferenceRun(const Recording& recording) {
   run.points = ReadMachinePoints(recording);
   ReadPlaces(recording, run);
   ReadStatedNoise(recording, run);
-  run.timed = recording.Find("time_s") && recording.HeaderText("time").value_or("") != "order";
+  run.timed = recording.KnowsTimes();
   run.time = recording.Find("time_s")
                  ? ColumnAt(recording, run.points, "time_s")
                  : Eigen::VectorXd::LinSpaced(run.rows(), 0.0, static_cast<double>(run.rows() - 1));

@@ -27,18 +27,6 @@ std::string MountingOf(const recording::Recording& recording) {
   return recording.HeaderText("mounting").value_or("");
 }
 
-SweepMounting MountedOf(const recording::Recording& recording) {
-  const std::string head = recording.HeaderText("mounting.head").value_or("0deg");
-  if (head != "0deg" && head != "180deg") {
-    throw InputError(fmt::format(
-        "{}: mounting.head is \"{}\"; a head is mounted as the machine file says, \"0deg\", or "
-        "turned by half a turn, \"180deg\"",
-        recording.name, head));
-  }
-  return {head == "180deg", 1e-3 * recording.HeaderNumber("mounting.target_shift_mm").value_or(0.0),
-          recording.HeaderText("mounting.target_reversed").value_or("false") == "true"};
-}
-
 Sweep ReadMeans(const recording::Recording& recording, const recording::Blocks& blocks,
                 const probes::HeadSettings& head, const probes::ProbeNoise& noise) {
   const auto dwells =
@@ -134,6 +122,18 @@ SweepRun Standing(const recording::Recording& recording, const std::vector<std::
 }
 
 }  // namespace
+
+SweepMounting MountedOf(const recording::Recording& recording) {
+  const std::string head = recording.HeaderText("mounting.head").value_or("0deg");
+  if (head != "0deg" && head != "180deg") {
+    throw InputError(fmt::format(
+        "{}: mounting.head is \"{}\"; a head is mounted as the machine file says, \"0deg\", or "
+        "turned by half a turn, \"180deg\"",
+        recording.name, head));
+  }
+  return {head == "180deg", 1e-3 * recording.HeaderNumber("mounting.target_shift_mm").value_or(0.0),
+          recording.HeaderText("mounting.target_reversed").value_or("false") == "true"};
+}
 
 SweepRun ReadSweepRun(const recording::Recording& recording, const probes::HeadSettings& head,
                       const probes::ProbeNoise& noise) {

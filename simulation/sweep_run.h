@@ -31,6 +31,9 @@ struct SweepMounting {
                                  // the head passes
 };
 
+// InputError for a head that is neither.
+SweepMounting MountedOf(const recording::Recording& recording);
+
 struct SweepRun {
   std::string name;      // of the recording, for messages
   std::string mounting;  // header `mounting`: sweeps that share it share the mounted target

@@ -25,13 +25,15 @@
 namespace abbe::simulation {
 
 inline constexpr double kLongAgo = 1.0;
+inline constexpr const char* kArm = "arm";  // simulation/arm_run.h
 
 struct Trace {
-  std::string name;      // of the recording
-  std::string kind;      // "sweep", "dwell", "gap-steps", "linkage", "reference", "length", "shaft"
-  char axis = ' ';       // the swept one
-  double started = 0.0;  // s since 1970; 0: not stated
-  Eigen::VectorXd time;  // s since the recording began
+  std::string name;  // of the recording
+  std::string kind;  // "sweep", "dwell", "gap-steps", "linkage", "reference", "length", "shaft",
+                     // kArm
+  char axis = ' ';   // the swept one
+  double started = 0.0;   // s since 1970; 0: not stated
+  Eigen::VectorXd time;   // s since the recording began
   Eigen::VectorXd clock;  // s since the first recording began; like `time` before CountFrom
   // Readings in each row, s from the first to the last of them; empty: a row is a reading.
   Eigen::VectorXd samples, lasting;
@@ -76,6 +78,10 @@ struct Trace {
 Trace TraceOf(const recording::Recording& recording, const SweepRun& run);
 Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
               const LinkageSimulation& linkage);
+// Of an arm: `axes` are where the instrument finds the ball; how the arm went from pose to pose is
+// not known.
+Trace ArmTraceOf(const recording::Recording& recording, const LinkageRun& run,
+                 const LinkageSimulation& linkage);
 
 // s since 1970; 0: not stated.
 double StartedOf(const recording::Recording& recording);

@@ -94,6 +94,9 @@ struct Cause {
   bool one_event = false;     // cannot be held against other passes
   bool whole = false;         // there or not: its one coefficient is 1
   Recall recall = {};         // of the values that `tell` gives; none: as without `tell`
+  // Sine and cosine of shape[0] times the angle of a pivot: their phase is known no better than the
+  // zero of its encoder.
+  bool graduated = false;
   // Its coefficients are draws of a random function with the standard deviation shape[0] in each:
   // that is estimated, they are not what it is known by. Up to shape[1] it is as stated.
   bool drawn = false;

@@ -34,6 +34,7 @@ Cause EncoderSubdivision() {
       .recall = [](const Eigen::VectorXd& values) -> Recalled {
         return {values.tail(2), values.head(1)};
       },
+      .graduated = true,
   };
 }
 

@@ -43,6 +43,7 @@ Cause BearingRoundness();
 Cause LinkThermalGrowth();
 Cause LinkGravityBend();
 Cause JointHysteresis();
+Cause JointGain();
 Cause CapFriction();
 Cause ClockSkew();
 Cause FixtureMisalignment();

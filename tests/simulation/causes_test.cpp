@@ -109,6 +109,19 @@ TEST(Causes, EncoderOfAPivot) {
   EXPECT_NEAR(columns[3].stages().at(kTipStage + 2)[3], std::cos(3.0 * 0.3), 1e-12);
 }
 
+TEST(Causes, AJointWithAGainShowsMoreInProportionToItsAngle) {
+  Trace trace = ToAndFro();
+  const Scene carried{{&trace}, Eigen::Vector3d::Constant(0.06)};
+  EXPECT_TRUE(JointGain().objects(carried).empty());  // encoders on the pivots of a linkage
+  EXPECT_TRUE(JointGain().columns(trace, "pivot_1", {}).empty());
+  trace.kind = kArm;
+  const Scene arm{{&trace}, Eigen::Vector3d::Zero()};
+  EXPECT_EQ(JointGain().objects(arm), std::vector<std::string>{"pivot_1"});
+  const auto columns = JointGain().columns(trace, "pivot_1", {});
+  ASSERT_EQ(columns.size(), 1U);
+  EXPECT_EQ(At(columns[0], kEncoderStage, "joint-gain"), RowVectorXd(trace.angles.row(0)));
+}
+
 TEST(Causes, AGainOfTheTrueGapIsToldFromWhatWasRead) {
   // Delta' = (1 + delta) Delta, so delta Delta = delta / (1 + delta) Delta'.
   const double delta = 0.02;

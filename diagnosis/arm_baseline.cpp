@@ -1,0 +1,172 @@
+#include "diagnosis/arm_baseline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "diagnosis/scatter.h"
+#include "failure/failure.h"
+#include "fusion/linkage_problem.h"
+#include "simulation/arm_run.h"
+#include "simulation/linkage_gaps.h"
+
+namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using simulation::LinkageRun;
+
+constexpr int kRounds = 10;            // of leaving out
+constexpr double kSettled = 0.02;      // standard uncertainties, as Fit
+constexpr double kMedianNorm = 1.538;  // of three normal numbers of deviation 1
+constexpr Index kShareOut = 10;        // one in so many at most
+
+// An arm as it was fitted.
+struct Fitted {
+  const relm::LinkageSettings& settings;
+  const VectorXd& x;
+};
+
+VectorXd WhiteGaps(const LinkageRun& run, const Fitted& fitted) {
+  const simulation::LinkageGaps gaps(simulation::ArmSimulation(fitted.settings), run);
+  VectorXd rows(gaps.Rows());
+  gaps.Evaluate(fitted.x, rows, nullptr);
+  return rows;
+}
+
+// Of all poses, against the lenient arm.
+VectorXd NormsOf(const LinkageRun& run, const ArmBaseline& baseline) {
+  const VectorXd gaps = WhiteGaps(run, {baseline.lenient, baseline.lenient_x});
+  return gaps.reshaped(3, run.poses()).colwise().norm().transpose();
+}
+
+estimation::Result FitOf(const LinkageRun& run, const relm::LinkageSettings& settings) {
+  return fusion::SolveLinkage(fusion::MakeLinkageProblem(simulation::ArmSimulation(settings), {run},
+                                                         {.loss = estimation::RobustLoss::None()}),
+                              1, false, kSettled);
+}
+
+std::vector<Index> Within(const VectorXd& norms, double far) {
+  std::vector<Index> kept;
+  for (Index pose = 0; pose < norms.size(); ++pose) {
+    if (norms[pose] <= far) kept.push_back(pose);
+  }
+  return kept;
+}
+
+double FarFrom(const VectorXd& norms, const std::vector<Index>& kept) {
+  VectorXd usual = norms(kept);
+  const auto middle = usual.begin() + usual.size() / 2;
+  std::nth_element(usual.begin(), middle, usual.end());
+  const double far = kFar * std::max(1.0, *middle / kMedianNorm);
+  const bool few =
+      static_cast<Index>(Within(norms, far).size()) >= norms.size() - norms.size() / kShareOut;
+  return few ? far : std::numeric_limits<double>::infinity();
+}
+
+void RefuseOtherArm(const LinkageRun& run, const ArmBaseline& baseline) {
+  constexpr double kShare = 0.05;     // of the way
+  constexpr double kLeastGap = 5e-3;  // m: what no tolerance explains
+  const double count = std::sqrt(static_cast<double>(run.poses()));
+  const double gap = GapsOf(run, baseline).norm() / count;
+  const double way =
+      (run.reference.colwise() - run.reference.rowwise().mean().eval()).norm() / count;
+  if (gap < kLeastGap || gap < kShare * way) return;
+  throw InputError(fmt::format(
+      "{}: the arm of the machine file does not go where the instrument saw it, {:.1f} mm rms "
+      "apart "
+      "over {:.1f} mm rms of way; [linkage] is not that of the recording, or its pivots stand in "
+      "another order or sense",
+      run.name, 1e3 * gap, 1e3 * way));
+}
+
+// Poses that share what is left, 1 of white noise.
+double SharedBy(const VectorXd& left) {
+  constexpr double kByChance = 2.0;  // standard deviations of the correlation of white noise
+  const Index poses = left.size() / 3;
+  const auto rows = left.reshaped(3, poses);
+  const double least = kByChance / std::sqrt(static_cast<double>(left.size()));
+  double shared = 1.0;
+  for (Index lag = 1; lag < poses / 2; ++lag) {
+    const double rho = rows.leftCols(poses - lag).cwiseProduct(rows.rightCols(poses - lag)).sum() /
+                       left.squaredNorm();
+    if (rho < least) break;
+    shared += 2.0 * rho;
+  }
+  return shared;
+}
+
+ArmBaseline Fitting(const LinkageRun& run, ArmBaseline baseline) {
+  auto& tolerance = baseline.lenient.tolerance;
+  tolerance.eccentricity = std::max(kLenient, tolerance.eccentricity);
+  tolerance.compliance = std::max(kLenient, tolerance.compliance);
+  tolerance.graduation = std::max(kLenient, tolerance.graduation);
+  baseline.lenient.graduation_harmonics = {2, 3};
+  std::vector<Index> kept = Within(VectorXd::Zero(run.poses()), 0.0);
+  for (int round = 0; round < kRounds; ++round) {
+    const estimation::Result fit = FitOf(Selection(run, kept), baseline.lenient);
+    baseline.lenient_x = fusion::ParametersOf(fit.blocks, run.mounting);
+    const VectorXd norms = NormsOf(run, baseline);
+    baseline.far = FarFrom(norms, kept);
+    std::vector<Index> next = Within(norms, baseline.far);
+    if (next == kept) break;
+    kept = std::move(next);
+  }
+  const LinkageRun rest = Selection(run, kept);
+  const estimation::Result fit = FitOf(rest, baseline.settings);
+  baseline.x = fusion::ParametersOf(fit.blocks, run.mounting);
+  baseline.excess =
+      ExcessOf(fit.sources.front(), WhiteGaps(rest, {baseline.settings, baseline.x}), 1.0);
+  return baseline;
+}
+
+}  // namespace
+
+double ExcessOf(const estimation::SourceResult& run, const VectorXd& left, double used) {
+  constexpr double kFewest = 6.0;  // degrees of freedom that tell a noise
+  if (run.redundancy < kFewest) return used;
+  const double excess = used * std::sqrt(run.chi_square / run.redundancy);
+  return excess > kNoiseIsKnown ? excess * std::sqrt(SharedBy(left)) : 1.0;
+}
+
+std::vector<double> ExcessOf(const Fit& fit) {
+  std::vector<double> excess;
+  const auto& runs = fit.campaign().runs();
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    excess.push_back(runs[r].arm ? ExcessOf(fit.result().sources[r], fit.LeftOf(r), runs[r].excess)
+                                 : 1.0);
+  }
+  return excess;
+}
+
+ArmBaseline FitArm(const LinkageRun& run, const relm::LinkageSettings& placed) {
+  ArmBaseline nominal{run.mounting, placed, simulation::ArmSimulation(placed).Values(), placed, {}};
+  try {
+    ArmBaseline fitted = Fitting(run, nominal);
+    RefuseOtherArm(run, fitted);
+    return fitted;
+  } catch (const NumericalError&) {
+    RefuseOtherArm(run, nominal);
+    throw;
+  }
+}
+
+std::vector<Index> FarOff(const LinkageRun& run, const ArmBaseline& baseline) {
+  const VectorXd norms = NormsOf(run, baseline);
+  std::vector<Index> far;
+  for (Index pose = 0; pose < norms.size(); ++pose) {
+    if (norms[pose] > baseline.far) far.push_back(pose);
+  }
+  return far;
+}
+
+Eigen::Matrix3Xd GapsOf(const LinkageRun& run, const ArmBaseline& baseline) {
+  Eigen::Matrix3Xd gaps;
+  simulation::ArmSimulation(baseline.settings).Gap(run, baseline.x, gaps);
+  return gaps;
+}
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,41 @@
+// Gain of a joint: its encoder sits before a gear and shows (1 + gain) times what the joint turned.
+// An encoder on the pivot itself has none: a full turn is a full turn. So only the joints of an arm
+// have it.
+#include "simulation/causes/registry.h"
+
+namespace abbe::simulation {
+
+namespace {
+
+std::vector<std::string> JointsOf(const Scene& scene) {
+  Eigen::Index joints = 0;
+  for (const Trace* trace : scene.traces) {
+    if (trace->kind == kArm) joints = std::max(joints, trace->pivots());
+  }
+  std::vector<std::string> names;
+  for (Eigen::Index i = 1; i <= joints; ++i) names.push_back("pivot_" + std::to_string(i));
+  return names;
+}
+
+}  // namespace
+
+Cause JointGain() {
+  return {
+      .id = "joint-gain",
+      .words = {.what = "a joint turns by another share of what its encoder shows than is assumed",
+                .shows = "an angle error in proportion to the angle of the joint",
+                .check = "ratio of the gear, counts per turn, coupling of the next joint to it",
+                .remedy = "correct the ratio in the controller"},
+      .keys = {{"gain_ppm", 1e-6, -20000.0, 20000.0}},
+      .plausible = Eigen::VectorXd::Constant(1, 300e-6),
+      .objects = JointsOf,
+      .columns = [](const Trace& trace, const std::string& object,
+                    const Eigen::VectorXd&) -> std::vector<Disturbance> {
+        if (trace.kind != kArm) return {};
+        const int pivot = PivotOf(object);
+        return {InStage(trace, kEncoderStage + pivot, trace.angles.row(pivot))};
+      },
+  };
+}
+
+}  // namespace abbe::simulation

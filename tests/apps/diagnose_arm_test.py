@@ -1,0 +1,97 @@
+"""`abbe convert` and `abbe diagnose` on poses of an arm of four joints before a tracker."""
+import math
+import random
+import unittest
+
+from program_case import ProgramCase
+
+ROWS = [(0.0, 300.0, 80.0, -90.0), (-90.0, 0.0, 350.0, 0.0), (0.0, 0.0, 300.0, 90.0),
+        (0.0, 100.0, 60.0, 0.0)]  # theta, d, a, alpha
+JOINT = "[[linkage.joint]]\ntheta_deg = {}\nd_mm = {}\na_mm = {}\nalpha_deg = {}\n"
+MACHINE = """name = "small-arm"
+[linkage]
+form = "denavit-hartenberg"
+{joints}
+[linkage.base]
+position_mm = [0.0, 0.0, 0.0]
+[linkage.tolerance]
+link_um = 500
+ball_um = 1000
+pivot_urad = 1000
+[linkage.noise]
+encoder_urad = 5.0
+reference_um = 5.0
+"""
+GAIN, POSES = 800e-6, 90
+COLUMNS = [f"--column=pivot_{i}_rad=q{i}" for i in range(1, 5)] + [
+    f"--column=ref_{axis}_mm={axis}_m" for axis in "xyz"]
+
+
+def machine(rows):
+    return MACHINE.format(joints="".join(JOINT.format(*row) for row in rows))
+
+
+def tip(angles):
+    x, y, z = 0.0, 0.0, 0.0
+    for (theta, d, a, alpha), angle in reversed(list(zip(ROWS, angles))):
+        c, s = math.cos(math.radians(alpha)), math.sin(math.radians(alpha))
+        x, y, z = x + a, c * y - s * z, s * y + c * z + d
+        c, s = math.cos(math.radians(theta) + angle), math.sin(math.radians(theta) + angle)
+        x, y = c * x - s * y, s * x + c * y
+    return x, y, z
+
+
+def table():
+    """The encoder of the first joint shows more than the joint turns; arm 2 has other rows."""
+    draw = random.Random(6)
+    lines = ["arm,q1,q2,q3,q4,x_m,y_m,z_m"]
+    for _ in range(POSES):
+        turned = [draw.uniform(-2.0, 2.0) for _ in ROWS]
+        x, y, z = tip(turned)
+        place = [-y + 1500.0, x - 700.0, z + 50.0]  # the tracker is turned and stands aside
+        shown = [q + draw.gauss(0, 5e-6) for q in turned]
+        shown[0] += GAIN * turned[0]
+        numbers = shown + [1e-3 * (p + draw.gauss(0, 5e-3)) for p in place]
+        lines.append("1," + ",".join(f"{number:.9f}" for number in numbers))
+        lines.append("2,0,0,0,0,0,0,0")
+    return "\n".join(lines) + "\n"
+
+
+class DiagnoseArm(ProgramCase):
+    command = "diagnose"
+
+    def setUp(self):
+        super().setUp()
+        (self.path / "arm.toml").write_text(machine(ROWS))
+        (self.path / "poses.csv").write_text(table())
+        self.recording = self.path / "arm.csv"
+        self.done(self.path / "poses.csv", self.recording, "--where=arm=1", *COLUMNS, command="convert")
+
+    def test_the_gain_of_a_joint_is_found_with_its_size(self):
+        result = self.result(self.recording, "--machine", self.path / "arm.toml")
+        self.assertEqual(result["verdict"], "explained")
+        self.assertEqual([(f["cause"], f["object"]) for f in result["findings"]],
+                         [("joint-gain", "pivot_1")])
+        gain, = result["findings"][0]["parameters"]
+        self.assertAlmostEqual(gain["value"], 1e6 * GAIN, delta=2 * gain["u95"])
+        self.assertGreater(result["heldout_arm"]["rms_before_mm"], 2 * result["heldout_arm"]["rms_after_mm"])
+
+    def test_what_does_not_belong_together_is_refused(self):
+        (self.path / "three.toml").write_text(machine(ROWS[:3]))
+        self.refuse(self.recording, "--machine", self.path / "three.toml",
+                    saying=["arm.csv", "pivot_4_rad", "3 pivots"])
+        (self.path / "five.toml").write_text(machine(ROWS + ROWS[-1:]))
+        self.refuse(self.recording, "--machine", self.path / "five.toml", saying=["arm.csv", "pivot_5_rad"])
+        (self.path / "other.toml").write_text(machine([ROWS[1], ROWS[0], ROWS[3], ROWS[2]]))
+        self.refuse(self.recording, "--machine", self.path / "other.toml", saying=["arm.csv", "[linkage]"])
+        blind = self.path / "blind.csv"
+        run = self.run_program(self.path / "poses.csv", blind, *COLUMNS[:4], command="convert")
+        self.assertEqual(run.returncode, 2, run.stdout)
+        self.assertIn("ref_x_mm: is missing; a linkage recording needs this column", run.stderr)
+        test = self.path / "dwell.csv"
+        test.write_text('# abbe-recording = 1\n# kind = "dwell"\ntime_s,x_mm\n0,0\n')
+        self.refuse(test, "--machine", self.path / "arm.toml", saying=["dwell.csv", "has no axes"])
+
+
+if __name__ == "__main__":
+    unittest.main()
