@@ -270,16 +270,36 @@ void AddBlocks(const MatrixXd& C, const std::vector<Index>& which,
 std::vector<Fit::Projection> Fit::Finish(const std::vector<MatrixXd>& C_C, const MatrixXd& C_J,
                                          const VectorXd& C_r) const {
   constexpr double kRounding = 1e-9;  // of the information of a column
-  const MatrixXd B = scale_.asDiagonal() * C_J.transpose();
-  const MatrixXd solved = H_.solve(B);
-  const VectorXd score = C_r - solved.transpose() * (scale_.asDiagonal() * gradient_);
-  std::vector<Projection> groups;
-  groups.reserve(C_C.size());
+  std::vector<Index> acting;          // of all columns
   Index first = 0;
   for (const MatrixXd& own : C_C) {
-    const Index count = own.rows();
-    Projection left{own - B.middleCols(first, count).transpose() * solved.middleCols(first, count),
-                    score.segment(first, count)};
+    for (Index c = 0; c < own.cols(); ++c) {
+      if (own(c, c) > 0.0) acting.push_back(first + c);
+    }
+    first += own.cols();
+  }
+  const MatrixXd B = scale_.asDiagonal() * C_J(acting, Eigen::all).transpose();
+  const MatrixXd solved = H_.solve(B);
+  const VectorXd score = C_r(acting) - solved.transpose() * (scale_.asDiagonal() * gradient_);
+  std::vector<Projection> groups;
+  groups.reserve(C_C.size());
+  first = 0;
+  for (Index begin = 0, end = 0; const MatrixXd& own : C_C) {
+    const Index count = own.cols();
+    Projection left{MatrixXd::Zero(count, count), VectorXd::Zero(count)};
+    for (begin = end; end < B.cols() && acting[static_cast<std::size_t>(end)] < first + count;) {
+      ++end;
+    }
+    const MatrixXd taken =
+        B.middleCols(begin, end - begin).transpose() * solved.middleCols(begin, end - begin);
+    for (Index i = begin; i < end; ++i) {
+      const Index c = acting[static_cast<std::size_t>(i)] - first;
+      for (Index j = begin; j < end; ++j) {
+        const Index d = acting[static_cast<std::size_t>(j)] - first;
+        left.information(c, d) = own(c, d) - taken(i - begin, j - begin);
+      }
+      left.score[c] = score[i];
+    }
     for (Index c = 0; c < count; ++c) {
       if (left.information(c, c) > kRounding * own(c, c)) continue;
       left.information.row(c).setZero();

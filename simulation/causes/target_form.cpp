@@ -5,7 +5,7 @@
 // all that the probes see of a face; each swept axis has its own. With k the covariance to the
 // nodes and L L' that among them, its functions are L^-1 k: draws of one standard deviation are
 // forms of that deviation (Rasmussen and Williams, Gaussian Processes (2006), 8.1). On an axis that
-// is longer than thirteen times 0.6 correlation lengths the length is what the grid can hold.
+// is longer than nine times 0.6 correlation lengths the length is what the grid can hold.
 #include <Eigen/Cholesky>
 #include <array>
 #include <set>
@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr Index kAlong = 14, kAcross = 4, kNodes = kAlong * kAcross, kUnits = 2;
+constexpr Index kAlong = 10, kAcross = 4, kNodes = kAlong * kAcross, kUnits = 2;
 // Of each swept axis, and of each with the head turned: its side unit then sees the opposite face.
 constexpr Index kFaces = 6;
 constexpr double kUsual = 0.2e-6;      // m
