@@ -1,0 +1,163 @@
+// What Fit knows of disturbances: their information and score, free of all unknowns.
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "diagnosis/fit.h"
+
+namespace abbe::diagnosis {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using simulation::Disturbance;
+
+namespace {
+
+// C'C within each group, of those columns `which` of all that act.
+void AddBlocks(const MatrixXd& C, const std::vector<Index>& which,
+               const std::vector<std::size_t>& group_of, std::vector<MatrixXd>& C_C) {
+  for (Index first = 0; first < C.cols();) {
+    const std::size_t group =
+        group_of[static_cast<std::size_t>(which[static_cast<std::size_t>(first)])];
+    const auto begin = std::find(group_of.begin(), group_of.end(), group) - group_of.begin();
+    std::vector<Index> own;
+    Index last = first;
+    for (; last < C.cols(); ++last) {
+      const Index column = which[static_cast<std::size_t>(last)];
+      if (group_of[static_cast<std::size_t>(column)] != group) break;
+      own.push_back(column - begin);
+    }
+    const auto acting = C.middleCols(first, last - first);
+    C_C[group](own, own) += acting.transpose() * acting;
+    first = last;
+  }
+}
+
+}  // namespace
+
+std::vector<Fit::Projection> Fit::Finish(const std::vector<MatrixXd>& C_C, const MatrixXd& C_J,
+                                         const VectorXd& C_r) const {
+  constexpr double kRounding = 1e-9;  // of the information of a column
+  std::vector<Index> acting;          // of all columns
+  Index first = 0;
+  for (const MatrixXd& own : C_C) {
+    for (Index c = 0; c < own.cols(); ++c) {
+      if (own(c, c) > 0.0) acting.push_back(first + c);
+    }
+    first += own.cols();
+  }
+  const MatrixXd B = scale_.asDiagonal() * C_J(acting, Eigen::all).transpose();
+  const MatrixXd solved = H_.solve(B);
+  const VectorXd score = C_r(acting) - solved.transpose() * (scale_.asDiagonal() * gradient_);
+  std::vector<Projection> groups;
+  groups.reserve(C_C.size());
+  first = 0;
+  for (Index begin = 0, end = 0; const MatrixXd& own : C_C) {
+    const Index count = own.cols();
+    Projection left{MatrixXd::Zero(count, count), VectorXd::Zero(count)};
+    for (begin = end; end < B.cols() && acting[static_cast<std::size_t>(end)] < first + count;) {
+      ++end;
+    }
+    const MatrixXd taken =
+        B.middleCols(begin, end - begin).transpose() * solved.middleCols(begin, end - begin);
+    for (Index i = begin; i < end; ++i) {
+      const Index c = acting[static_cast<std::size_t>(i)] - first;
+      for (Index j = begin; j < end; ++j) {
+        const Index d = acting[static_cast<std::size_t>(j)] - first;
+        left.information(c, d) = own(c, d) - taken(i - begin, j - begin);
+      }
+      left.score[c] = score[i];
+    }
+    for (Index c = 0; c < count; ++c) {
+      if (left.information(c, c) > kRounding * own(c, c)) continue;
+      left.information.row(c).setZero();
+      left.information.col(c).setZero();
+      left.score[c] = 0.0;
+    }
+    groups.push_back(std::move(left));
+    first += count;
+  }
+  return groups;
+}
+
+Fit::RowScores Fit::ScoresOf(std::size_t run, Index stage) const {
+  const RunRows& rows = runs_[run];
+  if (!rows.at.response) return {};
+  return {rows.at.response->BackToStage(stage, rows.back.rightCols<1>()).transpose(),
+          rows.at.response->WeightsOf(stage)};
+}
+
+MatrixXd Fit::Against(const RunRows& run, const std::vector<Disturbance>& disturbances) const {
+  std::map<Index, std::vector<Index>> acting;
+  for (std::size_t d = 0; d < disturbances.size(); ++d) {
+    for (const auto& [stage, values] : disturbances[d].stages()) {
+      acting[stage].push_back(static_cast<Index>(d));
+    }
+  }
+  MatrixXd against = MatrixXd::Zero(static_cast<Index>(disturbances.size()), run.back.cols());
+  for (const auto& [stage, who] : acting) {
+    const MatrixXd of_stage = run.at.response->BackToStage(stage, run.back);
+    MatrixXd values(static_cast<Index>(who.size()), of_stage.rows());
+    for (Index i = 0; i < values.rows(); ++i) {
+      values.row(i) =
+          disturbances[static_cast<std::size_t>(who[static_cast<std::size_t>(i)])].stages().at(
+              stage);
+    }
+    against(who, Eigen::all) += values * of_stage;
+  }
+  return against;
+}
+
+std::vector<Fit::Projection> Fit::Project(const Disturber& disturber,
+                                          const std::vector<Index>& groups) const {
+  const Index columns = std::accumulate(groups.begin(), groups.end(), Index{0});
+  std::vector<MatrixXd> C_C;
+  C_C.reserve(groups.size());
+  std::vector<std::size_t> group_of;
+  for (const Index count : groups) {
+    group_of.insert(group_of.end(), static_cast<std::size_t>(count), C_C.size());
+    C_C.push_back(MatrixXd::Zero(count, count));
+  }
+  MatrixXd C_J = MatrixXd::Zero(columns, static_cast<Index>(names_.size()));
+  VectorXd C_r = VectorXd::Zero(columns);
+  for (const RunRows& run : runs_) {
+    if (!run.at.response) continue;
+    std::vector<Disturbance> acting = disturber(run.at.trace);
+    std::vector<Index> which;
+    for (std::size_t c = 0; c < acting.size(); ++c) {
+      if (!acting[c].stages().empty()) which.push_back(static_cast<Index>(c));
+    }
+    if (which.empty()) continue;
+    std::erase_if(acting, [](const Disturbance& each) { return each.stages().empty(); });
+    AddBlocks(run.at.response->Columns(acting), which, group_of, C_C);
+    const MatrixXd against = Against(run, acting);
+    C_J(which, run.columns) += against.leftCols(against.cols() - 1);
+    C_r(which) += against.rightCols<1>();
+  }
+  return Finish(C_C, C_J, C_r);
+}
+
+std::vector<int> Fit::ColumnsNamed(const std::string& pattern) const {
+  std::vector<int> columns;
+  for (std::size_t c = 0; c < names_.size(); ++c) {
+    if (Matches(names_[c], pattern)) columns.push_back(static_cast<int>(c));
+  }
+  return columns;
+}
+
+Fit::Projection Fit::ProjectParameters(const Candidate& candidate) const {
+  const std::vector<std::string> patterns = candidate.cause->widens(candidate.object);
+  const auto count = static_cast<Index>(patterns.size());
+  MatrixXd select = MatrixXd::Zero(count, static_cast<Index>(names_.size()));
+  for (Index i = 0; i < count; ++i) {
+    for (const int column : ColumnsNamed(patterns[static_cast<std::size_t>(i)])) {
+      select(i, column) = -1.0;
+    }
+  }
+  const MatrixXd C_J = select * data_information_;
+  return Finish({C_J * select.transpose()}, C_J, select * data_gradient_).front();
+}
+
+}  // namespace abbe::diagnosis
