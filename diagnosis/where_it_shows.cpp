@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -21,7 +22,10 @@ using Eigen::VectorXd;
 using simulation::Disturbance;
 using simulation::Trace;
 
-constexpr int kParts = 24;  // of the range of a variable
+constexpr int kParts = 24;        // of the range of a variable
+constexpr double kTells = 1e-3;   // weight of the heaviest part below which one tells nothing
+constexpr double kKept = 0.5;     // of the effect, below which a variable does not show it
+constexpr double kClearly = 1.1;  // how much more another variable has to keep than its own
 
 // What a cause does in the rows of a run, stage by stage.
 std::map<Index, RowVectorXd> EffectOf(const Score& score, const Trace& trace) {
@@ -47,6 +51,12 @@ RowVectorXd HeadingOf(const std::string& object, const Trace& trace) {
   const bool of_axes = object.find_first_not_of("XYZ") != 0;
   if (of_axes) return trace.heading.row(simulation::AxisOf(object[0]));
   return RowVectorXd::Zero(trace.rows());
+}
+
+// The one that moves: "x" of the axis X, "pivot_2".
+std::string OwnVariable(const std::string& object) {
+  if (object.starts_with("pivot_")) return object;
+  return std::string(1, static_cast<char>(std::tolower(object[0])));
 }
 
 struct Rows {
@@ -128,7 +138,9 @@ Parted PartedBy(const std::string& variable, const Fit& found, const std::vector
       part.after += weight * rows[r].after[row];
     }
   }
-  std::erase_if(parted.parts, [](const Part& part) { return !(part.weight > 0.0); });
+  double most = 0.0;
+  for (const Part& part : parted.parts) most = std::max(most, part.weight);
+  std::erase_if(parted.parts, [&](const Part& part) { return part.weight <= kTells * most; });
   for (const Part& part : parted.parts) parted.kept += part.effect * part.effect / part.weight;
   return parted;
 }
@@ -139,10 +151,16 @@ Curve CurveOf(const Fit& base, const Fit& found, std::size_t taken_in) {
   const Score score = found.ScoreOf(taken_in);
   const std::vector<Rows> rows = RowsAt(base, found, score);
   Curve curve;
+  double all = 0.0;
+  for (const Rows& each : rows) all += each.weights.dot(each.effect.cwiseAbs2());
+  std::vector<std::string> variables = VariablesOf(found.campaign().scene());
+  const std::string own = OwnVariable(score.candidate.object);
+  std::stable_partition(variables.begin(), variables.end(),
+                        [&](const std::string& each) { return each == own; });
   Parted best;
-  for (const std::string& variable : VariablesOf(found.campaign().scene())) {
+  for (const std::string& variable : variables) {
     Parted parted = PartedBy(variable, found, rows);
-    if (!(parted.kept > best.kept)) continue;
+    if (!(parted.kept > kKept * all) || !(parted.kept > kClearly * best.kept)) continue;
     best = std::move(parted);
     curve.variable = variable;
   }

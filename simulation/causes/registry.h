@@ -45,6 +45,7 @@ Cause LinkGravityBend();
 Cause JointHysteresis();
 Cause JointGain();
 Cause CapFriction();
+Cause CapTrailing();
 Cause ClockSkew();
 Cause FixtureMisalignment();
 Cause TargetEccentricity();

@@ -60,7 +60,7 @@ TEST(MeasuredNoise, ReplacesWhatTheMachineFileStatesWhereThatIsWrong) {
   EXPECT_TRUE(setup.notes.empty());
   UseMeasuredNoise({Dwell(40.0)}, setup);
   EXPECT_NEAR(setup.noise.probe, 40e-9, 2e-9);  // not that of the probe that picks something up
-  EXPECT_THAT(setup.notes, testing::ElementsAre(testing::HasSubstr("noise of the probes: 4")));
+  EXPECT_THAT(setup.notes, testing::ElementsAre(testing::HasSubstr("where nothing moves (2400")));
 }
 
 }  // namespace

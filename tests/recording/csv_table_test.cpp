@@ -1,7 +1,9 @@
 #include "recording/csv_table.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -24,7 +26,9 @@ const CsvTableOptions kOptions{
 
 class CsvTable : public testing::Test {
  protected:
-  CsvTable() : path_(std::filesystem::path(testing::TempDir()) / "csv_table_test.csv") {}
+  CsvTable()
+      : path_(std::filesystem::path(testing::TempDir()) /
+              fmt::format("csv_table_test_{}.csv", getpid())) {}
   ~CsvTable() override { std::filesystem::remove(path_); }
 
   Recording ReadText(const std::string& text, const CsvTableOptions& options = kOptions) const {

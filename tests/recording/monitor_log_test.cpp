@@ -1,7 +1,9 @@
 #include "recording/monitor_log.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -23,7 +25,9 @@ const char kLog[] =
 
 class MonitorLog : public testing::Test {
  protected:
-  MonitorLog() : path_(std::filesystem::path(testing::TempDir()) / "monitor_log_test.log") {}
+  MonitorLog()
+      : path_(std::filesystem::path(testing::TempDir()) /
+              fmt::format("monitor_log_test_{}.log", getpid())) {}
   ~MonitorLog() override { std::filesystem::remove(path_); }
 
   Recording ReadText(const std::string& text) const {

@@ -98,6 +98,12 @@ TEST(Causes, CapDragsTheBallAgainstItsWay) {
   EXPECT_NEAR(Only(CapFriction(), "cap", kToolStage)[2], 1.0, 1e-12);  // the ball moves to -x
 }
 
+TEST(Causes, CapTrailsBehindTheMoreTheFaster) {
+  // 60 mm/min, half of the most at 20 mm/min; the ball moves to -x.
+  const VectorXd half = VectorXd::Constant(1, 20e-3 / 60.0);
+  EXPECT_NEAR(Only(CapTrailing(), "cap", kToolStage, half)[2], 0.75, 1e-12);
+}
+
 TEST(Causes, EncoderOfAPivot) {
   EXPECT_NEAR(Only(JointHysteresis(), "pivot_1", kEncoderStage)[1], 0.5, 1e-12);
   const RowVectorXd step =

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -20,7 +21,8 @@ using Eigen::VectorXd;
 const CauseObjects kMill{"mill", true, 3};
 
 std::filesystem::path Written(const std::string& text) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "extended_model_test.toml";
+  const auto path = std::filesystem::path(testing::TempDir()) /
+                    fmt::format("{}_extended_model_test.toml", getpid());
   std::ofstream(path) << text;
   return path;
 }
