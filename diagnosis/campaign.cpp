@@ -20,7 +20,6 @@
 
 namespace abbe::diagnosis {
 
-using simulation::Trace;
 
 namespace {
 

@@ -118,6 +118,13 @@ bool Known(const std::vector<Candidate>& taken, const Candidate& candidate) {
 // Log odds that a cause is there, before any data.
 double LogPrior(std::size_t names) { return std::log(kPresent / static_cast<double>(names)); }
 
+// Of a cause that is there or not: the evidence if it could be there by a part.
+double EvidenceOfAPart(const Score& score) {
+  const double information = score.visible * score.visible;
+  const double along = score.log_evidence + 0.5 * information;
+  return along > 0.0 && information > 0.0 ? 0.5 * along * along / information : 0.0;
+}
+
 class Search {
  public:
   explicit Search(const Campaign& campaign)
@@ -219,8 +226,10 @@ class Search {
     const double best = names.front().log_evidence;
     std::vector<Named*> leading;
     for (Named& named : names) {
-      const bool like_it = whole ? named.best.candidate.cause->whole && named.log_evidence > 0.0
-                                 : named.log_evidence > best - kClose;
+      const bool of_whole = named.best.candidate.cause->whole;
+      const bool like_it = whole ? of_whole && named.log_evidence > 0.0
+                                 : named.log_evidence > best - kClose ||
+                                       (of_whole && EvidenceOfAPart(named.best) > kWorthFits);
       if (like_it && leading.size() < kMostFits) leading.push_back(&named);
     }
     if (best < kWorthFits || leading.size() < 2) return;
