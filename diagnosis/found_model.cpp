@@ -12,8 +12,11 @@ constexpr double kCoverage = 2.0;
 simulation::ModelledCause FoundCause(const Score& score) {
   const auto [values, u] = KeysOf(score);
   const Eigen::Index count = score.coefficients.size();
-  return {score.candidate.cause, score.candidate.object, values, kCoverage * u,
-          score.covariance.topLeftCorner(count, count)};
+  // Of a random function the size counts, not what it was here.
+  const Eigen::MatrixXd covariance = score.candidate.cause->drawn
+                                         ? Eigen::MatrixXd{}
+                                         : score.covariance.topLeftCorner(count, count).eval();
+  return {score.candidate.cause, score.candidate.object, values, kCoverage * u, covariance};
 }
 
 simulation::ExtendedModel FoundModel(const Diagnosis& diagnosis, const Campaign& campaign,

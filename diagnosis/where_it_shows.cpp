@@ -19,13 +19,12 @@ namespace {
 using Eigen::Index;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
-using simulation::Disturbance;
 using simulation::Trace;
 
 constexpr int kParts = 24;        // of the range of a variable
 constexpr double kTells = 1e-3;   // weight of the heaviest part below which one tells nothing
 constexpr double kKept = 0.5;     // of the effect, below which a variable does not show it
-constexpr double kClearly = 1.1;  // how much more another variable has to keep than its own
+constexpr double kClearly = 1.5;  // how much more another variable has to keep than its own
 
 // What a cause does in the rows of a run, stage by stage.
 std::map<Index, RowVectorXd> EffectOf(const Score& score, const Trace& trace) {

@@ -14,8 +14,7 @@ Cause CapTrailing() {
                 .check = "lubrication of ball and cap, the force of the magnet",
                 .remedy = "clean the cap and the ball, take a stronger magnet, or measure slowly; "
                           "see abbe path --test cap"},
-      .keys = {{"displacement_um", 1e-6, -1000.0, 1000.0},
-               {"half_feed_mm_min", kFeed, 0.1, 10000.0}},
+      .keys = {{"displacement_um", 1e-6, -1000.0, 1000.0}, {"feed_mm_min", kFeed, 0.1, 10000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 1e-6),
       .objects =
           [](const Scene& scene) {
