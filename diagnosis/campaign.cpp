@@ -20,7 +20,6 @@
 
 namespace abbe::diagnosis {
 
-
 namespace {
 
 // No dwell of a head has an angle of a shaft.
