@@ -15,6 +15,8 @@ using Eigen::Index;
 constexpr double kLowest = 1.0, kHighest = 60.0;  // Hz: slower is a drift, faster is mains
 constexpr double kOfAWave = 0.4;                  // over the time, from one frequency to the next
 constexpr std::size_t kMostPeaks = 8;             // of a run
+constexpr Index kMostRows = 400;                  // of a run, its first: more take longer
+constexpr std::size_t kMostRuns = 4;              // looked through one by one
 constexpr std::size_t kMostScored = 3;
 
 // Rows of a stage, by time.
@@ -39,9 +41,12 @@ std::vector<Rows> RowsOf(const Fit& fit, Index stage) {
     if (trace.rows() < 3 || trace.kind == "reference" || !AreSingleReadings(trace)) continue;
     const auto of_run = fit.ScoresOf(run, stage);
     if (of_run.scores.size() == 0 || !(of_run.weights.maxCoeff() > 0.0)) continue;
-    runs.push_back({trace.clock.array(), of_run.scores.transpose().array(),
-                    of_run.weights.transpose().array()});
+    const Index rows = std::min(trace.rows(), kMostRows);
+    runs.push_back({trace.clock.head(rows).array(), of_run.scores.head(rows).transpose().array(),
+                    of_run.weights.head(rows).transpose().array()});
   }
+  std::sort(runs.begin(), runs.end(),
+            [](const Rows& a, const Rows& b) { return a.weights.sum() > b.weights.sum(); });
   return runs;
 }
 
@@ -106,7 +111,8 @@ Line StrongestLine(const Fit& fit, const Candidate& candidate) {
     line.step = kOfAWave / all.span();
     line.among = std::max(1.0, (kHighest - kLowest) * all.span());
     std::vector<Peak> best;
-    for (const Rows& run : runs) {
+    for (std::size_t i = 0; i < std::min(kMostRuns, runs.size()); ++i) {
+      const Rows& run = runs[i];
       const double step = kOfAWave / run.span();
       for (const Peak& peak : PeaksOf(PowersOf(run, kLowest, kHighest, step))) {
         const auto near = PowersOf(all, peak.frequency - step, peak.frequency + step, line.step);

@@ -4,11 +4,11 @@
 //   line.score.log_evidence - std::log(line.among);
 //
 // Over an hour a frequency is known to some 1e-4 Hz: a hundred thousand of them are told apart
-// between 1 and 60 Hz, too many to score. First every run whose rows are single readings is looked
-// through by itself, where its few seconds leave some hundred frequencies; about those that stand
-// out, aliases of each other too, all these runs together are looked through, as long as the line
-// keeps its phase; the best of them are scored. Rows that are means of stays only count in the
-// score. Units: Hz.
+// between 1 and 60 Hz, too many to score. First the runs whose rows are single readings and tell
+// most are looked through by themselves, where their few seconds leave some hundred frequencies;
+// about those that stand out, aliases of each other too, all these runs together are looked
+// through, as long as the line keeps its phase; the best of them are scored. Rows that are means of
+// stays only count in the score. Units: Hz.
 #pragma once
 
 #include "diagnosis/fit.h"
