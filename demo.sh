@@ -54,7 +54,8 @@ done
 wrong=(backlash:object=X:width_um=4 servo-lag:object=Y:delay_ms=0.3 leadscrew-cyclic:object=Y:pitch_mm=6:amplitude_um=0.8
   mains-pickup:object=probe_d:frequency_hz=50:amplitude_um=0.2 load-coupling:object=XY:coefficient_nm_per_mm2=2
   reversal-spike:object=X:height_um=2:decay_mm=0.3
-  clock-skew:object=linkage:delay_ms=3)
+  clock-skew:object=linkage:delay_ms=3 vibration:object=X:frequency_hz=17:amplitude_um=0.5
+  target-form:object=target_top:rms_um=0.4)
 hidden=${ABBE_DEMO_HIDE:-${wrong[$((10#$(date +%j) % ${#wrong[@]}))]}}
 # Its ball moves in the cap without drag, or the diagnosis would find that too.
 { cat "$demo"; printf '\n[rig]\ncap_um = 0.0\n'; } >"$out/rig/no_drag.toml"

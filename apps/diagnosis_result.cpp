@@ -114,6 +114,12 @@ std::string PeriodText(const Leftover& leftover) {
   return fmt::format(", {:.1f} times per turn,", 2.0 * std::numbers::pi / leftover.period);
 }
 
+std::string WhatItDoes(const Leftover& leftover) {
+  if (leftover.variable == diagnosis::kScatter) return "scatters beyond what is stated";
+  if (leftover.variable == diagnosis::kMemory) return "goes on from one reading to the next";
+  return fmt::format("varies with {}{}", leftover.variable, PeriodText(leftover));
+}
+
 std::string EvidenceText(const Diagnosis& diagnosis) {
   std::string text = fmt::format("\n{:<44}{:>14}{:>22}\n", "candidates, alone", "log evidence",
                                  "would be seen at");
@@ -216,12 +222,10 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const diagnosis::HeldOutGa
                         gain.arm_poses, 1e3 * gain.arm_before, 1e3 * gain.arm_after);
   }
   for (const Leftover& leftover : diagnosis.leftovers) {
-    const bool scatter = leftover.variable == diagnosis::kScatter;
-    text += fmt::format(
-        "\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause does that\n", leftover.object,
-        scatter ? "scatters beyond what is stated"
-                : fmt::format("varies with {}{}", leftover.variable, PeriodText(leftover)),
-        leftover.amplitude / leftover.unit.si, leftover.unit.name, leftover.p_value);
+    text +=
+        fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause does that\n",
+                    leftover.object, WhatItDoes(leftover), leftover.amplitude / leftover.unit.si,
+                    leftover.unit.name, leftover.p_value);
   }
   text += EvidenceText(diagnosis);
   if (!diagnosis.cannot_show.empty()) {

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <utility>
 
 #include "diagnosis/arm_baseline.h"
-#include "diagnosis/line_search.h"
 #include "diagnosis/scatter.h"
+#include "diagnosis/shortlist.h"
 #include "failure/failure.h"
 #include "simulation/causes/registry.h"
 #include "simulation/causes/shaft.h"
@@ -19,96 +18,9 @@ namespace {
 constexpr std::size_t kMostCauses = 6;
 constexpr std::size_t kMostRefused = 24;  // between two that are taken in
 constexpr double kNegligible = 0.01;      // probability of a rival that is not worth a word
-constexpr int kRefinements = 12;          // halvings of the step between shapes
 constexpr double kClose = 6.0;      // in log evidence: candidates that the first order may confuse
 constexpr double kWorthFits = 8.0;  // log evidence of the best below which nothing is taken in
 constexpr std::size_t kMostFits = 4;
-
-double LogSumOfExponentials(const std::vector<double>& logs) {
-  const double most = *std::max_element(logs.begin(), logs.end());
-  double sum = 0.0;
-  for (const double each : logs) sum += std::exp(each - most);
-  return most + std::log(sum);
-}
-
-// Neighbouring shapes in the list that was tried, as a factor.
-double StepOf(const std::vector<Score>& scores, std::size_t first, std::size_t last,
-              std::size_t best) {
-  const std::size_t other = best + 1 < last ? best + 1 : best - 1;
-  if (other < first || other == best) return 1.0;
-  const double ratio = scores[other].candidate.shape[0] / scores[best].candidate.shape[0];
-  return ratio > 1.0 ? ratio : 1.0 / ratio;
-}
-
-// A cause at an object: the best of its shapes, and the evidence of all of them together.
-struct Named {
-  Score best;
-  double log_evidence = 0.0;
-  double step = 1.0;  // from the best shape to the next one tried, a factor
-};
-
-std::vector<Named> ByName(const std::vector<Score>& scores) {
-  std::vector<Named> names;
-  for (std::size_t first = 0; first < scores.size();) {
-    std::size_t last = first, best = first;
-    std::vector<double> logs;
-    const std::string name = scores[first].candidate.Name();
-    for (; last < scores.size() && scores[last].candidate.Name() == name; ++last) {
-      logs.push_back(scores[last].log_evidence);
-      if (logs.back() > scores[best].log_evidence) best = last;
-    }
-    const double mean = LogSumOfExponentials(logs) - std::log(static_cast<double>(logs.size()));
-    double visible = 0.0;
-    for (std::size_t i = first; i < last; ++i) visible = std::max(visible, scores[i].visible);
-    Named named{scores[best], mean, last - first > 1 ? StepOf(scores, first, last, best) : 1.0};
-    named.best.visible = visible;
-    names.push_back(std::move(named));
-    first = last;
-  }
-  return names;
-}
-
-// Of a cause that is a line: its strongest one.
-void FindLine(const Fit& fit, Named& named) {
-  if (!named.best.candidate.cause->line_in) return;
-  const double visible = named.best.visible;
-  const Line line = StrongestLine(fit, named.best.candidate);
-  named.best = line.score;
-  named.best.visible = std::max(visible, line.score.visible);
-  named.log_evidence = line.score.log_evidence - std::log(line.among);
-  named.step = 1.0 + line.step / line.score.candidate.shape[0];
-}
-
-const Score& Better(const Score& one, const Score& other) {
-  return other.log_evidence > one.log_evidence ? other : one;
-}
-
-// The shape with the largest evidence near the best one that was tried.
-Score Refine(const Fit& fit, const Named& named) {
-  Score best = named.best;
-  const simulation::Cause& cause = *best.candidate.cause;
-  const auto ask = [&](const std::vector<Candidate>& candidates) {
-    for (const Score& score : ScoreAll(fit, candidates)) best = Better(best, score);
-    best.visible = named.best.visible;
-  };
-  if (cause.nearer) {
-    std::vector<Candidate> near;
-    for (const auto& shape : cause.nearer(fit.campaign().scene(), best.candidate.shape)) {
-      near.push_back(best.candidate);
-      near.back().shape = shape;
-    }
-    ask(near);
-  }
-  if (best.candidate.shape.size() == 0 || cause.fixed_shapes) return best;
-  double step = std::sqrt(named.step);
-  for (int i = 0; i < kRefinements; ++i, step = std::sqrt(step)) {
-    std::vector<Candidate> moved(2, best.candidate);
-    moved[0].shape *= step;
-    moved[1].shape /= step;
-    ask(moved);
-  }
-  return best;
-}
 
 bool Known(const std::vector<Candidate>& taken, const Candidate& candidate) {
   return std::any_of(taken.begin(), taken.end(),
@@ -118,11 +30,9 @@ bool Known(const std::vector<Candidate>& taken, const Candidate& candidate) {
 // Log odds that a cause is there, before any data.
 double LogPrior(std::size_t names) { return std::log(kPresent / static_cast<double>(names)); }
 
-// Of a cause that is there or not: the evidence if it could be there by a part.
-double EvidenceOfAPart(const Score& score) {
-  const double information = score.visible * score.visible;
-  const double along = score.log_evidence + 0.5 * information;
-  return along > 0.0 && information > 0.0 ? 0.5 * along * along / information : 0.0;
+// Whether a swap or a wrong sign of channels could be taken for it.
+bool InReadings(const Candidate& candidate) {
+  return candidate.object.starts_with("probe_") || candidate.object.starts_with("target_");
 }
 
 class Search {
@@ -169,9 +79,7 @@ class Search {
  private:
   // Scores everything against the fit so far; false when nothing is probable enough.
   bool TakeBest() {
-    std::vector<Named> names = ByName(ScoreAll(*fit_, candidates_));
-    for (Named& named : names) FindLine(*fit_, named);
-    SortByEvidence(names);
+    std::vector<Named> names = Shortlist(*fit_, candidates_);
     if (diagnosis_.evidence.empty()) DescribeFirstRound(names);
     if (rim_sensors_ > 0) NoteShown(names);
     std::erase_if(names, [&](const Named& named) {
@@ -223,13 +131,15 @@ class Search {
   void DecideByFits(std::vector<Named>& names) const {
     if (names.empty()) return;
     const bool whole = names.front().best.candidate.cause->whole;
+    const bool in_readings = InReadings(names.front().best.candidate);
     const double best = names.front().log_evidence;
     std::vector<Named*> leading;
     for (Named& named : names) {
       const bool of_whole = named.best.candidate.cause->whole;
-      const bool like_it = whole ? of_whole && named.log_evidence > 0.0
-                                 : named.log_evidence > best - kClose ||
-                                       (of_whole && EvidenceOfAPart(named.best) > kWorthFits);
+      const bool like_it =
+          whole ? of_whole && named.log_evidence > 0.0
+                : named.log_evidence > best - kClose ||
+                      (of_whole && in_readings && EvidenceOfAPart(named.best) > kWorthFits);
       if (like_it && leading.size() < kMostFits) leading.push_back(&named);
     }
     if (best < kWorthFits || leading.size() < 2) return;
@@ -246,11 +156,6 @@ class Search {
       named.log_evidence = std::min(named.log_evidence, most - kClose);
     }
     SortByEvidence(names);
-  }
-
-  static void SortByEvidence(std::vector<Named>& names) {
-    std::sort(names.begin(), names.end(),
-              [](const Named& a, const Named& b) { return a.log_evidence > b.log_evidence; });
   }
 
   // None where the simulation cannot be fitted with these: what they explain to first order, they

@@ -78,9 +78,10 @@ Problem ProblemOf(const Campaign& campaign, const std::vector<SimulatedRun>& run
 
 // What is left to the minimum is in the gradient, which the evidence takes into account: where a
 // simulation that lacks something does not settle, near it is good enough. Standard uncertainties.
-const std::vector<double> kAsItIs{0.02, 1.0, 30.0, 1000.0}, kWithCauses{0.02, 1.0};
+const std::vector<double> kAsItIs{0.02, 1.0, 30.0, 1000.0}, kWithCauses{0.3, 1.0};
 
-estimation::Result Solve(const Problem& problem, const std::vector<double>& settled) {
+estimation::Result Solve(const Problem& problem, const std::vector<double>& settled,
+                         estimation::Linearization& at) {
   constexpr int kFewPasses = 20;
   for (auto limit = settled.begin();; ++limit) {
     try {
@@ -88,7 +89,8 @@ estimation::Result Solve(const Problem& problem, const std::vector<double>& sett
                             .threads = 1,
                             .settled = *limit,
                             .jacobian_bytes = 0,
-                            .weak_directions = false});
+                            .weak_directions = false},
+                           &at);
     } catch (const NumericalError&) {
       if (limit + 1 == settled.end()) throw;
     }
@@ -102,8 +104,9 @@ Fit::Fit(const Campaign& campaign) : campaign_(campaign) {
   runs.reserve(campaign.runs().size());
   for (const DiagnosedRun& run : campaign.runs()) runs.push_back(run.simulated);
   const Problem problem = ProblemOf(campaign, runs, {});
-  result_ = Solve(problem, kAsItIs);
-  Linearize(problem);
+  estimation::Linearization at;
+  result_ = Solve(problem, kAsItIs, at);
+  Linearize(problem, at);
 }
 
 Fit::Fit(const Fit& before, std::vector<Candidate> taken_in)
@@ -114,20 +117,22 @@ Fit::Fit(const Fit& before, std::vector<Candidate> taken_in)
   const int rounds = of_shaft ? 12 : 4;
   if (of_shaft) StartFromKnown(before.taken_in_, taken_in_);
   constexpr double kShapeFound = 1e-3;  // relative
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 1;; ++round) {
     std::vector<SimulatedRun> runs;
     for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
-      const auto& at = round == 0 ? before.runs_[r].at : runs_[r].at;
-      runs.push_back(Extend(campaign_.runs()[r], at, taken_in_));
+      const LinearRun& run = round == 1 ? before.runs_[r].at : runs_[r].at;
+      runs.push_back(Extend(campaign_.runs()[r], run, taken_in_));
       StartFrom(result_, runs.back().blocks);
     }
     const Problem problem = ProblemOf(campaign_, runs, taken_in_, result_);
-    result_ = Solve(problem, kWithCauses);
-    const std::vector<Candidate> at = taken_in_;
+    estimation::Linearization at;
+    result_ = Solve(problem, kWithCauses, at);
+    const std::vector<Candidate> start = taken_in_;
     double moved = FollowShapes();
-    Linearize(problem);
-    if (of_shaft) moved = std::max(moved, Moved(at, taken_in_));
-    if (round > 0 && moved < kShapeFound) break;
+    if (of_shaft) moved = std::max(moved, Moved(start, taken_in_));
+    const bool settled = round == rounds || (round > 1 && moved < kShapeFound);
+    settled ? Linearize(problem, at) : TakeRuns(problem);
+    if (settled) break;
   }
 }
 
@@ -166,11 +171,23 @@ double Fit::SeenOf(const Candidate& cause) const {
   return std::max(known.sum(), 1.0);
 }
 
-void Fit::Linearize(const Problem& problem) {
+void Fit::TakeRuns(const Problem& problem) {
+  const VectorXd x = fusion::ValuesFound(result_, result_.blocks);
+  const estimation::Layout layout(problem);
+  estimation::RowEvaluator evaluator(problem, layout);
+  runs_.clear();
+  for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
+    const DiagnosedRun& run = campaign_.runs()[r];
+    const VectorXd& left = evaluator.Evaluate(problem.terms()[r], x, false)->r;
+    runs_.push_back(
+        {LinearAt(run, ValuesIn(result_, run.simulated), left, taken_in_), left, {}, {}});
+  }
+}
+
+void Fit::Linearize(const Problem& problem, const estimation::Linearization& at) {
+  TakeRuns(problem);
   const estimation::Layout layout(problem);
   names_ = layout.names;
-  const VectorXd x = fusion::ValuesFound(result_, result_.blocks);
-  const estimation::Linearization at = estimation::Linearize(problem, layout, x, 1);
   MatrixXd H = at.prior.information;
   gradient_ = at.prior.gradient;
   data_information_ = MatrixXd::Zero(H.rows(), H.cols());
@@ -191,22 +208,20 @@ void Fit::Linearize(const Problem& problem) {
   const double curvature = 2.0 * MatrixXd(H_.matrixL()).diagonal().array().log().sum() -
                            2.0 * scale_.array().log().sum();
   log_likelihood_ = -at.Cost() + 0.5 * (priors - curvature);
+  const VectorXd x = fusion::ValuesFound(result_, result_.blocks);
   estimation::RowEvaluator evaluator(problem, layout);
-  runs_.clear();
   left_out_ = 0.0;
-  for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
-    const DiagnosedRun& run = campaign_.runs()[r];
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    if (!runs_[r].at.response) continue;
     const auto* rows = evaluator.Evaluate(problem.terms()[r], x, true);
-    runs_.push_back({LinearAt(run, ValuesIn(result_, run.simulated), rows->r, taken_in_),
-                     rows->r,
-                     rows->columns,
-                     {}});
-    if (!runs_.back().at.response) continue;
-    if (run.arm)
+    runs_[r].columns = rows->columns;
+    const DiagnosedRun& run = campaign_.runs()[r];
+    if (run.arm) {
       left_out_ += run.excess * run.excess * LeftOut(rows->r, rows->columns, rows->jacobian);
+    }
     MatrixXd both(rows->r.size(), rows->jacobian.cols() + 1);
     both << rows->jacobian, rows->r;
-    runs_.back().back = runs_.back().at.response->BackToReadings(both);
+    runs_[r].back = runs_[r].at.response->BackToReadings(both);
   }
 }
 

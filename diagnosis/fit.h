@@ -81,7 +81,10 @@ class Fit {
     Eigen::MatrixXd back;  // [J r], back to the readings
   };
 
-  void Linearize(const estimation::Problem& problem);
+  // The runs at the fit, with all that is needed to start another one from them.
+  void TakeRuns(const estimation::Problem& problem);
+  // The same, and what all data say together.
+  void Linearize(const estimation::Problem& problem, const estimation::Linearization& at);
   double FollowShapes();
   double SeenOf(const Candidate& cause) const;
   double LeftOut(const Eigen::VectorXd& r, const std::vector<int>& columns,

@@ -1,29 +1,78 @@
 #include "diagnosis/scatter.h"
 
+#include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kLags = 10;
+constexpr Index kFewRows = 8 * kLags;  // with less there are no such correlations
+
+double Chance(double chi_square, double freedom) {
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), chi_square));
+}
+
+Leftover ScatterOf(const VectorXd& left, double excess) {
+  const double stated = left.squaredNorm() * excess * excess;
+  const auto rows = static_cast<double>(left.size());
+  const double beyond = std::sqrt(std::max(0.0, stated / rows - 1.0));
+  const double p_value = Chance(stated / (kNoiseIsKnown * kNoiseIsKnown), rows);
+  return {kScatter, {}, beyond, {"times the noise"}, p_value, 0.0};
+}
+
+// Channels x instants.
+MatrixXd InTime(const VectorXd& left, const simulation::Trace& trace) {
+  const Index instants = trace.rows(), channels = left.size() / instants;
+  if (trace.gap.size() > 0) return left.reshaped(instants, channels).transpose();
+  return left.reshaped(channels, instants);
+}
+
+Leftover MemoryOf(const MatrixXd& left) {
+  const Index n = left.cols();
+  const auto rows = static_cast<double>(n);
+  double sum = 0.0, most = 0.0;
+  for (Index k = 1; k <= kLags; ++k) {
+    for (Index channel = 0; channel < left.rows(); ++channel) {
+      const double a = left.row(channel).head(n - k).dot(left.row(channel).tail(n - k)) /
+                       left.row(channel).squaredNorm();
+      sum += rows * (rows + 2.0) * a * a / static_cast<double>(n - k);
+      most = std::max(most, std::abs(a));
+    }
+  }
+  const double p_value = Chance(sum, static_cast<double>(kLags * left.rows()));
+  return {kMemory, {}, std::sqrt(most), {"times the noise"}, p_value, 0.0};
+}
+
+// Rows in time, of one instrument. The poses of an arm come in any order. A run that scatters less
+// than is stated is whitened with too much noise, and what is left of its drift goes on.
+bool HasNeighbours(const DiagnosedRun& run, const VectorXd& left) {
+  const bool kind = run.trace.kind == "sweep" || run.trace.kind == "linkage";
+  const auto rows = static_cast<double>(left.size());
+  return kind && !run.arm && run.trace.rows() >= kFewRows && left.size() % run.trace.rows() == 0 &&
+         left.squaredNorm() * kNoiseIsKnown * kNoiseIsKnown > rows;
+}
+
+}  // namespace
 
 std::vector<Leftover> RunsThatScatter(const Fit& fit) {
   std::vector<Leftover> found;
   const auto& runs = fit.campaign().runs();
   for (std::size_t run = 0; run < runs.size(); ++run) {
-    const Eigen::VectorXd& left = fit.LeftOf(run);
+    const VectorXd& left = fit.LeftOf(run);
     if (left.size() == 0) continue;
-    const double stated = left.squaredNorm() * runs[run].excess * runs[run].excess;
-    const double chi_square = stated / (kNoiseIsKnown * kNoiseIsKnown);
-    const auto rows = static_cast<double>(left.size());
-    const boost::math::chi_squared distribution(rows);
-    const double chance = boost::math::cdf(boost::math::complement(distribution, chi_square)) *
-                          static_cast<double>(runs.size());
-    if (chance >= kDoubt) continue;
-    found.push_back({kScatter,
-                     runs[run].simulated.name,
-                     std::sqrt(stated / rows - 1.0),
-                     {"times the noise"},
-                     chance,
-                     0.0});
+    std::vector<Leftover> answers{ScatterOf(left, runs[run].excess)};
+    if (HasNeighbours(runs[run], left)) answers.push_back(MemoryOf(InTime(left, runs[run].trace)));
+    for (Leftover& answer : answers) {
+      answer.object = runs[run].simulated.name;
+      answer.p_value *= static_cast<double>(2 * runs.size());
+      if (answer.p_value < kDoubt) found.push_back(std::move(answer));
+    }
   }
   return found;
 }

@@ -1,10 +1,13 @@
-// Runs that scatter more than their stated noise lets them, whatever it depends on.
+// Runs that do not scatter as their stated noise would, whatever it depends on.
 //
-// The sum of squares of what a fit leaves of a run, in units of the stated noise, against
-// chi-square of as many degrees of freedom as the run has rows: a portmanteau test. A stated noise
-// is believed to 5
-// %. Source: ISO/IEC Guide 98-3:2008, G.3 (chi-square of residuals). Units: amplitude in units of
-// the stated noise.
+// What a fit leaves of a run, in units of the stated noise, is white and of variance one where the
+// simulation is right. Two portmanteau tests of each run:
+//   scatter   the sum of squares against chi-square of as many degrees of freedom as it has rows; a
+//             stated noise is believed to 5 %
+//   memory    the autocorrelations a_k of n rows in time, n (n + 2) sum a_k^2 / (n - k) over the
+//             first kLags of each channel, against chi-square of as many degrees of freedom
+// Source: ISO/IEC Guide 98-3:2008, G.3 (chi-square of residuals); Ljung and Box, Biometrika 65
+// (1978). Units: amplitude in units of the stated noise.
 #pragma once
 
 #include <vector>
@@ -16,7 +19,7 @@ namespace abbe::diagnosis {
 
 inline constexpr double kNoiseIsKnown = 1.05;
 
-// The variable is kScatter, the object the name of the run.
+// The variable is kScatter or kMemory, the object the name of the run.
 std::vector<Leftover> RunsThatScatter(const Fit& fit);
 
 }  // namespace abbe::diagnosis

@@ -33,7 +33,7 @@ struct Leftover {
 };
 
 inline constexpr double kDoubt = 1e-3;
-inline constexpr const char* kScatter = "scatter";  // the variable of scatter.h
+inline constexpr const char *kScatter = "scatter", *kMemory = "memory";  // of scatter.h
 
 std::vector<Leftover> FindLeftovers(const Fit& fit);
 

@@ -45,6 +45,8 @@
 
 namespace abbe::estimation {
 
+struct Linearization;
+
 struct BlockId {
   int index = 0;
 };
@@ -98,7 +100,8 @@ class Problem {
   void Add(SourceId source, std::shared_ptr<const Residual> residual,
            const std::vector<Input>& inputs, Eigen::VectorXd standard_deviations);
 
-  Result Solve(const SolveOptions& options = {}) const;
+  // `at`: where asked for, the problem made linear at the solution (linearization.h).
+  Result Solve(const SolveOptions& options = {}, Linearization* at = nullptr) const;
 
   // To hold, free and start parameters between solves. The entries must stay the same ones.
   ParameterBlock& Block(BlockId id) { return blocks_[static_cast<std::size_t>(id.index)]; }

@@ -118,20 +118,20 @@ void FillOutliers(const Problem& problem, const Layout& layout, const VectorXd& 
 
 }  // namespace
 
-Result Problem::Solve(const SolveOptions& options) const {
+Result Problem::Solve(const SolveOptions& options, Linearization* at) const {
   const Layout layout(*this);
   VectorXd x = layout.start;
-  Linearization at = Linearize(*this, layout, x, options.threads);
-  if (!at.trouble.empty()) {
+  Linearization start = Linearize(*this, layout, x, options.threads);
+  if (!start.trouble.empty()) {
     throw NumericalError(
-        fmt::format("the fit cannot start: {}; check the starting values", at.trouble));
+        fmt::format("the fit cannot start: {}; check the starting values", start.trouble));
   }
   Result result;
   if (layout.columns() > 0 && JacobianBytes(*this, layout) <= options.jacobian_bytes) {
     result.iterations = ApproachMinimum(*this, layout, options, x);
-    at = Linearize(*this, layout, x, options.threads);
+    start = Linearize(*this, layout, x, options.threads);
   }
-  const Settled settled = SettleByPasses(*this, layout, options, std::move(x), std::move(at));
+  Settled settled = SettleByPasses(*this, layout, options, std::move(x), std::move(start));
   result.iterations += settled.passes;
 
   const Information information = Collect(*this, settled.at);
@@ -152,6 +152,7 @@ Result Problem::Solve(const SolveOptions& options) const {
   result.freedom = result.rows - (layout.columns() - covariance.undetermined);
   result.status =
       covariance.undetermined > 0 ? Result::Status::kUndetermined : Result::Status::kConverged;
+  if (at != nullptr) *at = std::move(settled.at);
   return result;
 }
 

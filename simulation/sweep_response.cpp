@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
-#include <cmath>
+#include <algorithm>
 #include <utility>
 
 #include "failure/failure.h"
+#include "simulation/target_spots.h"
 
 namespace abbe::simulation {
 
@@ -35,14 +36,28 @@ MatrixXd FaceCovariance(const SweepPlan& plan, const SweepInstrument& instrument
         for (Index g = 0; g < n; ++g) {
           const double along = apart[0] + sign * (run.position[g] - run.position[h]);
           const double square = along * along + apart[1] * apart[1];
-          block(g, h) =
-              variance == 0.0 ? 0.0 : variance * std::exp(-0.5 * square / (length * length));
+          block(g, h) = variance == 0.0 ? 0.0 : variance * FormCorrelation(square, length);
         }
       }
       if (p == q) block += run.covariance[first + p];
     }
   }
   return V;
+}
+
+// The diagonal of the inverse, L^-T L^-1: the columns of L^-1 begin with zeros.
+VectorXd InverseDiagonal(const Eigen::LLT<MatrixXd>& factor) {
+  constexpr Index kTogether = 64;
+  const Index n = factor.rows();
+  const MatrixXd L = factor.matrixL();
+  VectorXd diagonal(n);
+  for (Index first = 0; first < n; first += kTogether) {
+    const Index left = n - first, count = std::min(kTogether, left);
+    MatrixXd columns = MatrixXd::Identity(left, count);
+    L.bottomRightCorner(left, left).triangularView<Eigen::Lower>().solveInPlace(columns);
+    diagonal.segment(first, count) = columns.colwise().squaredNorm();
+  }
+  return diagonal;
 }
 
 }  // namespace
@@ -59,9 +74,8 @@ FaceNoise FaceNoiseOf(const SweepPlan& plan, const SweepInstrument& instrument,
       throw InputError(fmt::format(
           "{}: the probes have no noise; state probe_nm in [noise] of the machine file", run.name));
     }
-    const Index rows = factor.rows();
-    noise.weights.segment(static_cast<Index>(first) * run.rows(), rows) =
-        factor.matrixL().solve(MatrixXd::Identity(rows, rows)).colwise().squaredNorm();
+    noise.weights.segment(static_cast<Index>(first) * run.rows(), factor.rows()) =
+        InverseDiagonal(factor);
   }
   return noise;
 }

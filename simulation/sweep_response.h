@@ -30,7 +30,7 @@ void WhitenRows(const FaceNoise& noise, Columns& columns) {
   Eigen::Index first = 0;
   for (const auto& factor : noise.factors) {
     auto rows = columns.middleRows(first, factor.rows());
-    factor.matrixL().solveInPlace(rows);
+    if (!rows.isZero(0.0)) factor.matrixL().solveInPlace(rows);
     first += factor.rows();
   }
 }

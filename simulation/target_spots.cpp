@@ -1,5 +1,7 @@
 #include "simulation/target_spots.h"
 
+#include <cmath>
+
 #include "simulation/sweep_reading.h"
 
 namespace abbe::simulation {
@@ -26,6 +28,12 @@ Eigen::MatrixXd SpotsOnTarget(const machine::Chain& chain, const probes::HeadSet
     spots.row(row + 1) *= -1.0;
   }
   return spots;
+}
+
+double FormCorrelation(double square, double length) {
+  constexpr double kNothing = 80.0;  // lengths squared
+  const double apart = square / (length * length);
+  return apart < kNothing ? std::exp(-0.5 * apart) : 0.0;
 }
 
 }  // namespace abbe::simulation

@@ -19,4 +19,9 @@ namespace abbe::simulation {
 Eigen::MatrixXd SpotsOnTarget(const machine::Chain& chain, const probes::HeadSettings& head,
                               const SweepRun& run);
 
+// How the form of a face correlates between two spots, of the square of their distance, m^2, and
+// its correlation length, m: a Gaussian, 0 where it is below 1e-17. Far below that, products with
+// it would be too small to be normal numbers, with which a processor is ten times slower.
+double FormCorrelation(double square, double length);
+
 }  // namespace abbe::simulation

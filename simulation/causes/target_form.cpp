@@ -11,6 +11,7 @@
 #include <set>
 
 #include "simulation/causes/registry.h"
+#include "simulation/target_spots.h"
 
 namespace abbe::simulation {
 
@@ -99,7 +100,7 @@ VectorXd GridOver(const Scene& scene) {
 MatrixXd FunctionsOf(const RowVectorXd& coordinate, const VectorXd& nodes, double length) {
   const auto covariance = [&](const RowVectorXd& places) -> MatrixXd {
     const MatrixXd apart = nodes.replicate(1, places.size()) - places.replicate(nodes.size(), 1);
-    return (-0.5 * (apart / length).array().square()).exp();
+    return apart.unaryExpr([&](double each) { return FormCorrelation(each * each, length); });
   };
   MatrixXd among = covariance(nodes.transpose());
   among.diagonal().array() += kRounding;
