@@ -56,8 +56,6 @@ void Widen(const Candidate& cause, std::vector<estimation::ParameterBlock>& bloc
   }
 }
 
-constexpr double kShapeFree = 1.0;  // e-fold: no bound
-
 // By the logarithm of the shape.
 VectorXd ByShape(const LinearRun& at, const Candidate& cause) {
   constexpr double kStep = 1e-7;  // a frequency over an hour is known to a millionth

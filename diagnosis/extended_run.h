@@ -38,6 +38,7 @@ simulation::SimulatedRun Extend(const DiagnosedRun& run, const LinearRun& at,
                                 const std::vector<Candidate>& causes);
 
 inline constexpr const char* kShapeEntry = "log_shape";  // beside where it was taken
+inline constexpr double kShapeFree = 1.0;                // e-fold, its deviation: no bound
 
 // The name of the block of a cause.
 std::string BlockOf(const Candidate& cause);

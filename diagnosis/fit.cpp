@@ -97,6 +97,16 @@ estimation::Result Solve(const Problem& problem, const std::vector<double>& sett
   }
 }
 
+// Takes out of a covariance what keeps the last entry, the logarithm of a shape, from going too far
+// in one round: it is no knowledge. What is known no better without it stays bounded.
+void FreeShape(MatrixXd& covariance) {
+  constexpr double kMostOfIt = 0.99;
+  const VectorXd with_shape = covariance.rightCols<1>();
+  const double information = 1.0 / (kShapeFree * kShapeFree);
+  const double share = std::min(information * with_shape[with_shape.size() - 1], kMostOfIt);
+  covariance += information / (1.0 - share) * with_shape * with_shape.transpose();
+}
+
 }  // namespace
 
 Fit::Fit(const Campaign& campaign) : campaign_(campaign) {
@@ -266,6 +276,7 @@ Score Fit::ScoreOf(std::size_t taken_in) const {
   if (!cause.cause->widens) {
     score.coefficients = result_.Block(BlockOf(cause)).Values().head(cause.cause->coefficients());
     score.covariance = result_.Covariance(BlockOf(cause), BlockOf(cause));
+    if (cause.HasFreeShape()) FreeShape(score.covariance);
     const std::string zero = "encoder_offset." + cause.object;
     if (cause.cause->graduated && !ColumnsNamed(zero).empty()) {
       const Eigen::Vector2d turned(score.coefficients[1], -score.coefficients[0]);
