@@ -7,6 +7,7 @@
 
 #include "diagnosis/arm_baseline.h"
 #include "diagnosis/scatter.h"
+#include "diagnosis/shape_posterior.h"
 #include "diagnosis/shortlist.h"
 #include "failure/failure.h"
 #include "simulation/causes/registry.h"
@@ -54,7 +55,7 @@ class Search {
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       const double visible = diagnosis_.findings[i].score.visible;
       const double log_evidence = diagnosis_.findings[i].score.log_evidence;
-      diagnosis_.findings[i].score = fit_->ScoreOf(i);
+      diagnosis_.findings[i].score = ScoreOf(i);
       diagnosis_.findings[i].score.visible = visible;
       diagnosis_.findings[i].score.log_evidence = log_evidence;
       diagnosis_.findings[i].curve = CurveOf(*base_, *fit_, i);
@@ -213,11 +214,23 @@ class Search {
     }
   }
 
+  std::vector<Candidate> Others(std::size_t than) const {
+    std::vector<Candidate> others = taken_;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(than));
+    return others;
+  }
+
+  Score ScoreOf(std::size_t i) const {
+    Score score = fit_->ScoreOf(i);
+    if (!IsHardlyKnown(score)) return score;
+    const auto without = FitWith(Others(i));
+    return without ? OverAllShapes(*without, std::move(score)) : score;
+  }
+
   // A cause that the later ones explain as well is taken out again.
   void DropSuperfluous() {
     for (std::size_t i = 0; taken_.size() > 1 && i < taken_.size();) {
-      std::vector<Candidate> others = taken_;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      std::vector<Candidate> others = Others(i);
       auto without = FitWith(others);
       if (!without ||
           ScoreAll(*without, {taken_[i]}).front().log_evidence > -LogPrior(candidates_.size())) {

@@ -153,6 +153,11 @@ function cannotShowBlock(result) {
       (result.cannot_show ?? []).map(candidateName));
 }
 
+const WITHOUT_VARIABLE = {
+  scatter: 'scatters beyond what is stated',
+  memory: 'goes on from one reading to the next',
+};
+
 function leftoverBlock(result) {
   return notesBlock(
       'Left unexplained:',
@@ -160,9 +165,8 @@ function leftoverBlock(result) {
           .map(
               ({variable, object, amplitude, unit, p_value: p}) =>
                   `${capital(objectName(object))} ${
-                      variable === 'scatter' ?
-                          'scatters beyond what is stated' :
-                          `varies with ${variable}`} by ${significant(amplitude)}\u00a0${
+                      WITHOUT_VARIABLE[variable] ?? `varies with ${variable}`} by ${
+                      significant(amplitude)}\u00a0${
                       micro(unit)} in a way that no known cause makes (p = ${
                       plain(Number(p?.toPrecision(1)))})`));
 }

@@ -42,7 +42,7 @@ TEST(PositioningTests, AreNotExplainedByAWrongCause) {
                                         "servo-lag",      "vibration"};
   const PositioningWorlds worlds;
   const Seeds seeds = SeedsFromEnvironment();
-  Rate wrong;
+  Rate wrong, inside;
   for (std::uint64_t seed = seeds.first; seed <= seeds.last; seed += seeds.step) {
     const PositioningPlan plan{.axis = static_cast<int>(seed % 3)};
     const std::string hidden =
@@ -51,7 +51,12 @@ TEST(PositioningTests, AreNotExplainedByAWrongCause) {
     const Diagnosis diagnosis = DiagnosisOf(worlds, seed, world);
     wrong.Add(diagnosis.verdict == Verdict::kExplained &&
               !Names(diagnosis.findings.front(), world.hidden.front()));
+    if (!diagnosis.findings.empty() && Names(diagnosis.findings.front(), world.hidden.front())) {
+      AddSizes(diagnosis.findings.front(), world.hidden.front(), inside);
+    }
   }
+  fmt::print("keys of those named first inside U95: {}\n", inside.Text());
+  EXPECT_GE(inside.High(), 0.9) << inside.Text();
   EXPECT_LE(wrong.Low(), 0.01) << wrong.Text();
 }
 

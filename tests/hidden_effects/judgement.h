@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <boost/math/distributions/binomial.hpp>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -51,6 +53,20 @@ inline bool Names(const Finding& finding, const rig::HiddenEffect& effect) {
 
 inline std::string NameOf(const rig::HiddenEffect& effect) {
   return fmt::format("{}:{}", effect.entry->name, effect.object);
+}
+
+// Whether the sizes of what is hidden lie inside their U95.
+inline void AddSizes(const Finding& finding, const rig::HiddenEffect& truth, Rate& inside) {
+  const auto keys = KeysOf(finding.score);
+  for (Eigen::Index i = 0; i < keys.values.size(); ++i) {
+    if (!(keys.u[i] > 0.0)) continue;  // counted, not estimated
+    const std::string& name = finding.score.candidate.cause->keys[static_cast<std::size_t>(i)].name;
+    const auto known = truth.values.find(name);
+    if (known == truth.values.end()) continue;
+    double off = keys.values[i] - truth.At(name);
+    if (name == "phase_rad") off = std::remainder(off, 2.0 * std::numbers::pi);
+    inside.Add(std::abs(off) <= 2.0 * keys.u[i]);
+  }
 }
 
 // Whether something that is left depends on this: a column of the recordings, or the sum of two.

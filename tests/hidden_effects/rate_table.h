@@ -29,7 +29,7 @@ class RateTable {
       named_first.Add(first);
       alone.Add(first && diagnosis.verdict == Verdict::kExplained &&
                 diagnosis.findings.size() == 1);
-      if (first) AddSizes(diagnosis.findings.front(), truth);
+      if (first) AddSizes(diagnosis.findings.front(), truth, inside);
       ++named_[std::string(truth.entry->name)][FirstOf(diagnosis)];
     }
     if (showable < kSeen) {
@@ -80,20 +80,6 @@ class RateTable {
   static std::string FirstOf(const Diagnosis& diagnosis) {
     if (diagnosis.findings.empty()) return std::string(diagnosis::Name(diagnosis.verdict));
     return diagnosis.findings.front().score.candidate.cause->id;
-  }
-
-  void AddSizes(const Finding& finding, const rig::HiddenEffect& truth) {
-    const auto keys = KeysOf(finding.score);
-    for (Eigen::Index i = 0; i < keys.values.size(); ++i) {
-      if (!(keys.u[i] > 0.0)) continue;  // counted, not estimated
-      const std::string& name =
-          finding.score.candidate.cause->keys[static_cast<std::size_t>(i)].name;
-      const auto known = truth.values.find(name);
-      if (known == truth.values.end()) continue;
-      double off = keys.values[i] - truth.At(name);
-      if (name == "phase_rad") off = std::remainder(off, 2.0 * std::numbers::pi);
-      inside.Add(std::abs(off) <= 2.0 * keys.u[i]);
-    }
   }
 
   static constexpr std::array<double, 6> kBins{1.0, 2.0, 5.0, 10.0, 20.0, 100.0};

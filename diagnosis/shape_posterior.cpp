@@ -1,0 +1,94 @@
+#include "diagnosis/shape_posterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "diagnosis/evidence.h"
+
+namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kKnown = 0.1;  // standard deviation of a logarithm that first order will do for
+constexpr int kShapesTried = 201;
+constexpr double kAnySize = 1e3;  // times what is plausible
+constexpr double kCovers = 2.0;   // standard deviations that hold 95 %
+
+// Of the logarithm of the shape, to first order.
+double DeviationOf(const Score& score) {
+  return std::sqrt(score.covariance(score.covariance.rows() - 1, score.covariance.cols() - 1));
+}
+
+// All that are plausible, evenly in the logarithm.
+std::vector<Candidate> AllShapes(const Score& score, const simulation::Scene& scene) {
+  const auto plausible = score.candidate.cause->shapes(scene);
+  const double first = std::log(plausible.front()[0]), last = std::log(plausible.back()[0]);
+  std::vector<Candidate> candidates(kShapesTried, score.candidate);
+  for (Candidate& candidate : candidates) candidate.coarseness *= kAnySize;
+  for (int i = 0; i < kShapesTried; ++i) {
+    candidates[static_cast<std::size_t>(i)].shape[0] =
+        std::exp(first + (last - first) * i / (kShapesTried - 1));
+  }
+  return candidates;
+}
+
+// With the coefficients that fit best: the evidence without what it costs that they may vary.
+double LogLikelihood(const Score& score) {
+  const VectorXd precision = score.candidate.Plausible().cwiseInverse();
+  const MatrixXd scaled = precision.asDiagonal() * score.covariance * precision.asDiagonal();
+  return score.log_evidence - 0.5 * std::log(scaled.determinant());
+}
+
+// Below which 95 % of the weights lie.
+double Quantile(const VectorXd& values, const VectorXd& weights) {
+  std::vector<Index> order(static_cast<std::size_t>(values.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] < values[b]; });
+  double below = 0.0;
+  for (const Index i : order) {
+    below += weights[i];
+    if (below >= 0.95) return values[i];
+  }
+  return values[order.back()];
+}
+
+}  // namespace
+
+bool IsHardlyKnown(const Score& score) {
+  return score.candidate.HasFreeShape() && score.candidate.shape.size() == 1 &&
+         DeviationOf(score) > kKnown;
+}
+
+Score OverAllShapes(const Fit& without, Score score) {
+  const auto all = ScoreAll(without, AllShapes(score, without.campaign().scene()));
+  const Index count = score.coefficients.size(), shapes = static_cast<Index>(all.size());
+  VectorXd logs(shapes);
+  MatrixXd off(count + 1, shapes), around(count + 1, shapes);  // of each shape, and its variances
+  for (Index i = 0; i < shapes; ++i) {
+    const Score& each = all[static_cast<std::size_t>(i)];
+    logs[i] = LogLikelihood(each);
+    off.col(i) << each.coefficients - score.coefficients,
+        std::log(each.candidate.shape[0] / score.candidate.shape[0]);
+    around.col(i) << each.covariance.diagonal(), 0.0;
+  }
+  VectorXd weights = (logs.array() - logs.maxCoeff()).exp();
+  weights /= weights.sum();
+  MatrixXd moment = off * weights.asDiagonal() * off.transpose();
+  moment.diagonal() += around * weights;
+  const VectorXd deviation = moment.diagonal().cwiseSqrt();
+  VectorXd stretch(count + 1);
+  for (Index d = 0; d <= count; ++d) {
+    const VectorXd reach =
+        (off.row(d).array().square() + kCovers * kCovers * around.row(d).array()).sqrt();
+    stretch[d] = Quantile(reach, weights) / (kCovers * deviation[d]);
+  }
+  score.covariance = stretch.asDiagonal() * moment * stretch.asDiagonal();
+  return score;
+}
+
+}  // namespace abbe::diagnosis
