@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 using simulation::Trace;
 
 constexpr int kParts = 24;        // of the range of a variable
-constexpr double kTells = 1e-3;   // weight of the heaviest part below which one tells nothing
+constexpr double kTells = 1.0;    // largest effect over the noise of a part, squared
 constexpr double kKept = 0.5;     // of the effect, below which a variable does not show it
 constexpr double kClearly = 1.5;  // how much more another variable has to keep than its own
 
@@ -86,8 +86,12 @@ std::vector<Rows> RowsAt(const Fit& base, const Fit& found, const Score& score) 
     const auto by_row = [](const Fit::RowScores& all) -> RowVectorXd {
       return (all.weights.array() > 0.0).select(all.scores.array() / all.weights.array(), 0.0);
     };
-    rows.push_back({run, effect->second, left.weights, by_row(unexplained), by_row(left),
-                    HeadingOf(score.candidate.object, found.TraceOf(run))});
+    const double weight = left.weights.sum();
+    if (!(weight > 0.0)) continue;
+    // What is the same in all rows of a run, its own zeros explain as well.
+    const double always = left.weights.dot(effect->second) / weight;
+    rows.push_back({run, effect->second.array() - always, left.weights, by_row(unexplained),
+                    by_row(left), HeadingOf(score.candidate.object, found.TraceOf(run))});
   }
   return rows;
 }
@@ -138,8 +142,8 @@ Parted PartedBy(const std::string& variable, const Fit& found, const std::vector
     }
   }
   double most = 0.0;
-  for (const Part& part : parted.parts) most = std::max(most, part.weight);
-  std::erase_if(parted.parts, [&](const Part& part) { return part.weight <= kTells * most; });
+  for (const Rows& each : rows) most = std::max(most, each.effect.cwiseAbs2().maxCoeff());
+  std::erase_if(parted.parts, [&](const Part& part) { return part.weight * most <= kTells; });
   for (const Part& part : parted.parts) parted.kept += part.effect * part.effect / part.weight;
   return parted;
 }

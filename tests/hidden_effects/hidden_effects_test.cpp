@@ -2,6 +2,7 @@
 // Worlds: ABBE_SEEDS, ABBE_SHARD.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,6 +86,25 @@ TEST_P(UnknownEffects, AreSaidToBeUnexplained) {
 INSTANTIATE_TEST_SUITE_P(OfAStandardCampaign, UnknownEffects,
                          testing::Values(Shown{"unknown-hum:object=probe_a"},
                                          Shown{"unknown-step-and-back:object=probe_d"}));
+
+// Gap steps tell most by far, and stand at one place.
+TEST(WhereItShows, IsOverTheWayThatTheAxisGoes) {
+  const HiddenWorlds worlds(rig::CampaignKind::kFull);
+  const std::uint64_t seed = 3;
+  const auto world = worlds.Record(seed, {"leadscrew-cyclic:object=Y:pitch_mm=6:amplitude_um=1"});
+  const Diagnosis diagnosis = DiagnosisOf(worlds, seed, world);
+  ASSERT_FALSE(diagnosis.findings.empty());
+  const diagnosis::Curve& curve = diagnosis.findings.front().curve;
+  EXPECT_EQ(curve.variable, "y");
+  ASSERT_GT(curve.at.size(), 24);
+  EXPECT_GT(curve.at.maxCoeff() - curve.at.minCoeff(), 30e-3);
+  const auto rms = [](const Eigen::VectorXd& values) {
+    return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+  };
+  // A wave of 1 um has 0.71 um rms, less what it loses over a part of 2.5 mm.
+  EXPECT_NEAR(rms(curve.before), 0.6e-6, 0.2e-6);
+  EXPECT_LT(rms(curve.after), 0.5 * rms(curve.before));
+}
 
 }  // namespace
 }  // namespace abbe
