@@ -22,12 +22,44 @@ void RefuseUnknown(const CLI::App& program, int argc, char** argv) {
                                      argv[1], abbe::settings::NearestWord(argv[1], known)));
 }
 
-// CLI11's message for a bad option, with the command that it was given to.
-std::string UsageOf(const CLI::App& program, const CLI::ParseError& error) {
-  std::string command = "abbe";
-  for (const CLI::App* given : program.get_subcommands()) command += " " + given->get_name();
-  const std::string message = error.what();
-  return fmt::format("{}; see {} --help", message.substr(0, message.find('\n')), command);
+// The innermost command that was given, as it is typed.
+struct Given {
+  const CLI::App* command;
+  std::string typed;
+};
+
+Given CommandOf(const CLI::App& program) {
+  Given given{&program, "abbe"};
+  while (!given.command->get_subcommands().empty()) {
+    given.command = given.command->get_subcommands().front();
+    given.typed += " " + given.command->get_name();
+  }
+  return given;
+}
+
+// The first word that looks like an option and is none of this command, with the nearest that is.
+std::string UnknownOption(const Given& given, int argc, char** argv) {
+  std::vector<std::string> known{"help"};
+  for (const CLI::Option* option : given.command->get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back(name);
+  }
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (!word.starts_with("--") || word.size() == 2) continue;
+    const std::string name = word.substr(2, word.find('=') - 2);
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    return fmt::format("--{}: {} has no such option; did you mean --{}?", name, given.typed,
+                       abbe::settings::NearestWord(name, known));
+  }
+  return "";
+}
+
+// What is wrong with the words: an option that is none, or CLI11's message.
+std::string UsageOf(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
+  const Given given = CommandOf(program);
+  std::string wrong = UnknownOption(given, argc, argv);
+  if (wrong.empty()) wrong = std::string(error.what());
+  return fmt::format("{}; see {} --help", wrong.substr(0, wrong.find('\n')), given.typed);
 }
 
 int Report(const std::exception& failure, int exit_code) {
@@ -52,7 +84,7 @@ int main(int argc, char** argv) {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);
-    return Report(abbe::InputError(UsageOf(program, error)), kBadInput);
+    return Report(abbe::InputError(UsageOf(program, error, argc, argv)), kBadInput);
   } catch (const abbe::InputError& failure) {
     return Report(failure, kBadInput);
   } catch (const abbe::DeviceError& failure) {
