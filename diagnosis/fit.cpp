@@ -140,9 +140,11 @@ Fit::Fit(const Fit& before, std::vector<Candidate> taken_in)
     const std::vector<Candidate> start = taken_in_;
     double moved = FollowShapes();
     if (of_shaft) moved = std::max(moved, Moved(start, taken_in_));
-    const bool settled = round == rounds || (round > 1 && moved < kShapeFound);
-    settled ? Linearize(problem, at) : TakeRuns(problem);
-    if (settled) break;
+    if (round == rounds || (round > 1 && moved < kShapeFound)) {
+      Linearize(problem, at);
+      break;
+    }
+    TakeRuns(problem);
   }
 }
 

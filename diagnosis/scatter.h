@@ -5,7 +5,8 @@
 //   scatter   the sum of squares against chi-square of as many degrees of freedom as it has rows; a
 //             stated noise is believed to 5 %
 //   memory    the autocorrelations a_k of n rows in time, n (n + 2) sum a_k^2 / (n - k) over the
-//             first kLags of each channel, against chi-square of as many degrees of freedom
+//             first kLags of each channel, against chi-square of as many degrees of freedom, where
+//             the a_k are positive on the whole
 // Source: ISO/IEC Guide 98-3:2008, G.3 (chi-square of residuals); Ljung and Box, Biometrika 65
 // (1978). Units: amplitude in units of the stated noise.
 #pragma once
