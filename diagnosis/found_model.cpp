@@ -3,11 +3,6 @@
 #include <cmath>
 
 namespace abbe::diagnosis {
-namespace {
-
-constexpr double kCoverage = 2.0;
-
-}  // namespace
 
 simulation::ModelledCause FoundCause(const Score& score) {
   const auto [values, u] = KeysOf(score);

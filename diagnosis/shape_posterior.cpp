@@ -17,7 +17,6 @@ using Eigen::VectorXd;
 constexpr double kKnown = 0.1;  // standard deviation of a logarithm that first order will do for
 constexpr int kShapesTried = 201;
 constexpr double kAnySize = 1e3;  // times what is plausible
-constexpr double kCovers = 2.0;   // standard deviations that hold 95 %
 
 // Of the logarithm of the shape, to first order.
 double DeviationOf(const Score& score) {
@@ -84,8 +83,8 @@ Score OverAllShapes(const Fit& without, Score score) {
   VectorXd stretch(count + 1);
   for (Index d = 0; d <= count; ++d) {
     const VectorXd reach =
-        (off.row(d).array().square() + kCovers * kCovers * around.row(d).array()).sqrt();
-    stretch[d] = Quantile(reach, weights) / (kCovers * deviation[d]);
+        (off.row(d).array().square() + kCoverage * kCoverage * around.row(d).array()).sqrt();
+    stretch[d] = Quantile(reach, weights) / (kCoverage * deviation[d]);
   }
   score.covariance = stretch.asDiagonal() * moment * stretch.asDiagonal();
   return score;

@@ -55,7 +55,7 @@ inline std::string NameOf(const rig::HiddenEffect& effect) {
   return fmt::format("{}:{}", effect.entry->name, effect.object);
 }
 
-// Whether the sizes of what is hidden lie inside their U95.
+// Counts which sizes of what is hidden lie inside their U95.
 inline void AddSizes(const Finding& finding, const rig::HiddenEffect& truth, Rate& inside) {
   const auto keys = KeysOf(finding.score);
   for (Eigen::Index i = 0; i < keys.values.size(); ++i) {

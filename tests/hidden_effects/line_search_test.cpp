@@ -1,6 +1,7 @@
 // A line in time that the rig hides is found among all frequencies, and none where there is none.
 #include "diagnosis/line_search.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
