@@ -247,6 +247,20 @@ test(
     }));
 
 test(
+    'a plan tells what runs would show and what they would confuse',
+    () => withPage({}, async (page) => {
+      const section = page.locator('section.result', {hasText: 'what these runs would show'});
+      assert.match(await section.locator('.summary').textContent(), /Of 4 causes, 3 would/);
+      const lag = section.locator('tr', {hasText: 'Servo lag, axis X'});
+      assert.match(await lag.textContent(), /Delay from 0\.075.ms \(usual: 0\.5.*40/);
+      assert.match(
+          await section.locator('table', {hasText: 'not be seen'}).textContent(), /Probe gain.*1\.3/);
+      assert.match(
+          await section.locator('[role=note]').textContent(),
+          /Servo lag, axis X; Clock skew, linkage \(cosine 0\.971/);
+    }));
+
+test(
     'a calibration tells what it found, pose by pose, and what it could not see',
     () => withPage({}, async (page) => {
       const section = page.locator('section.result', {hasText: 'Calibration of the linkage'});

@@ -574,6 +574,26 @@ export function diagnosisResult() {
   };
 }
 
+// Two causes that a set of runs shows and confuses, and one that it does not.
+export function planResult() {
+  const cause = (name, object, visible_sd, sizes) =>
+      ({cause: name, object, visible_sd, seen: visible_sd > 6, sizes});
+  return {
+    abbe: '0.1.0',
+    command: 'diagnose-plan',
+    machine: 'demo-mill',
+    runs: ['01_sweep_X.h5', '04_circle_XY.h5'],
+    causes: [
+      cause('servo-lag', 'X', 40.2, [{name: 'delay_ms', unit: 'ms', seen_from: 0.075, plausible: 0.5}]),
+      cause('clock-skew', 'linkage', 38, [{name: 'delay_ms', unit: 'ms', seen_from: 0.08, plausible: 0.5}]),
+      cause('channel-sign', 'probe_a', 900, []),
+      cause('probe-gain', 'probe_b', 1.25, [{name: 'delta', unit: '', seen_from: 0.048, plausible: 0.01}])
+    ],
+    cannot_show: ['probe-gain:probe_b'],
+    alike: [{causes: ['servo-lag:X', 'clock-skew:linkage'], cosine: 0.9712}]
+  };
+}
+
 export function writeSamples(folder) {
   mkdirSync(folder, {recursive: true});
   const write = (name, content) => writeFileSync(join(folder, name), content);
@@ -590,6 +610,7 @@ export function writeSamples(folder) {
     'correct.json': correctResult(),
     'export.json': exportResult(),
     'diagnosis.json': diagnosisResult(),
+    'plan.json': planResult(),
     // A result of a later version: no section of its own, and text that tries to leave its element.
     'compare_X.json': {
       abbe: '0.1.0',

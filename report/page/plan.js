@@ -1,0 +1,70 @@
+// The section of a plan: what a set of runs would show of each cause, and what it would confuse.
+
+const planSizes = ({sizes}) => element(
+    'ul', {class: 'plain'},
+    sizes.map(
+        ({name, unit, seen_from: seen, plausible}) => element(
+            'li', {},
+            `${parameterName({name, unit})} from ${significant(seen)}\u00a0${micro(unit)} (usual: ${
+                significant(plausible)})`)));
+
+function plannedTable(caption, causes) {
+  if (!causes.length) return null;
+  return table({
+    caption,
+    columns: [
+      {head: 'Cause'}, {head: 'Is seen'},
+      {head: 'A usual size stands out by', unit: 'std. dev.', numeric: true}
+    ],
+    rows: causes.map(
+        (one) =>
+            [findingName(one), one.sizes?.length ? planSizes(one) : 'there or not',
+             fixed(one.visible_sd, one.visible_sd < 10 ? 1 : 0)]),
+  });
+}
+
+// Causes that are alike two by two, joined.
+function alikeGroups(alike = []) {
+  const groups = [];
+  for (const {causes, cosine} of alike) {
+    const meeting = groups.filter((group) => causes.some((one) => group.causes.has(one)));
+    const joined = {
+      causes: new Set([...causes, ...meeting.flatMap((group) => [...group.causes])]),
+      cosine: Math.min(cosine, ...meeting.map((group) => group.cosine)),
+    };
+    groups.splice(
+        0, groups.length, ...groups.filter((group) => !meeting.includes(group)), joined);
+  }
+  return groups;
+}
+
+const confusedBlock = (result) => notesBlock(
+    'These runs could not tell apart:',
+    alikeGroups(result.alike)
+        .map(
+            ({causes, cosine}) => `${[...causes].map(candidateName).join('; ')} (cosine ${
+                fixed(cosine, 3)}; 1: they do the same)`));
+
+const seenCauses = (result) => (result.causes ?? []).filter(({seen}) => seen);
+
+registerSection({
+  command: 'diagnose-plan',
+  title: () => 'Plan: what these runs would show',
+  short: () => 'Plan',
+  summary: (result) => {
+    const seen = seenCauses(result).length, all = (result.causes ?? []).length;
+    return `Of ${all} causes, ${seen} would be seen at their usual size on a machine like this one.`;
+  },
+  facts: (result) => [['Runs', (result.runs ?? []).join(', '), true]],
+  body: (result) =>
+      [confusedBlock(result), plannedTable('Would be seen', seenCauses(result)),
+       plannedTable(
+           'Would not be seen at their usual size', (result.causes ?? []).filter(({seen}) => !seen))]
+          .filter(Boolean),
+  overview: {
+    title: 'Plan',
+    columns: [{head: 'Runs'}, {head: 'Causes seen', numeric: true}, {head: 'Of', numeric: true}],
+    row: (result) => [`${(result.runs ?? []).length} runs`, String(seenCauses(result).length),
+                      String((result.causes ?? []).length)],
+  },
+});
