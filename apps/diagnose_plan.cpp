@@ -26,8 +26,6 @@ std::vector<recording::Recording> PathsOf(const PlanArguments& arguments, const 
     const auto machine = rig::ReadCampaignMachine(file.document.Root());
     const rig::CampaignPlan plan{.kind = CampaignKinds().at(arguments.campaign)};
     for (auto& recorded : rig::RecordCampaign(machine, kSeed, {}, plan).recordings) {
-      // A head that was turned is not diagnosed (docs/diagnose.md).
-      if (recorded.HeaderText("mounting.head").value_or("0deg") != "0deg") continue;
       paths.push_back(std::move(recorded));
     }
   }
