@@ -14,6 +14,7 @@
 #include "simulation/arm_run.h"
 #include "simulation/length_simulation.h"
 #include "simulation/linkage_on_machine.h"
+#include "simulation/plate_simulation.h"
 #include "simulation/reference_trace.h"
 #include "simulation/sweep_simulation.h"
 #include "simulation/target_spots.h"
@@ -108,7 +109,12 @@ void Campaign::Add(recording::Recording recording) {
                      simulation::TraceOf(recording, run, linkage)});
   } else if (kind == "length") {
     runs_.push_back({simulation::SimulateLengths(model_, mill.reference, recording),
-                     simulation::TraceOfLengths(recording)});
+                     simulation::TraceOf(recording, simulation::ReadMachinePoints(recording))});
+  } else if (kind == "plate") {
+    for (const auto& setup : simulation::ReadPlate(recording)) {
+      runs_.push_back({simulation::SimulatePlate(model_, mill.reference, setup),
+                       simulation::TraceOf(recording, setup.points)});
+    }
   } else if (kind == "reference") {
     runs_.push_back(MakeReferenceRun(recording, setup_, model_, notes_));
   } else if (kind == "shaft") {
@@ -116,11 +122,12 @@ void Campaign::Add(recording::Recording recording) {
   } else {
     throw InputError(
         fmt::format("{}: kind is \"{}\"; diagnose takes sweep, dwell, gap-steps, linkage, "
-                    "reference, length and shaft",
+                    "reference, length, plate and shaft",
                     recording.name, kind));
   }
   runs_.back().simulated.loss = estimation::RobustLoss::None();
-  if ((is_arm || kind == "reference") && !recording.KnowsTimes()) {
+  const bool of_points = kind == "reference" || kind == "length" || kind == "plate";
+  if ((is_arm || of_points) && !recording.KnowsTimes()) {
     notes_.push_back(
         fmt::format("{}: knows the order of its readings, not their times; one reading counts as "
                     "one second, so what is told in s counts readings",

@@ -76,6 +76,9 @@ Correction Correct(const Recording& recording, const std::vector<ModelledCause>&
   if (causes.empty()) return {recording, {}};
   if (kind == "sweep") return CorrectSweep(recording, causes, origin, on);
   if (kind == "linkage") return CorrectLinkage(recording, causes, origin, on);
+  if (kind == "reference" || kind == "length" || kind == "plate") {
+    return CorrectPoints(recording, causes, origin, on);
+  }
   return {recording, {}};
 }
 

@@ -13,9 +13,9 @@
 //   motion    of an axis: to the positions, for there the axes really were. In a sweep only that
 //             along the swept axis; what the others do the probes see: off the gaps, as the nominal
 //             head sees it
-// Rows with a flag stay as they are, and so do recordings of kinds that know no causes (length,
-// plate, dwell). What a cause does to a reading is worked out from the reading itself: what is
-// neglected is its square (a gain of 1 % beside a swap: 1e-4 of the gap's change).
+// Rows with a flag stay as they are, and so do recordings that no map is made of (dwell, shaft, a
+// linkage before an instrument). What a cause does to a reading is worked out from the reading
+// itself: what is neglected is its square (a gain of 1 % beside a swap: 1e-4 of the gap's change).
 // Units: `changes` in m and rad. Failure: InputError as for the run itself; a cause of the linkage
 // on a recording of the linkage without `linkage`.
 #pragma once

@@ -40,5 +40,9 @@ Correction CorrectSweep(const recording::Recording& recording,
 Correction CorrectLinkage(const recording::Recording& recording,
                           const std::vector<ModelledCause>& causes, const Origin& origin,
                           const CorrectedMachine& on);
+// Kinds reference, length and plate.
+Correction CorrectPoints(const recording::Recording& recording,
+                         const std::vector<ModelledCause>& causes, const Origin& origin,
+                         const CorrectedMachine& on);
 
 }  // namespace abbe::simulation

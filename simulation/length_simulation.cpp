@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "failure/failure.h"
-#include "machine/volumetric_jacobian.h"
 #include "simulation/stage_response.h"
 
 namespace abbe::simulation {
@@ -91,9 +90,7 @@ class LengthResidual : public Responsive {
  public:
   LengthResidual(const machine::VolumetricModel& model, const Vector3d& reference,
                  MachinePoints points, std::vector<Length> lengths, bool scaled)
-      : model_(model),
-        tool_(points.tool - reference),
-        points_(model, reference, std::move(points)),
+      : points_(model, reference, std::move(points)),
         lengths_(std::move(lengths)),
         scaled_(scaled) {}
 
@@ -119,27 +116,17 @@ class LengthResidual : public Responsive {
   }
 
   std::shared_ptr<const Response> At(const VectorXd& x) const override {
-    machine::VolumetricModel model = model_;
-    model.SetParameters(x.head(points_.parameters()));
     const Matrix3Xd places = points_.Places(x.head(points_.parameters()));
-    MatrixXd by_stage(3 * places.cols(), kToolStage);
-    for (Index i = 0; i < places.cols(); ++i) {
-      const Vector3d command = points_.points().axes.col(i);
-      by_stage.middleRows<3>(3 * i) =
-          machine::VolumetricErrorAndJacobian(model.chain(), command, tool_, model.Motions(command))
-              .J_error_motions;
-    }
     Matrix3Xd along(3, Rows());
     for (Index k = 0; k < Rows(); ++k) {
       const Length& each = lengths_[static_cast<std::size_t>(k)];
       along.col(k) = (places.col(each.to) - places.col(each.from)).normalized();
     }
-    return std::make_shared<LengthResponse>(std::move(by_stage), lengths_, std::move(along));
+    return std::make_shared<LengthResponse>(points_.ByMotions(x.head(points_.parameters())),
+                                            lengths_, std::move(along));
   }
 
  private:
-  machine::VolumetricModel model_;
-  Vector3d tool_;  // from the reference point
   PointsOnMachine points_;
   std::vector<Length> lengths_;
   bool scaled_;

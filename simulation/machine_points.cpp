@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "machine/volumetric_error.h"
+#include "machine/volumetric_jacobian.h"
 #include "recording/good_rows.h"
 #include "simulation/axes_in_travel.h"
+#include "simulation/disturbance.h"
 
 namespace abbe::simulation {
 namespace {
@@ -67,6 +69,19 @@ Matrix3Xd PointsOnMachine::Places(const Eigen::VectorXd& machine_parameters,
     J_p_x->push_back(std::move(at.J_error_parameters));
   }
   return places;
+}
+
+Eigen::MatrixXd PointsOnMachine::ByMotions(const Eigen::VectorXd& machine_parameters) const {
+  machine::VolumetricModel model = model_;
+  model.SetParameters(machine_parameters);
+  Eigen::MatrixXd by_motions(3 * points_.count(), kToolStage);
+  for (Index i = 0; i < points_.count(); ++i) {
+    const Vector3d axes = points_.axes.col(i);
+    by_motions.middleRows<3>(3 * i) =
+        machine::VolumetricErrorAndJacobian(model.chain(), axes, tool_, model.Motions(axes))
+            .J_error_motions;
+  }
+  return by_motions;
 }
 
 }  // namespace abbe::simulation

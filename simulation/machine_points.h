@@ -50,6 +50,9 @@ class PointsOnMachine {
   // J_p_x: 3 x parameters for each point, side by side; may be null.
   Eigen::Matrix3Xd Places(const Eigen::VectorXd& machine_parameters,
                           std::vector<Eigen::Matrix3Xd>* J_p_x = nullptr) const;
+  // Derivatives of the places by the error motions of the axes (simulation/disturbance.h): 3 rows
+  // for each point.
+  Eigen::MatrixXd ByMotions(const Eigen::VectorXd& machine_parameters) const;
 
  private:
   machine::VolumetricModel model_;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "simulation/stage_response.h"
 
 namespace abbe::simulation {
 namespace {
@@ -17,6 +18,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Matrix2d;
 using Eigen::Matrix3Xd;
+using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -110,7 +112,7 @@ estimation::ParameterBlock FormOf(const PlateSetUp& setup, std::size_t point) {
 }
 
 // x: machine, u, v, turn, scale where it is free, then the form of each hole where it is free.
-class PlateResidual : public estimation::Residual {
+class PlateResidual : public Responsive {
  public:
   PlateResidual(PointsOnMachine points, PlateSetUp setup, std::vector<Index> form)
       : points_(std::move(points)),
@@ -144,6 +146,18 @@ class PlateResidual : public estimation::Residual {
       if (form >= 0) out.middleCols<2>(form) = -scale * Matrix2d::Identity();
       out /= setup_.u_probing;
     }
+  }
+
+  std::shared_ptr<const Response> At(const VectorXd& x) const override {
+    const Index machine = points_.parameters();
+    const MatrixXd by_motions = points_.ByMotions(x.head(machine));
+    const Matrix2d back = Eigen::Rotation2Dd(-x[machine + 2]).toRotationMatrix();
+    MatrixXd by_stage(Rows(), by_motions.cols());
+    for (Index i = 0; i < points_.points().count(); ++i) {
+      by_stage.middleRows<2>(2 * i) =
+          -back * X_PM_.R.topRows<2>() * by_motions.middleRows<3>(3 * i) / setup_.u_probing;
+    }
+    return std::make_shared<StageResponse>(std::move(by_stage), 2);
   }
 
  private:
@@ -234,8 +248,9 @@ SimulatedRun SimulatePlate(const machine::VolumetricModel& model, const Vector3d
       form.push_back(at->second);
     }
   }
-  simulated.residual = std::make_shared<PlateResidual>(
+  const auto residual = std::make_shared<PlateResidual>(
       PointsOnMachine(model, reference, setup.points), setup, std::move(form));
+  simulated.residual = simulated.response = residual;
   return simulated;
 }
 

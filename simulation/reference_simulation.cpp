@@ -8,7 +8,6 @@
 
 #include "failure/failure.h"
 #include "geometry/rotation.h"
-#include "machine/volumetric_jacobian.h"
 #include "simulation/machine_points.h"
 #include "simulation/reference_noise.h"
 #include "simulation/stage_response.h"
@@ -61,13 +60,11 @@ class PlaceResponse : public StageResponse {
 // x: place, turn, machine. Rows: the directions shown of the first point, of the next, ...
 class ReferenceResidual : public Responsive {
  public:
-  ReferenceResidual(machine::VolumetricModel model, const Vector3d& reference,
+  ReferenceResidual(const machine::VolumetricModel& model, const Vector3d& reference,
                     const ReferenceRun& run)
-      : model_(std::move(model)),
-        tool_(run.points.tool - reference),
-        points_(model_, reference, run.points),
+      : points_(model, reference, run.points),
         shown_(AxesShown(run)),
-        place_(PlacesInMachine(model_.chain(), run)),
+        place_(PlacesInMachine(model.chain(), run)),
         sd_(run.sd) {}
 
   Index Rows() const override {
@@ -102,17 +99,13 @@ class ReferenceResidual : public Responsive {
   }
 
   std::shared_ptr<const Response> At(const VectorXd& x) const override {
-    machine::VolumetricModel model = model_;
-    model.SetParameters(x.tail(points_.parameters()));
     const Matrix3d R = geometry::ExpRotation<double>(Vector3d(x.segment<3>(3)));
-    MatrixXd by_stage = MatrixXd::Zero(Rows(), kToolStage);
+    const MatrixXd by_motions = points_.ByMotions(x.tail(points_.parameters()));
+    MatrixXd by_stage(Rows(), kToolStage);
     Index row = 0;
     for (Index i = 0; i < points_.points().count(); ++i) {
-      const Vector3d command = points_.points().axes.col(i);
-      const auto machine = machine::VolumetricErrorAndJacobian(model.chain(), command, tool_,
-                                                               model.Motions(command));
       for (const Index axis : shown_) {
-        by_stage.row(row++) = R.row(axis) * machine.J_error_motions / sd_(axis, i);
+        by_stage.row(row++) = R.row(axis) * by_motions.middleRows<3>(3 * i) / sd_(axis, i);
       }
     }
     return std::make_shared<PlaceResponse>(std::move(by_stage), place_(shown_, Eigen::all),
@@ -120,8 +113,6 @@ class ReferenceResidual : public Responsive {
   }
 
  private:
-  machine::VolumetricModel model_;
-  Vector3d tool_;  // from the reference point
   PointsOnMachine points_;
   std::vector<Index> shown_;
   Matrix3Xd place_, sd_;

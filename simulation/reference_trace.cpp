@@ -1,8 +1,19 @@
 #include "simulation/reference_trace.h"
 
+#include <algorithm>
+
 #include "simulation/trace_columns.h"
 
 namespace abbe::simulation {
+namespace {
+
+Eigen::VectorXd NumbersOf(const std::vector<std::size_t>& rows) {
+  Eigen::VectorXd numbers(static_cast<Eigen::Index>(rows.size()));
+  std::copy(rows.begin(), rows.end(), numbers.begin());
+  return numbers;
+}
+
+}  // namespace
 
 Trace TraceOf(const recording::Recording& recording, const ReferenceRun& run) {
   Trace trace;
@@ -19,16 +30,14 @@ Trace TraceOf(const recording::Recording& recording, const ReferenceRun& run) {
   return trace;
 }
 
-Trace TraceOfLengths(const recording::Recording& recording) {
-  const MachinePoints points = ReadMachinePoints(recording);
+Trace TraceOf(const recording::Recording& recording, const MachinePoints& points) {
   Trace trace;
-  trace.name = recording.name;
-  trace.kind = "length";
+  trace.name = points.name;
+  trace.kind = recording.Kind();
   trace.started = StartedOf(recording);
   const auto rows = static_cast<Eigen::Index>(points.count());
-  trace.time = trace.clock = recording.Find("time_s")
-                                 ? ColumnAt(recording, points, "time_s")
-                                 : Eigen::VectorXd::LinSpaced(rows, 0.0, rows - 1.0);
+  trace.time = trace.clock =
+      recording.Find("time_s") ? ColumnAt(recording, points, "time_s") : NumbersOf(points.rows);
   trace.pass = IntegersAt(recording, "pass", points.rows);
   trace.direction.assign(points.rows.size(), 0);
   trace.axes = points.axes;

@@ -29,8 +29,8 @@ inline constexpr const char* kArm = "arm";  // simulation/arm_run.h
 
 struct Trace {
   std::string name;  // of the recording
-  std::string kind;  // "sweep", "dwell", "gap-steps", "linkage", "reference", "length", "shaft",
-                     // kArm
+  std::string kind;  // "sweep", "dwell", "gap-steps", "linkage", "reference", "length", "plate",
+                     // "shaft", kArm
   char axis = ' ';   // the swept one
   double started = 0.0;   // s since 1970; 0: not stated
   Eigen::VectorXd time;   // s since the recording began

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -136,6 +137,42 @@ TEST_P(Correcting, LeavesTheCampaignWithoutTheCause) {
   }
   if (GetParam().in_paths) {
     EXPECT_GT(largest_path, 60e-9);
+  }
+}
+
+// What the axes lost is given back to the positions, whatever instrument stood there.
+TEST(CorrectingPoints, TakesADriftOutOfEachKind) {
+  constexpr double kDrift = 24e-3, kTimeConstant = 600.0;  // mm, s
+  const Case each{"warm-up-drift:object=Y:", "amplitude_um = 24.0\ntime_constant_s = 600.0", true,
+                  true};
+  const ExtendedModel model = ModelOf(each);
+  const machine::Machine mill = machine::ReadMachine(Demo().Root());
+  for (const std::string kind : {"reference", "length", "plate"}) {
+    recording::Recording recording;
+    recording.name = kind;
+    recording.header = fmt::format("kind = \"{}\"\nu_probing_um = 0.1\nstarted = \"{}\"\n", kind,
+                                   Clean().front().HeaderText("started").value());
+    const std::vector<double> x{5.0, 25.0, 25.0, 5.0}, y{5.0, 5.0, 25.0, 25.0};
+    recording.columns = {{"time_s", {0.0, 100.0, 400.0, 2000.0}},
+                         {"x_mm", x},
+                         {"y_mm", y},
+                         {"z_mm", std::vector<double>(4, 10.0)},
+                         {"flags", {0.0, 0.0, 0.0, 0.0}}};
+    if (kind == "reference") recording.columns.push_back({"ref_y_mm", y});
+    if (kind == "plate") {
+      recording.columns.insert(recording.columns.end(), {{"setup", {1.0, 1.0, 1.0, 1.0}},
+                                                         {"hole", {1.0, 2.0, 3.0, 4.0}},
+                                                         {"plate_x_mm", x},
+                                                         {"plate_y_mm", y}});
+    }
+    const auto corrected = Correct(recording, model.causes, model.origin,
+                                   {mill, probes::ReadHeadSettings(Demo().Root()), nullptr});
+    for (std::size_t row = 0; row < 4; ++row) {
+      const double lost = kDrift * (1.0 - std::exp(-recording.At("time_s")[row] / kTimeConstant));
+      EXPECT_NEAR(corrected.recording.At("y_mm")[row], y[row] + lost, 1e-9) << kind << row;
+      EXPECT_EQ(corrected.recording.At("x_mm")[row], x[row]) << kind << row;
+    }
+    EXPECT_EQ(corrected.changes.positions.count, 12) << kind;
   }
 }
 

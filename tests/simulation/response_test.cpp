@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rig/plate_campaign.h"
 #include "simulation/length_simulation.h"
+#include "simulation/plate_simulation.h"
 #include "simulation/reference_noise.h"
 #include "simulation/reference_simulation.h"
 #include "simulation/reference_trace.h"
@@ -118,7 +120,7 @@ TEST_F(Response, OfLengthsIsThatOfItsParameters) {
       {"z_mm", {20.0, 20.0, 20.0, 5.0, 15.0}},     {"pass", {1.0, 1.0, 1.0, 2.0, 2.0}},
       {"length_mm", {0.0, 10.0, 25.0, 0.0, 20.6}}, {"u_length_um", {0.1, 0.1, 0.2, 0.1, 0.1}}};
   const SimulatedRun run = SimulateLengths(campaign.model, campaign.reference, recording);
-  const Trace trace = TraceOfLengths(recording);
+  const Trace trace = TraceOf(recording, ReadMachinePoints(recording));
   const VectorXd x = StartOf(run).array() + 1e-5;
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     for (int motion = 0; motion < machine::kMotions; ++motion) {
@@ -141,6 +143,32 @@ TEST_F(Response, OfLengthsIsThatOfItsParameters) {
   ExpectAdjoint(*run.response->At(x), second, run.residual->Rows());
   const double weight = run.response->At(x)->WeightsOf(MotionStage(0, 0))[2];
   EXPECT_GE(weight, run.response->At(x)->Columns({second}).squaredNorm());
+}
+
+TEST_F(Response, OfAPlateIsThatOfItsParameters) {
+  const auto recording = rig::RecordPlate(campaign.rig.world(), {.holes = 3});
+  for (const PlateSetUp& setup : ReadPlate(recording)) {
+    const SimulatedRun run = SimulatePlate(campaign.model, campaign.reference, setup);
+    const Trace trace = TraceOf(recording, setup.points);
+    const VectorXd x = StartOf(run).array() + 1e-5;
+    for (int axis = 0; axis < machine::kAxes; ++axis) {
+      for (int motion = 0; motion < machine::kMotions; ++motion) {
+        const auto& function = campaign.model.Function(axis, motion);
+        VectorXd gradient(function.size());
+        Disturbance moved = NoDisturbance(trace);
+        for (Index row = 0; row < trace.rows(); ++row) {
+          function.Evaluate(trace.axes(axis, row), nullptr, gradient.data());
+          moved.row(MotionStage(axis, motion))[row] = gradient[4];
+        }
+        const VectorXd column = run.response->At(x)->Columns({moved}).col(0);
+        const std::string name = machine::MotionName(axis, motion) + ".c4";
+        EXPECT_LT((column + ByParameter(run, x, name)).norm(), 1e-9 * column.norm() + 1e-12);
+      }
+    }
+    Disturbance second = NoDisturbance(trace);
+    second.row(MotionStage(1, 4))[1] = 1e-3;
+    ExpectAdjoint(*run.response->At(x), second, run.residual->Rows());
+  }
 }
 
 TEST_F(Response, OfAReferenceIsThatOfItsParameters) {
