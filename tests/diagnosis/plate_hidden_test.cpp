@@ -1,5 +1,5 @@
-// Plates among the runs of a diagnosis: five set-ups of the virtual rig, one hole every 20 s, on a
-// machine that stands still or whose X axis creeps away from its scale while it warms up.
+// Plates among the runs of a diagnosis: the five set-ups of the virtual rig and the first one
+// again, one hole every 20 s, on a machine that is steady or whose X axis creeps while it warms up.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace abbe::diagnosis {
 namespace {
 
-constexpr double kHoleEvery = 20.0, kTimeConstant = 900.0;  // s
+constexpr double kHoleEvery = 20.0, kTimeConstant = 300.0;  // s
 constexpr std::uint64_t kSeeds = 5;
 
 const settings::Document& Demo() {
@@ -32,7 +32,9 @@ std::vector<double>& Column(recording::Recording& recording, const std::string& 
 // Where X shows x, it stands at x + drift.
 recording::Recording PlateOf(std::uint64_t seed, double drift_mm) {
   const rig::World world(rig::ReadRigSettings(Demo().Root()), seed);
-  recording::Recording plate = rig::RecordPlate(world, {});
+  rig::PlateProgram program;
+  program.setups.push_back(program.setups.front());
+  recording::Recording plate = rig::RecordPlate(world, program);
   for (std::size_t row = 0; row < plate.rows(); ++row) {
     const double time = kHoleEvery * static_cast<double>(row);
     Column(plate, "time_s")[row] = time;
@@ -47,7 +49,7 @@ Diagnosis DiagnosisOf(const recording::Recording& plate) {
   return Diagnose(campaign);
 }
 
-TEST(Plates, OfAMachineThatStandsStillAreClean) {
+TEST(Plates, OfASteadyMachineAreClean) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     EXPECT_EQ(DiagnosisOf(PlateOf(seed, 0.0)).verdict, Verdict::kClean) << seed;
   }
@@ -56,6 +58,9 @@ TEST(Plates, OfAMachineThatStandsStillAreClean) {
 TEST(Plates, TellThatAnAxisCreeps) {
   constexpr double kDrift = 5e-3;   // mm
   constexpr double kRarely = 1.75;  // times U95
+  // m: the bound of Cramer and Rao for a drift, its time constant and a place, of 49 differences of
+  // two holes with 0.2 um each, 20 s apart; the errors of the machine cost more.
+  constexpr double kKnownMachine = 0.153e-6;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Diagnosis diagnosis = DiagnosisOf(PlateOf(seed, kDrift));
     EXPECT_EQ(diagnosis.verdict, Verdict::kExplained) << seed;
@@ -66,7 +71,8 @@ TEST(Plates, TellThatAnAxisCreeps) {
     ASSERT_EQ(keys.values.size(), 2);
     EXPECT_NEAR(keys.values[0], 1e-3 * kDrift, kRarely * kCoverage * keys.u[0]) << seed;
     EXPECT_NEAR(keys.values[1], kTimeConstant, kRarely * kCoverage * keys.u[1]) << seed;
-    EXPECT_LT(keys.u[0], 0.2 * keys.values[0]) << seed;
+    EXPECT_GT(keys.u[0], kKnownMachine) << seed;
+    EXPECT_LT(keys.u[0], 1.5 * kKnownMachine) << seed;
   }
 }
 

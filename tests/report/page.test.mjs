@@ -81,7 +81,8 @@ test(
         'X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning', 'Circular test, XY plane',
         'Square path', 'Calibration of the linkage', 'Error map',
         'Performance simulation: circle', 'Corrected program: part_corrected.ngc', 'Export: isg',
-        'Diagnosis: what the simulation lacks', 'rig-compare \u00b7 X'
+        'Diagnosis: what the simulation lacks', 'Plan: what these runs would show',
+        'rig-compare \u00b7 X'
       ]);
       assert.equal(await page.title(), 'Geometric errors of demo-mill');
       assert.equal(await page.locator('nav a').count(), sample_names.length + 1);
@@ -252,7 +253,7 @@ test(
       const section = page.locator('section.result', {hasText: 'what these runs would show'});
       assert.match(await section.locator('.summary').textContent(), /Of 4 causes, 3 would/);
       const lag = section.locator('tr', {hasText: 'Servo lag, axis X'});
-      assert.match(await lag.textContent(), /Delay from 0\.075.ms \(usual: 0\.5.*40/);
+      assert.match(await lag.textContent(), /Delay from 0\.0750.ms \(usual: 0\.500\)40/);
       assert.match(
           await section.locator('table', {hasText: 'not be seen'}).textContent(), /Probe gain.*1\.3/);
       assert.match(
