@@ -64,6 +64,8 @@ hidden=${ABBE_DEMO_HIDE:-${wrong[$((10#$(date +%j) % ${#wrong[@]}))]}}
 # Of the full campaign the standard one, the gap steps and the target mounted again.
 rm "$out"/campaign/{19,2?,3?}_*
 "$abbe" diagnose "$out"/campaign/*.h5 --machine "$out/rig/no_drag.toml" -o "$out/causes.toml" --json "$out/diagnosis.json" --quiet
+# What such a campaign would show of other causes.
+"$abbe" diagnose --plan "$out"/campaign/*.h5 --machine "$out/rig/no_drag.toml" --json "$out/plan.json" --quiet
 
 # What the rig knows: the same circle by a grid encoder without noise.
 sed 's/^reference_um = .*/reference_um = 0.0001/' "$demo" >"$out/rig/exact.toml"

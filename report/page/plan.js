@@ -5,8 +5,10 @@ const planSizes = ({sizes}) => element(
     sizes.map(
         ({name, unit, seen_from: seen, plausible}) => element(
             'li', {},
-            `${parameterName({name, unit})} from ${significant(seen)}\u00a0${micro(unit)} (usual: ${
-                significant(plausible)})`)));
+            [parameterName({name, unit}), 'from', significant(seen), unit && micro(unit),
+             `(usual: ${significant(plausible)})`]
+                .filter(Boolean)
+                .join(' '))));
 
 function plannedTable(caption, causes) {
   if (!causes.length) return null;

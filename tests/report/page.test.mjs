@@ -253,9 +253,9 @@ test(
       const section = page.locator('section.result', {hasText: 'what these runs would show'});
       assert.match(await section.locator('.summary').textContent(), /Of 4 causes, 3 would/);
       const lag = section.locator('tr', {hasText: 'Servo lag, axis X'});
-      assert.match(await lag.textContent(), /Delay from 0\.0750.ms \(usual: 0\.500\)40/);
+      assert.match(await lag.textContent(), /Delay from 0\.0750 ms \(usual: 0\.500\)40/);
       assert.match(
-          await section.locator('table', {hasText: 'not be seen'}).textContent(), /Probe gain.*1\.3/);
+          await section.locator('table', {hasText: 'not be seen'}).textContent(), /Probe gain.*Delta from 0\.0480 \(usual.*1\.3/);
       assert.match(
           await section.locator('[role=note]').textContent(),
           /Servo lag, axis X; Clock skew, linkage \(cosine 0\.971/);
