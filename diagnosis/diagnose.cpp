@@ -86,7 +86,7 @@ class Search {
     std::erase_if(names, [&](const Named& named) {
       return Known(taken_, named.best.candidate) || Known(refused_, named.best.candidate);
     });
-    DecideByFits(names);
+    std::shared_ptr<const Fit> decided = DecideByFits(names);
     const double prior = LogPrior(names.size());
     std::vector<double> logs{0.0};  // nothing more
     for (const Named& named : names) logs.push_back(named.log_evidence + prior);
@@ -102,7 +102,7 @@ class Search {
     }
     std::vector<Candidate> more = taken_;
     more.push_back(finding.score.candidate);
-    const auto fit = FitWith(more);
+    const auto fit = decided ? std::move(decided) : FitWith(more);
     if (!fit || !Predicts(*fit)) {
       refused_.push_back(more.back());
       return refused_.size() < (fit ? kMostRefused : kMostCauses);
@@ -128,9 +128,10 @@ class Search {
   }
 
   // Where the first order cannot tell, fits with each of the leading candidates decide: what is
-  // there or not is too large for it, and rivals are too near to each other.
-  void DecideByFits(std::vector<Named>& names) const {
-    if (names.empty()) return;
+  // there or not is too large for it, and rivals are too near to each other. The fit with the best
+  // of them, if there was one.
+  std::shared_ptr<const Fit> DecideByFits(std::vector<Named>& names) const {
+    if (names.empty()) return nullptr;
     const bool whole = names.front().best.candidate.cause->whole;
     const bool in_readings = InReadings(names.front().best.candidate);
     const double best = names.front().log_evidence;
@@ -143,13 +144,15 @@ class Search {
                       (of_whole && in_readings && EvidenceOfAPart(named.best) > kWorthFits);
       if (like_it && leading.size() < kMostFits) leading.push_back(&named);
     }
-    if (best < kWorthFits || leading.size() < 2) return;
+    if (best < kWorthFits || leading.size() < 2) return nullptr;
     double most = 0.0;
+    std::shared_ptr<const Fit> of_most;
     for (Named* named : leading) {
       std::vector<Candidate> with = taken_;
       with.push_back(Refine(*fit_, *named).candidate);
-      const auto fit = FitWith(with);
+      auto fit = FitWith(with);
       named->log_evidence = fit ? fit->log_likelihood() - fit_->log_likelihood() : 0.0;
+      if (fit && named->log_evidence > most) of_most = std::move(fit);
       most = std::max(most, named->log_evidence);
     }
     for (Named& named : names) {
@@ -157,6 +160,7 @@ class Search {
       named.log_evidence = std::min(named.log_evidence, most - kClose);
     }
     SortByEvidence(names);
+    return of_most;
   }
 
   // None where the simulation cannot be fitted with these: what they explain to first order, they
@@ -227,9 +231,23 @@ class Search {
     return without ? OverAllShapes(*without, std::move(score)) : score;
   }
 
+  // Whether, all others at their best, so much of it is left that no fit without it is needed.
+  bool IsBeyondDoubt(std::size_t i) const {
+    constexpr double kBeyond = 400.0;  // squares of standard deviations
+    if (taken_[i].cause->widens || taken_[i].cause->whole) return false;
+    const Score score = fit_->ScoreOf(i);
+    const Eigen::Index count = score.coefficients.size();
+    const Eigen::MatrixXd covariance = score.covariance.topLeftCorner(count, count);
+    return score.coefficients.dot(covariance.ldlt().solve(score.coefficients)) > kBeyond;
+  }
+
   // A cause that the later ones explain as well is taken out again.
   void DropSuperfluous() {
     for (std::size_t i = 0; taken_.size() > 1 && i < taken_.size();) {
+      if (IsBeyondDoubt(i)) {
+        ++i;
+        continue;
+      }
       std::vector<Candidate> others = Others(i);
       auto without = FitWith(others);
       if (!without ||
