@@ -4,8 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <span>
+#include <optional>
 
 #include "recording/good_rows.h"
 
@@ -17,6 +16,7 @@ using Values = std::vector<double>;
 constexpr double kStays = 5e-3;   // mm: nearer rows are of one stay
 constexpr double kPause = 0.5;    // s: rows farther apart are no neighbours
 constexpr std::size_t kStay = 5;  // rows that have a median worth the name
+constexpr double kPeace = 4.0;    // times the usual scatter: noise alone
 constexpr double kFlag = 4.0;     // device error
 
 struct Channel {
@@ -30,6 +30,7 @@ struct Table {
   Values time;
   std::vector<Values> axes;                 // mm
   std::vector<std::size_t> stay_end, stay;  // of each row: the row after its stay, rows in it
+  std::vector<int> motion;                  // number of the motion, or the stay, it belongs to
   std::vector<Channel> channels;
 };
 
@@ -73,6 +74,12 @@ Table TableOf(const recording::Recording& recording) {
               table.stay.begin() + static_cast<std::ptrdiff_t>(last), last - first);
     first = last;
   }
+  table.motion.resize(table.rows.size());
+  for (std::size_t i = 1; i < table.rows.size(); ++i) {
+    const bool stood = table.stay[i - 1] >= kStay, stands = table.stay[i] >= kStay;
+    const bool other = stood || stands || table.time[i] - table.time[i - 1] > kPause;
+    table.motion[i] = table.motion[i - 1] + (other ? 1 : 0);
+  }
   for (const auto& column : recording.columns) {
     const std::size_t unit = column.name.rfind('_');
     if (!column.name.starts_with("probe_") && !column.name.starts_with("pivot_")) continue;
@@ -81,77 +88,117 @@ Table TableOf(const recording::Recording& recording) {
   return table;
 }
 
-// First row of the five, with this one, that belong to the same motion and lie around it as evenly
-// as can be; none: the number of rows.
-std::size_t FiveAround(const Table& table, std::size_t row) {
-  const auto one_motion = [&](std::size_t first) {
-    if (first + 5 > table.time.size()) return false;
-    for (std::size_t i = first; i < first + 5; ++i) {
-      if (table.stay[i] >= kStay) return false;
-      if (i > first && table.time[i] - table.time[i - 1] > kPause) return false;
-    }
-    return true;
-  };
-  for (const std::size_t before : {2U, 1U, 3U, 0U, 4U}) {
-    if (row >= before && one_motion(row - before)) return row - before;
-  }
-  return table.time.size();
-}
-
 // Values at five rows less what the cubic through the other four says at the one of them: weights.
-std::array<double, 5> FromCubic(const Values& time, std::size_t first, std::size_t row) {
+using Five = std::array<std::size_t, 5>;
+
+std::array<double, 5> FromCubic(const Values& time, const Five& five, std::size_t row) {
   std::array<double, 5> weights{};
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    const std::size_t at = first + k;
-    weights[k] = at == row ? 1.0 : -1.0;
-    for (std::size_t other = first; at != row && other < first + 5; ++other) {
-      if (other == at || other == row) continue;
-      weights[k] *= (time[row] - time[other]) / (time[at] - time[other]);
+  for (std::size_t k = 0; k < five.size(); ++k) {
+    weights[k] = five[k] == row ? 1.0 : -1.0;
+    for (const std::size_t other : five) {
+      if (five[k] == row || other == five[k] || other == row) continue;
+      weights[k] *= (time[row] - time[other]) / (time[five[k]] - time[other]);
     }
   }
   return weights;
 }
 
-double Applied(const std::array<double, 5>& weights, const Values& values, std::size_t first) {
+double Applied(const std::array<double, 5>& weights, const Values& values, const Five& five) {
   double sum = 0.0;
-  for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * values[first + k];
+  for (std::size_t k = 0; k < five.size(); ++k) sum += weights[k] * values[five[k]];
   return sum;
 }
 
-// Of each reading from what its neighbours say, `unit` times what scatters alike for all; NaN where
-// they say nothing.
-struct Off {
-  Values scatter, unit;
-};
-
-Off OffNeighbours(const Table& table, const Values& values) {
-  const std::size_t count = values.size();
-  Off off{Values(count, std::numeric_limits<double>::quiet_NaN()), Values(count, 1.0)};
-  for (std::size_t i = 0; i < count; ++i) {
-    if (table.stay[i] >= kStay) {
-      const std::size_t last = table.stay_end[i], first = last - table.stay[i];
-      if (i == first) {
-        const double median = MedianOf({values.begin() + static_cast<std::ptrdiff_t>(first),
-                                        values.begin() + static_cast<std::ptrdiff_t>(last)});
-        for (std::size_t k = first; k < last; ++k) off.scatter[k] = values[k] - median;
-      }
-      continue;
+// How far each reading of a channel stands from what its neighbours say, in units that scatter
+// alike for all; NaN where they say nothing, and for what is an outlier already.
+class Neighbours {
+ public:
+  Neighbours(const Table& table, const Values& values)
+      : table_(table),
+        values_(values),
+        middle_(values.size()),
+        out_(values.size(), false),
+        off_(values.size()) {
+    for (std::size_t row = 0; row < off_.size(); ++row) {
+      const auto end = static_cast<std::ptrdiff_t>(table.stay_end[row]);
+      const auto begin = end - static_cast<std::ptrdiff_t>(table.stay[row]);
+      middle_[row] = static_cast<std::ptrdiff_t>(row) > begin
+                         ? middle_[row - 1]
+                         : MedianOf({values.begin() + begin, values.begin() + end});
+      off_[row] = OffOf(row);
     }
-    const std::size_t first = FiveAround(table, i);
-    if (first == count) continue;
-    const auto weights = FromCubic(table.time, first, i);
+  }
+
+  const Values& off() const { return off_; }
+  // Whether a reading is an outlier, of which its neighbours take no notice.
+  void SetOut(std::size_t row, bool out) {
+    out_[row] = out;
+    for (std::size_t near = FirstNear(row); near < LastNear(row); ++near) off_[near] = OffOf(near);
+  }
+  double LargestNear(std::size_t row) const {
+    double most = 0.0;
+    for (std::size_t near = FirstNear(row); near < LastNear(row); ++near) {
+      if (std::abs(off_[near]) > most) most = std::abs(off_[near]);  // false for NaN
+    }
+    return most;
+  }
+
+ private:
+  static constexpr std::size_t kReach = 10;  // rows that may share five with one
+
+  static std::size_t FirstNear(std::size_t row) { return row - std::min(row, kReach); }
+  std::size_t LastNear(std::size_t row) const { return std::min(row + kReach + 1, off_.size()); }
+
+  // The next rows of the same motion that are no outliers.
+  std::vector<std::size_t> Beside(std::size_t row, std::ptrdiff_t step) const {
+    std::vector<std::size_t> beside;
+    const auto count = static_cast<std::ptrdiff_t>(values_.size());
+    for (auto at = static_cast<std::ptrdiff_t>(row) + step; at >= 0 && at < count; at += step) {
+      const auto other = static_cast<std::size_t>(at);
+      if (table_.motion[other] != table_.motion[row] || beside.size() == 4) break;
+      if (!out_[other]) beside.push_back(other);
+    }
+    return beside;
+  }
+
+  // The five, with this one, that belong to one motion and lie around it as evenly as can be.
+  std::optional<Five> FiveAround(std::size_t row) const {
+    const std::vector<std::size_t> before = Beside(row, -1), after = Beside(row, 1);
+    for (const std::size_t first : {2U, 1U, 3U, 0U, 4U}) {
+      if (before.size() < first || after.size() < 4 - first) continue;
+      Five five{};
+      for (std::size_t k = 0; k < 5; ++k) {
+        five[k] = k < first ? before[first - 1 - k] : k == first ? row : after[k - first - 1];
+      }
+      return five;
+    }
+    return std::nullopt;
+  }
+
+  double OffOf(std::size_t row) const {
+    if (out_[row]) return std::numeric_limits<double>::quiet_NaN();
+    if (table_.stay[row] >= kStay) return values_[row] - middle_[row];
+    const std::optional<Five> five = FiveAround(row);
+    if (!five) return std::numeric_limits<double>::quiet_NaN();
+    const auto weights = FromCubic(table_.time, *five, row);
     // Where the way bends the cubic says nothing of the instruments either.
     const auto bends = [&](const Values& axis) {
-      return std::abs(Applied(weights, axis, first)) > kStays;
+      return std::abs(Applied(weights, axis, *five)) > kStays;
     };
-    if (std::any_of(table.axes.begin(), table.axes.end(), bends)) continue;
+    if (std::any_of(table_.axes.begin(), table_.axes.end(), bends)) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
     double square = 0.0;
     for (const double weight : weights) square += weight * weight;
-    off.unit[i] = std::sqrt(square);
-    off.scatter[i] = Applied(weights, values, first) / off.unit[i];
+    return Applied(weights, values_, *five) / std::sqrt(square);
   }
-  return off;
-}
+
+  const Table& table_;
+  const Values& values_;
+  Values middle_;  // of the stay
+  std::vector<bool> out_;
+  Values off_;
+};
 
 double ScatterOf(const Values& off) {
   constexpr double kNormal = 1.4826;
@@ -162,59 +209,58 @@ double ScatterOf(const Values& off) {
   return sizes.empty() ? 0.0 : kNormal * MedianOf(std::move(sizes));
 }
 
-double Largest(const Values& off) {
-  double most = 0.0;
-  for (const double each : off) {
-    if (std::abs(each) > most) most = std::abs(each);  // false for NaN
-  }
-  return most;
-}
-
-// A row as its neighbours would have it.
-Values Mended(const Values& values, const Off& off, std::size_t row) {
-  Values mended = values;
-  mended[row] -= off.scatter[row] * off.unit[row];
-  return mended;
-}
-
-// Where a motion begins or ends its first rows are all off alike when one of them is: that one
-// which leaves the others at peace.
-std::size_t WorstOf(const Table& table, const Values& values, const Off& off, double most) {
-  constexpr double kAlike = 0.999;
-  std::vector<std::size_t> alike;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::abs(off.scatter[i]) < kAlike * most || !std::isfinite(off.scatter[i])) continue;
-    if (alike.empty() || i < alike.front() + 5) alike.push_back(i);
-  }
-  if (alike.size() == 1) return alike.front();
-  std::size_t worst = alike.front();
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::size_t row : alike) {
-    const std::size_t first = row - std::min<std::size_t>(row, 9);
-    Values left = OffNeighbours(table, Mended(values, off, row)).scatter;
-    left.resize(std::min(left.size(), row + 10));
-    left.erase(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(first));
-    if (Largest(left) >= least) continue;
-    least = Largest(left);
-    worst = row;
+std::size_t Worst(const Values& off) {
+  const auto smaller = [](double a, double b) { return !(std::abs(a) >= std::abs(b)); };
+  std::size_t worst = 0;
+  for (std::size_t i = 1; i < off.size(); ++i) {
+    if (std::isfinite(off[i]) && smaller(off[worst], off[i])) worst = i;
   }
   return worst;
 }
 
-// The worst first, for it makes its neighbours look bad too: it takes their middle meanwhile.
-std::vector<std::size_t> OutliersOf(const Table& table, Values values) {
+// Where a motion begins or ends, rows that share five are all off alike when one or two of them
+// are: those which leave the others at peace.
+std::vector<std::size_t> OutOf(Neighbours& neighbours, std::size_t worst, double peace) {
+  constexpr double kAlike = 0.999;
+  std::vector<std::size_t> alike;
+  const double most = std::abs(neighbours.off()[worst]);
+  const std::size_t last = std::min(worst + 5, neighbours.off().size());
+  for (std::size_t i = worst - std::min<std::size_t>(worst, 4); i < last; ++i) {
+    if (std::abs(neighbours.off()[i]) >= kAlike * most) alike.push_back(i);
+  }
+  std::vector<std::size_t> least_rows{worst};
+  double least = std::numeric_limits<double>::infinity();
+  const auto attempt = [&](const std::vector<std::size_t>& rows) {
+    for (const std::size_t row : rows) neighbours.SetOut(row, true);
+    const double left = neighbours.LargestNear(rows.front());
+    for (const std::size_t row : rows) neighbours.SetOut(row, false);
+    if (left >= least) return;
+    least = left;
+    least_rows = rows;
+  };
+  if (alike.size() == 1) return alike;
+  for (const std::size_t row : alike) attempt({row});
+  if (least < peace) return least_rows;
+  for (std::size_t i = 0; i < alike.size(); ++i) {
+    for (std::size_t j = i + 1; j < alike.size(); ++j) attempt({alike[i], alike[j]});
+  }
+  return least_rows;
+}
+
+// The worst first, for it makes its neighbours look bad too.
+std::vector<std::size_t> OutliersOf(const Table& table, const Values& values) {
   std::vector<std::size_t> outliers;
   const std::size_t at_most = values.size() / 10;
-  Off off = OffNeighbours(table, values);
-  const double usual = ScatterOf(off.scatter);
+  Neighbours neighbours(table, values);
+  const double usual = ScatterOf(neighbours.off());
   if (usual == 0.0) return outliers;
   while (outliers.size() < at_most) {
-    const double most = Largest(off.scatter);
-    if (most < kFar * usual) break;
-    outliers.push_back(WorstOf(table, values, off, most));
-    values = Mended(values, off, outliers.back());
-    off = OffNeighbours(table, values);
-    for (const std::size_t known : outliers) off.scatter[known] = 0.0;
+    const std::size_t worst = Worst(neighbours.off());
+    if (!(std::abs(neighbours.off()[worst]) >= kFar * usual)) break;
+    for (const std::size_t row : OutOf(neighbours, worst, kPeace * usual)) {
+      neighbours.SetOut(row, true);
+      outliers.push_back(row);
+    }
   }
   return outliers;
 }

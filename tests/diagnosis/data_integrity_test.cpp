@@ -1,0 +1,100 @@
+// Readings that are none, put into a table whose every other reading is known to be good.
+#include "diagnosis/data_integrity.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "random/counter_random.h"
+
+namespace abbe::diagnosis {
+namespace {
+
+using recording::Recording;
+using testing::ElementsAreArray;
+
+constexpr int kMoving = 100, kStanding = 60;  // rows of each motion, of the stay between them
+constexpr double kNoise = 3e-6;               // rad
+
+// A quarter of a circle, a stay, the quarter back; the pivot follows smoothly.
+Recording QuarterAndBack() {
+  const random::CounterRandom random(3, 1);
+  Recording run;
+  run.name = "run";
+  run.header = "kind = \"linkage\"\n";
+  run.columns = {
+      {"time_s", {}}, {"x_mm", {}}, {"y_mm", {}}, {"pivot_1_rad", {}}, {"pivot_2_rad", {}}};
+  for (int row = 0; row < 2 * kMoving + kStanding; ++row) {
+    const int on_way =
+        row < kMoving ? row : std::min(kMoving - 1, 2 * kMoving + kStanding - 1 - row);
+    const double angle = 0.015 * on_way;
+    const auto index = 2 * static_cast<std::uint64_t>(row);
+    std::size_t column = 0;
+    for (const double value : {0.1 * row, 20.0 * std::cos(angle), 20.0 * std::sin(angle),
+                               0.3 * std::sin(angle) + kNoise * random.Normal(index),
+                               0.2 * std::cos(angle) + kNoise * random.Normal(index + 1)}) {
+      run.columns[column++].values.push_back(value);
+    }
+  }
+  return run;
+}
+
+std::vector<std::size_t> Flagged(const Recording& run) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < run.rows(); ++row) {
+    if (run.At("flags")[row] != 0.0) rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST(DataIntegrity, FindsNothingInGoodReadings) {
+  Recording run = QuarterAndBack();
+  EXPECT_TRUE(FlagBadRows(run).empty());
+  EXPECT_TRUE(Flagged(run).empty());
+}
+
+// In the middle of a motion, in the stay, and where a motion begins or ends, where no row stands on
+// both sides.
+TEST(DataIntegrity, FindsReadingsThatJump) {
+  const std::vector<std::pair<std::vector<std::size_t>, const char*>> cases{
+      {{40}, "in a motion"},          {{130}, "in the stay"},         {{0}, "the first of all"},
+      {{259}, "the last of all"},     {{40, 41}, "two neighbours"},   {{0, 1}, "the first two"},
+      {{160, 161}, "after the stay"}, {{40, 42, 130, 200}, "several"}};
+  for (const auto& [rows, where] : cases) {
+    for (const double sign : {1.0, -1.0}) {
+      Recording run = QuarterAndBack();
+      double size = 300.0 * kNoise;
+      for (const std::size_t row : rows) {
+        run.columns[3].values[row] += size;
+        size *= 1.6 * sign;
+      }
+      const auto bad = FlagBadRows(run);
+      EXPECT_THAT(Flagged(run), ElementsAreArray(rows)) << where << sign;
+      ASSERT_EQ(bad.size(), 1u) << where;
+      EXPECT_EQ(bad[0].cause, "outliers");
+      EXPECT_EQ(bad[0].object, "pivot_1");
+      EXPECT_EQ(bad[0].count, static_cast<int>(rows.size()));
+      EXPECT_NEAR(bad[0].from, 0.1 * static_cast<double>(rows.front()), 1e-9);
+      EXPECT_NEAR(bad[0].to, 0.1 * static_cast<double>(rows.back()), 1e-9);
+    }
+  }
+}
+
+TEST(DataIntegrity, FindsAChannelThatRepeatsOneValue) {
+  Recording run = QuarterAndBack();
+  for (std::size_t row = 31; row < 60; ++row) {
+    run.columns[4].values[row] = run.columns[4].values[30];
+  }
+  const auto bad = FlagBadRows(run);
+  ASSERT_EQ(bad.size(), 1u);
+  EXPECT_EQ(bad[0].cause, "stuck-channel");
+  EXPECT_EQ(bad[0].object, "pivot_2");
+  EXPECT_EQ(bad[0].count, 30);
+  EXPECT_EQ(Flagged(run).front(), 31u);  // the first of them was a reading
+}
+
+}  // namespace
+}  // namespace abbe::diagnosis
