@@ -103,8 +103,7 @@ int Diagnose(const DiagnoseArguments& arguments) {
   diagnosis::AddNextRuns(campaign, recordings, diagnosis);
   std::vector<diagnosis::Candidate> causes;
   for (const auto& finding : diagnosis.findings) {
-    const auto& cause = finding.score.candidate;
-    if (cause.cause->columns || cause.cause->widens) causes.push_back(cause);
+    if (diagnosis::IsModelled(finding)) causes.push_back(finding.score.candidate);
   }
   const diagnosis::HeldOutGain gain = GainOf(campaign, recordings, causes);
   if (!arguments.out.empty()) {
@@ -125,7 +124,8 @@ void AddDiagnose(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand(
       "diagnose", "What the simulation of the runs gets wrong, and which cause explains it");
   command->add_option("recordings", arguments->recordings,
-                      "Recordings of one machine: sweeps, linkage, reference, length, shaft");
+                      "Recordings of one machine: sweep, dwell, gap-steps, linkage, reference, "
+                      "length, plate, shaft");
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   auto* out = command->add_option(
       "-o,--out", arguments->out,

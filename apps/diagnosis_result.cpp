@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "diagnosis/found_model.h"
@@ -17,6 +18,7 @@ namespace {
 using diagnosis::Candidate;
 using diagnosis::Diagnosis;
 using diagnosis::Finding;
+using diagnosis::HeldOutGain;
 using diagnosis::Leftover;
 using diagnosis::Score;
 using Eigen::Index;
@@ -42,8 +44,20 @@ std::vector<Told> ParametersOf(const Score& score) {
   return told;
 }
 
-ordered_json FindingJson(const Finding& finding, const Diagnosis& diagnosis,
-                         const diagnosis::HeldOutGain& gain) {
+// What a finding is worth; none of what was found row by row, and where nothing was held out.
+std::optional<HeldOutGain::Without> WorthOf(std::size_t finding, const Diagnosis& diagnosis,
+                                            const HeldOutGain& gain) {
+  const auto is_modelled = [](const Finding& each) { return diagnosis::IsModelled(each); };
+  const auto at = diagnosis.findings.begin() + static_cast<std::ptrdiff_t>(finding);
+  if (!is_modelled(*at)) return std::nullopt;
+  const auto place = std::count_if(diagnosis.findings.begin(), at, is_modelled);
+  if (place >= static_cast<std::ptrdiff_t>(gain.without.size())) return std::nullopt;
+  const auto& without = gain.without[static_cast<std::size_t>(place)];
+  return std::isfinite(without.held) ? std::optional(without) : std::nullopt;
+}
+
+ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const HeldOutGain& gain) {
+  const Finding& finding = diagnosis.findings[which];
   const auto [object, sensor] = simulation::Split(finding.score.candidate.object);
   ordered_json json{{"cause", finding.score.candidate.cause->id},
                     {"object", object},
@@ -58,13 +72,15 @@ ordered_json FindingJson(const Finding& finding, const Diagnosis& diagnosis,
                    {"shows", words.shows},
                    {"check", words.check},
                    {"remedy", words.remedy}};
-  // Of all that was found together.
-  json["rms_before"] = std::sqrt(diagnosis.chi_before);
-  json["rms_after"] = std::sqrt(diagnosis.chi_after);
-  if (gain.rows > 0) {
-    json["heldout_rms_before"] = gain.before;
+  if (const auto without = WorthOf(which, diagnosis, gain)) {
+    json["rms_before"] = without->seen;
+    json["rms_after"] = gain.seen;
+    json["heldout_rms_before"] = without->held;
     json["heldout_rms_after"] = gain.after;
-    json["gain"] = 1.0 - gain.after / gain.before;
+    json["gain"] = 1.0 - gain.after / without->held;
+  } else {
+    json["rms_before"] = std::sqrt(diagnosis.chi_before);
+    json["rms_after"] = std::sqrt(diagnosis.chi_after);
   }
   const diagnosis::Curve& curve = finding.curve;
   if (curve.at.size() > 0) {
@@ -84,7 +100,8 @@ ordered_json FindingJson(const Finding& finding, const Diagnosis& diagnosis,
   return json;
 }
 
-std::string FindingText(const Finding& finding) {
+std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const HeldOutGain& gain) {
+  const Finding& finding = diagnosis.findings[which];
   std::string text = fmt::format("\n{}, probability {:.3f}\n", NameOf(finding.score.candidate),
                                  finding.probability);
   for (const Told& each : ParametersOf(finding.score)) {
@@ -94,6 +111,13 @@ std::string FindingText(const Finding& finding) {
   text +=
       fmt::format("  what it is   {}\n  how it shows {}\n  check        {}\n  what to do   {}\n",
                   words.what, words.shows, words.check, words.remedy);
+  if (const auto without = WorthOf(which, diagnosis, gain)) {
+    text += fmt::format(
+        "  gain         rms {:.3f} of the stated noise without it, {:.3f} with it; {:.3f} and "
+        "{:.3f} "
+        "in rows held out\n",
+        without->seen, gain.seen, without->held, gain.after);
+  }
   for (const auto& rival : finding.rivals) {
     text +=
         fmt::format("  or {}, probability {:.3f}\n", NameOf(rival.candidate), rival.probability);
@@ -152,7 +176,7 @@ std::string UnitOf(const std::string& key) {
   return fmt::format("{}/{}", unit.substr(0, per), unit.substr(per + kPer.size()));
 }
 
-ordered_json DiagnosisJson(const Diagnosis& diagnosis, const diagnosis::HeldOutGain& gain) {
+ordered_json DiagnosisJson(const Diagnosis& diagnosis, const HeldOutGain& gain) {
   ordered_json json{{"command", "diagnose"},
                     {"verdict", Name(diagnosis.verdict)},
                     {"cannot_show", diagnosis.cannot_show},
@@ -163,8 +187,9 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const diagnosis::HeldOutG
                     {"chi2_per_row_after", diagnosis.chi_after},
                     {"noise_floor", 1.0},
                     {"map_change_um", 1e6 * diagnosis.map_change}};
-  for (const Finding& finding : diagnosis.findings) {
-    json["findings"].push_back(FindingJson(finding, diagnosis, gain));
+  for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
+    const Finding& finding = diagnosis.findings[i];
+    json["findings"].push_back(FindingJson(i, diagnosis, gain));
     if (finding.rivals.empty()) continue;
     ordered_json rivals{{"causes", {finding.score.candidate.Name()}},
                         {"odds", {finding.probability}}};
@@ -202,11 +227,13 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const diagnosis::HeldOutG
   return json;
 }
 
-std::string DiagnosisText(const Diagnosis& diagnosis, const diagnosis::HeldOutGain& gain) {
+std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
   std::string text =
       fmt::format("verdict: {}\nchi-square per row {:.3f}, with what was found {:.3f}\n",
                   Name(diagnosis.verdict), diagnosis.chi_before, diagnosis.chi_after);
-  for (const Finding& finding : diagnosis.findings) text += FindingText(finding);
+  for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
+    text += FindingText(i, diagnosis, gain);
+  }
   if (gain.rows > 0) {
     text += fmt::format(
         "\nheld out: {} rows, rms {:.3f} of the stated noise without what was found, {:.3f} with "

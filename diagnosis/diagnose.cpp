@@ -279,6 +279,11 @@ class Search {
 
 }  // namespace
 
+bool IsModelled(const Finding& finding) {
+  const simulation::Cause& cause = *finding.score.candidate.cause;
+  return cause.columns || cause.widens;
+}
+
 std::string_view Name(Verdict verdict) {
   switch (verdict) {
     case Verdict::kClean:

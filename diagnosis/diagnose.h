@@ -53,6 +53,8 @@ struct Finding {
   std::optional<NextRun> next_run = {};
   Curve curve = {};
 };
+// Not so: readings that are none, which were left out.
+bool IsModelled(const Finding& finding);
 
 struct Diagnosis {
   Verdict verdict = Verdict::kClean;

@@ -22,8 +22,7 @@ simulation::ExtendedModel FoundModel(const Diagnosis& diagnosis, const Campaign&
   model.gain = {gain.rows, gain.before, gain.after, std::sqrt(diagnosis.chi_before),
                 std::sqrt(diagnosis.chi_after)};
   for (const Finding& finding : diagnosis.findings) {
-    const simulation::Cause& cause = *finding.score.candidate.cause;
-    if (cause.columns || cause.widens) model.causes.push_back(FoundCause(finding.score));
+    if (IsModelled(finding)) model.causes.push_back(FoundCause(finding.score));
   }
   return model;
 }

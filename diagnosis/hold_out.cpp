@@ -10,6 +10,7 @@
 
 #include "diagnosis/extended_run.h"
 #include "diagnosis/fit.h"
+#include "failure/failure.h"
 #include "fusion/machine_problem.h"
 #include "simulation/arm_run.h"
 #include "simulation/linkage_gaps.h"
@@ -117,6 +118,22 @@ Left LeftOf(const Campaign& held, const Fit& fit) {
   return left;
 }
 
+double SeenBy(const Fit& fit) {
+  return std::sqrt(fit.chi_square() / static_cast<double>(fit.rows()));
+}
+
+HeldOutGain::Without Without(std::size_t cause, std::vector<Candidate> causes, const Fit& baseline,
+                             const Campaign& held) {
+  causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(cause));
+  try {
+    const Fit fit(baseline, causes);
+    return {SeenBy(fit), LeftOf(held, fit).rms};
+  } catch (const NumericalError&) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return {kNone, kNone};
+  }
+}
+
 }  // namespace
 
 HeldOutGain HoldOut(const Campaign& campaign, const std::vector<Recording>& recordings,
@@ -140,8 +157,19 @@ HeldOutGain HoldOut(const Campaign& campaign, const std::vector<Recording>& reco
   if (held.runs().empty()) return {};
   const Fit baseline(kept);
   const Left before = LeftOf(held, baseline);
-  const Left after = causes.empty() ? before : LeftOf(held, Fit(baseline, causes));
-  return {before.rows, before.rms, after.rms, before.poses, before.in_space, after.in_space};
+  HeldOutGain gain{before.rows,  before.rms,      before.rms,
+                   before.poses, before.in_space, before.in_space};
+  if (causes.empty()) return gain;
+  const Fit all(baseline, causes);
+  const Left after = LeftOf(held, all);
+  gain.after = after.rms;
+  gain.arm_after = after.in_space;
+  gain.seen = SeenBy(all);
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    gain.without.push_back(causes.size() == 1 ? HeldOutGain::Without{SeenBy(baseline), before.rms}
+                                              : Without(i, causes, baseline, held));
+  }
+  return gain;
 }
 
 }  // namespace abbe::diagnosis

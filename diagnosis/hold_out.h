@@ -7,9 +7,9 @@
 // other run of the linkage on one base; where it has fewer than three, every other pass, or every
 // other of kBlocks blocks in time (also of a run of a shaft), so that neighbouring rows stay
 // together. Of an arm, whose poses are measured one by one, every fourth. A sweep with one pass
-// and runs of other kinds take no part. The simulation is fitted to the rest, once as it is and
-// once with the causes, and asked for the rows that were held out: rms of (measured - simulated) /
-// stated deviation, 1 for the noise floor. Failure: that of Fit.
+// and runs of other kinds take no part. The simulation is fitted to the rest, once as it is, once
+// with the causes and once with all but each of them, and asked for the rows that were held out:
+// rms of (measured - simulated) / stated deviation, 1 for the noise floor. Failure: that of Fit.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,6 +26,14 @@ struct HeldOutGain {
   double before = 0.0, after = 0.0;
   Eigen::Index arm_poses = 0;
   double arm_before = 0.0, arm_after = 0.0;  // m, rms in space, of the poses of arms
+
+  // What each cause is worth beside all others: rms of the rows that the fits saw, and of those
+  // held out, without it. NaN where nothing can be fitted without it.
+  struct Without {
+    double seen, held;
+  };
+  std::vector<Without> without = {};  // in the order of the causes
+  double seen = 0.0;                  // with all of them
 };
 
 // `recordings`: those of the campaign.

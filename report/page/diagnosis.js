@@ -50,10 +50,19 @@ function findingParameters({parameters}) {
   });
 }
 
-function findingWords({probability, words = {}, parameters}) {
+function findingWorth({rms_before: before, rms_after: after, heldout_rms_before, heldout_rms_after}) {
+  if (!isNumber(heldout_rms_before)) return null;
+  const pair = (one, other) => `${fixed(one, 3)} without it, ${fixed(other, 3)} with it`;
+  return `Measured less simulated, in units of the stated noise: ${pair(before, after)}; in rows that ` +
+      `took no part ${pair(heldout_rms_before, heldout_rms_after)}`;
+}
+
+function findingWords(finding) {
+  const {probability, words = {}, parameters} = finding;
   const sensor = (parameters ?? []).find(({name}) => name === 'sensor')?.value;
   return factList([
     ['Probability', percent(probability)], ['Follows the sensor', sensor],
+    ['What it is worth', findingWorth(finding), true],
     ['What it is', words.what && capital(words.what), true],
     ['How it shows', words.shows && capital(words.shows), true],
     ['What to check', words.check && capital(words.check), true],

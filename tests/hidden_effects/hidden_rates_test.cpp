@@ -64,8 +64,8 @@ Rate AtTheFloor(const HiddenWorlds& worlds, const rig::Campaign& world,
                 const Diagnosis& diagnosis) {
   constexpr double kOfTheFloor = 1.05;
   Rate rate;
+  if (!diagnosis::IsModelled(diagnosis.findings.front())) return rate;
   const auto& found = diagnosis.findings.front().score.candidate;
-  if (!found.cause->columns && !found.cause->widens) return rate;
   const auto gain = diagnosis::HoldOut(worlds.Recordings(world), world.recordings, {found});
   if (gain.rows > 0) rate.Add(gain.after <= kOfTheFloor);
   return rate;
