@@ -50,11 +50,23 @@ function findingParameters({parameters}) {
   });
 }
 
-function findingWorth({rms_before: before, rms_after: after, heldout_rms_before, heldout_rms_after}) {
-  if (!isNumber(heldout_rms_before)) return null;
-  const pair = (one, other) => `${fixed(one, 3)} without it, ${fixed(other, 3)} with it`;
-  return `Measured less simulated, in units of the stated noise: ${pair(before, after)}; in rows that ` +
-      `took no part ${pair(heldout_rms_before, heldout_rms_after)}`;
+const rootMeanSquare = (values) =>
+    Math.sqrt(values.reduce((sum, value) => sum + value * value, 0) / values.length);
+
+// Where the cause lives in its own unit, then in all rows, fitted and held out.
+function findingWorth({curve, rms_before: before, rms_after: after, ...heldOut}) {
+  const {heldout_rms_before: heldBefore, heldout_rms_after: heldAfter} = heldOut;
+  const pair = (one, other) => `${one} without it, ${other} with it`;
+  const where = curve?.x?.length ?
+      `Where it shows ${pair(...[curve.before, curve.after].map(
+          (values) => `${significant(rootMeanSquare(numbers(values)))}\u00a0${micro(curve.unit)}`))}` :
+      null;
+  const rows = isNumber(heldBefore) ?
+      `in units of the stated noise ${pair(fixed(before, 3), fixed(after, 3))}; in rows that took ` +
+          `no part ${pair(fixed(heldBefore, 3), fixed(heldAfter, 3))}` :
+      null;
+  const told = [where, rows].filter(Boolean);
+  return told.length ? capital(`${told.join('; ')} (rms of measured less simulated)`) : null;
 }
 
 function findingWords(finding) {
@@ -206,7 +218,9 @@ registerSection({
   summary: diagnosisSummary,
   facts: (result) => [
       ['Verdict', capital(String(result.verdict ?? ''))],
-      ['Recordings', (result.recordings ?? []).join(', '), true], ['Extended model', result.model]],
+      ['Recordings', (result.recordings ?? []).join(', '), true], ['Extended model', result.model],
+      ['The error map changes by up to', result.map_change_um > 0 && result.findings?.length ?
+         `${significant(result.map_change_um)}\u00a0\u00b5m` : null]],
   body: (result) => [leftoverBlock(result), ...(result.findings ?? []).map(findingGroup),
                      rivalsTable(result), gainTable(result), evidenceTable(result),
                      cannotShowBlock(result)]

@@ -241,7 +241,7 @@ test(
       assert.match(await backlash.locator('tr', {hasText: 'Width'}).textContent(), /6\.020\u00b10\.080/);
       assert.match(await backlash.locator('dl').textContent(), /over 99\.9.*Preload or replace/);
       assert.match(
-          await backlash.locator('dl').textContent(), /1\.900 without it.*no part 1\.880 without it, 1\.030/);
+          await backlash.locator('dl').textContent(), /shows 3\.00.\u00b5m without it, 0\.14.*1\.900 without it.*no part 1\.880 without it, 1\.030/);
       const rivals = section.locator('tr', {hasText: 'Probe crosstalk'}).first();
       assert.match(await rivals.textContent(), /probe b and probe c.*62\.0.*move the gap.*99\.9/);
       assert.match(await section.locator('[role=note]').textContent(), /Squareness, axes X and Z/);
