@@ -13,11 +13,12 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr double kStays = 5e-3;   // mm: nearer rows are of one stay
-constexpr double kPause = 0.5;    // s: rows farther apart are no neighbours
-constexpr std::size_t kStay = 5;  // rows that have a median worth the name
-constexpr double kPeace = 4.0;    // times the usual scatter: noise alone
-constexpr double kFlag = 4.0;     // device error
+constexpr double kStays = 5e-3;    // mm: nearer rows are of one stay
+constexpr double kPause = 0.5;     // s: rows farther apart are no neighbours
+constexpr std::size_t kStay = 5;   // rows that have a median worth the name
+constexpr std::size_t kAside = 7;  // rows of a stay to either side that say where it stands
+constexpr double kPeace = 4.0;     // times the usual scatter: noise alone
+constexpr double kFlag = 4.0;      // device error
 
 struct Channel {
   std::string object;
@@ -120,11 +121,10 @@ class Neighbours {
         out_(values.size(), false),
         off_(values.size()) {
     for (std::size_t row = 0; row < off_.size(); ++row) {
-      const auto end = static_cast<std::ptrdiff_t>(table.stay_end[row]);
-      const auto begin = end - static_cast<std::ptrdiff_t>(table.stay[row]);
-      middle_[row] = static_cast<std::ptrdiff_t>(row) > begin
-                         ? middle_[row - 1]
-                         : MedianOf({values.begin() + begin, values.begin() + end});
+      const std::size_t end = table.stay_end[row], begin = end - table.stay[row];
+      const auto first = static_cast<std::ptrdiff_t>(std::max(begin + kAside, row) - kAside);
+      const auto last = static_cast<std::ptrdiff_t>(std::min(end, row + kAside + 1));
+      middle_[row] = MedianOf({values.begin() + first, values.begin() + last});
       off_[row] = OffOf(row);
     }
   }
@@ -195,7 +195,7 @@ class Neighbours {
 
   const Table& table_;
   const Values& values_;
-  Values middle_;  // of the stay
+  Values middle_;  // of the rows beside it in its stay
   std::vector<bool> out_;
   Values off_;
 };

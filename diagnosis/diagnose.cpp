@@ -107,7 +107,7 @@ class Search {
       refused_.push_back(more.back());
       return refused_.size() < (fit ? kMostRefused : kMostCauses);
     }
-    if (OfArms()) refused_.clear();  // it may have stood in the way
+    refused_.clear();  // it may have stood in the way
     taken_ = std::move(more);
     diagnosis_.findings.push_back(std::move(finding));
     fit_ = fit;
@@ -241,6 +241,12 @@ class Search {
     return score.coefficients.dot(covariance.ldlt().solve(score.coefficients)) > kBeyond;
   }
 
+  // What is there or not is too large for the first order.
+  double EvidenceBeside(const Fit& without, std::size_t i) const {
+    return taken_[i].cause->whole ? fit_->log_likelihood() - without.log_likelihood()
+                                  : ScoreAll(without, {taken_[i]}).front().log_evidence;
+  }
+
   // A cause that the later ones explain as well is taken out again.
   void DropSuperfluous() {
     for (std::size_t i = 0; taken_.size() > 1 && i < taken_.size();) {
@@ -250,8 +256,7 @@ class Search {
       }
       std::vector<Candidate> others = Others(i);
       auto without = FitWith(others);
-      if (!without ||
-          ScoreAll(*without, {taken_[i]}).front().log_evidence > -LogPrior(candidates_.size())) {
+      if (!without || EvidenceBeside(*without, i) > -LogPrior(candidates_.size())) {
         ++i;
         continue;
       }

@@ -83,6 +83,13 @@ TEST(DataIntegrity, FindsReadingsThatJump) {
   }
 }
 
+// A channel that steps in a stay and stays there: each reading is one.
+TEST(DataIntegrity, LeavesAStepAlone) {
+  Recording run = QuarterAndBack();
+  for (std::size_t row = 140; row < run.rows(); ++row) run.columns[3].values[row] += 1e-4;
+  EXPECT_TRUE(FlagBadRows(run).empty());
+}
+
 TEST(DataIntegrity, FindsAChannelThatRepeatsOneValue) {
   Recording run = QuarterAndBack();
   for (std::size_t row = 31; row < 60; ++row) {
