@@ -1,10 +1,12 @@
 #include "diagnosis/data_integrity.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "recording/good_rows.h"
 
@@ -89,26 +91,34 @@ Table TableOf(const recording::Recording& recording) {
   return table;
 }
 
-// Values at five rows less what the cubic through the other four says at the one of them: weights.
-using Five = std::array<std::size_t, 5>;
-
-std::array<double, 5> FromCubic(const Values& time, const Five& five, std::size_t row) {
-  std::array<double, 5> weights{};
-  for (std::size_t k = 0; k < five.size(); ++k) {
-    weights[k] = five[k] == row ? 1.0 : -1.0;
-    for (const std::size_t other : five) {
-      if (five[k] == row || other == five[k] || other == row) continue;
-      weights[k] *= (time[row] - time[other]) / (time[five[k]] - time[other]);
+// A reading less what the polynomial through others says in its place.
+class Prediction {
+ public:
+  Prediction(const Values& time, std::size_t row, std::vector<std::size_t> others)
+      : row_(row), others_(std::move(others)), weights_(others_.size(), 1.0) {
+    for (std::size_t k = 0; k < others_.size(); ++k) {
+      for (const std::size_t other : others_) {
+        if (other == others_[k]) continue;
+        weights_[k] *= (time[row] - time[other]) / (time[others_[k]] - time[other]);
+      }
     }
   }
-  return weights;
-}
 
-double Applied(const std::array<double, 5>& weights, const Values& values, const Five& five) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < five.size(); ++k) sum += weights[k] * values[five[k]];
-  return sum;
-}
+  double Off(const Values& values) const {
+    double off = values[row_];
+    for (std::size_t k = 0; k < others_.size(); ++k) off -= weights_[k] * values[others_[k]];
+    return off;
+  }
+  // Of Off(), in standard deviations of one reading.
+  double Deviation() const {
+    return std::sqrt(std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 1.0));
+  }
+
+ private:
+  std::size_t row_;
+  std::vector<std::size_t> others_;
+  Values weights_;
+};
 
 // How far each reading of a channel stands from what its neighbours say, in units that scatter
 // alike for all; NaN where they say nothing, and for what is an outlier already.
@@ -134,6 +144,21 @@ class Neighbours {
   void SetOut(std::size_t row, bool out) {
     out_[row] = out;
     for (std::size_t near = FirstNear(row); near < LastNear(row); ++near) off_[near] = OffOf(near);
+  }
+  // Whether a reading goes with those of one side: then it is no outlier, but a channel or a
+  // machine that stands elsewhere from there on.
+  bool IsOfAStep(std::size_t row) const {
+    constexpr double kShare = 0.5;  // of what it is off the cubic
+    const std::optional<Prediction> cubic = ByCubic(row);
+    if (table_.stay[row] >= kStay || !cubic) return false;
+    const auto goes_with = [&](std::ptrdiff_t step) {
+      std::vector<std::size_t> side = Beside(row, step);
+      if (side.size() < 3) return false;
+      side.resize(3);
+      const double off = Prediction(table_.time, row, std::move(side)).Off(values_);
+      return std::abs(off) < kShare * std::abs(cubic->Off(values_));
+    };
+    return goes_with(-1) || goes_with(1);
   }
   double LargestNear(std::size_t row) const {
     double most = 0.0;
@@ -161,16 +186,15 @@ class Neighbours {
     return beside;
   }
 
-  // The five, with this one, that belong to one motion and lie around it as evenly as can be.
-  std::optional<Five> FiveAround(std::size_t row) const {
-    const std::vector<std::size_t> before = Beside(row, -1), after = Beside(row, 1);
+  // By the cubic through the four that lie around it as evenly as can be.
+  std::optional<Prediction> ByCubic(std::size_t row) const {
+    std::vector<std::size_t> before = Beside(row, -1), after = Beside(row, 1);
     for (const std::size_t first : {2U, 1U, 3U, 0U, 4U}) {
       if (before.size() < first || after.size() < 4 - first) continue;
-      Five five{};
-      for (std::size_t k = 0; k < 5; ++k) {
-        five[k] = k < first ? before[first - 1 - k] : k == first ? row : after[k - first - 1];
-      }
-      return five;
+      before.resize(first);
+      before.insert(before.end(), after.begin(),
+                    after.begin() + static_cast<std::ptrdiff_t>(4 - first));
+      return Prediction(table_.time, row, std::move(before));
     }
     return std::nullopt;
   }
@@ -178,19 +202,14 @@ class Neighbours {
   double OffOf(std::size_t row) const {
     if (out_[row]) return std::numeric_limits<double>::quiet_NaN();
     if (table_.stay[row] >= kStay) return values_[row] - middle_[row];
-    const std::optional<Five> five = FiveAround(row);
-    if (!five) return std::numeric_limits<double>::quiet_NaN();
-    const auto weights = FromCubic(table_.time, *five, row);
+    const std::optional<Prediction> cubic = ByCubic(row);
+    if (!cubic) return std::numeric_limits<double>::quiet_NaN();
     // Where the way bends the cubic says nothing of the instruments either.
-    const auto bends = [&](const Values& axis) {
-      return std::abs(Applied(weights, axis, *five)) > kStays;
-    };
+    const auto bends = [&](const Values& axis) { return std::abs(cubic->Off(axis)) > kStays; };
     if (std::any_of(table_.axes.begin(), table_.axes.end(), bends)) {
       return std::numeric_limits<double>::quiet_NaN();
     }
-    double square = 0.0;
-    for (const double weight : weights) square += weight * weight;
-    return Applied(weights, values_, *five) / std::sqrt(square);
+    return cubic->Off(values_) / cubic->Deviation();
   }
 
   const Table& table_;
@@ -262,6 +281,7 @@ std::vector<std::size_t> OutliersOf(const Table& table, const Values& values) {
       outliers.push_back(row);
     }
   }
+  std::erase_if(outliers, [&](std::size_t row) { return neighbours.IsOfAStep(row); });
   return outliers;
 }
 

@@ -83,11 +83,15 @@ TEST(DataIntegrity, FindsReadingsThatJump) {
   }
 }
 
-// A channel that steps in a stay and stays there: each reading is one.
+// A channel that slips stays where it is then: each reading is one.
 TEST(DataIntegrity, LeavesAStepAlone) {
-  Recording run = QuarterAndBack();
-  for (std::size_t row = 140; row < run.rows(); ++row) run.columns[3].values[row] += 1e-4;
-  EXPECT_TRUE(FlagBadRows(run).empty());
+  for (const std::size_t from : {50U, 51U, 140U, 200U}) {
+    for (const double step : {1e-4, -3e-4}) {
+      Recording run = QuarterAndBack();
+      for (std::size_t row = from; row < run.rows(); ++row) run.columns[3].values[row] += step;
+      EXPECT_TRUE(FlagBadRows(run).empty()) << from << " " << step;
+    }
+  }
 }
 
 TEST(DataIntegrity, FindsAChannelThatRepeatsOneValue) {
