@@ -315,6 +315,7 @@ void Flag(recording::Recording& recording, std::size_t row) {
 }  // namespace
 
 std::vector<BadData> FlagBadRows(recording::Recording& recording) {
+  if (!recording.Find("time_s")) return {};
   const Table table = TableOf(recording);
   std::vector<BadData> bad;
   if (table.rows.size() < kLeastStuck) return bad;

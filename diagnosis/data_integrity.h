@@ -7,8 +7,8 @@
 // times their usual scatter; where the axes stand from the median of the rows of the stay beside
 // it, where they move from the cubic through the next four readings of the motion that are no
 // outliers, two on either side if there are. Channels: probe_*_um, pivot_*_rad. Units: s since the
-// recording began. Rows that have a flag already are passed over. Source of the scatter: 1.4826
-// times the median absolute deviation.
+// recording began. Rows that have a flag already are passed over; without time_s nothing is said.
+// Source of the scatter: 1.4826 times the median absolute deviation.
 #pragma once
 
 #include <string>

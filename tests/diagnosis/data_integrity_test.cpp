@@ -94,6 +94,13 @@ TEST(DataIntegrity, LeavesAStepAlone) {
   }
 }
 
+TEST(DataIntegrity, SaysNothingWithoutTimes) {
+  Recording run = QuarterAndBack();
+  run.columns[3].values[40] += 0.1;
+  run.columns.erase(run.columns.begin());
+  EXPECT_TRUE(FlagBadRows(run).empty());
+}
+
 TEST(DataIntegrity, FindsAChannelThatRepeatsOneValue) {
   Recording run = QuarterAndBack();
   for (std::size_t row = 31; row < 60; ++row) {
