@@ -66,6 +66,27 @@ class Response : public testing::Test {
  protected:
   const settings::Document document = fusion::CampaignMachine();
   const fusion::Campaign campaign{document, 3};
+
+  // How many error motions act; what each does by one coefficient is what that parameter does.
+  int MotionsThatAct(const SimulatedRun& run, const Trace& trace, const VectorXd& x) const {
+    int acting = 0;
+    for (int axis = 0; axis < machine::kAxes; ++axis) {
+      for (int motion = 0; motion < machine::kMotions; ++motion) {
+        const auto& function = campaign.model.Function(axis, motion);
+        VectorXd gradient(function.size());
+        Disturbance moved = NoDisturbance(trace);
+        for (Index row = 0; row < trace.rows(); ++row) {
+          function.Evaluate(trace.axes(axis, row), nullptr, gradient.data());
+          moved.row(MotionStage(axis, motion))[row] = gradient[4];
+        }
+        const VectorXd column = run.response->At(x)->Columns({moved}).col(0);
+        const std::string name = machine::MotionName(axis, motion) + ".c4";
+        EXPECT_LT((column + ByParameter(run, x, name)).norm(), 1e-9 * column.norm() + 1e-12);
+        if (column.norm() > 1e-12) ++acting;
+      }
+    }
+    return acting;
+  }
 };
 
 TEST_F(Response, OfASweepToItsOwnMotionsIsThatOfTheCoefficients) {
@@ -151,20 +172,7 @@ TEST_F(Response, OfAPlateIsThatOfItsParameters) {
     const SimulatedRun run = SimulatePlate(campaign.model, campaign.reference, setup);
     const Trace trace = TraceOf(recording, setup.points);
     const VectorXd x = StartOf(run).array() + 1e-5;
-    for (int axis = 0; axis < machine::kAxes; ++axis) {
-      for (int motion = 0; motion < machine::kMotions; ++motion) {
-        const auto& function = campaign.model.Function(axis, motion);
-        VectorXd gradient(function.size());
-        Disturbance moved = NoDisturbance(trace);
-        for (Index row = 0; row < trace.rows(); ++row) {
-          function.Evaluate(trace.axes(axis, row), nullptr, gradient.data());
-          moved.row(MotionStage(axis, motion))[row] = gradient[4];
-        }
-        const VectorXd column = run.response->At(x)->Columns({moved}).col(0);
-        const std::string name = machine::MotionName(axis, motion) + ".c4";
-        EXPECT_LT((column + ByParameter(run, x, name)).norm(), 1e-9 * column.norm() + 1e-12);
-      }
-    }
+    EXPECT_GE(MotionsThatAct(run, trace, x), 6);
     Disturbance second = NoDisturbance(trace);
     second.row(MotionStage(1, 4))[1] = 1e-3;
     ExpectAdjoint(*run.response->At(x), second, run.residual->Rows());
@@ -182,19 +190,7 @@ TEST_F(Response, OfAReferenceIsThatOfItsParameters) {
   const Trace trace = TraceOf(recording, places);
   ASSERT_EQ(trace.rows(), 12);
   const VectorXd x = StartOf(run).array() + 1e-5;
-  for (int axis = 0; axis < machine::kAxes; ++axis) {
-    for (int motion = 0; motion < machine::kMotions; ++motion) {
-      const auto& function = campaign.model.Function(axis, motion);
-      VectorXd gradient(function.size());
-      Disturbance moved = NoDisturbance(trace);
-      for (Index row = 0; row < trace.rows(); ++row) {
-        function.Evaluate(trace.axes(axis, row), nullptr, gradient.data());
-        moved.row(MotionStage(axis, motion))[row] = gradient[4];
-      }
-      const std::string name = machine::MotionName(axis, motion) + ".c4";
-      ExpectSame(run.response->At(x)->Columns({moved}).col(0), -ByParameter(run, x, name));
-    }
-  }
+  EXPECT_EQ(MotionsThatAct(run, trace, x), machine::kAxes * machine::kMotions);
   Disturbance second = NoDisturbance(trace);
   second.row(MotionStage(1, 1))[1] = 1.0;
   ExpectAdjoint(*run.response->At(x), second, run.residual->Rows());
