@@ -30,7 +30,9 @@ struct Peak {
   double frequency, power;
 };
 
+// Runs with a reference and of plates do not say how long they averaged.
 bool AreSingleReadings(const simulation::Trace& trace) {
+  if (trace.kind == "reference" || trace.kind == "plate") return false;
   return trace.samples.size() == 0 || (trace.samples.array() <= 1.0).all();
 }
 
@@ -38,7 +40,7 @@ std::vector<Rows> RowsOf(const Fit& fit, Index stage) {
   std::vector<Rows> runs;
   for (std::size_t run = 0; run < fit.runs(); ++run) {
     const simulation::Trace& trace = fit.TraceOf(run);
-    if (trace.rows() < 3 || trace.kind == "reference" || !AreSingleReadings(trace)) continue;
+    if (trace.rows() < 3 || !AreSingleReadings(trace)) continue;
     const auto of_run = fit.ScoresOf(run, stage);
     if (of_run.scores.size() == 0 || !(of_run.weights.maxCoeff() > 0.0)) continue;
     const Index rows = std::min(trace.rows(), kMostRows);

@@ -19,7 +19,8 @@ Cause Vibration() {
       .objects = AxesOf,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
-        if (trace.kind == "reference") return {};  // which does not say how long it averaged
+        // Neither says how long it averaged.
+        if (trace.kind == "reference" || trace.kind == "plate") return {};
         return LineInStage(trace, Positioning(AxisOf(object[0])), shape[0], trace.clock);
       },
       .shapes =
