@@ -113,9 +113,9 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
                   words.what, words.shows, words.check, words.remedy);
   if (const auto without = WorthOf(which, diagnosis, gain)) {
     text += fmt::format(
-        "  gain         rms {:.3f} of the stated noise without it, {:.3f} with it; {:.3f} and "
-        "{:.3f} "
-        "in rows held out\n",
+        "  gain         rms {:.3f} of the stated noise without it, {:.3f} with it; in rows held "
+        "out "
+        "{:.3f} and {:.3f}\n",
         without->seen, gain.seen, without->held, gain.after);
   }
   for (const auto& rival : finding.rivals) {

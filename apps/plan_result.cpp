@@ -85,7 +85,8 @@ ordered_json PlanJson(const Plan& plan) {
   ordered_json json{{"command", "diagnose-plan"},
                     {"causes", ordered_json::array()},
                     {"cannot_show", ordered_json::array()},
-                    {"alike", ordered_json::array()}};
+                    {"alike", ordered_json::array()},
+                    {"confused", ordered_json::array()}};
   for (const PlannedCause& planned : plan.causes) {
     ordered_json cause{{"cause", planned.candidate.cause->id},
                        {"object", planned.candidate.object},
@@ -105,6 +106,13 @@ ordered_json PlanJson(const Plan& plan) {
     json["alike"].push_back(
         {{"causes", {plan.causes[first].candidate.Name(), plan.causes[second].candidate.Name()}},
          {"cosine", cosine}});
+  }
+  for (const Group& group : GroupsOf(plan)) {
+    std::vector<std::string> names;
+    for (const std::size_t cause : group.causes) {
+      names.push_back(plan.causes[cause].candidate.Name());
+    }
+    json["confused"].push_back({{"causes", names}, {"cosine", group.cosine}});
   }
   return json;
 }

@@ -25,26 +25,11 @@ function plannedTable(caption, causes) {
   });
 }
 
-// Causes that are alike two by two, joined.
-function alikeGroups(alike = []) {
-  const groups = [];
-  for (const {causes, cosine} of alike) {
-    const meeting = groups.filter((group) => causes.some((one) => group.causes.has(one)));
-    const joined = {
-      causes: new Set([...causes, ...meeting.flatMap((group) => [...group.causes])]),
-      cosine: Math.min(cosine, ...meeting.map((group) => group.cosine)),
-    };
-    groups.splice(
-        0, groups.length, ...groups.filter((group) => !meeting.includes(group)), joined);
-  }
-  return groups;
-}
-
 const confusedBlock = (result) => notesBlock(
     'These runs could not tell apart:',
-    alikeGroups(result.alike)
+    (result.confused ?? [])
         .map(
-            ({causes, cosine}) => `${[...causes].map(candidateName).join('; ')} (cosine ${
+            ({causes, cosine}) => `${causes.map(candidateName).join('; ')} (cosine ${
                 fixed(cosine, 3)}; 1: they do the same)`));
 
 const seenCauses = (result) => (result.causes ?? []).filter(({seen}) => seen);

@@ -590,7 +590,7 @@ export function planResult() {
       cause('probe-gain', 'probe_b', 1.25, [{name: 'delta', unit: '', seen_from: 0.048, plausible: 0.01}])
     ],
     cannot_show: ['probe-gain:probe_b'],
-    alike: [{causes: ['servo-lag:X', 'clock-skew:linkage'], cosine: 0.9712}]
+    confused: [{causes: ['servo-lag:X', 'clock-skew:linkage'], cosine: 0.9712}]
   };
 }
 
