@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "diagnosis/found_model.h"
+#include "diagnosis/variables.h"
 
 namespace abbe::apps {
 namespace {
@@ -138,9 +139,16 @@ std::string PeriodText(const Leftover& leftover) {
   return fmt::format(", {:.1f} times per turn,", 2.0 * std::numbers::pi / leftover.period);
 }
 
+bool IsOfAnInterval(const Leftover& leftover) { return leftover.to > leftover.from; }
+
 std::string WhatItDoes(const Leftover& leftover) {
   if (leftover.variable == diagnosis::kScatter) return "scatters beyond what is stated";
   if (leftover.variable == diagnosis::kMemory) return "goes on from one reading to the next";
+  if (IsOfAnInterval(leftover)) {
+    const auto unit = diagnosis::UnitOf(leftover.variable);
+    return fmt::format("stands apart where {} is {:.4g} to {:.4g} {},", leftover.variable,
+                       leftover.from / unit.si, leftover.to / unit.si, unit.name);
+  }
   return fmt::format("varies with {}{}", leftover.variable, PeriodText(leftover));
 }
 
@@ -212,11 +220,17 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const HeldOutGain& gain) 
                            {"rms_after_mm", 1e3 * gain.arm_after}};
   }
   for (const Leftover& leftover : diagnosis.leftovers) {
-    json["unexplained"].push_back({{"variable", leftover.variable},
-                                   {"object", leftover.object},
-                                   {"amplitude", leftover.amplitude / leftover.unit.si},
-                                   {"unit", leftover.unit.name},
-                                   {"p_value", leftover.p_value}});
+    auto& left = json["unexplained"].emplace_back();
+    left = {{"variable", leftover.variable},
+            {"object", leftover.object},
+            {"amplitude", leftover.amplitude / leftover.unit.si},
+            {"unit", leftover.unit.name},
+            {"p_value", leftover.p_value}};
+    if (!IsOfAnInterval(leftover)) continue;
+    const auto unit = diagnosis::UnitOf(leftover.variable);
+    left["from"] = leftover.from / unit.si;
+    left["to"] = leftover.to / unit.si;
+    left["variable_unit"] = unit.name;
   }
   for (const Score& score : diagnosis.evidence) {
     json["evidence"].push_back({{"cause", score.candidate.cause->id},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -80,7 +81,8 @@ class Search {
  private:
   // Scores everything against the fit so far; false when nothing is probable enough.
   bool TakeBest() {
-    std::vector<Named> names = Shortlist(*fit_, candidates_);
+    if (shortlist_.empty()) shortlist_ = Shortlist(*fit_, candidates_);
+    std::vector<Named> names = shortlist_;
     if (diagnosis_.evidence.empty()) DescribeFirstRound(names);
     if (rim_sensors_ > 0) NoteShown(names);
     std::erase_if(names, [&](const Named& named) {
@@ -108,6 +110,8 @@ class Search {
       return refused_.size() < (fit ? kMostRefused : kMostCauses);
     }
     refused_.clear();  // it may have stood in the way
+    shortlist_.clear();
+    by_fits_.clear();
     taken_ = std::move(more);
     diagnosis_.findings.push_back(std::move(finding));
     fit_ = fit;
@@ -130,7 +134,7 @@ class Search {
   // Where the first order cannot tell, fits with each of the leading candidates decide: what is
   // there or not is too large for it, and rivals are too near to each other. The fit with the best
   // of them, if there was one.
-  std::shared_ptr<const Fit> DecideByFits(std::vector<Named>& names) const {
+  std::shared_ptr<const Fit> DecideByFits(std::vector<Named>& names) {
     if (names.empty()) return nullptr;
     const bool whole = names.front().best.candidate.cause->whole;
     const bool in_readings = InReadings(names.front().best.candidate);
@@ -148,11 +152,16 @@ class Search {
     double most = 0.0;
     std::shared_ptr<const Fit> of_most;
     for (Named* named : leading) {
-      std::vector<Candidate> with = taken_;
-      with.push_back(Refine(*fit_, *named).candidate);
-      auto fit = FitWith(with);
-      named->log_evidence = fit ? fit->log_likelihood() - fit_->log_likelihood() : 0.0;
-      if (fit && named->log_evidence > most) of_most = std::move(fit);
+      const auto [known, is_new] = by_fits_.try_emplace(named->best.candidate.Name(), 0.0);
+      std::shared_ptr<const Fit> fit;
+      if (is_new) {
+        std::vector<Candidate> with = taken_;
+        with.push_back(Refine(*fit_, *named).candidate);
+        fit = FitWith(with);
+        if (fit) known->second = fit->log_likelihood() - fit_->log_likelihood();
+      }
+      named->log_evidence = known->second;
+      if (named->log_evidence > most) of_most = std::move(fit);
       most = std::max(most, named->log_evidence);
     }
     for (Named& named : names) {
@@ -279,6 +288,8 @@ class Search {
   const std::size_t rim_sensors_;
   std::vector<Candidate> taken_, refused_;
   std::shared_ptr<const Fit> base_, fit_;
+  std::vector<Named> shortlist_;           // beside those taken in
+  std::map<std::string, double> by_fits_;  // log evidence, of those whose fits were made
   Diagnosis diagnosis_;
 };
 

@@ -78,23 +78,20 @@ Problem ProblemOf(const Campaign& campaign, const std::vector<SimulatedRun>& run
 
 // What is left to the minimum is in the gradient, which the evidence takes into account: where a
 // simulation that lacks something does not settle, near it is good enough. Standard uncertainties.
-const std::vector<double> kAsItIs{0.02, 1.0, 30.0, 1000.0}, kWithCauses{0.3, 1.0};
+struct Near {
+  double settled, tolerated;
+};
+constexpr Near kAsItIs{0.02, 1000.0}, kWithCauses{0.3, 1.0};
 
-estimation::Result Solve(const Problem& problem, const std::vector<double>& settled,
-                         estimation::Linearization& at) {
+estimation::Result Solve(const Problem& problem, const Near& near, estimation::Linearization& at) {
   constexpr int kFewPasses = 20;
-  for (auto limit = settled.begin();; ++limit) {
-    try {
-      return problem.Solve({.max_iterations = kFewPasses,
-                            .threads = 1,
-                            .settled = *limit,
-                            .jacobian_bytes = 0,
-                            .weak_directions = false},
-                           &at);
-    } catch (const NumericalError&) {
-      if (limit + 1 == settled.end()) throw;
-    }
-  }
+  return problem.Solve({.max_iterations = kFewPasses,
+                        .threads = 1,
+                        .settled = near.settled,
+                        .tolerated = near.tolerated,
+                        .jacobian_bytes = 0,
+                        .weak_directions = false},
+                       &at);
 }
 
 // Takes out of a covariance what keeps the last entry, the logarithm of a shape, from going too far
@@ -150,7 +147,7 @@ Fit::Fit(const Fit& before, std::vector<Candidate> taken_in)
 
 // The largest relative change of the shapes.
 double Fit::FollowShapes() {
-  constexpr double kAtMost = 0.2;
+  constexpr double kAtMost = 0.2, kDrawnFound = 0.05;
   double most = 0.0;
   for (Candidate& cause : taken_in_) {
     if (cause.cause->widens || cause.cause->whole) continue;
@@ -159,7 +156,9 @@ double Fit::FollowShapes() {
     if (cause.cause->drawn) {
       const double before = cause.shape[0];
       cause.shape[0] *= std::sqrt(coefficients.squaredNorm() / SeenOf(cause)) / before;
-      most = std::max(most, std::abs(1.0 - cause.shape[0] / before));
+      // So few draws tell their deviation no better.
+      const double moved = std::abs(1.0 - cause.shape[0] / before);
+      if (moved > kDrawnFound) most = std::max(most, moved);
     } else if (cause.cause->follows_size) {
       const double before = simulation::SizeOf(cause.shape);
       cause.shape = coefficients.head<1>();

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "diagnosis/scan.h"
 #include "diagnosis/variables.h"
 #include "simulation/causes/cause.h"
 #include "simulation/causes/shaft.h"
@@ -25,8 +26,7 @@ using simulation::Trace;
 
 constexpr Index kTerms = 8;
 constexpr double kAbsorbed = 1e-4;  // of the most information: what is left is rounding
-constexpr Index kLines = 400;
-constexpr double kOfAWave = 0.4;  // over the range, from one line to the next
+constexpr double kOfAWave = 0.4;    // over the range, from one line to the next
 
 const estimation::PrintUnit kMicrometres{"um", 1e-6}, kMicroradians{"urad", 1e-6};
 
@@ -43,6 +43,9 @@ struct Channel {
   Index stage;
   estimation::PrintUnit unit;
   unsigned instruments;  // whose runs feel it
+
+  // Whether so much could be left at all.
+  bool IsPlausible(double amount) const { return unit.name != kMicrometres.name || amount < 1e-3; }
 };
 
 std::vector<Channel> ChannelsOf(const Scene& scene) {
@@ -74,6 +77,8 @@ bool Feels(const Channel& channel, const Trace& trace) {
 struct Range {
   double first = std::numeric_limits<double>::infinity();
   double last = -std::numeric_limits<double>::infinity();
+
+  double Length() const { return last - first; }
 };
 
 Range RangeOf(const std::string& variable, const Channel& channel, const Scene& scene) {
@@ -91,17 +96,15 @@ Range RangeOf(const std::string& variable, const Channel& channel, const Scene& 
 struct Answer {
   double chi_square = 0.0;
   int freedom = 0;
-  double amplitude = 0.0;
-  double lines = 1.0;  // among which this is the strongest
-  double period = 0.0;
+  double length = 0.0;  // of the coefficients
 
-  // Natural logarithm of the probability of as much by chance.
-  double LogProbability() const {
+  // Natural logarithm of the probability of as much by chance, of the strongest among so many.
+  double LogProbability(double among) const {
     if (freedom == 0) return 0.0;
     const boost::math::chi_squared distribution(freedom);
     const double one = boost::math::cdf(boost::math::complement(distribution, chi_square));
     const double log_one = one > 0.0 ? std::log(one) : -0.5 * chi_square;
-    return std::min(0.0, log_one + std::log(lines));
+    return std::min(0.0, log_one + std::log(among));
   }
 };
 
@@ -119,7 +122,7 @@ Answer Explained(const Fit::Projection& projection) {
     found += along / value * eigen.eigenvectors().col(i);
     ++answer.freedom;
   }
-  answer.amplitude = found.norm() / std::numbers::sqrt2;
+  answer.length = found.norm();
   return answer;
 }
 
@@ -129,42 +132,64 @@ class Questions {
       : fit_(fit),
         scene_(fit.campaign().scene()),
         channels_(ChannelsOf(scene_)),
-        lines_(channels_.size()) {}
+        searched_(channels_.size()) {}
 
   std::vector<Leftover> AskAll() {
-    for (const std::string& variable : PeriodicVariablesOf(scene_)) FindLines(variable);
+    for (const std::string& variable : PeriodicVariablesOf(scene_)) Search(variable);
     for (std::size_t channel = 0; channel < channels_.size(); ++channel) Ask(channel);
     std::sort(found_.begin(), found_.end(),
               [](const Found& a, const Found& b) { return a.log_probability < b.log_probability; });
+    const auto questions = static_cast<double>(found_.size());
     std::vector<Leftover> leftovers;
     for (Found& each : found_) {
-      const auto same = [&](const Leftover& other) { return other.object == each.leftover.object; };
+      const auto same = [&](const Leftover& other) {
+        return other.object == channels_[each.channel].object;
+      };
       if (std::any_of(leftovers.begin(), leftovers.end(), same)) continue;
-      each.leftover.p_value =
-          std::min(1.0, std::exp(each.log_probability) * static_cast<double>(found_.size()));
-      if (each.leftover.p_value < kDoubt) leftovers.push_back(std::move(each.leftover));
+      const double p_value = std::min(1.0, std::exp(each.log_probability) * questions);
+      if (p_value >= kDoubt) continue;
+      Sharpen(each);
+      leftovers.push_back(Told(each));
+      leftovers.back().p_value = std::min(p_value, std::exp(each.log_probability) * questions);
     }
     return leftovers;
   }
 
  private:
-  // kTerms cosines of a variable over its range, or a line of it.
+  // kTerms cosines of a variable over its range, or a line of it, or an interval.
   struct Question {
     std::string variable;
     Range range;
     double wave = 0.0;  // of the line
+    Interval interval = {};
 
-    Index columns() const { return wave > 0.0 ? 2 : kTerms; }
+    Index columns() const { return wave > 0.0 ? 2 : interval.IsEmpty() ? kTerms : 1; }
+    // Of so many it is the strongest.
+    double among() const {
+      return wave > 0.0 ? static_cast<double>(kLines) : interval.IsEmpty() ? 1.0 : kIntervals;
+    }
   };
   struct Found {
-    Leftover leftover;
+    std::size_t channel;
+    Question question;
+    Answer answer;
     double log_probability;
   };
 
-  void Note(const Channel& channel, const std::string& variable, const Answer& answer) {
-    found_.push_back(
-        {{variable, channel.object, answer.amplitude, channel.unit, 1.0, answer.period},
-         answer.LogProbability()});
+  Leftover Told(const Found& found) const {
+    const Channel& channel = channels_[found.channel];
+    const Question& asked = found.question;
+    const double amplitude = channel.instruments == kRim ? RmsOf(found.answer, channel)
+                             : asked.interval.IsEmpty()  ? found.answer.length / std::numbers::sqrt2
+                                                         : found.answer.length;
+    return {asked.variable,
+            channel.object,
+            amplitude,
+            channel.unit,
+            1.0,
+            asked.wave > 0.0 ? 2.0 * std::numbers::pi / asked.wave : 0.0,
+            asked.interval.from,
+            asked.interval.to};
   }
 
   static std::vector<Disturbance> ColumnsOf(const Question& question, const Channel& channel,
@@ -177,8 +202,13 @@ class Questions {
     if (question.wave > 0.0) {
       return simulation::WaveInStage(trace, channel.stage, question.wave * values);
     }
+    if (!question.interval.IsEmpty()) {
+      const auto within =
+          values.array() >= question.interval.from && values.array() < question.interval.to;
+      return {simulation::InStage(trace, channel.stage, within.cast<double>())};
+    }
     std::vector<Disturbance> columns;
-    const double length = question.range.last - question.range.first;
+    const double length = question.range.Length();
     for (Index term = 1; term <= kTerms; ++term) {
       const double waves = std::numbers::pi * static_cast<double>(term) / length;
       columns.push_back(simulation::InStage(
@@ -188,13 +218,8 @@ class Questions {
   }
 
   // All questions of a channel together: they share its stage.
-  void Ask(std::size_t which) {
+  std::vector<Found> Asked(std::size_t which, const std::vector<Question>& questions) const {
     const Channel& channel = channels_[which];
-    std::vector<Question> questions = lines_[which];
-    for (const std::string& variable : VariablesOf(scene_)) {
-      const Range range = RangeOf(variable, channel, scene_);
-      if (range.last > range.first) questions.push_back({variable, range});
-    }
     std::vector<Index> groups;
     groups.reserve(questions.size());
     for (const Question& question : questions) groups.push_back(question.columns());
@@ -208,14 +233,55 @@ class Questions {
       return columns;
     };
     const auto projections = fit_.Project(disturb, groups);
+    std::vector<Found> found;
     for (std::size_t q = 0; q < questions.size(); ++q) {
       Answer answer = Explained(projections[q]);
-      if (questions[q].wave > 0.0) {
-        answer.lines = static_cast<double>(kLines);
-        answer.period = 2.0 * std::numbers::pi / questions[q].wave;
+      if (!channel.IsPlausible(answer.length)) answer = {};
+      found.push_back({which, questions[q], answer, answer.LogProbability(questions[q].among())});
+    }
+    return found;
+  }
+
+  void Ask(std::size_t channel) {
+    std::vector<Question> questions = searched_[channel];
+    for (const std::string& variable : VariablesOf(scene_)) {
+      const Range range = RangeOf(variable, channels_[channel], scene_);
+      if (range.last > range.first) questions.push_back({variable, range});
+    }
+    for (Found& found : Asked(channel, questions)) found_.push_back(std::move(found));
+  }
+
+  // The scan does not know what else may take in a part of an effect, and stops at an edge of it:
+  // moves the borders as long as more is explained.
+  void Sharpen(Found& found) const {
+    const double cell = found.question.range.Length() / static_cast<double>(kLines);
+    const double end =
+        std::nextafter(found.question.range.last, std::numeric_limits<double>::infinity());
+    for (bool better = !found.question.interval.IsEmpty(); better;) {
+      const auto [from, to] = found.question.interval;
+      std::vector<Question> others;
+      const auto add = [&](Interval interval) {
+        const Range& range = found.question.range;
+        interval.from = std::max(interval.from, range.first);
+        interval.to = std::min(interval.to, end);
+        if (interval.to - interval.from < 0.5 * cell) return;
+        others.push_back({found.question.variable, range, 0.0, interval});
+      };
+      for (Index cells = 1; cells < kLines; cells *= 2) {
+        const double step = cell * static_cast<double>(cells);
+        add({from - step, to});
+        add({from + step, to});
+        add({from, to - step});
+        add({from, to + step});
+        add({from - step, from});
+        add({to, to + step});
       }
-      if (channel.instruments == kRim) answer.amplitude = RmsOf(answer, channel);
-      Note(channel, questions[q].variable, answer);
+      better = false;
+      for (Found& other : Asked(found.channel, others)) {
+        if (other.answer.chi_square <= found.answer.chi_square) continue;
+        found = std::move(other);
+        better = true;
+      }
     }
   }
 
@@ -230,9 +296,9 @@ class Questions {
     return std::sqrt(answer.chi_square / weight);
   }
 
-  // The lines of each channel are weighed with the largest information that they could have; the
-  // strongest is then asked as it should be. Channels of one kind of run share range and waves.
-  void FindLines(const std::string& variable) {
+  // The strongest line and the strongest interval of each channel, to be asked as they should be.
+  // Channels of one kind of run share range and waves.
+  void Search(const std::string& variable) {
     for (const Instrument instrument : {kProbes, kLinkage, kRim}) {
       std::vector<std::size_t> channels;
       for (std::size_t c = 0; c < channels_.size(); ++c) {
@@ -241,65 +307,46 @@ class Questions {
       if (channels.empty()) continue;
       const Range range = RangeOf(variable, channels_[channels.back()], scene_);
       if (!(range.last > range.first)) continue;
+      const Scan scan = ScanOf(variable, channels, instrument);
       const std::vector<double> waves =
-          StrongestWaves(variable, channels, instrument,
-                         2.0 * std::numbers::pi * kOfAWave / (range.last - range.first));
+          StrongestWaves(scan, 2.0 * std::numbers::pi * kOfAWave / range.Length());
+      const std::vector<Interval> intervals = StrongestIntervals(scan);
       for (std::size_t c = 0; c < channels.size(); ++c) {
-        if (waves[c] > 0.0) lines_[channels[c]].push_back({variable, range, waves[c]});
+        auto& searched = searched_[channels[c]];
+        if (waves[c] > 0.0) searched.push_back({variable, range, waves[c]});
+        if (!intervals[c].IsEmpty()) searched.push_back({variable, range, 0.0, intervals[c]});
       }
     }
   }
 
-  std::vector<double> StrongestWaves(const std::string& variable,
-                                     const std::vector<std::size_t>& channels,
-                                     Instrument instrument, double step) const {
+  Scan ScanOf(const std::string& variable, const std::vector<std::size_t>& channels,
+              Instrument instrument) const {
     const auto count = static_cast<Index>(channels.size());
-    MatrixXd scores(count, 0), weights(count, 0);
-    RowVectorXd values;
+    Scan scan{{}, MatrixXd(count, 0), MatrixXd(count, 0)};
     for (std::size_t run = 0; run < fit_.runs(); ++run) {
       const Trace& trace = fit_.TraceOf(run);
       if (trace.rows() == 0 || InstrumentOf(trace) != instrument) continue;
       const RowVectorXd own = ValuesOf(variable, trace);
       if (own.size() == 0) continue;
-      for (MatrixXd* matrix : {&scores, &weights}) {
+      for (MatrixXd* matrix : {&scan.scores, &scan.weights}) {
         matrix->conservativeResize(Eigen::NoChange, matrix->cols() + own.size());
       }
-      values.conservativeResize(values.size() + own.size());
-      values.tail(own.size()) = own;
+      scan.values.conservativeResize(scan.values.size() + own.size());
+      scan.values.tail(own.size()) = own;
       for (Index c = 0; c < count; ++c) {
         const auto of_run =
             fit_.ScoresOf(run, channels_[channels[static_cast<std::size_t>(c)]].stage);
-        scores.row(c).tail(own.size()) = of_run.scores;
-        weights.row(c).tail(own.size()) = of_run.weights;
+        scan.scores.row(c).tail(own.size()) = of_run.scores;
+        scan.weights.row(c).tail(own.size()) = of_run.weights;
       }
     }
-    std::vector<double> found(channels.size(), 0.0), strongest(channels.size(), 0.0);
-    if (values.size() == 0) return found;
-    // From line to line by the angle of a step.
-    const Eigen::ArrayXd first_cosine = (step * values.array()).cos().transpose(),
-                         first_sine = (step * values.array()).sin().transpose();
-    VectorXd cosine = VectorXd::Ones(values.size()), sine = VectorXd::Zero(values.size());
-    for (Index line = 1; line <= kLines; ++line) {
-      const double wave = step * static_cast<double>(line);
-      const Eigen::ArrayXd before = cosine;
-      cosine = before * first_cosine - sine.array() * first_sine;
-      sine = before * first_sine + sine.array() * first_cosine;
-      const Eigen::ArrayXd power =
-          (scores * sine).array().square() / (weights * sine.cwiseAbs2()).array().max(1e-300) +
-          (scores * cosine).array().square() / (weights * cosine.cwiseAbs2()).array().max(1e-300);
-      for (std::size_t c = 0; c < channels.size(); ++c) {
-        if (power[static_cast<Index>(c)] <= strongest[c]) continue;
-        strongest[c] = power[static_cast<Index>(c)];
-        found[c] = wave;
-      }
-    }
-    return found;
+    return scan;
   }
 
   const Fit& fit_;
   const Scene scene_;
   const std::vector<Channel> channels_;
-  std::vector<std::vector<Question>> lines_;  // the strongest, for each channel
+  std::vector<std::vector<Question>> searched_;  // the strongest, for each channel
   std::vector<Found> found_;
 };
 

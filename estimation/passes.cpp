@@ -173,12 +173,14 @@ Settled SettleByPasses(const Problem& problem, const Layout& layout, const Solve
   Settled now{std::move(x), std::move(at), 0};
   if (layout.columns() == 0) return now;
   double damping = 0.0;
+  bool tolerable = false;
   std::string trouble;
   NormalEquations equations(now.at);
   // One pass at least: a linear problem then is exact, however far Ceres went.
   while (now.passes == 0 || equations.Length() > Short(problem, now.at, options.settled)) {
+    tolerable |= equations.Length() <= Short(problem, now.at, options.tolerated);
     if (now.passes == options.max_iterations || damping > kMostDamping) {
-      if (equations.Length() < kNegligible) break;
+      if (tolerable || equations.Length() < kNegligible) break;
       RefuseUnsettled(problem, layout, now.at, now.passes, trouble);
     }
     VectorXd trial = Moved(layout, now.x, equations.Step(damping));

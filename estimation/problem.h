@@ -85,8 +85,9 @@ struct Term {
 
 struct SolveOptions {
   int max_iterations = 100;
-  int threads = 0;        // 0: all; the result does not depend on it
-  double settled = 1e-6;  // standard uncertainties
+  int threads = 0;         // 0: all; the result does not depend on it
+  double settled = 1e-6;   // standard uncertainties
+  double tolerated = 0.0;  // the same: near enough, for a fit that settles in none of them
   std::size_t jacobian_bytes = 200'000'000;
   bool weak_directions = true;  // look for them, and for the condition: costs several eigensystems
 };

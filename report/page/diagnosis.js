@@ -179,17 +179,19 @@ const WITHOUT_VARIABLE = {
   memory: 'goes on from one reading to the next',
 };
 
+const whatItDoes = ({variable, from, to, variable_unit: unit}) => {
+  if (WITHOUT_VARIABLE[variable]) return WITHOUT_VARIABLE[variable];
+  if (!isNumber(from)) return `varies with ${variable}`;
+  const [first, last] = [from, to].map((border) => plain(Number(border.toPrecision(4))));
+  return `stands apart where ${variable} is ${first} to ${last}\u00a0${unit},`;
+};
+
 function leftoverBlock(result) {
-  return notesBlock(
-      'Left unexplained:',
-      (result.unexplained ?? [])
-          .map(
-              ({variable, object, amplitude, unit, p_value: p}) =>
-                  `${capital(objectName(object))} ${
-                      WITHOUT_VARIABLE[variable] ?? `varies with ${variable}`} by ${
-                      significant(amplitude)}\u00a0${
-                      micro(unit)} in a way that no known cause makes (p = ${
-                      plain(Number(p?.toPrecision(1)))})`));
+  return notesBlock('Left unexplained:', (result.unexplained ?? []).map((left) => {
+    const {object, amplitude, unit, p_value: p} = left;
+    return `${capital(objectName(object))} ${whatItDoes(left)} by ${significant(amplitude)}\u00a0${
+        micro(unit)} in a way that no known cause makes (p = ${plain(Number(p?.toPrecision(1)))})`;
+  }));
 }
 
 function gainTable(result) {

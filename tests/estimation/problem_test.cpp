@@ -301,8 +301,8 @@ TEST(Problem, OtherExceptionsOfAResidualPassThrough) {
   EXPECT_THROW(problem.Solve(), std::domain_error);
 }
 
-TEST(Problem, SaysWhatDoesNotSettle) {
-  // exp(-x) -> 0 has its minimum at infinity.
+// exp(-x) -> 0 has its minimum at infinity: each step is 1 long.
+Problem Runaway(double standard_deviation) {
   Problem problem;
   const BlockId p = problem.Add(Block("p", {"x"}));
   problem.Add(problem.AddSource("runaway"),
@@ -311,11 +311,25 @@ TEST(Problem, SaysWhatDoesNotSettle) {
                                           v[0] = std::exp(-x[0]);
                                           if (j) (*j)(0, 0) = -std::exp(-x[0]);
                                         }),
-              {p}, 1e-12);
+              {p}, standard_deviation);
+  return problem;
+}
+
+TEST(Problem, SaysWhatDoesNotSettle) {
+  const Problem problem = Runaway(1e-12);
   const std::string words = Words<NumericalError>([&] { problem.Solve({.max_iterations = 5}); });
   EXPECT_THAT(words, HasSubstr("did not settle in 5 passes"));
   EXPECT_THAT(words, HasSubstr("parameter p.x moves most, source 'runaway' pulls most"));
   EXPECT_THAT(words, HasSubstr("the rows of 'runaway' scatter at least"));
+}
+
+TEST(Problem, EndsAllItsPassesWhereNearIsGoodEnough) {
+  const Problem problem = Runaway(1.0);
+  SolveOptions options{.max_iterations = 5, .jacobian_bytes = 0};
+  options.tolerated = 0.5 * std::exp(-5.0);
+  EXPECT_THROW(problem.Solve(options), NumericalError);
+  options.tolerated = 2.0 * std::exp(-5.0);
+  EXPECT_NEAR(problem.Solve(options).Block("p")["x"].value, 5.0, 1e-9);
 }
 
 TEST(Problem, ResultStartsAsNotRun) {

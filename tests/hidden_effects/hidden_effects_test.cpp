@@ -87,6 +87,22 @@ INSTANTIATE_TEST_SUITE_P(OfAStandardCampaign, UnknownEffects,
                          testing::Values(Shown{"unknown-hum:object=probe_a"},
                                          Shown{"unknown-step-and-back:object=probe_d"}));
 
+TEST(UnknownBorders, AreTold) {
+  const HiddenWorlds worlds(rig::CampaignKind::kStandard);
+  const std::uint64_t seed = 377;
+  const auto world = worlds.Record(
+      seed, {"unknown-step-and-back:object=probe_a:height_um=0.468:from_s=592.4:to_s=633.0"});
+  const Diagnosis diagnosis = DiagnosisOf(worlds, seed, world);
+  ASSERT_FALSE(diagnosis.leftovers.empty());
+  const diagnosis::Leftover& left = diagnosis.leftovers.front();
+  EXPECT_EQ(left.object, "probe_a");
+  EXPECT_EQ(left.variable, "time");
+  constexpr double kCell = 1800.0 / 400.0;  // s
+  EXPECT_NEAR(left.from, 592.4, kCell);
+  EXPECT_NEAR(left.to, 633.0, kCell);
+  EXPECT_NEAR(left.amplitude, 0.468e-6, 0.1e-6);
+}
+
 // Gap steps tell most by far, and stand at one place.
 TEST(WhereItShows, IsOverTheWayThatTheAxisGoes) {
   const HiddenWorlds worlds(rig::CampaignKind::kFull);

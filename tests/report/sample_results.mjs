@@ -559,7 +559,16 @@ export function diagnosisResult() {
       next_run: 'move the gap of probe b alone',
       expected_odds: 0.999
     }],
-    unexplained: [],
+    unexplained: [{
+      variable: 'time',
+      object: 'probe_d',
+      amplitude: 0.224,
+      unit: 'um',
+      p_value: 2e-44,
+      from: 481.1,
+      to: 500.8,
+      variable_unit: 's'
+    }],
     heldout: {rows: 1240, rms_before: 1.88, rms_after: 1.03},
     chi2_per_row_before: 3.61,
     chi2_per_row_after: 1.02,
