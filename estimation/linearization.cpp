@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace abbe::estimation {
 namespace {
@@ -62,8 +63,8 @@ class Accumulator {
       sums_.gradient[column_b] += slope_[b];
       for (Index a = b; a < n; ++a) {
         const int column_a = columns[static_cast<std::size_t>(a)];
-        sums_.information(std::max(column_a, column_b), std::min(column_a, column_b)) +=
-            square_(a, b);
+        sums_.information(column_a, column_b) += square_(a, b);
+        if (a > b) sums_.information(column_b, column_a) += square_(a, b);
       }
     }
   }
@@ -252,12 +253,15 @@ Linearization Linearize(const Problem& problem, const Layout& layout, const Vect
                         [&](std::size_t i) { Sum(problem, layout, x, pieces[i]); });
     });
     SourceSums& sums = result.sources.emplace_back();
-    Clear(sums, layout.columns());
-    for (const Piece& piece : pieces) {
+    if (pieces.empty()) Clear(sums, layout.columns());
+    for (Piece& piece : pieces) {
       if (result.trouble.empty()) result.trouble = piece.trouble;
-      Add(sums, piece.sums);
+      if (&piece == &pieces.front()) {
+        sums = std::move(piece.sums);
+      } else {
+        Add(sums, piece.sums);
+      }
     }
-    sums.information.triangularView<Eigen::StrictlyUpper>() = sums.information.transpose();
   }
   return result;
 }
