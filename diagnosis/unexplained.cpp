@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include "diagnosis/scan.h"
 #include "diagnosis/variables.h"
