@@ -3,9 +3,11 @@
 
     ABBE=path/to/abbe ABBE_MACHINE=machine.toml usage_test.py
 """
+import os
+import subprocess
 import unittest
 
-from program_case import ProgramCase
+from program_case import PROGRAM, ProgramCase
 
 
 class UsageTest(ProgramCase):
@@ -28,6 +30,13 @@ class UsageTest(ProgramCase):
 
     def test_missing_option(self):
         self.refuse("a.h5", saying=["--machine is required", "abbe diagnose --help"])
+
+    def test_openblas_without_threads(self):
+        run = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True,
+                             env={**os.environ, "LD_PRELOAD": os.environ["OPENBLAS_WITHOUT_THREADS"]})
+        self.assertEqual(run.returncode, 2, run.stdout)
+        self.assertIn("built without threads", run.stderr)
+        self.assertIn("install libopenblas0-pthread", run.stderr)
 
 
 if __name__ == "__main__":
