@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 
 #include "apps/command.h"
@@ -46,12 +47,15 @@ void PrintDiagnosis(const nlohmann::ordered_json& truth, const nlohmann::ordered
   for (const std::string& name : comparison.wrong) {
     fmt::print("  {:<36}named, but not hidden\n", name);
   }
+  const auto rms = [&](const char* chi_square) { return std::sqrt(result.value(chi_square, 0.0)); };
+  fmt::print(
+      "  measured less simulated: {:.2f} of the stated noise before, {:.2f} after in all rows",
+      rms("chi2_per_row_before"), rms("chi2_per_row_after"));
   if (const auto held = result.find("heldout"); held != result.end()) {
-    fmt::print(
-        "  measured less simulated on rows that were held out: {:.2f} of the stated noise "
-        "before, {:.2f} after\n",
-        held->value("rms_before", 0.0), held->value("rms_after", 0.0));
+    fmt::print("; {:.2f} before, {:.2f} after in rows that were held out",
+               held->value("rms_before", 0.0), held->value("rms_after", 0.0));
   }
+  fmt::print("\n");
 }
 
 }  // namespace
