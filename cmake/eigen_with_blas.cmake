@@ -4,6 +4,7 @@ find_package(Eigen3 3.4 REQUIRED)
 set(BLA_VENDOR OpenBLAS)
 find_package(BLAS REQUIRED)
 unset(BLA_VENDOR)
+# Into every program, also those of others that use the installed libraries.
 add_library(abbe_one_blas_thread OBJECT ${CMAKE_CURRENT_LIST_DIR}/one_blas_thread.cpp)
 target_compile_definitions(Eigen3::Eigen INTERFACE EIGEN_USE_BLAS)
 target_link_libraries(Eigen3::Eigen INTERFACE $<TARGET_OBJECTS:abbe_one_blas_thread> BLAS::BLAS)

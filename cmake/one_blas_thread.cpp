@@ -16,8 +16,8 @@ bool UseOneThread() {
   if (openblas_get_parallel() == 0) {
     std::fputs(
         "abbe: the OpenBLAS of this machine was built without threads, and must not be called "
-        "from several; install libopenblas0-pthread, and choose it with 'update-alternatives "
-        "--config libopenblas.so.0-x86_64-linux-gnu' (the same for libblas.so.3-...)\n",
+        "from several; install libopenblas0-pthread (or choose it, where both are there: "
+        "update-alternatives --config libopenblas.so.0-x86_64-linux-gnu)\n",
         stderr);
     std::_Exit(2);
   }

@@ -36,21 +36,18 @@ std::vector<Factors> FactorsOfThreads() {
 
 TEST(Products, OfSeveralThreadsAreThoseOfOneToTheLastBit) {
   const std::vector<Factors> factors = FactorsOfThreads();
+  std::vector<Eigen::MatrixXd> alone;
+  for (const Factors& each : factors) alone.emplace_back(each.Product());
   std::vector<int> wrong(factors.size(), 0);
-  {
-    std::vector<Eigen::MatrixXd> alone;
-    for (const Factors& each : factors) alone.emplace_back(each.Product());
-    std::vector<std::jthread> threads;
-    for (std::size_t t = 0; t < factors.size(); ++t) {
-      threads.emplace_back([&, t] {
-        for (int round = 0; round < kRounds; ++round) {
-          const Eigen::MatrixXd product = factors[t].Product();
-          if (product != alone[t]) ++wrong[t];
-        }
-      });
-    }
-    threads.clear();  // joins
+  std::vector<std::jthread> threads;
+  for (std::size_t t = 0; t < factors.size(); ++t) {
+    threads.emplace_back([&, t] {
+      for (int round = 0; round < kRounds; ++round) {
+        if (factors[t].Product() != alone[t]) ++wrong[t];
+      }
+    });
   }
+  threads.clear();  // joins
   for (std::size_t t = 0; t < wrong.size(); ++t) {
     EXPECT_EQ(wrong[t], 0) << "of " << kRounds << " in thread " << t;
   }
