@@ -114,7 +114,6 @@ const parameterColumns = [
   {head: 'Parameter'}, {head: 'Value', numeric: true}, {head: 'Unit'},
   {head: 'Nominal', numeric: true}, {head: 'Tolerance', numeric: true}
 ];
-const micro = (unit) => unit?.replace(/^u(?=m$|rad$)/, '\u00b5');  // um, urad
 
 function parameterTable(caption, parameters) {
   if (!parameters.length) return null;
@@ -123,7 +122,7 @@ function parameterTable(caption, parameters) {
     columns: parameterColumns,
     rows: parameters.map(
         ({name, value, uncertainty, unit, nominal, prior}) =>
-            [code(name), quantity(value, COVERAGE * uncertainty), micro(unit),
+            [code(name), quantity(value, COVERAGE * uncertainty), unitText(unit),
              positionText(nominal), isNumber(prior) ? significant(prior, 2) : 'free']),
   });
 }

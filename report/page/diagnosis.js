@@ -46,7 +46,7 @@ function findingParameters({parameters}) {
   return table({
     caption: 'Size, with its expanded uncertainty',
     columns: [{head: 'Size'}, {head: 'Value', numeric: true}, {head: 'Unit'}],
-    rows: told.map((one) => [parameterName(one), quantity(one.value, one.u95), micro(one.unit)]),
+    rows: told.map((one) => [parameterName(one), quantity(one.value, one.u95), unitText(one.unit)]),
   });
 }
 
@@ -59,7 +59,7 @@ function findingWorth({curve, rms_before: before, rms_after: after, ...heldOut})
   const pair = (one, other) => `${one} without it, ${other} with it`;
   const where = curve?.x?.length ?
       `Where it shows ${pair(...[curve.before, curve.after].map(
-          (values) => `${significant(rootMeanSquare(numbers(values)))}\u00a0${micro(curve.unit)}`))}` :
+          (values) => `${significant(rootMeanSquare(numbers(values)))}\u00a0${unitText(curve.unit)}`))}` :
       null;
   const rows = isNumber(heldBefore) ?
       `in units of the stated noise ${pair(fixed(before, 3), fixed(after, 3))}; in rows that took ` +
@@ -86,7 +86,7 @@ function findingWords(finding) {
 function findingCurve(finding) {
   const {variable, unit, x, before, after} = finding.curve ?? {};
   if (!x?.length) return null;
-  const shown = micro(unit);
+  const shown = unitText(unit);
   const curves = [
     ['before', 'without what was found', before, 'backward'], ['after', 'with it', after, 'mean']
   ];
@@ -190,7 +190,7 @@ function leftoverBlock(result) {
   return notesBlock('Left unexplained:', (result.unexplained ?? []).map((left) => {
     const {object, amplitude, unit, p_value: p} = left;
     return `${capital(objectName(object))} ${whatItDoes(left)} by ${significant(amplitude)}\u00a0${
-        micro(unit)} in a way that no known cause makes (p = ${plain(Number(p?.toPrecision(1)))})`;
+        unitText(unit)} in a way that no known cause makes (p = ${plain(Number(p?.toPrecision(1)))})`;
   }));
 }
 

@@ -15,6 +15,9 @@ const NANOMETRE = {
   scale: 1e9
 };
 
+// A unit of a result as it is written: um, urad, hz.
+const unitText = (unit) => unit?.replace(/^u(?=m$|rad$)/, '\u00b5').replace(/^hz$/, 'Hz');
+
 const shownUnit = (si) => SHOWN_UNITS[si] ?? {name: si ?? '', scale: 1};
 
 // Lengths of probes: nanometres while all of them are below a micrometre.

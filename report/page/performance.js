@@ -10,7 +10,7 @@ function figureKey(key) {
 const performanceFigures = (result) => Object.keys(result.as_is ?? {}).map(figureKey);
 
 function performancePanel(result, unit, figures) {
-  const shown = micro(unit);
+  const shown = unitText(unit);
   const bars = (key, label, colour) => ({
     type: 'bar',
     name: label,
@@ -58,7 +58,7 @@ function performanceTable(result) {
           key,
           name,
           unit
-        }) => [name, text(result.as_is[key]), ...(after ? [text(after[key])] : []), micro(unit)]),
+        }) => [name, text(result.as_is[key]), ...(after ? [text(after[key])] : []), unitText(unit)]),
   });
 }
 

@@ -5,7 +5,7 @@ const planSizes = ({sizes}) => element(
     sizes.map(
         ({name, unit, seen_from: seen, plausible}) => element(
             'li', {},
-            [parameterName({name, unit}), 'from', significant(seen), unit && micro(unit),
+            [parameterName({name, unit}), 'from', significant(seen), unit && unitText(unit),
              `(usual: ${significant(plausible)})`]
                 .filter(Boolean)
                 .join(' '))));

@@ -5,9 +5,9 @@ import {test} from 'node:test';
 import vm from 'node:vm';
 
 const source = readFileSync(process.argv[2], 'utf8');
-const {fixed, placesFor, rounded, significant, typical, lengthUnit, positionText} =
-    vm.runInNewContext(
-        `${source};({fixed, placesFor, rounded, significant, typical, lengthUnit, positionText})`);
+const {fixed, placesFor, rounded, significant, typical, lengthUnit, positionText, unitText} =
+    vm.runInNewContext(`${source};({fixed, placesFor, rounded, significant, typical, lengthUnit,
+        positionText, unitText})`);
 const pair = (value, U) => {
   const text = rounded(value, U);
   return [text.value, text.U];
@@ -55,4 +55,11 @@ test('places never grow without limit', () => assert.equal(placesFor(1e-300, 2),
 test('lengths below a micrometre are in nanometres', () => {
   assert.equal(lengthUnit(0.9e-6).name, 'nm');
   assert.equal(lengthUnit(-1.1e-6).name, '\u00b5m');
+});
+
+test('units are written as standards write them', () => {
+  assert.deepEqual(
+      ['um', 'urad', 'hz', 'rad', 'mm', 'ms'].map(unitText),
+      ['\u00b5m', '\u00b5rad', 'Hz', 'rad', 'mm', 'ms']);
+  assert.equal(unitText(undefined), undefined);
 });
