@@ -53,8 +53,9 @@ std::optional<Nanoseconds> Moment(std::string_view date, std::string_view time) 
   constexpr std::string_view kSeconds = "00:00:00";
   const std::string_view decimals = time.substr(std::min(time.size(), kSeconds.size()));
   if (!IsWritten(date, "0000-00-00") || !IsWritten(time.substr(0, kSeconds.size()), kSeconds) ||
-      (!decimals.empty() && (decimals.size() == 1 ||
-                             !IsWritten(decimals, "." + std::string(decimals.size() - 1, '0'))))) {
+      (!decimals.empty() &&
+       (decimals[0] != '.' || decimals.size() == 1 ||
+        decimals.find_first_not_of("0123456789", 1) != std::string_view::npos))) {
     return std::nullopt;
   }
   const auto year = Parse<int>(date.substr(0, 4));
