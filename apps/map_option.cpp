@@ -51,8 +51,8 @@ std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given) {
     product *= static_cast<double>(each);
   }
   if (product <= kMost) return points;
-  throw InputError(fmt::format("--points: {:.3g} points in all, at most {:.0g} are written; take fewer",
-                               product, kMost));
+  throw InputError(fmt::format(
+      "--points: {:.3g} points in all, at most {:.0g} are written; take fewer", product, kMost));
 }
 
 Eigen::Vector3d VectorOf(const std::vector<double>& mm) {

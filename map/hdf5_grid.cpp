@@ -74,7 +74,8 @@ void SendAll(const std::string& file_name, const recording::Hdf5Sender& sender) 
     sender.Send('T', name);
     sender.Send('t', text);
   }
-  for (const char* name : {"tool_mm", "temperature_c", kAxisNames[0], kAxisNames[1], kAxisNames[2]}) {
+  for (const char* name :
+       {"tool_mm", "temperature_c", kAxisNames[0], kAxisNames[1], kAxisNames[2]}) {
     SendNumbers(file.id(), name, 1, file_name, sender);
   }
   SendNumbers(file.id(), "error_um", 4, file_name, sender);

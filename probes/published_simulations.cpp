@@ -207,7 +207,8 @@ SimulationErrors RunSimulation(const SimulationOptions& options) {
   constexpr std::uint64_t kChunk = kBlock * kBlocksPerChunk;
   const std::uint64_t chunks = (options.draws + kChunk - 1) / kChunk;
   std::vector<Sums> parts(chunks);
-  const int threads = options.threads == 0 ? tbb::info::default_concurrency() : std::min(options.threads, kMostThreads);
+  const int threads = options.threads == 0 ? tbb::info::default_concurrency()
+                                           : std::min(options.threads, kMostThreads);
   const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(threads);
   arena.execute([&] {

@@ -112,10 +112,10 @@ class TableReader {
  private:
   void Choose() {
     if (columns_.empty()) {
-      throw InputError(fmt::format(
-          "{}: a table does not say what its columns are ({}); name them with their "
-          "units, for example --column pivot_1_rad=NAME",
-          path_, fmt::join(names_, ", ")));
+      throw InputError(
+          fmt::format("{}: a table does not say what its columns are ({}); name them with their "
+                      "units, for example --column pivot_1_rad=NAME",
+                      path_, fmt::join(names_, ", ")));
     }
     for (const MonitoredColumn& column : columns_) {
       sums_.push_back(ParseColumnSum(column.channel, column.name, names_, path_));
@@ -134,9 +134,8 @@ class TableReader {
         line->remove_prefix(kByteOrderMark.size());
       }
       if (line->find('\0') != std::string_view::npos) {
-        throw InputError(
-            fmt::format("{}:{}: is no text in UTF-8; save the table as CSV (UTF-8)", path_,
-                        lines_.number()));
+        throw InputError(fmt::format("{}:{}: is no text in UTF-8; save the table as CSV (UTF-8)",
+                                     path_, lines_.number()));
       }
       const std::string_view text = Trimmed(*line);
       if (!text.empty() && !text.starts_with('#')) return line;

@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostLinks = 40;                // as many as Linux follows
-constexpr std::size_t kBegin = 1 << 14;       // bytes that tell the kind of a file
+constexpr int kMostLinks = 40;           // as many as Linux follows
+constexpr std::size_t kBegin = 1 << 14;  // bytes that tell the kind of a file
 constexpr std::string_view kNothingSaved = "nothing is saved";
 
 Overwriting& Policy() {
@@ -77,16 +77,17 @@ void RefuseInput(const struct stat& status, const std::string& name) {
     const auto read = StatOf(input);
     if (!read || read->st_dev != status.st_dev || read->st_ino != status.st_ino) continue;
     throw InputError(fmt::format(
-        "{}: exists already, and this command reads it; choose another name, or say --force", name));
+        "{}: exists already, and this command reads it; choose another name, or say --force",
+        name));
   }
 }
 
 void RefuseRecording(const std::string& kind, const std::string& name) {
   if (kind != "a recording") return;
-  throw InputError(
-      fmt::format("{}: exists already, and nothing recorded is overwritten; choose another name, or "
-                  "say --force",
-                  name));
+  throw InputError(fmt::format(
+      "{}: exists already, and nothing recorded is overwritten; choose another name, or "
+      "say --force",
+      name));
 }
 
 [[noreturn]] void RefusePlace(const std::string& name, int error) {
@@ -183,8 +184,8 @@ void WholeFile::Append(std::string_view bytes) {
 
 fs::path WholeFile::PartToFill(std::string_view kind_of) {
   if (special_) {
-    throw InputError(
-        fmt::format("{}: is a device or a pipe, which HDF5 cannot be written to; name a file", name_));
+    throw InputError(fmt::format(
+        "{}: is a device or a pipe, which HDF5 cannot be written to; name a file", name_));
   }
   if (!begun_) Open(kind_of);
   return part_;

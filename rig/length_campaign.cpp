@@ -22,7 +22,8 @@ recording::Recording RecordLengths(const LinkageRig& rig, const LengthProgram& p
   lengths.header = fmt::format(
       "kind = \"length\"\nmachine = {}\nstarted = \"{}\"\nsource = \"rig\"\n"
       "u_scale_ppm = {}\n\n[rig]\nseed = {}\nrun = {}\n",
-      settings::Quoted(world.settings().name), program.started, program.u_scale / kPpm, world.seed(), program.run);
+      settings::Quoted(world.settings().name), program.started, program.u_scale / kPpm,
+      world.seed(), program.run);
   std::vector<std::string> names = {"time_s",    "x_mm",        "y_mm",      "z_mm",       "pass",
                                     "direction", "feed_mm_min", "length_mm", "u_length_um"};
   names.insert(names.end(), program.sensors.begin(), program.sensors.end());

@@ -218,8 +218,8 @@ recording::Recording LinkageRig::Record(const Course& course, const CourseOption
                     options.rate, machine.update_rate));
   }
   const double step = options.step > 0.0 ? options.step : 1.0 / machine.update_rate;
-  RefuseTooLong(
-      CourseRun::DurationOf(course, {machine.acceleration, machine.lag}, step), options.rate);
+  RefuseTooLong(CourseRun::DurationOf(course, {machine.acceleration, machine.lag}, step),
+                options.rate);
   CourseMaker maker(*this, options);
   CourseRun run(course, {machine.acceleration, machine.lag}, step);
   double next = 0.0;

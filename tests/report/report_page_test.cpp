@@ -123,8 +123,8 @@ TEST_F(ReportPage, MissingFolderIsNamed) {
 TEST_F(ReportPage, LeavesOutWhatIsNestedWithoutEnd) {
   Put("a.json", R"({"command": "reduce"})");
   constexpr int kDepth = 200'000;
-  Put("deep.json", R"({"command": "reduce", "x": )" + std::string(kDepth, '[') +
-                       std::string(kDepth, ']') + "}");
+  Put("deep.json",
+      R"({"command": "reduce", "x": )" + std::string(kDepth, '[') + std::string(kDepth, ']') + "}");
   const Report report = Write();
   EXPECT_EQ(report.results, 1u);
   ASSERT_EQ(report.notes.size(), 1u);
