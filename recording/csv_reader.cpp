@@ -15,7 +15,6 @@
 namespace abbe::recording {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::string_view kBlanks = " \t";
 
 std::string_view Trimmed(std::string_view text) {

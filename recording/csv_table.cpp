@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "recording/column_sum.h"
+#include "recording/csv_form.h"
 #include "recording/line_reader.h"
 #include "settings/toml_text.h"
 
@@ -19,9 +20,7 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-std::string_view Trimmed(std::string_view text) {
+std::string_view WithoutBlanks(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";
   const auto first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};
@@ -50,7 +49,7 @@ std::vector<std::string> CellsOf(std::string_view line, char separator) {
       cells.back() += line[i];
     }
   }
-  for (std::string& cell : cells) cell = Trimmed(cell);
+  for (std::string& cell : cells) cell = WithoutBlanks(cell);
   return cells;
 }
 
@@ -137,7 +136,7 @@ class TableReader {
         throw InputError(fmt::format("{}:{}: is no text in UTF-8; save the table as CSV (UTF-8)",
                                      path_, lines_.number()));
       }
-      const std::string_view text = Trimmed(*line);
+      const std::string_view text = WithoutBlanks(*line);
       if (!text.empty() && !text.starts_with('#')) return line;
     }
     return std::nullopt;
