@@ -19,7 +19,7 @@ constexpr double kToMicro = 1e6;       // m -> um, rad -> urad
 constexpr double kToNano = 1e9;        // m -> nm
 constexpr double kToMillimetre = 1e3;  // m -> mm
 
-ordered_json List(const Eigen::VectorXd& values) {
+ordered_json NumbersOf(const Eigen::VectorXd& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
 }
 
@@ -48,10 +48,10 @@ ordered_json ErrorData(const ComponentResult& c) {
   ordered_json data{{"unit", UnitOf(c)},
                     {"kind", c.component.kind},
                     {"coverage", c.coverage},
-                    {"value", List(c.value)},
-                    {"u", List(c.u)}};
-  if (c.forward.size() > 0) data["forward"] = List(c.forward);
-  if (c.backward.size() > 0) data["backward"] = List(c.backward);
+                    {"value", NumbersOf(c.value)},
+                    {"u", NumbersOf(c.u)}};
+  if (c.forward.size() > 0) data["forward"] = NumbersOf(c.forward);
+  if (c.backward.size() > 0) data["backward"] = NumbersOf(c.backward);
   return data;
 }
 
@@ -63,7 +63,7 @@ ordered_json LineData(const LineFigure& figure) {
 void AddComponent(const ComponentResult& c, ordered_json& data) {
   const std::string& name = c.component.name;
   data["errors"][name] = ErrorData(c);
-  data["errors_at_target"][name] = {{"value", List(c.at_target)}, {"u", List(c.u_at_target)}};
+  data["errors_at_target"][name] = {{"value", NumbersOf(c.at_target)}, {"u", NumbersOf(c.u_at_target)}};
   if (c.straightness) {
     const probes::StraightnessFigures& s = *c.straightness;
     data["straightness"][name] = {{"end_points", s.end_points.error},
@@ -77,8 +77,8 @@ void AddComponent(const ComponentResult& c, ordered_json& data) {
   }
   if (c.range) data["angular_ranges"][name] = UncertainData(*c.range);
   if (c.reversal) {
-    data["reversal"][name] = {{"value", List(c.reversal->value)},
-                              {"u", List(c.reversal->u)},
+    data["reversal"][name] = {{"value", NumbersOf(c.reversal->value)},
+                              {"u", NumbersOf(c.reversal->u)},
                               {"mean", UncertainData(c.reversal->mean)},
                               {"max", UncertainData(c.reversal->largest)}};
   }
@@ -90,7 +90,7 @@ void AddComponent(const ComponentResult& c, ordered_json& data) {
 void AddDwells(const SweepResult& result, ordered_json& data) {
   for (std::size_t probe = 0; probe < probes::kProbes; ++probe) {
     data["residuals"][ProbeName(probe)] =
-        List(result.residual.row(static_cast<Eigen::Index>(probe)).transpose());
+        NumbersOf(result.residual.row(static_cast<Eigen::Index>(probe)).transpose());
   }
   ordered_json& dwells = data["dwells"];
   for (const probes::Dwell& dwell : result.dwells) {

@@ -30,7 +30,7 @@ using settings::Table;
 
 constexpr std::int64_t kFormat = 1;
 constexpr std::array kAxes{"x_mm", "y_mm", "z_mm"};
-constexpr std::array<std::pair<const char*, ErrorModel>, 4> kModels{{
+constexpr std::array<std::pair<const char*, ErrorModel>, 4> kModelNames{{
     {"pivots", ErrorModel::kPivots},
     {"published", ErrorModel::kPublished},
     {"published with bearing", ErrorModel::kPublishedWithBearing},
@@ -119,7 +119,7 @@ MappedParameters ReadMapped(const Table& table, Index parameters) {
 }  // namespace
 
 std::string ErrorModelName(ErrorModel model) {
-  for (const auto& [name, value] : kModels) {
+  for (const auto& [name, value] : kModelNames) {
     if (value == model) return name;
   }
   throw InputError("calibration: unknown error model");
@@ -127,7 +127,7 @@ std::string ErrorModelName(ErrorModel model) {
 
 ErrorModel ErrorModelNamed(const std::string& name) {
   std::vector<std::string> names;
-  for (const auto& [known, value] : kModels) {
+  for (const auto& [known, value] : kModelNames) {
     if (name == known) return value;
     names.push_back(Quoted(known));
   }

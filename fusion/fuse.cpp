@@ -25,7 +25,7 @@ using simulation::SimulatedRun;
 
 constexpr std::array<double, 6> kLengthsTried{0.5, 0.71, 1.0, 1.41, 2.0, 2.83};  // of the file's
 constexpr double kHalf = 0.5;
-constexpr Index kStations = 25;  // over a travel, for variances
+constexpr Index kTravelStations = 25;  // over a travel, for variances
 
 double LogDeterminant(const Eigen::LDLT<MatrixXd>& factor) {
   return factor.vectorD().cwiseMax(std::numeric_limits<double>::min()).array().log().sum();
@@ -196,10 +196,10 @@ class FuseJob {
     }
     const auto& function = model_.Function(axis, motion);
     const auto& travel = machine_.travels[static_cast<std::size_t>(axis)];
-    const VectorXd stations = VectorXd::LinSpaced(kStations, travel.first, travel.last);
-    MatrixXd rows = MatrixXd::Zero(kStations, n);
+    const VectorXd stations = VectorXd::LinSpaced(kTravelStations, travel.first, travel.last);
+    MatrixXd rows = MatrixXd::Zero(kTravelStations, n);
     VectorXd gradient(function.size());
-    for (Index i = 0; i < kStations; ++i) {
+    for (Index i = 0; i < kTravelStations; ++i) {
       function.Evaluate(stations[i], nullptr, gradient.data());
       rows.row(i).segment(first, function.size()) = gradient.transpose();
     }
@@ -211,7 +211,7 @@ class FuseJob {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(model_.ParameterCount());
     for (int axis = 0; axis < machine::kAxes; ++axis) {
       const auto& travel = machine_.travels[static_cast<std::size_t>(axis)];
-      const VectorXd x = VectorXd::LinSpaced(kStations, travel.first, travel.last);
+      const VectorXd x = VectorXd::LinSpaced(kTravelStations, travel.first, travel.last);
       const VectorXd centred = x.array() - x.mean();
       row += centred.transpose() * ValuesOf(machine::kMotions * axis + axis) /
              (3.0 * centred.squaredNorm());

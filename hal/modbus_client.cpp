@@ -16,7 +16,6 @@
 namespace abbe::hal {
 namespace {
 
-using Kind = ModbusFault::Kind;
 using std::chrono::steady_clock;
 
 std::string ErrorText(int error) { return std::generic_category().message(error); }
@@ -119,11 +118,11 @@ ModbusClient::Fault ModbusClient::Exchange(const ModbusRequest& request, Time de
   const ModbusReply reply =
       CheckReply(request, framing_, transaction_, std::span(reply_.data(), reply_size_));
   if (!reply.wrong.empty()) {
-    return Drop(Kind::kBadReply, fmt::format("{} to: {}", reply.wrong, request.Text()));
+    return Drop(ModbusFault::Kind::kBadReply, fmt::format("{} to: {}", reply.wrong, request.Text()));
   }
   backoff_s_ = 0.0;
   if (reply.exception != 0) {
-    return ModbusFault{Kind::kException, reply.exception,
+    return ModbusFault{ModbusFault::Kind::kException, reply.exception,
                        fmt::format("{} to: {}", ExceptionText(reply.exception), request.Text())};
   }
   words_ = reply.words;
@@ -132,7 +131,7 @@ ModbusClient::Fault ModbusClient::Exchange(const ModbusRequest& request, Time de
 
 ModbusClient::Fault ModbusClient::Connect(Time deadline) {
   const auto now = steady_clock::now();
-  if (now < retry_at_) return ModbusFault{Kind::kNoLink, 0, last_fault_};
+  if (now < retry_at_) return ModbusFault{ModbusFault::Kind::kNoLink, 0, last_fault_};
   const double limit =
       std::clamp(std::min(device_.times.response, SecondsTo(deadline)), 1e-3, 60.0);
   const auto whole = static_cast<std::uint32_t>(limit);
@@ -140,7 +139,7 @@ ModbusClient::Fault ModbusClient::Connect(Time deadline) {
                               static_cast<std::uint32_t>(1e6 * (limit - whole)));
   if (modbus_connect(link_->context) != 0) {
     const int error = errno;
-    return Drop(Kind::kNoLink, fmt::format("cannot connect: {}", ErrorText(error)));
+    return Drop(ModbusFault::Kind::kNoLink, fmt::format("cannot connect: {}", ErrorText(error)));
   }
   connected_ = true;
   ++connections_;
@@ -154,7 +153,7 @@ ModbusClient::Fault ModbusClient::Send(std::span<const std::uint8_t> frame,
                            : write(link_->socket(), frame.data(), frame.size());
   if (sent == static_cast<ssize_t>(frame.size())) return {};
   const int error = sent < 0 ? errno : EIO;
-  return Drop(Kind::kNoLink,
+  return Drop(ModbusFault::Kind::kNoLink,
               fmt::format("the link broke ({}) at: {}", ErrorText(error), request.Text()));
 }
 
@@ -170,7 +169,7 @@ ModbusClient::Fault ModbusClient::Receive(const ModbusRequest& request, Time dea
     if (ready < 0 && errno == EINTR) continue;
     if (ready <= 0) {
       const double waited_ms = -1e3 * SecondsTo(start);
-      return Drop(Kind::kTimeout,
+      return Drop(ModbusFault::Kind::kTimeout,
                   reply_size_ == 0
                       ? fmt::format("no answer within {:.0f} ms to: {}", waited_ms, request.Text())
                       : fmt::format("only {} of {} bytes within {:.0f} ms to: {}", reply_size_,
@@ -181,7 +180,7 @@ ModbusClient::Fault ModbusClient::Receive(const ModbusRequest& request, Time dea
     if (size < 0 && errno == EINTR) continue;
     if (size <= 0) {
       const std::string why = size == 0 ? "closed by the device" : ErrorText(errno);
-      return Drop(Kind::kNoLink, fmt::format("the link broke ({}) at: {}", why, request.Text()));
+      return Drop(ModbusFault::Kind::kNoLink, fmt::format("the link broke ({}) at: {}", why, request.Text()));
     }
     reply_size_ += static_cast<std::size_t>(size);
     wanted = ReplyLength(got(), framing_);

@@ -7,7 +7,6 @@
 namespace abbe::hal {
 namespace {
 
-constexpr int kReadHolding = 3, kReadInput = 4, kWriteOne = 6;
 constexpr int kRefusalBit = 0x80;
 constexpr std::size_t kTcpHead = 6;  // transaction, protocol, length; the unit follows
 constexpr std::size_t kCrcSize = 2;

@@ -16,6 +16,9 @@ namespace abbe::hal {
 
 enum class ModbusFraming { kTcp, kRtu };
 
+// Function codes, of those that abbe sends or answers.
+inline constexpr int kReadHolding = 3, kReadInput = 4, kWriteOne = 6, kWriteMany = 16;
+
 struct ModbusRequest {
   int unit = 1;
   int function = 4;  // 3 and 4: read `value` registers; 6: write `value`

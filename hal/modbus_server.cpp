@@ -14,12 +14,13 @@
 #include <system_error>
 #include <vector>
 
+#include "hal/modbus_frame.h"
+
 namespace abbe::hal {
 namespace {
 
 constexpr int kStopLookMs = 20;          // how often a waiting server looks whether to stop
 constexpr int kHalfRequestUs = 500'000;  // a request that has begun must be complete by then
-constexpr int kReadHolding = 3, kReadInput = 4, kWriteOne = 6, kWriteMany = 16;
 constexpr int kMostRead = MODBUS_MAX_READ_REGISTERS, kMostWrite = MODBUS_MAX_WRITE_REGISTERS;
 
 std::string ErrorText(int error) { return std::generic_category().message(error); }

@@ -8,11 +8,12 @@
 #include "map/export_tables.h"
 #include "map/text_file.h"
 #include "map/words.h"
+#include "settings/unit.h"
 
 namespace abbe::map {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
+using settings::kMillimetre;
 constexpr int kFunctions = kErrors - 3;
 
 class EtalonReader {

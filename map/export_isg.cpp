@@ -6,13 +6,14 @@
 #include "map/export_tables.h"
 #include "map/text_file.h"
 #include "map/words.h"
+#include "settings/unit.h"
 
 namespace abbe::map {
 namespace {
 
 using machine::kMotions;
 
-constexpr double kMillimetre = 1e-3;
+using settings::kMillimetre;
 
 int ColumnNamed(std::string_view name, const std::string& where) {
   const int error = ErrorNamed(name);

@@ -32,7 +32,7 @@ Eigen::Matrix3Xd OfTriples(const Json& list) {
   return values;
 }
 
-constexpr std::array kAxisKeys{"x_mm", "y_mm", "z_mm"};
+constexpr std::array kPositionKeys{"x_mm", "y_mm", "z_mm"};
 
 GridFile FileOf(const Json& json, const std::string& where) {
   FileHeader header;
@@ -43,7 +43,7 @@ GridFile FileOf(const Json& json, const std::string& where) {
   std::array<GridAxis, 3> axes;
   for (std::size_t k = 0; k < 3; ++k) {
     header.tool[static_cast<Eigen::Index>(k)] = json.at("tool_mm").at(k).get<double>() * 1e-3;
-    auto positions = json.at(kAxisKeys[k]).get<std::vector<double>>();
+    auto positions = json.at(kPositionKeys[k]).get<std::vector<double>>();
     for (double& position : positions) position *= 1e-3;
     axes[k] = AxisOfPositions(positions, where);
   }
@@ -66,7 +66,7 @@ Format::Paths WriteJsonGrid(const ErrorMap& map, const ExportOptions& options,
                {"scale", file.header.scale},
                {"sign", "actual - nominal of the tool in the workpiece"}};
   for (std::size_t k = 0; k < 3; ++k) {
-    json[kAxisKeys[k]] = Millimetres(file.grid.axes()[k]);
+    json[kPositionKeys[k]] = Millimetres(file.grid.axes()[k]);
   }
   json["error_um"] = Triples(file.grid.error());
   if (file.grid.u95().size() > 0) json["u95_um"] = Triples(file.grid.u95());

@@ -8,11 +8,12 @@
 #include "map/export_axis_comp.h"
 #include "map/text_file.h"
 #include "map/words.h"
+#include "settings/unit.h"
 
 namespace abbe::map {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
+using settings::kMillimetre;
 
 std::filesystem::path PathOf(const std::filesystem::path& path, int axis) {
   std::filesystem::path file = path;

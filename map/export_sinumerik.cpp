@@ -9,11 +9,12 @@
 #include "map/export_axis_comp.h"
 #include "map/text_file.h"
 #include "map/words.h"
+#include "settings/unit.h"
 
 namespace abbe::map {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
+using settings::kMillimetre;
 constexpr int kTables = 9;
 
 // One CEC table as its file says it, mm.

@@ -15,7 +15,7 @@ namespace {
 
 using recording::Handle;
 
-constexpr std::array kAxisNames{"x_mm", "y_mm", "z_mm"};
+constexpr std::array kGridAxes{"x_mm", "y_mm", "z_mm"};
 
 void Need(bool is_good, const std::filesystem::path& path) {
   if (is_good) return;
@@ -72,7 +72,7 @@ void PutGrid(hid_t file, const GridFile& content, const std::filesystem::path& p
   std::vector<hsize_t> shape = {3};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::vector<double> positions = Millimetres(axes[k]);
-    PutNumbers(file, kAxisNames[k], {positions.size()}, positions.data(), path);
+    PutNumbers(file, kGridAxes[k], {positions.size()}, positions.data(), path);
     shape.insert(shape.begin(), positions.size());
   }
   const Eigen::Matrix3Xd error_um = content.grid.error() * 1e6;
@@ -128,7 +128,7 @@ GridFile ReadHdf5Grid(const std::filesystem::path& path) {
   header.temperature = temperature[0];
   std::array<GridAxis, 3> axes;
   for (std::size_t k = 0; k < 3; ++k) {
-    auto positions = GetNumbers(file.id(), kAxisNames[k], path);
+    auto positions = GetNumbers(file.id(), kGridAxes[k], path);
     for (double& position : positions) position *= 1e-3;
     axes[k] = AxisOfPositions(positions, path.string());
   }

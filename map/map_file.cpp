@@ -25,7 +25,7 @@ using settings::QuotedList;
 using settings::Table;
 
 constexpr std::int64_t kFormat = 1;
-constexpr std::array kAxisKeys{"x", "y", "z"};
+constexpr std::array kTravelKeys{"x", "y", "z"};
 
 std::string_view NameOf(Source source) { return kSourceNames[static_cast<std::size_t>(source)]; }
 
@@ -42,10 +42,10 @@ std::string HeadText(const ErrorMap& map) {
       Floats(origin.tool), Float(origin.temperature), Quoted(map.Scale()),
       Floats(map.model().squareness()),
       QuotedList(std::array{of_squareness(0), of_squareness(1), of_squareness(2)}));
-  for (std::size_t axis = 0; axis < kAxisKeys.size(); ++axis) {
+  for (std::size_t axis = 0; axis < kTravelKeys.size(); ++axis) {
     const machine::Travel& travel = map.model().travels()[axis];
     text +=
-        fmt::format("{} = {}\n", kAxisKeys[axis], Floats(std::array{travel.first, travel.last}));
+        fmt::format("{} = {}\n", kTravelKeys[axis], Floats(std::array{travel.first, travel.last}));
   }
   return text;
 }
@@ -111,10 +111,10 @@ auto Located(const Table& table, const char* key, const Make& make) {
 machine::VolumetricModel ReadFrame(const Table& root) {
   std::array<machine::Travel, machine::kAxes> travels;
   const Table table = root.Child("travel");
-  for (std::size_t axis = 0; axis < kAxisKeys.size(); ++axis) {
-    const auto ends = table.Quantities(kAxisKeys[axis], 2);
+  for (std::size_t axis = 0; axis < kTravelKeys.size(); ++axis) {
+    const auto ends = table.Quantities(kTravelKeys[axis], 2);
     if (!(ends[0] < ends[1])) {
-      throw table.Error(kAxisKeys[axis], "must be [first, last] with the first below the last");
+      throw table.Error(kTravelKeys[axis], "must be [first, last] with the first below the last");
     }
     travels[axis] = {ends[0], ends[1]};
   }

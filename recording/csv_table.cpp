@@ -19,18 +19,18 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-std::string_view Trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\"";
-  const auto first = text.find_first_not_of(kBlanks);
+std::string_view TrimmedCell(std::string_view text) {
+  constexpr std::string_view kCellEdges = " \t\"";
+  const auto first = text.find_first_not_of(kCellEdges);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+  return text.substr(first, text.find_last_not_of(kCellEdges) - first + 1);
 }
 
 std::vector<std::string> CellsOf(std::string_view line) {
   std::vector<std::string> cells;
   for (;;) {
     const auto comma = line.find(',');
-    cells.emplace_back(Trimmed(line.substr(0, comma)));
+    cells.emplace_back(TrimmedCell(line.substr(0, comma)));
     if (comma == std::string_view::npos) return cells;
     line.remove_prefix(comma + 1);
   }
@@ -87,7 +87,7 @@ class TableReader {
  private:
   std::optional<std::string_view> Next() {
     for (auto line = lines_.Next(); line; line = lines_.Next()) {
-      const std::string_view text = Trimmed(*line);
+      const std::string_view text = TrimmedCell(*line);
       if (!text.empty() && !text.starts_with('#')) return line;
     }
     return std::nullopt;

@@ -13,7 +13,7 @@
 namespace abbe::recording {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 20;
+constexpr std::size_t kBytesAtOnce = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ LineReader::LineReader(const std::filesystem::path& path) : name_(path.string())
     throw InputError(
         fmt::format("{}: cannot be read: {}; check the path", name_, std::strerror(errno)));
   }
-  block_.resize(kBlock);
+  block_.resize(kBytesAtOnce);
 }
 
 LineReader::~LineReader() { close(file_); }
@@ -75,7 +75,7 @@ std::optional<std::string_view> LineReader::Next() {
 std::size_t LineReader::CountLineEnds() {
   const off_t here = lseek(file_, 0, SEEK_CUR);
   lseek(file_, 0, SEEK_SET);
-  std::vector<char> block(kBlock);
+  std::vector<char> block(kBytesAtOnce);
   std::size_t line_ends = 0;
   while (const std::size_t size = ReadSome(block.data(), block.size())) {
     line_ends += static_cast<std::size_t>(std::count(block.data(), block.data() + size, '\n'));

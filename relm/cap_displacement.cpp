@@ -73,7 +73,7 @@ Readings FromGauges(const Recording& recording, const std::vector<std::size_t>& 
 }
 
 // Positions, times, force and feed of the rows without a flag; the reference where it is there.
-MeasuredPath Motion(const Recording& recording) {
+MeasuredPath SteadyMotion(const Recording& recording) {
   if (HasReference(recording)) return ReferencePath(recording);
   Recording with = recording;  // the commanded position as its own reference: motion only
   for (const char axis : {'x', 'y', 'z'}) {
@@ -205,7 +205,7 @@ std::vector<CapDisplacement> EvaluateCap(const Recording& recording,
         "--gauge X=probe_d_um",
         recording.name));
   }
-  const MeasuredPath motion = Motion(recording);
+  const MeasuredPath motion = SteadyMotion(recording);
   return Displacements(recording, motion,
                        gauges.empty() ? Beside(motion, motion.measured, motion.commanded)
                                       : FromGauges(recording, motion.rows, gauges));

@@ -8,6 +8,7 @@
 #include "failure/failure.h"
 #include "rig/noise.h"
 #include "rig/streams.h"
+#include "settings/unit.h"
 
 namespace abbe::rig {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using nlohmann::ordered_json;
 
-constexpr double kMillimetre = 1e-3;
+using settings::kMillimetre;
 constexpr double kMetrePerSecond = 60e3;  // in mm/min
 
 // The rows of one recording as they are made.

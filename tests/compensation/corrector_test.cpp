@@ -4,7 +4,7 @@
 #include "map_cases.h"
 
 namespace abbe::compensation {
-namespace {
+namespace corrector_test {
 
 using Eigen::Vector3d;
 using map::ErrorMap;
@@ -127,5 +127,5 @@ TEST(Corrector, LinesOfTheStatedLengthStayWithinTheTolerance) {
   EXPECT_GT(worst, 0.3 * kTolerance);
 }
 
-}  // namespace
+}  // namespace corrector_test
 }  // namespace abbe::compensation

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace abbe::diagnosis {
-namespace {
+namespace candidate_test {
 
 double CoarsenessAt(double positioning) {
   machine::Population population{};
@@ -35,5 +35,5 @@ TEST(Coarseness, ScalesTheLengthsOfTheAxesOnly) {
   EXPECT_GT(lengths, 4);
 }
 
-}  // namespace
+}  // namespace candidate_test
 }  // namespace abbe::diagnosis

@@ -13,7 +13,7 @@
 #include "settings/document.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace positioning_field_test {
 
 // A stage without guide to its quality: positioning errors of some ten um that change from target
 // to target.
@@ -88,5 +88,5 @@ TEST_F(RealAxis, WarmsUpWithItsMotor) {
   EXPECT_NEAR(values[0] * cycles, 90e-6, 25e-6);
 }
 
-}  // namespace
+}  // namespace positioning_field_test
 }  // namespace abbe::diagnosis

@@ -9,7 +9,7 @@
 #include "linkage_world.h"
 
 namespace abbe::fusion {
-namespace {
+namespace calibrate_test {
 
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
@@ -156,5 +156,5 @@ TEST_F(Refusal, ContradictoryPrior) {
       HasSubstr("the data contradict the prior"));
 }
 
-}  // namespace
+}  // namespace calibrate_test
 }  // namespace abbe::fusion

@@ -10,7 +10,7 @@
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::fusion {
-namespace {
+namespace fuse_test {
 
 using Eigen::Vector3d;
 using simulation::SimulatedRun;
@@ -162,5 +162,5 @@ TEST_F(FuseOfRig, RefusesNoRunsAndPlacesOutside) {
               ThrowsMessage<InputError>(HasSubstr("length Y: row 4: y = 80.0000 mm lies outside")));
 }
 
-}  // namespace
+}  // namespace fuse_test
 }  // namespace abbe::fusion

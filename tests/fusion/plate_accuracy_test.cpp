@@ -17,7 +17,7 @@
 #include "tests/seeds.h"
 
 namespace abbe::fusion {
-namespace {
+namespace plate_accuracy_test {
 
 using Eigen::VectorXd;
 using simulation::PlateSetUp;
@@ -163,5 +163,5 @@ TEST_F(PlateOfRig, BSplinesPredictHolesThatTheyHaveNotSeen) {
   EXPECT_LT(checks[0].held_out, 1.5 * std::sqrt(2.0) * std::hypot(0.5e-6, 0.2e-6));
 }
 
-}  // namespace
+}  // namespace plate_accuracy_test
 }  // namespace abbe::fusion

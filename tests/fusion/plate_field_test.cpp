@@ -15,7 +15,7 @@
 #include "simulation/plate_simulation.h"
 
 namespace abbe::fusion {
-namespace {
+namespace plate_field_test {
 
 // Two axes under a tool; of the third the plate says nothing.
 constexpr char kMachine[] = R"(
@@ -90,5 +90,5 @@ TEST_F(PlugPlate, IsPredictedWhereItWasNotSeen) {
   EXPECT_LE(checks[0].held_out, 4.2e-6);
 }
 
-}  // namespace
+}  // namespace plate_field_test
 }  // namespace abbe::fusion

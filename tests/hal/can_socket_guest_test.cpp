@@ -10,7 +10,7 @@
 #include "can_guest.h"
 
 namespace abbe::hal {
-namespace {
+namespace can_socket_guest_test {
 
 class CanSocketGuest : public CanGuest {};
 
@@ -206,5 +206,5 @@ TEST_F(CanSocketGuest, FollowsAControllerThroughBusOffAndBack) {
   EXPECT_TRUE(Reaches(bus, CanState::kGone));
 }
 
-}  // namespace
+}  // namespace can_socket_guest_test
 }  // namespace abbe::hal

@@ -14,7 +14,7 @@
 #include "hal/candump_recording.h"
 
 namespace abbe::hal {
-namespace {
+namespace candump_test {
 
 class CandumpTest : public testing::Test {
  protected:
@@ -219,5 +219,5 @@ TEST_F(CandumpTest, TheReplayKeepsThePaceOfTheLog) {
   EXPECT_FALSE(bus.Receive(100.0).has_value());
 }
 
-}  // namespace
+}  // namespace candump_test
 }  // namespace abbe::hal

@@ -12,7 +12,7 @@
 #include "can_encoder_node.h"
 
 namespace abbe::hal {
-namespace {
+namespace canopen_source_test {
 
 constexpr double kStale = 1.0;
 
@@ -291,5 +291,5 @@ TEST_F(ThreeEncoders, AListenerTakesCyclicPdos) {
   }
 }
 
-}  // namespace
+}  // namespace canopen_source_test
 }  // namespace abbe::hal

@@ -10,7 +10,7 @@
 #include "scripted_modbus_server.h"
 
 namespace abbe::hal {
-namespace {
+namespace modbus_client_test {
 
 using Kind = ModbusFault::Kind;
 
@@ -225,5 +225,5 @@ TEST(ModbusClient, TakesAHostName) {
   }
 }
 
-}  // namespace
+}  // namespace modbus_client_test
 }  // namespace abbe::hal

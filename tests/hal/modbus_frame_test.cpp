@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace abbe::hal {
-namespace {
+namespace modbus_frame_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -107,5 +107,5 @@ TEST(ModbusFrame, AWrittenWordMustComeBack) {
       "an echo that differs from what was written");
 }
 
-}  // namespace
+}  // namespace modbus_frame_test
 }  // namespace abbe::hal

@@ -13,7 +13,7 @@
 #include "sample_source_contract.h"
 
 namespace abbe::hal {
-namespace {
+namespace modbus_source_test {
 
 // Unit 1, input registers 0 and 1: the contract's truth, with the trouble in its place.
 class TroubledBank : public RegisterBank {
@@ -280,5 +280,5 @@ TEST(ModbusServer, ServesSeveralClientsAndGivesItsPlaceAway) {
   }
 }
 
-}  // namespace
+}  // namespace modbus_source_test
 }  // namespace abbe::hal

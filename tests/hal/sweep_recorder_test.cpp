@@ -14,7 +14,7 @@
 #include "swept_machine.h"
 
 namespace abbe::hal {
-namespace {
+namespace sweep_recorder_test {
 
 enum Column { kTime, kX, kY, kZ, kPass, kDirection, kFeed, kProbe, kFlags };
 
@@ -430,5 +430,5 @@ TEST(SweepFollower, PassingThroughAStationIsNoVisit) {
   EXPECT_EQ(feed.follower.Lacking().size(), 12u);
 }
 
-}  // namespace
+}  // namespace sweep_recorder_test
 }  // namespace abbe::hal

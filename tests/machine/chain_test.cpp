@@ -6,7 +6,7 @@
 #include "failure/failure.h"
 
 namespace abbe::machine {
-namespace {
+namespace chain_test {
 
 TEST(Chain, SaysWhichAxesMoveTheWorkpieceAndWhichTheTool) {
   const Chain column = Chain::Parse("[w X Y b Z t]");
@@ -68,5 +68,5 @@ TEST(Chain, RefusesAnAxisThatIsNotThere) {
   EXPECT_THROW(Chain::Parse("[w X Y b Z t]").CarriesTarget('A'), InputError);
 }
 
-}  // namespace
+}  // namespace chain_test
 }  // namespace abbe::machine

@@ -6,7 +6,7 @@
 #include "failure/failure.h"
 
 namespace abbe::machine {
-namespace {
+namespace machine_test {
 
 constexpr char kSmall[] = R"(
 name = "small"
@@ -76,5 +76,5 @@ TEST(Machine, TheDemonstrationMachineIsRead) {
   EXPECT_FALSE(machine.chain.CarriesTarget('Z'));
 }
 
-}  // namespace
+}  // namespace machine_test
 }  // namespace abbe::machine

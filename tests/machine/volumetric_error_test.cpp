@@ -15,7 +15,7 @@
 #include "volumetric_cases.h"
 
 namespace abbe::machine {
-namespace {
+namespace volumetric_error_test {
 
 using Eigen::Vector3d;
 
@@ -135,5 +135,5 @@ TEST(Configurations, AnUnknownNameIsToldTheNearestAndAll) {
   }
 }
 
-}  // namespace
+}  // namespace volumetric_error_test
 }  // namespace abbe::machine

@@ -11,7 +11,7 @@
 #include "volumetric_cases.h"
 
 namespace abbe::machine {
-namespace {
+namespace volumetric_field_test {
 
 using Eigen::Vector3d;
 
@@ -109,5 +109,5 @@ TEST(VolumetricField, RefusesWhatLiesOutsideAndTakesARoundedEnd) {
   EXPECT_NO_THROW(field.Error({0.5 * (1 + 2 * kEps), 0.4, -0.3}, kTool));
 }
 
-}  // namespace
+}  // namespace volumetric_field_test
 }  // namespace abbe::machine

@@ -8,7 +8,7 @@
 #include "volumetric_cases.h"
 
 namespace abbe::machine {
-namespace {
+namespace volumetric_jacobian_test {
 
 using Eigen::Vector3d;
 
@@ -84,5 +84,5 @@ TEST(VolumetricJacobian, IsThatOfFiniteDifferences) {
   }
 }
 
-}  // namespace
+}  // namespace volumetric_jacobian_test
 }  // namespace abbe::machine

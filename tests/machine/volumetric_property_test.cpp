@@ -9,7 +9,7 @@
 #include "volumetric_cases.h"
 
 namespace abbe::machine {
-namespace {
+namespace volumetric_property_test {
 
 using Eigen::Vector3d;
 
@@ -154,5 +154,5 @@ RC_GTEST_PROP(VolumetricError, OfOnePositioningErrorIsThatError, ()) {
   RC_ASSERT((ErrorOf(c) - side * e * Vector3d::Unit(axis)).norm() < kRounding);
 }
 
-}  // namespace
+}  // namespace volumetric_property_test
 }  // namespace abbe::machine

@@ -12,7 +12,7 @@
 #include "map_cases.h"
 
 namespace abbe::map {
-namespace {
+namespace exporter_test {
 
 using Eigen::Vector3d;
 
@@ -235,5 +235,5 @@ TEST_F(BrokenExport, ACutOffFileIsRefusedWhereverTheCutIs) {
   }
 }
 
-}  // namespace
+}  // namespace exporter_test
 }  // namespace abbe::map

@@ -5,7 +5,7 @@
 #include "map_cases.h"
 
 namespace abbe::map {
-namespace {
+namespace map_file_test {
 
 using Eigen::Vector3d;
 
@@ -96,5 +96,5 @@ TEST_F(BrokenMap, ATruncatedFileIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace map_file_test
 }  // namespace abbe::map

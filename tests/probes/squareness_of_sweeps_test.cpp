@@ -8,7 +8,7 @@
 #include "tests/probes/synthetic_sweep.h"
 
 namespace abbe::probes {
-namespace {
+namespace squareness_of_sweeps_test {
 
 constexpr char kMounting[] = "[mounting]\nid = \"A17\"\n";  // as abbe sweep writes it
 
@@ -107,5 +107,5 @@ TEST(SquarenessOfSweeps, IsRefusedWhenAConditionFails) {
   EXPECT_THAT(RefusalOf(x, foreign, setup.target), testing::HasSubstr("two machines"));
 }
 
-}  // namespace
+}  // namespace squareness_of_sweeps_test
 }  // namespace abbe::probes

@@ -9,7 +9,7 @@
 #include <fstream>
 
 namespace abbe::recording {
-namespace {
+namespace csv_table_test {
 
 using testing::HasSubstr;
 
@@ -77,5 +77,5 @@ TEST_F(CsvTable, RefusalsSayWhatIsWrong) {
   EXPECT_THAT(Refusal(kTable, {{}, {}, "linkage"}), HasSubstr("name them with their units"));
 }
 
-}  // namespace
+}  // namespace csv_table_test
 }  // namespace abbe::recording

@@ -10,7 +10,7 @@
 #include <fstream>
 
 namespace abbe::recording {
-namespace {
+namespace monitor_log_test {
 
 using ::testing::HasSubstr;
 
@@ -88,5 +88,5 @@ TEST_F(MonitorLog, NamesTheWrongLine) {
   EXPECT_THROW(ReadMonitorLog(path_, {}), InputError);
 }
 
-}  // namespace
+}  // namespace monitor_log_test
 }  // namespace abbe::recording

@@ -10,7 +10,7 @@
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace writer_test {
 
 constexpr const char* kHeader = "kind = \"dwell\"\nmachine = \"m\"";
 const std::vector<std::string> kColumns{"time_s", "mood"};
@@ -125,5 +125,5 @@ TEST(WriterTest, SaysThatADeviceIsFull) {
   ExpectHas(MessageOf<DeviceError>([&] { Write(Dwell(10), scratch / "a.csv"); }), "disk full");
 }
 
-}  // namespace
+}  // namespace writer_test
 }  // namespace abbe::recording

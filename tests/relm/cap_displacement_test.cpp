@@ -9,7 +9,7 @@
 #include "failure/failure.h"
 
 namespace abbe::relm {
-namespace {
+namespace cap_displacement_test {
 
 using ::testing::HasSubstr;
 
@@ -106,5 +106,5 @@ TEST(CapDisplacement, RefusesOneDirectionAndNoMotion) {
   EXPECT_THAT(refusal(standing), HasSubstr("stand still"));
 }
 
-}  // namespace
+}  // namespace cap_displacement_test
 }  // namespace abbe::relm

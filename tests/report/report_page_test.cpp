@@ -9,7 +9,7 @@
 #include "report/page_template.h"
 
 namespace abbe::report {
-namespace {
+namespace report_page_test {
 
 namespace fs = std::filesystem;
 
@@ -138,5 +138,5 @@ TEST_F(ReportPage, WrittenTwiceIsTheSamePageAndLeavesNoOtherFile) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2);
 }
 
-}  // namespace
+}  // namespace report_page_test
 }  // namespace abbe::report

@@ -8,7 +8,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace motion_test {
 
 constexpr Dynamics kDynamics{0.2, 0.015};
 
@@ -146,5 +146,5 @@ TEST(SensorNoise, IsWhiteFromUpdateToUpdate) {
   }
 }
 
-}  // namespace
+}  // namespace motion_test
 }  // namespace abbe::rig

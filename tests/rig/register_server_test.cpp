@@ -12,7 +12,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace register_server_test {
 
 using hal::ModbusClient;
 using hal::RegisterTable;
@@ -189,5 +189,5 @@ TEST(RegisterServer, IsReadByMbpoll) {
   EXPECT_EQ(words, rig.Read(rig.head, RegisterTable::kInput, 0, 5));
 }
 
-}  // namespace
+}  // namespace register_server_test
 }  // namespace abbe::rig

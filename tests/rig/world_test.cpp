@@ -8,7 +8,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace world_test {
 
 constexpr double kNanometre = 1e-9;
 
@@ -286,5 +286,5 @@ TEST(RigSettings, ReadsAnyChainOfThreeAxes) {
   EXPECT_THROW(read("moving-arm"), InputError);
 }
 
-}  // namespace
+}  // namespace world_test
 }  // namespace abbe::rig
