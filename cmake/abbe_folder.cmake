@@ -31,11 +31,14 @@ endfunction()
 #
 # One GoogleTest program NAME_LABEL_test; every TEST in it is the ctest entry NAME.LABEL.SUITE.TEST with
 # that label. A statistical suite draws SEEDS seeds (ABBE_SEEDS); with LONG_SEEDS its tests are there a
-# second time as NAME.long.SUITE.TEST, with that many.
+# second time as NAME.long.SUITE.TEST, with that many. Programs of label long are built only with ABBE_LONG_TESTS.
 function(abbe_tests name)
   cmake_parse_arguments(arg "" "LABEL;TIMEOUT;SEEDS;LONG_SEEDS" "SOURCES;LINKS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
+  endif()
+  if(arg_LABEL STREQUAL long AND NOT ABBE_LONG_TESTS)
+    return()
   endif()
   set(program ${name}_${arg_LABEL}_test)
   add_executable(${program} ${arg_SOURCES})
