@@ -131,7 +131,8 @@ std::vector<Stroke> StrokesOf(const std::vector<Eigen::Index>& rows,
     const Eigen::Vector3d direction = velocity.col(row).normalized();
     const bool goes_on = !strokes.empty() && row == strokes.back().rows.back() + 1 &&
                          direction.dot(strokes.back().direction) > kStraight;
-    if (!goes_on) strokes.push_back({{}, direction, {0, 0, 0}, commanded.col(row), {}, 0.0});
+    if (!goes_on)
+      strokes.push_back({{}, direction, {0, 0, 0}, commanded.col(row), commanded.col(row), 0.0});
     Stroke& stroke = strokes.back();
     stroke.rows.push_back(row);
     stroke.to = commanded.col(row);

