@@ -30,7 +30,14 @@ MachineFile ReadMachineFile(const std::filesystem::path& path) {
       document, probes::ReadSweepSetup(root), hal::ReadDevices(root.Child("devices")), {}, {}};
   const settings::Table sweep = root.Child("sweep");
   for (const char axis : {'X', 'Y', 'Z'}) {
-    if (sweep.Has(std::string(1, axis))) file.sweep_plans[axis] = hal::ReadSweepPlan(sweep, axis);
+    const std::string name(1, axis);
+    if (!sweep.Has(name)) continue;
+    if (file.sweep_setup.machine.chain.Text().find(axis) == std::string::npos) {
+      throw sweep.Error(name, fmt::format("is no axis of the chain {}; add it there, or remove the "
+                                          "table",
+                                          file.sweep_setup.machine.chain.Text()));
+    }
+    file.sweep_plans[axis] = hal::ReadSweepPlan(sweep, axis);
   }
   if (root.Has("linkage")) file.linkage = relm::ReadLinkageSettings(root);
   rig::ReadRigSettings(root);

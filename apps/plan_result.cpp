@@ -102,6 +102,7 @@ ordered_json PlanJson(const Plan& plan) {
     json["causes"].push_back(std::move(cause));
     if (!planned.seen()) json["cannot_show"].push_back(planned.candidate.Name());
   }
+  for (const std::string& name : plan.standing) json["cannot_show"].push_back(name);
   for (const auto& [first, second, cosine] : plan.alike) {
     json["alike"].push_back(
         {{"causes", {plan.causes[first].candidate.Name(), plan.causes[second].candidate.Name()}},
@@ -130,6 +131,10 @@ std::string PlanText(const Plan& plan) {
   }
   if (!hidden.empty()) {
     text += fmt::format("\nWould not be seen at their usual size: {}\n", fmt::join(hidden, ", "));
+  }
+  if (!plan.standing.empty()) {
+    text += fmt::format("\nWould not be seen, for one of the two axes never moves: {}\n",
+                        fmt::join(plan.standing, ", "));
   }
   for (const ConfusedCauses& group : GroupsOf(plan)) {
     std::vector<std::string> names;

@@ -206,17 +206,20 @@ class FuseJob {
     return rows;
   }
 
-  // The mean slope of EXX, EYY and EZZ.
+  // The mean slope of EXX, EYY and EZZ, of the axes that there are.
   Eigen::RowVectorXd ScaleRow() const {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(model_.ParameterCount());
+    int axes = 0;
     for (int axis = 0; axis < machine::kAxes; ++axis) {
       const auto& travel = machine_.travels[static_cast<std::size_t>(axis)];
+      if (!(travel.last > travel.first)) continue;
       const VectorXd x = VectorXd::LinSpaced(kTravelStations, travel.first, travel.last);
       const VectorXd centred = x.array() - x.mean();
-      row += centred.transpose() * ValuesOf(machine::kMotions * axis + axis) /
-             (3.0 * centred.squaredNorm());
+      row +=
+          centred.transpose() * ValuesOf(machine::kMotions * axis + axis) / centred.squaredNorm();
+      ++axes;
     }
-    return row;
+    return row / axes;
   }
 
   void Describe(const Fitted& now) {

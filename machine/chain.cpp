@@ -72,17 +72,14 @@ Chain Chain::Parse(std::string_view text) {
     }
   }
   if (!past_bed) throw Refuse(text, "has no b");
-  for (const char axis : std::string_view("XYZ")) {
-    if ((chain.workpiece_axes_ + chain.tool_axes_).find(axis) == std::string::npos) {
-      throw Refuse(text, fmt::format("lacks the axis {}", axis));
-    }
+  if (chain.workpiece_axes_.empty() && chain.tool_axes_.empty()) {
+    throw Refuse(text, "names none of the axes X, Y and Z");
   }
   return chain;
 }
 
 bool Chain::CarriesTarget(char axis) const {
-  if (workpiece_axes_.find(axis) != std::string::npos) return true;
-  if (tool_axes_.find(axis) != std::string::npos) return false;
+  if (axis >= 'X' && axis <= 'Z') return workpiece_axes_.find(axis) != std::string::npos;
   throw InputError(fmt::format("'{}' is no axis of the chain {}; name X, Y or Z", axis, Text()));
 }
 

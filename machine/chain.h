@@ -6,8 +6,8 @@
 //
 // Between `w` and `b` stand the axes that move the workpiece (ISO marks them with a prime, which
 // may be left out), between `b` and `t` those that move the tool. An axis in parentheses is not
-// numerically controlled and is no part of the geometry here. Exactly X, Y and Z must stand in the
-// chain.
+// numerically controlled and is no part of the geometry here. An axis X, Y or Z that does not stand
+// in the chain is none of this machine's: [w X b t] is a table. At least one must.
 #pragma once
 
 #include <string>
@@ -27,8 +27,8 @@ class Chain {
   const std::string& tool_axes() const { return tool_axes_; }
 
   // Whether the axis moves the target, which sits in the place of the workpiece; if not, it moves
-  // the probe head, which sits in the place of the tool. `axis` is 'X', 'Y' or 'Z', else
-  // InputError.
+  // the probe head, which sits in the place of the tool, or is not there. `axis` is 'X', 'Y' or
+  // 'Z', else InputError.
   bool CarriesTarget(char axis) const;
 
   // The axes that move the carriage of `axis`: those between the bed and it, and itself. For

@@ -61,6 +61,12 @@ double InTravel(const Travel& travel, int axis, double position) {
   const double rounding = 16 * std::numeric_limits<double>::epsilon() *
                           std::max(std::abs(travel.first), std::abs(travel.last));
   if (!(position >= travel.first - rounding && position <= travel.last + rounding)) {
+    if (!(travel.last > travel.first)) {
+      throw InputError(
+          fmt::format("{} = {:.9g} mm, but the machine has no axis {}: add it to the "
+                      "chain and as [axis.{}], or leave the position out",
+                      "XYZ"[axis], 1e3 * position, "XYZ"[axis], "XYZ"[axis]));
+    }
     throw InputError(
         fmt::format("{} = {:.9g} mm lies outside its travel, {:.9g} to {:.9g} mm: the errors of "
                     "the machine are "
@@ -78,10 +84,20 @@ Machine ReadMachine(const settings::Table& root) {
       .name = root.Text("name"),
       .chain = ReadChain(root),
       .reference = Eigen::Vector3d(reference[0], reference[1], reference[2]),
-      .travels = {ReadTravel(axes.Child("X")), ReadTravel(axes.Child("Y")),
-                  ReadTravel(axes.Child("Z"))},
+      .travels = {},
       .population = ReadPopulation(root.Child("population")),
   };
+  for (std::size_t i = 0; i < machine.travels.size(); ++i) {
+    const char letter = "XYZ"[i];
+    const std::string name(1, letter);
+    if (machine.chain.Text().find(letter) != std::string::npos) {
+      machine.travels[i] = ReadTravel(axes.Child(name));
+    } else if (axes.Has(name)) {
+      throw axes.Error(name, fmt::format("is no axis of the chain {}; add it there, or remove the "
+                                         "table",
+                                         machine.chain.Text()));
+    }
+  }
   axes.RefuseUnknown();
   return machine;
 }

@@ -47,7 +47,7 @@ struct Machine {
   std::string name;
   Chain chain;
   Eigen::Vector3d reference;      // m, in M
-  std::array<Travel, 3> travels;  // of X, Y, Z
+  std::array<Travel, 3> travels;  // of X, Y, Z; 0 to 0 of an axis that the chain lacks
   Population population;
 };
 

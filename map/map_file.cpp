@@ -44,6 +44,7 @@ std::string HeadText(const ErrorMap& map) {
       QuotedList(std::array{of_squareness(0), of_squareness(1), of_squareness(2)}));
   for (std::size_t axis = 0; axis < kTravelKeys.size(); ++axis) {
     const machine::Travel& travel = map.model().travels()[axis];
+    if (!(travel.last > travel.first)) continue;  // the machine lacks it
     text +=
         fmt::format("{} = {}\n", kTravelKeys[axis], Floats(std::array{travel.first, travel.last}));
   }
@@ -109,9 +110,12 @@ auto Located(const Table& table, const char* key, const Make& make) {
 }
 
 machine::VolumetricModel ReadFrame(const Table& root) {
-  std::array<machine::Travel, machine::kAxes> travels;
+  std::array<machine::Travel, machine::kAxes> travels{};
+  const machine::Chain chain =
+      Located(root, "chain", [&] { return machine::Chain::Parse(root.Text("chain")); });
   const Table table = root.Child("travel");
   for (std::size_t axis = 0; axis < kTravelKeys.size(); ++axis) {
+    if (chain.Text().find("XYZ"[axis]) == std::string::npos) continue;
     const auto ends = table.Quantities(kTravelKeys[axis], 2);
     if (!(ends[0] < ends[1])) {
       throw table.Error(kTravelKeys[axis], "must be [first, last] with the first below the last");
@@ -119,8 +123,6 @@ machine::VolumetricModel ReadFrame(const Table& root) {
     travels[axis] = {ends[0], ends[1]};
   }
   table.RefuseUnknown();
-  const machine::Chain chain =
-      Located(root, "chain", [&] { return machine::Chain::Parse(root.Text("chain")); });
   return {chain, travels};
 }
 

@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
 
 #include "failure/failure.h"
 #include "recording/made_on.h"
 #include "standards/straightness.h"
+#include "standards/student_coverage.h"
 
 namespace abbe::probes {
 namespace {
@@ -126,14 +127,12 @@ class ComponentEvaluation {
             .slope = {w.dot(raw), std::sqrt(std::max(0.0, w.dot(raw_V * w)))}};
   }
 
-  // Student's t for 95 % at the degrees of freedom of Welch and Satterthwaite; all sources but the
-  // noise are known as they are stated.
+  // At the degrees of freedom of Welch and Satterthwaite; all sources but the noise are known as
+  // they are stated.
   double Coverage(double noise, double total) const {
-    constexpr double kNormal = 1.959964;
-    if (noise <= 0.0 || means_.noise.u_dof <= 0.0) return kNormal;
-    const double dof = means_.noise.u_dof * std::pow(total / noise, 4.0);
-    if (dof > 1e6) return kNormal;
-    return boost::math::quantile(boost::math::students_t(dof), 0.975);
+    const bool known = noise <= 0.0 || means_.noise.u_dof <= 0.0;
+    return standards::StudentCoverage(known ? std::numeric_limits<double>::infinity()
+                                            : means_.noise.u_dof * std::pow(total / noise, 4.0));
   }
 
   const StationMeans& means_;

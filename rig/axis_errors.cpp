@@ -49,7 +49,7 @@ AxisErrors::AxisErrors(const RigSettings& settings, int axis, std::uint64_t seed
     functions_.emplace_back(random::CounterRandom(seed, stream),
                             DeviationOf(settings.population, axis, motion), smoothness_, low, high);
     offsets_[motion] = functions_[motion](reference_);
-    if (IsStraightness(axis, motion)) {
+    if (IsStraightness(axis, motion) && high > low) {
       slopes_[motion] = Slope(functions_[motion], low, high, smoothness_);
     }
     if (motion == axis) slopes_[motion] = -scale_;

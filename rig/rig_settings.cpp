@@ -47,12 +47,14 @@ void ReadChain(const Table& root, RigSettings& rig) {
   std::string axes = letters;
   std::erase_if(axes, [](char letter) { return letter == 'w' || letter == 'b' || letter == 't'; });
   std::sort(axes.begin(), axes.end());
-  if (letters.size() != 6 || letters.front() != 'w' || letters.back() != 't' ||
-      bed == std::string::npos || axes != "XYZ") {
+  const bool linear = !axes.empty() && axes.find_first_not_of("XYZ") == std::string::npos &&
+                      std::adjacent_find(axes.begin(), axes.end()) == axes.end();
+  if (letters.size() != axes.size() + 3 || letters.front() != 'w' || letters.back() != 't' ||
+      bed == std::string::npos || !linear) {
     throw root.Error(
         "chain",
-        "must hold w, then X, Y, Z and b in any order, then t: \"[w X Y b Z t]\", or the "
-        "name of a configuration");
+        "must hold w, then b and the axes of X, Y, Z that there are in any order, then t: "
+        "\"[w X Y b Z t]\", or the name of a configuration");
   }
   rig.workpiece_axes = letters.substr(1, bed - 1);
   rig.tool_axes = letters.substr(bed + 1, letters.size() - bed - 2);
@@ -64,6 +66,8 @@ void ReadMachine(const Table& root, RigSettings& rig) {
   const auto reference = root.Quantities("reference_mm", 3, std::vector{0.0, 0.0, 0.0});
   rig.reference = Eigen::Vector3d(reference[0], reference[1], reference[2]);
   for (int axis = 0; axis < kAxes; ++axis) {
+    rig.travels[axis] = {0.0, 0.0};  // of an axis that there is not
+    if ((rig.workpiece_axes + rig.tool_axes).find(*kAxisNames[axis]) == std::string::npos) continue;
     const auto ends = root.Child("axis").Child(kAxisNames[axis]).Quantities("travel_mm", 2);
     rig.travels[axis] = {ends[0], ends[1]};
   }

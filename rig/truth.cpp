@@ -156,6 +156,7 @@ ordered_json TruthOf(const World& world) {
   truth["machine"] = world.settings().name;
   truth["seed"] = world.seed();
   for (int axis = 0; axis < kAxes; ++axis) {
+    if (!(world.settings().travels[axis].last > world.settings().travels[axis].first)) continue;
     truth["axes"][AxisName(axis)] = AxisTruth(world, axis);
     truth["scale"][AxisName(axis)] = world.ScaleOf(axis);
   }

@@ -39,7 +39,7 @@ TEST(Calibrate, RecoversAnErroneousLinkageFromExactAngles) {
   EXPECT_GT(report.before.rms, 10e-6);
   // The priors pull by (stated noise / prior)^2 of the parameters' errors: below a picometre.
   EXPECT_LT(Against(report, settings, other).max, 1e-11);
-  EXPECT_NEAR(report.fit.Value("link.link_1") + 0 * world.link_1, world.link_1, 1e-6);
+  EXPECT_NEAR(report.fit.Value("link.link_1"), world.link_1, 1e-6);
 }
 
 TEST(Calibrate, ReachesTheNoiseWithEncoderErrors) {
