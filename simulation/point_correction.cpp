@@ -47,10 +47,7 @@ Matrix3Xd StepsOf(const MachinePoints& points, const Sums& sums, const machine::
                        .J_error_motions *
                    sums.machine.col(i).head<kToolStage>();
   }
-  for (Index axis = 0; axis < 3; ++axis) {
-    if (machine.chain.CarriesTarget("XYZ"[axis])) steps.row(axis) *= -1.0;
-  }
-  return steps;
+  return machine.chain.ToolSenses().asDiagonal() * steps;
 }
 
 }  // namespace
