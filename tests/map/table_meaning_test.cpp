@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 
 #include "failure/failure.h"
 #include "foreign_reader.h"
@@ -92,7 +93,8 @@ TEST(TableMeaning, CountedAsTheToolGoesPlusIsTheToolTowardsPlus) {
   ASSERT_EQ(table.sign().size(), 4u);
   EXPECT_NE(table.sign()[2].find("X carries the workpiece and counts as its carriage goes"),
             std::string::npos);
-  EXPECT_NEAR(table.Value("EXX", 0.02), -by_carriage.Error(place, Vector3d::Zero()).x(), 1e-12);
+  // Turns of 20 urad and their squareness times 20 mm: 1e-11.
+  EXPECT_NEAR(table.Value("EXX", 0.02), -by_carriage.Error(place, Vector3d::Zero()).x(), 1e-11);
 }
 
 // A control with CEC adds the tables to its command; one with LinuxCNC's .comp moves the motor by
@@ -160,8 +162,9 @@ TEST(TableMeaning, AForeignTableKeepsItsConstantsAndSlopes) {
              folder / "zero.csv");
   const ErrorMap zero = ReadAnyMap(folder / "zero.csv", "[w X Y b Z t]", "tool");
   EXPECT_EQ(zero.Error(Vector3d::Zero(), {0.3, -0.2, 0.5}).norm(), 0.0);
-  EXPECT_NEAR(zero.Error({-3.0, 0.0, 0.0}, Vector3d::Zero()).x(), -169e-6, 1e-9);
-  EXPECT_NEAR(zero.Error({3.0, 0.0, 0.0}, Vector3d::Zero()).x(), 170e-6, 1e-9);
+  // A turn of 40 urad shortens 3 m by 2.4 nm.
+  EXPECT_NEAR(zero.Error({-3.0, 0.0, 0.0}, Vector3d::Zero()).x(), -169e-6, 2.5e-9);
+  EXPECT_NEAR(zero.Error({3.0, 0.0, 0.0}, Vector3d::Zero()).x(), 170e-6, 2.5e-9);
 }
 
 // Random tables, constants and slopes in all, over travels with their zero anywhere: what abbe
@@ -177,7 +180,8 @@ TEST(TableMeaning, ReadingAndWritingLeavesTheVolumetricErrorAsItWas) {
         std::string("// chain = ") + chain + "\n// positive = carriage carriage carriage\n";
     std::array<std::pair<double, double>, 3> travels;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double first = next(3000.0), length = 1000.0 + next(900.0);
+      // Whole millimetres, so that the stations written again are the same numbers.
+      const double first = std::round(next(3000.0)), length = 8 * std::round(125.0 + next(110.0));
       travels[axis] = {1e-3 * first, 1e-3 * (first + length)};
       text += "XYZ"[axis];
       for (int motion = 0; motion < 6; ++motion)
