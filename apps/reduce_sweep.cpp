@@ -63,7 +63,8 @@ ordered_json LineData(const LineFigure& figure) {
 void AddComponent(const ComponentResult& c, ordered_json& data) {
   const std::string& name = c.component.name;
   data["errors"][name] = ErrorData(c);
-  data["errors_at_target"][name] = {{"value", NumbersOf(c.at_target)}, {"u", NumbersOf(c.u_at_target)}};
+  data["errors_at_target"][name] = {{"value", NumbersOf(c.at_target)},
+                                    {"u", NumbersOf(c.u_at_target)}};
   if (c.straightness) {
     const probes::StraightnessFigures& s = *c.straightness;
     data["straightness"][name] = {{"end_points", s.end_points.error},
@@ -170,6 +171,7 @@ ordered_json SweepJson(const SweepResult& result) {
       {"machine", result.machine},
       {"chain", result.chain},
       {"axis", std::string(1, result.axis)},
+      {"positive", result.positive},
       {"moves", result.moving == probes::MovingBody::kTarget ? "target" : "head"},
       {"started", result.conditions.started},
       {"conditions", ConditionsData(result.conditions)},
@@ -192,10 +194,12 @@ ordered_json SweepJson(const SweepResult& result) {
 std::string SweepTable(const SweepResult& result) {
   const probes::SampleCounts& counts = result.counts;
   std::string text = fmt::format(
-      "{} axis of {} {}, the {} moves: {} stations from {:.3f} to {:.3f} mm, {} passes\n",
+      "{} axis of {} {}, the {} moves, + as the {} goes: {} stations from {:.3f} to {:.3f} mm, {} "
+      "passes\n",
       result.axis, result.machine, result.chain,
-      result.moving == probes::MovingBody::kTarget ? "target" : "head", result.stations.size(),
-      Shown(result.stations.front()), Shown(result.stations.back()), result.passes);
+      result.moving == probes::MovingBody::kTarget ? "target" : "head", result.positive,
+      result.stations.size(), Shown(result.stations.front()), Shown(result.stations.back()),
+      result.passes);
   text += AngleTable(result) + StraightnessTable(result);
   text += "  reversal: forward - backward, mean over the stations, +- U95; * beyond its U95\n";
   text += NoiseText(result.noise);

@@ -273,6 +273,7 @@ class FuseJob {
     origin.reference = machine_.reference;
     origin.tool = -machine_.reference;
     origin.scale_is_calibrated = scale_.calibrated;
+    origin.limits = machine_.limits;
     for (std::size_t error = 0; error < functions_.size(); ++error) {
       const auto& by = functions_[error].determined_by;
       if (!by.empty()) origin.sources[error] = SourceOf(by.front());

@@ -38,6 +38,7 @@ GridFile FileOf(const Json& json, const std::string& where) {
   FileHeader header;
   header.machine = json.at("machine").get<std::string>();
   header.chain = json.at("chain").get<std::string>();
+  header.positive = json.at("positive").get<std::string>();
   header.temperature = json.at("temperature_c").get<double>();
   header.scale = json.at("scale").get<std::string>();
   std::array<GridAxis, 3> axes;
@@ -61,10 +62,11 @@ Format::Paths WriteJsonGrid(const ErrorMap& map, const ExportOptions& options,
   Json json = {{"abbe-map-grid", 1},
                {"machine", file.header.machine},
                {"chain", file.header.chain},
+               {"positive", file.header.positive},
                {"tool_mm", {tool.x(), tool.y(), tool.z()}},
                {"temperature_c", file.header.temperature},
                {"scale", file.header.scale},
-               {"sign", "actual - nominal of the tool in the workpiece"}};
+               {"sign", kSignOfPoints}};
   for (std::size_t k = 0; k < 3; ++k) {
     json[kPositionKeys[k]] = Millimetres(file.grid.axes()[k]);
   }

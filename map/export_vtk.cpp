@@ -35,7 +35,7 @@ std::vector<double> InMicrometres(const Eigen::Matrix3Xd& values) {
 
 // The header as an XML comment, which must not hold "--".
 std::string CommentOf(const FileHeader& header) {
-  std::string text = HeaderText(header, "");
+  std::string text = HeaderText(header, "", {kSignOfPoints});
   for (std::size_t at; (at = text.find("--")) != std::string::npos;) text.replace(at, 2, "- -");
   return "<!--\n" + text + "-->\n";
 }

@@ -98,9 +98,10 @@ Format::Paths WriteHdf5Grid(const ErrorMap& map, const ExportOptions& options,
   const Eigen::Vector3d tool_mm = header.tool * 1e3;
   PutText(file.id(), "machine", header.machine);
   PutText(file.id(), "chain", header.chain);
+  PutText(file.id(), "positive", header.positive);
   PutText(file.id(), "scale", header.scale);
   PutText(file.id(), "unit", "um");
-  PutText(file.id(), "sign", "actual - nominal of the tool in the workpiece");
+  PutText(file.id(), "sign", kSignOfPoints);
   PutText(file.id(), "frame", "axes of the workpiece; positions as the axes are commanded");
   PutNumbers(file.id(), "tool_mm", {3}, tool_mm.data(), path);
   PutNumbers(file.id(), "temperature_c", {1}, &header.temperature, path);
@@ -118,6 +119,7 @@ GridFile ReadHdf5Grid(const std::filesystem::path& path) {
   FileHeader header;
   header.machine = GetText(file.id(), "machine", path);
   header.chain = GetText(file.id(), "chain", path);
+  header.positive = GetText(file.id(), "positive", path);
   header.scale = GetText(file.id(), "scale", path);
   const auto tool_mm = GetNumbers(file.id(), "tool_mm", path);
   const auto temperature = GetNumbers(file.id(), "temperature_c", path);

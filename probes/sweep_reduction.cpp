@@ -169,6 +169,8 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
   result.chain = setup.machine.chain.Text();
   result.axis = sweep.axis;
   result.moving = inversion.moving();
+  result.sense = inversion.sense();
+  result.positive = setup.machine.chain.ToolSense(sweep.axis) > 0.0 ? "tool" : "carriage";
   result.mounting = recording.HeaderText("mounting").value_or("");
   result.conditions = ConditionsOf(recording);
   result.stations = means.stations;

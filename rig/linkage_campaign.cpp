@@ -167,7 +167,7 @@ Vector3d LinkageRig::ToolAt(const Vector3d& position) const {
 Vector3d LinkageRig::ReferenceAt(const Vector3d& position) const {
   Vector3d place = ToolAt(position);
   for (int axis = 0; axis < kAxes; ++axis) {
-    if (world_.settings().CarriesTarget(axis)) place[axis] = -place[axis];
+    place[axis] *= world_.settings().ToolWay(axis);
   }
   return place;
 }

@@ -47,7 +47,7 @@ class PlateMaker {
       middle_[axis] = (travel.first + travel.last) / 2;
       const double side = kShareOfTravel * (travel.last - travel.first);
       side_ = axis == 0 ? side : std::min(side_, side);
-      sign_[axis] = world.settings().CarriesTarget(axis) ? -1.0 : 1.0;
+      sign_[axis] = world.settings().ToolWay(axis);
     }
   }
 

@@ -21,7 +21,8 @@ struct PartOfRecording {
   std::vector<std::size_t> rows;  // of the recording: all that belong to them
 };
 
-std::vector<PartOfRecording> PartsOfRecording(const Recording& recording, const machine::Machine& machine) {
+std::vector<PartOfRecording> PartsOfRecording(const Recording& recording,
+                                              const machine::Machine& machine) {
   std::vector<PartOfRecording> parts;
   if (recording.Kind() == "reference") {
     const ReferenceRun rows = ReadReferenceRun(WithAllAxes(recording, machine.travels));
@@ -47,10 +48,7 @@ Matrix3Xd StepsOf(const MachinePoints& points, const Sums& sums, const machine::
                        .J_error_motions *
                    sums.machine.col(i).head<kToolStage>();
   }
-  for (Index axis = 0; axis < 3; ++axis) {
-    if (machine.chain.CarriesTarget("XYZ"[axis])) steps.row(axis) *= -1.0;
-  }
-  return steps;
+  return machine.chain.ToolSenses().asDiagonal() * steps;
 }
 
 }  // namespace

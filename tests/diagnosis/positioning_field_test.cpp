@@ -22,8 +22,10 @@ name = "target-stage"
 chain = "[w X Y b Z t]"
 [axis.X]
 travel_mm = [-25.0, 25.0]
+positive = "carriage"
 [axis.Y]
 travel_mm = [-25.0, 25.0]
+positive = "carriage"
 [axis.Z]
 travel_mm = [-25.0, 25.0]
 [population]

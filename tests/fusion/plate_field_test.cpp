@@ -23,8 +23,10 @@ name = "plate-machine"
 chain = "[w X Y b Z t]"
 [axis.X]
 travel_mm = [-330.0, 330.0]
+positive = "carriage"
 [axis.Y]
 travel_mm = [-330.0, 330.0]
+positive = "carriage"
 [axis.Z]
 travel_mm = [0.0, 100.0]
 [population]

@@ -76,9 +76,9 @@ TEST(AxisMotions, AreTheFunctionsOfTheAxisAtKnotsEndsAndBetween) {
   }
 }
 
-TEST(VolumetricField, IsItsModelOnEveryConfiguration) {
-  for (const Configuration& configuration : kConfigurations) {
-    const VolumetricModel model = AnyMachine(Chain::Parse(configuration.chain));
+TEST(VolumetricField, IsItsModelOnEveryChainHoweverItCounts) {
+  for (const Chain& chain : AllCounts()) {
+    const VolumetricModel model = AnyMachine(chain);
     const VolumetricField field(model);
     Numbers numbers(5);
     Eigen::Matrix3Xd places(3, 50);
@@ -87,7 +87,7 @@ TEST(VolumetricField, IsItsModelOnEveryConfiguration) {
     const Eigen::Matrix3Xd errors = field.Errors(places, kTool);
     for (int i = 0; i < 50; ++i) {
       const Vector3d expected = model.Error(places.col(i), kTool);
-      EXPECT_LT((errors.col(i) - expected).norm(), 16 * kEps) << configuration.name;
+      EXPECT_LT((errors.col(i) - expected).norm(), 16 * kEps) << chain.Text();
       EXPECT_EQ(errors.col(i), field.Error(places.col(i), kTool));
     }
   }

@@ -82,12 +82,11 @@ TEST(Exporter, TheTableFormatsGiveTheWholeMapBackAndAgainTheSameFile) {
         }
       }
       EXPECT_LT((tables.squareness - map.model().squareness()).norm(), 1e-20);
-      const ImportedMap back = ReadAnyMap(folder / "a.txt");
-      EXPECT_EQ(back.map.model().chain().Text(), map.model().chain().Text());
-      EXPECT_FALSE(back.map.StatesUncertainty());
-      // At the stations a table of a straightness differs by the slope of its chords only.
-      const Discrepancy d = Compare(
-          map, options.tool, [&](const Vector3d& p) { return back.map.Error(p, options.tool); });
+      const ErrorMap back = ReadAnyMap(folder / "a.txt");
+      EXPECT_EQ(back.model().chain().Text(), map.model().chain().Text());
+      EXPECT_FALSE(back.StatesUncertainty());
+      const Discrepancy d = Compare(map, options.tool,
+                                    [&](const Vector3d& p) { return back.Error(p, options.tool); });
       EXPECT_LT(d.largest, 0.05 * d.error);
       EXPECT_GT(d.largest, 0.0);
     }
@@ -97,7 +96,7 @@ TEST(Exporter, TheTableFormatsGiveTheWholeMapBackAndAgainTheSameFile) {
 // A map whose functions are tables at the exported stations is carried without any loss.
 TEST(Exporter, ATableMapSurvivesTheTableFormatsExactly) {
   const Folder folder;
-  const ErrorMap map = MapOfTables(Tabulate(RandomMap(4), Vector3d::Zero(), {13, 13, 13})).map;
+  const ErrorMap map = MapOfTables(Tabulate(RandomMap(4), Vector3d::Zero(), {13, 13, 13}));
   ExportOptions options;
   options.counts = {13, 13, 13};
   for (const char* const name : {"isg", "etalon"}) {
@@ -216,22 +215,6 @@ TEST(Exporter, LinuxcncTakes256PointsAndThreeNumbersALine) {
   ExpectHas(MessageOf<InputError>([&] { ReadComp(folder / "two.comp"); }), "two.comp:2: 2 numbers");
   WriteWhole("0 0 0\n0 1 1\n", folder / "same.comp");
   ExpectHas(MessageOf<InputError>([&] { ReadComp(folder / "same.comp"); }), "ascend");
-}
-
-TEST(Exporter, AForeignTableIsBroughtIntoOurGaugeAndSaysSo) {
-  const Folder folder;
-  std::string text =
-      "// made by hand\nX EYX EXX\n0 0.010 0.001\n50 0.011 0.001\n100 0.012 0.003\n#\n";
-  text += "Y EYY\n0 0\n100 0\n#\nZ EZZ\n0 0\n100 0\n#\nC0Y\n30e-6\n";
-  WriteWhole(text, folder / "foreign.csv");
-  ExpectHas(MessageOf<InputError>([&] { ReadAnyMap(folder / "foreign.csv"); }), "--chain");
-  const ImportedMap back = ReadAnyMap(folder / "foreign.csv", "[w b Y X Z t]");
-  EXPECT_EQ(back.notes.size(), 3);
-  EXPECT_EQ(back.map.origin().machine, "foreign");
-  // EYX rises by 20 urad: the X line leans towards +Y, so Y leans less away from it.
-  EXPECT_NEAR(back.map.model().squareness().z(), 30e-6 - 20e-6, 1e-15);
-  EXPECT_NEAR(back.map.Error({0.1, 0.0, 0.0}, Vector3d::Zero()).x(), 2e-6, 1e-15);
-  EXPECT_NEAR(back.map.Error({0.075, 0.0, 0.0}, Vector3d::Zero()).y(), 0.0, 1e-15);
 }
 
 class BrokenExport : public testing::Test {
