@@ -182,7 +182,7 @@ class SweepRecorder {
 
   // Records one visit that the operator has confirmed; false when it was cut short.
   bool Dwell(const Visit& visit) {
-    pace_.Begin();
+    if (!has_position_) pace_.Begin();  // else Arrived() has
     const double settled_s = pace_.next_s() + plan_.settle;
     bool good = false;
     do {
