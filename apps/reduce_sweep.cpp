@@ -81,7 +81,8 @@ void AddComponent(const ComponentResult& c, ordered_json& data) {
     data["reversal"][name] = {{"value", NumbersOf(c.reversal->value)},
                               {"u", NumbersOf(c.reversal->u)},
                               {"mean", UncertainData(c.reversal->mean)},
-                              {"max", UncertainData(c.reversal->largest)}};
+                              {"max", UncertainData(c.reversal->largest)},
+                              {"seen", c.reversal->seen}};
   }
   for (std::size_t source = 0; source < probes::kSources; ++source) {
     data["budget"][name][std::string(probes::kSourceNames[source])] = c.budget[source];
@@ -115,12 +116,12 @@ ordered_json NoiseData(const probes::NoiseFigures& noise) {
   return data;
 }
 
-// The mean reversal "0.31 +- 0.12", with a star where it exceeds its U95.
+// The mean reversal "0.31 +- 0.12", with a star where it is beyond chance.
 std::string Cell(const std::optional<probes::Reversal>& reversal, double coverage) {
   if (!reversal) return "-";
   const double expanded = coverage * reversal->mean.u;
   return fmt::format("{:.3f} +- {:.3f}{}", reversal->mean.value * kToMicro, expanded * kToMicro,
-                     std::abs(reversal->mean.value) > expanded ? '*' : ' ');
+                     reversal->seen ? '*' : ' ');
 }
 
 std::string AngleTable(const SweepResult& result) {
@@ -174,6 +175,7 @@ ordered_json SweepJson(const SweepResult& result) {
       {"positive", result.positive},
       {"moves", result.moving == probes::MovingBody::kTarget ? "target" : "head"},
       {"started", result.conditions.started},
+      {"simulated", result.conditions.simulated},
       {"conditions", ConditionsData(result.conditions)},
       {"stations", result.stations},
       {"passes", result.passes},
@@ -201,10 +203,13 @@ std::string SweepTable(const SweepResult& result) {
       result.stations.size(), Shown(result.stations.front()), Shown(result.stations.back()),
       result.passes);
   text += AngleTable(result) + StraightnessTable(result);
-  text += "  reversal: forward - backward, mean over the stations, +- U95; * beyond its U95\n";
+  text +=
+      "  reversal: forward - backward, mean over the stations, +- U95; * beyond chance (1 % for "
+      "all of three axes)\n";
   text += NoiseText(result.noise);
   text += fmt::format("rows: {} read, {} used, {} flagged, {} moving; {} outliers\n", counts.rows,
                       counts.used, counts.flagged, counts.moving, counts.outliers);
+  if (result.conditions.simulated) text += "note: simulated readings, no machine was measured\n";
   for (const std::string& note : result.notes) text += fmt::format("note: {}\n", note);
   return text;
 }

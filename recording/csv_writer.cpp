@@ -70,8 +70,8 @@ class CsvRowFile : public RowFile {
       lines_.Field(rows[i], (i + 1) % columns_ == 0);
     }
     lines_.MoveTo(file_);
-    file_.Sync();
   }
+  void Sync() override { file_.Sync(); }
   void Close() override { file_.Close(); }
 
  private:

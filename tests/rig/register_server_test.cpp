@@ -33,6 +33,8 @@ class Served {
   hal::DeviceSettings At(std::size_t device) {
     hal::DeviceSettings settings = devices.devices[device];
     settings.port = server.port();
+    settings.times.response = 5.0;  // as long as a busy computer needs
+    settings.times.deadline = 10.0;
     return settings;
   }
 
@@ -187,6 +189,11 @@ TEST(RegisterServer, IsReadByMbpoll) {
   }
   EXPECT_EQ(pclose(pipe), 0);
   EXPECT_EQ(words, rig.Read(rig.head, RegisterTable::kInput, 0, 5));
+}
+
+TEST(RegisterServer, SaysThatItIsSimulated) {
+  Served rig(DemoRig());
+  EXPECT_EQ(rig.head.Identity(rig.head.Deadline()), "abbe virtual rig (simulated)");
 }
 
 }  // namespace register_server_test
