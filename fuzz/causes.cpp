@@ -1,4 +1,5 @@
-// `simulation/extended_model.h`: the causes that a diagnosis found; what is written can be read again.
+// `simulation/extended_model.h`: the causes that a diagnosis found; what is written can be read
+// again.
 #include "fuzz/target.h"
 #include "simulation/extended_model.h"
 

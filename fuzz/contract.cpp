@@ -43,7 +43,8 @@ std::atomic<std::int64_t> allowed{INT64_MAX};
 void CountTaken(const volatile void*, std::size_t size) {
   if ((held += static_cast<std::int64_t>(size)) > allowed.load()) {
     allowed = INT64_MAX;
-    std::fprintf(stderr, "does not hold: memory is bounded by the size of the file (%zu bytes asked)\n",
+    std::fprintf(stderr,
+                 "does not hold: memory is bounded by the size of the file (%zu bytes asked)\n",
                  size);
     std::abort();
   }
@@ -51,8 +52,8 @@ void CountTaken(const volatile void*, std::size_t size) {
 
 void CountGiven(const volatile void* memory) {
   if (memory == nullptr) return;
-  held -= static_cast<std::int64_t>(
-      __sanitizer_get_allocated_size(const_cast<const void*>(memory)));
+  held -=
+      static_cast<std::int64_t>(__sanitizer_get_allocated_size(const_cast<const void*>(memory)));
 }
 
 class MemoryBound {

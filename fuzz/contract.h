@@ -4,8 +4,8 @@
 //   HoldContract(hole_table::Read, bytes);
 //
 // Ends the program with a line on standard error where the contract is broken, so that fuzzer and
-// sanitizers see a crash. Memory is counted where a sanitizer sees every allocation, else by what the
-// program holds at most; the time is the caller's to bound.
+// sanitizers see a crash. Memory is counted where a sanitizer sees every allocation, else by what
+// the program holds at most; the time is the caller's to bound.
 #pragma once
 
 #include "fuzz/target.h"

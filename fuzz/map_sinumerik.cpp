@@ -7,8 +7,7 @@ namespace abbe::fuzz::map_sinumerik {
 
 void Read(Bytes bytes) {
   const InputFile file(bytes);
-  const auto field =
-      map::ReadBackSinumerik({file.path()}, machine::Chain::Parse("[w X Y b Z t]"));
+  const auto field = map::ReadBackSinumerik({file.path()}, machine::Chain::Parse("[w X Y b Z t]"));
   field({0.01, 0.02, 0.03});
 }
 

@@ -1,7 +1,6 @@
 // `map/map_file.h`: a map that is read can be used.
-#include "map/map_file.h"
-
 #include "fuzz/target.h"
+#include "map/map_file.h"
 
 namespace abbe::fuzz::map_toml {
 

@@ -1,5 +1,6 @@
-// What a client may send to the server of the virtual rig (`hal/modbus_server.h`), over TCP: whatever it
-// was, what comes back are replies of the protocol, and the next client is served as ever.
+// What a client may send to the server of the virtual rig (`hal/modbus_server.h`), over TCP:
+// whatever it was, what comes back are replies of the protocol, and the next client is served as
+// ever.
 #include <arpa/inet.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -48,7 +49,8 @@ void Read(Bytes bytes) {
     image.Set(1, hal::RegisterTable::kHolding, 0, {1, 2, 3});
     return hal::ModbusServer::ListenTcp("127.0.0.1", 0, image);
   }();
-  const auto replies = Exchange(server->port(), bytes.first(std::min<std::size_t>(bytes.size(), 4096)));
+  const auto replies =
+      Exchange(server->port(), bytes.first(std::min<std::size_t>(bytes.size(), 4096)));
   for (std::size_t at = 0; at < replies.size();) {
     Require(replies.size() - at >= kHead + 2, "a reply is whole");
     Require(replies[at + 2] == 0 && replies[at + 3] == 0, "a reply is Modbus");

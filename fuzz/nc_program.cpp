@@ -1,8 +1,7 @@
 // `compensation/nc_correction.h`: what is written can be read again, as moves of the same program.
-#include "compensation/nc_correction.h"
-
 #include <algorithm>
 
+#include "compensation/nc_correction.h"
 #include "fuzz/small_map.h"
 #include "fuzz/target.h"
 

@@ -1,9 +1,8 @@
 // `recording/csv_reader.h`: whole and block by block it is the same recording.
-#include "recording/csv_reader.h"
-
 #include <cmath>
 
 #include "fuzz/target.h"
+#include "recording/csv_reader.h"
 
 namespace abbe::fuzz::recording_csv {
 

@@ -1,7 +1,6 @@
 // `recording/hdf5_reader.h`.
-#include "recording/hdf5_reader.h"
-
 #include "fuzz/target.h"
+#include "recording/hdf5_reader.h"
 
 namespace abbe::fuzz::recording_hdf5 {
 

@@ -2,8 +2,8 @@
 //
 //   fuzz_replay TARGET FILE_OR_FOLDER...     every file, in the order of the names
 //
-// Ends with 0 when each was read or refused as it should be, with 2 when there is no such target or no
-// file. A broken promise, a crash, a file that takes over a minute ends it by a signal; the file
+// Ends with 0 when each was read or refused as it should be, with 2 when there is no such target or
+// no file. A broken promise, a crash, a file that takes over a minute ends it by a signal; the file
 // that did it is the last one named on standard error.
 #include <unistd.h>
 

@@ -4,9 +4,9 @@
 //   void Read(Bytes bytes) { recording::ReadHoleTable(InputFile(bytes).path(), 0.5); }
 //   }
 //
-// A file NAME.cpp with a function NAME::Read, a line in CMakeLists.txt and a folder corpus/NAME are a
-// target. It ends the program, as a crash does, for what Require() finds broken; whatever else may
-// go wrong is found by who calls it (contract.h).
+// A file NAME.cpp with a function NAME::Read, a line in CMakeLists.txt and a folder corpus/NAME are
+// a target. It ends the program, as a crash does, for what Require() finds broken; whatever else
+// may go wrong is found by who calls it (contract.h).
 #pragma once
 
 #include <cstddef>

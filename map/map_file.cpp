@@ -140,9 +140,10 @@ void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin
   for (const std::string& key : Located(table, "form", [&] { return machine::ShapeNames(form); })) {
     shape[key] = table.Quantities(key, 0);
   }
-  model.SetForm(axis, motion, Located(table, "form", [&] { return machine::FormOf(form, shape); }));
-  const auto c = table.Quantities("coefficients",
-                                  static_cast<std::size_t>(model.Function(axis, motion).size()));
+  const auto made = Located(table, "form", [&] { return machine::FormOf(form, shape); });
+  // Before there is memory for as many as the shape says.
+  const auto c = table.Quantities("coefficients", static_cast<std::size_t>(made->size()));
+  Located(table, "form", [&] { return model.SetForm(axis, motion, made); });
   model.SetCoefficients(axis, motion,
                         Eigen::Map<const Eigen::VectorXd>(c.data(), static_cast<Index>(c.size())));
   table.RefuseUnknown();
