@@ -36,37 +36,17 @@ std::vector<fs::path> JsonFiles(const fs::path& folder) {
   return files;
 }
 
-// The deepest result of abbe has a fifth of it; whoever writes JSON again calls itself at each
-// level.
-constexpr int kDeepest = 64;
-
-struct ReadFile {
-  Json value;            // discarded where the file is not JSON
-  bool is_deep = false;  // too deep to be a result
-};
-
-// An empty text when it is a result, else why it is not.
-std::string WhyForeign(const ReadFile& read) {
-  if (read.is_deep) {
-    return fmt::format("has more than {} levels, so it is no result of abbe; move it elsewhere",
-                       kDeepest);
-  }
-  const Json& value = read.value;
+// An empty text when `value` is a result, else why it is not.
+std::string WhyForeign(const Json& value) {
   if (value.is_discarded()) return "is not JSON, perhaps cut short; write it again or delete it";
   const bool result =
       value.is_object() && value.contains("command") && value["command"].is_string();
   return result ? "" : "has no text \"command\", so it is no result of abbe; move it elsewhere";
 }
 
-ReadFile ReadJson(const fs::path& file) {
+Json ReadJson(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  ReadFile read;
-  const auto keep = [&](int depth, Json::parse_event_t, const Json&) {
-    read.is_deep = read.is_deep || depth > kDeepest;
-    return !read.is_deep;
-  };
-  read.value = Json::parse(stream, keep, /*allow_exceptions=*/false);
-  return read;
+  return Json::parse(stream, nullptr, /*allow_exceptions=*/false);
 }
 
 // As text for a script element: nothing in it can end the element or open a comment, because the
@@ -126,10 +106,10 @@ WrittenReport WriteReport(const fs::path& folder, const fs::path& output_file) {
   Json results = Json::array();
   Json left_out = Json::array();
   for (const fs::path& file : JsonFiles(folder)) {
-    ReadFile read = ReadJson(file);
-    const std::string why = WhyForeign(read);
+    Json value = ReadJson(file);
+    const std::string why = WhyForeign(value);
     if (why.empty()) {
-      results.push_back({{"file", file.filename().string()}, {"result", std::move(read.value)}});
+      results.push_back({{"file", file.filename().string()}, {"result", std::move(value)}});
     } else {
       written.notes.push_back(fmt::format("{}: left out: it {}", file.string(), why));
       left_out.push_back(fmt::format("{} {}", file.filename().string(), why));

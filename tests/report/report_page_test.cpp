@@ -102,22 +102,6 @@ TEST_F(ReportPage, LeavesOutWhatIsNoResultAndSaysSo) {
   EXPECT_EQ(Embedded()["notes"].size(), 5u);
 }
 
-// Writing JSON again goes one call deeper for each level: a stack of 8 MB ends before these do.
-TEST_F(ReportPage, LeavesOutWhatIsNestedTooDeep) {
-  constexpr int kLevels = 200'000;
-  Put("a.json", R"({"command": "reduce"})");
-  Put("deep.json", R"({"command": "reduce", "x": )" + std::string(kLevels, '[') +
-                       std::string(kLevels, ']') + "}");
-  Put("level_64.json",
-      R"({"command": "reduce", "x": )" + std::string(63, '[') + std::string(63, ']') + "}");
-  const WrittenReport written = WriteReport(folder_, page_);
-  EXPECT_EQ(written.results, 2u);
-  ASSERT_EQ(written.notes.size(), 1u);
-  EXPECT_NE(written.notes[0].find("deep.json: left out: it has more than 64 levels"),
-            std::string::npos)
-      << written.notes[0];
-}
-
 TEST_F(ReportPage, EmptyFolderSaysWhatToDo) {
   const std::string message = WhatIsThrown(page_);
   EXPECT_NE(message.find(folder_.string() + ": no result of abbe"), std::string::npos) << message;
