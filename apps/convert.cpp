@@ -15,6 +15,7 @@
 #include "recording/import.h"
 #include "recording/monitor_log.h"
 #include "recording/recording_file.h"
+#include "recording/whole_file.h"
 
 namespace abbe::apps {
 namespace {
@@ -24,6 +25,7 @@ struct ConvertOptions {
   std::filesystem::path to;
   recording::ImportOptions import;
   std::vector<std::string> columns;  // NAME=CHANNEL
+  std::vector<std::string> names;
   std::vector<double> sensor_degrees;
   std::vector<std::string> where;  // COLUMN=VALUE
   std::string kind;
@@ -61,7 +63,12 @@ std::pair<std::string, std::string> SplitAt(const std::string& option, const std
   if (equals == std::string::npos || equals == 0) {
     throw InputError(fmt::format("{} {}: is not {}", option, text, example));
   }
-  return {text.substr(0, equals), text.substr(equals + 1)};
+  const auto trimmed = [](const std::string& part) {
+    const auto first = part.find_first_not_of(' ');
+    return first == std::string::npos ? std::string()
+                                      : part.substr(first, part.find_last_not_of(' ') + 1 - first);
+  };
+  return {trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1))};
 }
 
 std::vector<recording::MonitoredColumn> ColumnsOf(const ConvertOptions& options) {
@@ -75,7 +82,7 @@ std::vector<recording::MonitoredColumn> ColumnsOf(const ConvertOptions& options)
 }
 
 recording::Recording ReadTable(const ConvertOptions& options) {
-  recording::CsvTableOptions table{ColumnsOf(options), {}, options.kind};
+  recording::CsvTableOptions table{ColumnsOf(options), {}, options.kind, options.names};
   for (const std::string& text : options.where) {
     table.where.push_back(SplitAt("--where", text, "COLUMN=VALUE, for example arm=2"));
   }
@@ -91,7 +98,7 @@ recording::Recording ReadAny(const ConvertOptions& options) {
     return hal::RecordingOf(hal::ReadCandump(options.from), EncodersOf(file, options.device),
                             file.devices.stale, file.sweep_setup.machine.name);
   }
-  if (!options.columns.empty() && recording::IsCsvTable(options.from)) return ReadTable(options);
+  if (recording::IsCsvTable(options.from)) return ReadTable(options);
   const auto imported = recording::Import(options.from, options.import);
   return imported ? *imported : recording::Read(options.from);
 }
@@ -103,9 +110,10 @@ void WriteAny(const recording::Recording& recording, const ConvertOptions& optio
 }
 
 int Convert(const ConvertOptions& options) {
-  if (std::filesystem::exists(options.to)) {
+  if (std::filesystem::is_regular_file(options.to) && !recording::OverwritingIsForced()) {
     throw InputError(
-        fmt::format("{}: exists already, and nothing recorded is overwritten; choose another name",
+        fmt::format("{}: exists already, and nothing recorded is overwritten; choose another name, "
+                    "or say --force",
                     options.to.string()));
   }
   const recording::Recording recording = ReadAny(options);
@@ -136,8 +144,13 @@ void AddConvert(CLI::App& program, int& exit_code) {
   command
       ->add_option("--column", options->columns,
                    "Logs of a monitor, tables in CSV: NAME=CHANNEL, the name with its unit; may be "
-                   "repeated")
+                   "repeated. Of a table also a sum, deg=counts*0.00549+3 or z_mm=a+b")
       ->allow_extra_args(false);
+  command
+      ->add_option("--columns", options->names,
+                   "Tables in CSV without a line of names: the names of all columns, with commas "
+                   "between; - leaves one out")
+      ->delimiter(',');
   command
       ->add_option("--sensor-deg", options->sensor_degrees,
                    "Logs of a monitor at a turning shaft: where gap_1, gap_2, ... stand round it, "

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <system_error>
 
 #include "apps/causes_option.h"
 #include "apps/command.h"
@@ -16,6 +15,7 @@
 #include "compensation/nc_correction.h"
 #include "failure/failure.h"
 #include "map/text_file.h"
+#include "recording/whole_file.h"
 
 namespace abbe::apps {
 namespace {
@@ -79,29 +79,20 @@ void CorrectCsv(const CorrectCommand& options, const map::ErrorMap& map,
 void StreamProgram(const CorrectCommand& options, compensation::NcCorrection& correction) {
   std::ifstream in(options.from, std::ios::binary);
   if (!in) throw InputError(options.from.string() + ": cannot be read; check the path");
-  const std::filesystem::path unfinished = OutOf(options).string() + ".part";
-  std::ofstream out(unfinished, std::ios::binary);
+  recording::WholeFile out(OutOf(options));
   std::string line, text;
   try {
     while (std::getline(in, line)) {
       correction.Take(line, text);
       if (text.size() < kBuffer) continue;
-      out << text;
+      out.Append(text);
       text.clear();
     }
   } catch (const InputError& failure) {
-    out.close();
-    std::error_code error;
-    std::filesystem::remove(unfinished, error);
     throw InputError(fmt::format("{}: {}", options.from.string(), failure.what()));
   }
-  out << text;
-  out.close();
-  if (!out) {
-    throw InputError(OutOf(options).string() +
-                     ": cannot be written; choose another place with --out");
-  }
-  std::filesystem::rename(unfinished, OutOf(options));
+  out.Append(text);
+  out.Finish();
 }
 
 void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
@@ -135,9 +126,6 @@ void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
 int Correct(const CorrectCommand& options) {
   const map::ErrorMap map = options.map.Read();
   const compensation::Corrector corrector(map, options.map.Tool(map));
-  if (OutOf(options) == options.from) {
-    throw InputError(options.from.string() + ": would be overwritten; choose another --out");
-  }
   if (options.from.extension() == ".csv") {
     CorrectCsv(options, map, corrector);
   } else if (!options.causes.empty()) {

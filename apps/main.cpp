@@ -2,11 +2,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
+#include <new>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "apps/commands.h"
+#include "apps/output_guard.h"
 #include "failure/failure.h"
 #include "settings/nearest_word.h"
 
@@ -67,6 +76,22 @@ int Report(const std::exception& failure, int exit_code) {
   return exit_code;
 }
 
+// Of a size that no memory holds: std::bad_alloc, or std::length_error of a container.
+int ReportMemory() {
+  return Report(abbe::InputError("out of memory: what was asked for is larger than this computer "
+                                 "can hold; ask for fewer points, draws or rows"),
+                abbe::apps::kBadInput);
+}
+
+// What was printed may not have reached its file: 3 then, else `exit_code`.
+int Printed(int exit_code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+  const std::string why = std::strerror(errno);
+  return Report(abbe::DeviceError(fmt::format(
+                    "standard output: cannot be written: {}; make room and try again", why)),
+                abbe::apps::kDeviceFailed);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -79,6 +104,8 @@ int main(int argc, char** argv) {
   program.get_formatter()->column_width(34);
   int exit_code = kDone;
   for (const AddCommand add : kCommands) add(program, exit_code);
+  GuardOutputs(program);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a disk that is full
   try {
     RefuseUnknown(program, argc, argv);
     program.parse(argc, argv);
@@ -91,8 +118,16 @@ int main(int argc, char** argv) {
     return Report(failure, kDeviceFailed);
   } catch (const abbe::NumericalError& failure) {
     return Report(failure, kNumericsFailed);
+  } catch (const std::bad_alloc&) {
+    return ReportMemory();
+  } catch (const std::length_error&) {
+    return ReportMemory();
+  } catch (const std::filesystem::filesystem_error& failure) {
+    return Report(failure, kBadInput);
+  } catch (const std::system_error& failure) {
+    return Report(failure, kDeviceFailed);
   } catch (const std::exception& failure) {
     return Report(failure, kNumericsFailed);
   }
-  return exit_code;
+  return Printed(exit_code);
 }

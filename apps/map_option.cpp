@@ -38,9 +38,21 @@ Eigen::Vector3d MapOption::Tool(const map::ErrorMap& map) const {
 }
 
 std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given) {
-  if (given.size() == 1) return {given[0], given[0], given[0]};
-  if (given.size() == 3) return {given[0], given[1], given[2]};
-  throw InputError("--points takes one number or three, of X, Y and Z");
+  constexpr double kMost = 1e7;  // of a grid; about 1 GB as text
+  if (given.size() != 1 && given.size() != 3) {
+    throw InputError("--points takes one number or three, of X, Y and Z");
+  }
+  const std::array<Eigen::Index, 3> points{given[0], given[given.size() / 2], given.back()};
+  double product = 1.0;
+  for (const Eigen::Index each : points) {
+    if (each < 2) {
+      throw InputError(fmt::format("--points {}: an axis needs 2 points or more", each));
+    }
+    product *= static_cast<double>(each);
+  }
+  if (product <= kMost) return points;
+  throw InputError(fmt::format("--points: {:.3g} points in all, at most {:.0g} are written; take fewer",
+                               product, kMost));
 }
 
 Eigen::Vector3d VectorOf(const std::vector<double>& mm) {

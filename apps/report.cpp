@@ -7,6 +7,7 @@
 
 #include "apps/command.h"
 #include "apps/commands.h"
+#include "apps/result_file.h"
 #include "report/report_page.h"
 
 namespace abbe::apps {
@@ -19,8 +20,9 @@ struct ReportOptions {
 
 int MakeReport(const ReportOptions& options) {
   const auto page = options.out.empty() ? options.folder / "report.html" : options.out;
-  const report::WrittenReport written = report::WriteReport(options.folder, page);
-  for (const std::string& note : written.notes) fmt::print(stderr, "abbe: {}\n", note);
+  const report::Report report = report::ComposeReport(options.folder);
+  WriteText(report.page, page);
+  for (const std::string& note : report.notes) fmt::print(stderr, "abbe: {}\n", note);
   fmt::print("{}\n", page.string());
   return kDone;
 }

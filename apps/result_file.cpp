@@ -7,26 +7,17 @@
 #include <fstream>
 
 #include "failure/failure.h"
+#include "recording/whole_file.h"
 
 namespace abbe::apps {
 
 void WriteText(const std::string& text, const std::filesystem::path& path) {
-  std::error_code error;
-  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
-  const std::filesystem::path unfinished = path.string() + ".part";
-  std::ofstream file(unfinished);
-  file << text;
-  file.close();
-  if (!file) {
-    throw InputError(
-        fmt::format("{}: cannot be written: {}; choose another place with --out or --json",
-                    path.string(), std::strerror(errno)));
-  }
-  std::filesystem::rename(unfinished, path);
+  recording::WriteWhole(text, path);
 }
 
 void WriteResult(const nlohmann::ordered_json& result, const std::filesystem::path& path) {
-  WriteText(result.dump(1) + '\n', path);
+  // A name of a user may hold bytes that are no UTF-8: they are replaced, JSON has none.
+  WriteText(result.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n', path);
 }
 
 nlohmann::ordered_json ReadResult(const std::filesystem::path& path) {

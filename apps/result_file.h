@@ -7,8 +7,7 @@
 
 namespace abbe::apps {
 
-// Writes a text under a temporary name and renames it. Missing folders are made. InputError when
-// the path cannot be written.
+// Writes a text, as recording/whole_file.h has it. Missing folders are made.
 void WriteText(const std::string& text, const std::filesystem::path& path);
 
 // The same with `result` (indented, numbers in shortest round-trip form).

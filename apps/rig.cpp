@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -126,13 +125,7 @@ std::string ServeRtu(rig::RegisterServer& server, const std::string& text) {
 }
 
 void WriteReadyFile(const std::filesystem::path& path, int port) {
-  const std::filesystem::path unfinished = path.string() + ".part";
-  std::ofstream file(unfinished);
-  file << port << '\n';
-  file.close();
-  if (!file)
-    throw InputError(fmt::format("{}: cannot be written; choose another place", path.string()));
-  std::filesystem::rename(unfinished, path);
+  WriteText(fmt::format("{}\n", port), path);
 }
 
 // The machine of the rig with its program, on the wires that were asked for.

@@ -15,6 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMillimetreAMinute = 1e-3 / 60.0;
+constexpr int kMostPlaces = 1'000'000;
 
 // The size of a course in m: its own, or `usual` in mm. One number stands for all.
 std::vector<double> SizeOf(const CourseRequest& request, const std::vector<double>& usual) {
@@ -71,6 +72,10 @@ rig::Course Planned(const CourseRequest& request, const rig::RigSettings& machin
   if (request.course == "cube") {
     const std::vector<double> size = SizeOf(request, {25.0, 25.0, 50.0});
     const std::vector<int> points = PointsOf(request, {7, 7, 12});
+    if (1.0 * points[0] * points[1] * points[2] > kMostPlaces) {
+      throw InputError(fmt::format("--points {},{},{}: makes more than {} places; take fewer",
+                                   points[0], points[1], points[2], kMostPlaces));
+    }
     return rig::DwellCourse(
         rig::GridPlaces(centre, {size[0], size[1], size[2]}, {points[0], points[1], points[2]}),
         feed, request.dwell_s, 1);

@@ -97,6 +97,7 @@ void AddLinkageOptions(CLI::App& command, CLI::Option* linkage,
       ->capture_default_str()
       ->needs(linkage);
   command.add_option("--points", options.points, "Poses along each edge")
+      ->check(CLI::Range(1, 50))
       ->capture_default_str()
       ->needs(linkage);
   command.add_option("--warmth", options.warmth_c, "Links warmer than their reference by, degC")
@@ -134,9 +135,9 @@ void AddSensitivity(CLI::App& program, int& exit_code) {
                                          "Of the linkage in this machine file: tolerances to tip");
   AddLinkageOptions(*command, linkage, options->linkage);
   command->add_option("--draws", options->draws, "Number of draws (head 20000, linkage 2048)")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1'000'000'000));
   command->add_option("--threads", options->run.threads, "Threads, 0 for all")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_option("--seed", options->run.seed, "Seed of the random numbers")
       ->capture_default_str();

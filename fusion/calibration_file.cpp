@@ -156,16 +156,7 @@ void WriteCalibration(const Calibration& calibration, const std::filesystem::pat
                       Floats(calibration.covariance.reshaped(), 1.0));
   if (calibration.mapped) text += MappedText(*calibration.mapped);
 
-  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
-  const std::filesystem::path temporary = path.string() + ".part";
-  std::ofstream out(temporary, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) {
-    throw InputError(
-        fmt::format("{}: cannot be written; name a file in a folder that can", path.string()));
-  }
-  std::filesystem::rename(temporary, path);
+  map::WriteWhole(text, path);
 }
 
 Calibration ReadCalibration(const std::filesystem::path& path,

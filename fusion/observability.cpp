@@ -38,11 +38,13 @@ Observability Observe(const estimation::Problem& problem, const estimation::Resu
   for (std::size_t s = 0; s < at.sources.size(); ++s) {
     if (!problem.sources()[s].options.is_prior) data += at.sources[s].information;
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(InUnitsOfPrior(data, layout.prior_sd),
-                                                      Eigen::EigenvaluesOnly);
+  const MatrixXd information = InUnitsOfPrior(data, layout.prior_sd);
   Observability seen;
   seen.parameters = layout.columns();
-  seen.singular_values = eigen.eigenvalues().reverse().cwiseMax(0.0).cwiseSqrt();
+  if (information.size() > 0) {  // with all tolerances at 0 no parameter has a prior
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(information, Eigen::EigenvaluesOnly);
+    seen.singular_values = eigen.eigenvalues().reverse().cwiseMax(0.0).cwiseSqrt();
+  }
   seen.unseen = result.weak_directions;
   seen.rank = seen.parameters - static_cast<Index>(seen.unseen.size());
   seen.condition = result.condition;

@@ -26,6 +26,10 @@ CanReplay::CanReplay(const CandumpLog& log, const std::string& interface, Clock&
       log.name, interface, fmt::join(others, ", ")));
 }
 
+double CanReplay::NextTime() const {
+  return start_s_ + frames_[std::min(next_, frames_.size() - 1)].time_s;
+}
+
 std::optional<CanReceived> CanReplay::Receive(double until_s) {
   if (Ended()) return {};
   const double time = start_s_ + frames_[next_].time_s;

@@ -27,6 +27,8 @@ class CanReplay : public CanBus {
   std::uint64_t lost() const override { return 0; }
   std::uint64_t errors() const override { return 0; }
   bool Ended() const override { return next_ == frames_.size(); }
+  // When the next frame comes, by the clock; when the last one came, after it.
+  double NextTime() const;
 
  private:
   struct Passage {

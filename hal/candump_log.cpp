@@ -4,11 +4,11 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 
 #include "failure/failure.h"
 #include "recording/line_reader.h"
+#include "recording/whole_file.h"
 
 namespace abbe::hal {
 namespace {
@@ -145,13 +145,9 @@ CandumpLog ReadCandump(const std::filesystem::path& path) {
 }
 
 void WriteCandump(const CandumpLog& log, const std::filesystem::path& path) {
-  std::ofstream file(path);
-  if (!file)
-    throw InputError(fmt::format("{}: cannot be made; choose another folder", path.string()));
-  for (const LoggedFrame& frame : log.frames) file << LineOf(frame, log.started_us) << '\n';
-  file.close();
-  if (!file)
-    throw DeviceError(fmt::format("{}: disk full; make room and try again", path.string()));
+  recording::WholeFile file(path);
+  for (const LoggedFrame& frame : log.frames) file.Append(LineOf(frame, log.started_us) + '\n');
+  file.Finish();
 }
 
 }  // namespace abbe::hal

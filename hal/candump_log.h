@@ -36,7 +36,7 @@ struct CandumpLog {
 // before the one ahead of it (the calendar was set back) is taken as equal to that, with a warning.
 CandumpLog ReadCandump(const std::filesystem::path& path);
 
-// InputError when the file cannot be made, DeviceError when the disk is full. Overwrites.
+// Failures are those of recording/whole_file.h.
 void WriteCandump(const CandumpLog& log, const std::filesystem::path& path);
 
 }  // namespace abbe::hal

@@ -7,25 +7,30 @@
 #include <ctime>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "failure/failure.h"
 #include "hal/can_replay.h"
 #include "hal/canopen_frame.h"
 #include "hal/canopen_source.h"
 #include "hal/sample_flag.h"
+#include "settings/toml_text.h"
 
 namespace abbe::hal {
 namespace {
 
 constexpr double kFrameApart = 1e-6;  // s, the least that a log tells
+// s without a frame after which no rows stand for the silence: a clock that was set makes decades.
+constexpr double kLongestSilence = 60.0;
 
 std::string HeaderOf(const CandumpLog& log, const CanopenSettings& device,
                      const std::string& machine) {
   const auto started = static_cast<std::time_t>(log.started_us / 1'000'000);
   return fmt::format(
-      "kind = \"dwell\"\nmachine = \"{}\"\nstarted = {:%Y-%m-%dT%H:%M:%S}.{:06}Z\n[sources]\n"
-      "{} = \"candump: {}\"\n",
-      machine, fmt::gmtime(started), log.started_us % 1'000'000, device.name, device.interface);
+      "kind = \"dwell\"\nmachine = {}\nstarted = {:%Y-%m-%dT%H:%M:%S}.{:06}Z\n[sources]\n"
+      "{} = {}\n",
+      settings::Quoted(machine), fmt::gmtime(started), log.started_us % 1'000'000,
+      settings::Key(device.name), settings::Quoted("candump: " + device.interface));
 }
 
 // The start of a recording in microseconds since 1970; 0 where its header does not tell it.
@@ -43,14 +48,23 @@ std::int64_t StartOf(const recording::Recording& recording) {
 recording::Recording RecordingOf(const CandumpLog& log, const CanopenSettings& device,
                                  double stale_s, const std::string& machine) {
   HandClock clock;
-  CanopenSource source(device, stale_s, std::make_unique<CanReplay>(log, device.interface, clock),
-                       clock, {}, CanopenSource::Part::kListener);
+  auto replayed = std::make_unique<CanReplay>(log, device.interface, clock);
+  const CanReplay& replay = *replayed;
+  CanopenSource source(device, stale_s, std::move(replayed), clock, {},
+                       CanopenSource::Part::kListener);
   recording::Recording recording{log.name, HeaderOf(log, device, machine), {}, log.warnings};
   recording.columns.push_back({"time_s", {}});
   for (const Channel& channel : source.channels()) recording.columns.push_back({channel.name, {}});
   recording.columns.push_back({"flags", {}});
   bool any_good = false;
   while (!source.Ended()) {
+    if (const double silence = replay.NextTime() - clock.Now(); silence > kLongestSilence) {
+      recording.warnings.push_back(fmt::format(
+          "{}: no frame of {} for {:.0f} s from second {:.0f} on, for which no rows stand: the bus "
+          "was silent, or the computer's calendar was set",
+          log.name, device.interface, silence, clock.Now()));
+      clock.SleepUntil(replay.NextTime() - 1.0);
+    }
     const SampleSet set = source.Read();
     std::uint32_t flags = 0;
     for (std::size_t i = 0; i < set.samples.size(); ++i) {

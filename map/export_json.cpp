@@ -70,7 +70,7 @@ Format::Paths WriteJsonGrid(const ErrorMap& map, const ExportOptions& options,
   }
   json["error_um"] = Triples(file.grid.error());
   if (file.grid.u95().size() > 0) json["u95_um"] = Triples(file.grid.u95());
-  WriteWhole(json.dump() + "\n", path);
+  WriteWhole(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n", path);
   return {path};
 }
 

@@ -2,13 +2,18 @@
 #include <hdf5.h>
 
 #include <array>
+#include <cstring>
+#include <map>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "failure/failure.h"
 #include "map/export_grid.h"
-#include "recording/hdf5_handle.h"
+#include "recording/hdf5_child.h"
+#include "recording/whole_file.h"
 
 namespace abbe::map {
 namespace {
@@ -32,15 +37,6 @@ void PutText(hid_t file, const char* name, const std::string& value) {
   H5Awrite(attribute.id(), type.id(), value.c_str());
 }
 
-std::string GetText(hid_t file, const char* name, const std::filesystem::path& path) {
-  const Handle attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose);
-  Need(attribute.good(), path);
-  const Handle type(H5Aget_type(attribute.id()), H5Tclose);
-  std::string value(H5Tget_size(type.id()), '\0');
-  Need(H5Aread(attribute.id(), type.id(), value.data()) >= 0, path);
-  return value.substr(0, value.find('\0'));
-}
-
 void PutNumbers(hid_t file, const char* name, const std::vector<hsize_t>& shape,
                 const double* values, const std::filesystem::path& path) {
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
@@ -51,18 +47,61 @@ void PutNumbers(hid_t file, const char* name, const std::vector<hsize_t>& shape,
   Need(H5Dwrite(data.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, path);
 }
 
-std::vector<double> GetNumbers(hid_t file, const char* name, const std::filesystem::path& path) {
-  const Handle data(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
-  Need(data.good(), path);
-  const Handle space(H5Dget_space(data.id()), H5Sclose);
-  std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.id())));
+// What a file holds, by name.
+struct Held {
+  std::map<std::string, std::string> texts;
+  std::map<std::string, std::vector<double>> numbers;
+};
+
+void SendNumbers(hid_t file, const std::string& name, int rank, const std::string& file_name,
+                 const recording::Hdf5Sender& sender) {
+  const recording::Hdf5Numbers data(file, name, rank, file_name);
+  data.RequireStorage(file_name);
+  std::vector<double> values(data.count());
   Need(H5Dread(data.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
-       path);
-  return values;
+       file_name);
+  sender.Send('N', name);
+  sender.Send('V', std::span<const double>(values));
 }
 
-Eigen::Matrix3Xd GetVectors(hid_t file, const char* name, const std::filesystem::path& path) {
-  const auto values = GetNumbers(file, name, path);
+// In a child: the numbers of each data set behind its name, a text behind its name.
+void SendAll(const std::string& file_name, const recording::Hdf5Sender& sender) {
+  const Handle properties = recording::FileProperties();
+  const Handle file(H5Fopen(file_name.c_str(), H5F_ACC_RDONLY, properties.id()), H5Fclose);
+  Need(file.good(), file_name);
+  for (const char* name : {"machine", "chain", "scale"}) {
+    const std::string text = recording::TextAttribute(file.id(), name, file_name);
+    sender.Send('T', name);
+    sender.Send('t', text);
+  }
+  for (const char* name : {"tool_mm", "temperature_c", kAxisNames[0], kAxisNames[1], kAxisNames[2]}) {
+    SendNumbers(file.id(), name, 1, file_name, sender);
+  }
+  SendNumbers(file.id(), "error_um", 4, file_name, sender);
+  if (H5Lexists(file.id(), "u95_um", H5P_DEFAULT) > 0) {
+    SendNumbers(file.id(), "u95_um", 4, file_name, sender);
+  }
+}
+
+Held ReadAll(const std::filesystem::path& path) {
+  Held held;
+  std::string name;
+  recording::ReadInChild(
+      path, [&](const recording::Hdf5Sender& sender) { SendAll(path.string(), sender); },
+      [&](char part, std::string_view bytes) {
+        if (part == 'T' || part == 'N') name = bytes;
+        if (part == 't') held.texts[name] = bytes;
+        if (part != 'V') return true;
+        std::vector<double>& values = held.numbers[name];
+        const std::size_t before = values.size(), count = bytes.size() / sizeof(double);
+        values.resize(before + count);
+        std::memcpy(values.data() + before, bytes.data(), count * sizeof(double));
+        return true;
+      });
+  return held;
+}
+
+Eigen::Matrix3Xd VectorsOf(const std::vector<double>& values) {
   return 1e-6 * Eigen::Map<const Eigen::Matrix3Xd>(values.data(), 3,
                                                    static_cast<Eigen::Index>(values.size() / 3));
 }
@@ -90,9 +129,10 @@ Format::Paths WriteHdf5Grid(const ErrorMap& map, const ExportOptions& options,
   const GridFile content = GridFileOf(map, options);
   std::error_code error;
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
-  const std::string unfinished = path.string() + ".part";
+  recording::WholeFile whole(path);
+  const std::filesystem::path part = whole.PartToFill("\x89HDF\r\n\x1a\n");
   const Handle properties = recording::FileProperties();
-  Handle file(H5Fcreate(unfinished.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, properties.id()), H5Fclose);
+  Handle file(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, properties.id()), H5Fclose);
   Need(file.good(), path);
   const FileHeader& header = content.header;
   const Eigen::Vector3d tool_mm = header.tool * 1e3;
@@ -106,35 +146,31 @@ Format::Paths WriteHdf5Grid(const ErrorMap& map, const ExportOptions& options,
   PutNumbers(file.id(), "temperature_c", {1}, &header.temperature, path);
   PutGrid(file.id(), content, path);
   Need(file.CloseNow(), path);
-  std::filesystem::rename(unfinished, path);
+  whole.Finish();
   return {path};
 }
 
 GridFile ReadHdf5Grid(const std::filesystem::path& path) {
-  const recording::QuietHdf5 quiet;
-  const Handle properties = recording::FileProperties();
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, properties.id()), H5Fclose);
-  Need(file.good(), path);
-  FileHeader header;
-  header.machine = GetText(file.id(), "machine", path);
-  header.chain = GetText(file.id(), "chain", path);
-  header.scale = GetText(file.id(), "scale", path);
-  const auto tool_mm = GetNumbers(file.id(), "tool_mm", path);
-  const auto temperature = GetNumbers(file.id(), "temperature_c", path);
+  Held held = ReadAll(path);
+  const auto& tool_mm = held.numbers["tool_mm"];
+  const auto& temperature = held.numbers["temperature_c"];
   if (tool_mm.size() != 3 || temperature.size() != 1) {
     throw InputError(path.string() + ": tool_mm or temperature_c has another size");
   }
+  FileHeader header;
+  header.machine = held.texts["machine"];
+  header.chain = held.texts["chain"];
+  header.scale = held.texts["scale"];
   header.tool = 1e-3 * Eigen::Vector3d(tool_mm.data());
   header.temperature = temperature[0];
   std::array<GridAxis, 3> axes;
   for (std::size_t k = 0; k < 3; ++k) {
-    auto positions = GetNumbers(file.id(), kAxisNames[k], path);
+    std::vector<double>& positions = held.numbers[kAxisNames[k]];
     for (double& position : positions) position *= 1e-3;
     axes[k] = AxisOfPositions(positions, path.string());
   }
-  Eigen::Matrix3Xd u95;
-  if (H5Lexists(file.id(), "u95_um", H5P_DEFAULT) > 0) u95 = GetVectors(file.id(), "u95_um", path);
-  return {header, MapGrid(axes, GetVectors(file.id(), "error_um", path), std::move(u95))};
+  return {header,
+          MapGrid(axes, VectorsOf(held.numbers["error_um"]), VectorsOf(held.numbers["u95_um"]))};
 }
 
 }  // namespace abbe::map

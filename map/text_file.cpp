@@ -6,24 +6,14 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <system_error>
 
 #include "failure/failure.h"
+#include "recording/whole_file.h"
 
 namespace abbe::map {
 
 void WriteWhole(const std::string& text, const std::filesystem::path& path) {
-  std::error_code error;
-  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
-  const std::filesystem::path unfinished = path.string() + ".part";
-  std::ofstream file(unfinished, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) {
-    throw InputError(fmt::format("{}: cannot be written: {}; name a file in a folder that can",
-                                 path.string(), std::strerror(errno)));
-  }
-  std::filesystem::rename(unfinished, path);
+  recording::WriteWhole(text, path);
 }
 
 std::string ReadWhole(const std::filesystem::path& path) {
@@ -32,7 +22,11 @@ std::string ReadWhole(const std::filesystem::path& path) {
     throw InputError(
         fmt::format("{}: cannot be read: {}; check the path", path.string(), std::strerror(errno)));
   }
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad()) {
+    throw InputError(fmt::format("{}: cannot be read further; check the disk", path.string()));
+  }
+  return text;
 }
 
 }  // namespace abbe::map

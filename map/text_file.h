@@ -1,4 +1,4 @@
-// Whole text files: written so that they are there complete or not at all.
+// Whole text files.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace abbe::map {
 
-// Under a temporary name, then renamed. Missing folders are made. InputError when it cannot be.
+// As recording/whole_file.h writes every result. Missing folders are made.
 void WriteWhole(const std::string& text, const std::filesystem::path& path);
 
 // InputError when the file cannot be read.

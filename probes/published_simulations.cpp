@@ -27,6 +27,7 @@ constexpr Installation<> kInstallation{
 
 // Draws are made and evaluated in blocks that fit the first-level cache; a chunk of blocks is one
 // task.
+constexpr int kMostThreads = 1024;  // TBB fails on many more
 constexpr std::size_t kBlock = 256;
 constexpr std::size_t kBlocksPerChunk = 256;
 // Sums are kept in lanes, so that their order is fixed and the compiler can use vector
@@ -206,7 +207,7 @@ SimulationErrors RunSimulation(const SimulationOptions& options) {
   constexpr std::uint64_t kChunk = kBlock * kBlocksPerChunk;
   const std::uint64_t chunks = (options.draws + kChunk - 1) / kChunk;
   std::vector<Sums> parts(chunks);
-  const int threads = options.threads == 0 ? tbb::info::default_concurrency() : options.threads;
+  const int threads = options.threads == 0 ? tbb::info::default_concurrency() : std::min(options.threads, kMostThreads);
   const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(threads);
   arena.execute([&] {

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "settings/nearest_word.h"
+#include "settings/toml_text.h"
 
 namespace abbe::recording {
 namespace {
@@ -163,6 +164,11 @@ void CheckColumnNames(const std::vector<std::string>& names, std::string_view pl
         name.front() == ' ' || name.back() == ' ' || name == ".") {
       throw InputError(fmt::format("{}: column {} is named `{}`; use letters, digits and _ only",
                                    place, i + 1, control ? std::string("?") : name));
+    }
+    if (!settings::IsUtf8(name)) {
+      throw InputError(fmt::format(
+          "{}: the name of column {} is not UTF-8; save the file as UTF-8, or name it in letters",
+          place, i + 1));
     }
     if (!seen.insert(name).second) {
       Refuse(place, name, "two columns have this name; rename one");

@@ -23,7 +23,8 @@ struct Places {
 };
 
 // Throws InputError when the names cannot be columns: none, one twice, or one that is empty, holds
-// a comma, a quote, a slash, a '#' in front or a control character, or has blanks at its ends.
+// a comma, a quote, a slash, a '#' in front or a control character, has blanks at its ends, or is
+// not UTF-8.
 void CheckColumnNames(const std::vector<std::string>& names, std::string_view place);
 
 // Throws InputError when the header is not TOML, its kind is unknown, or `names` lack a column that

@@ -10,112 +10,166 @@
 #include <optional>
 #include <string_view>
 
+#include "recording/column_sum.h"
 #include "recording/line_reader.h"
 #include "settings/toml_text.h"
-#include "settings/unit.h"
 
 namespace abbe::recording {
 namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 std::string_view Trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\"";
+  constexpr std::string_view kBlanks = " \t\r";
   const auto first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-std::vector<std::string> CellsOf(std::string_view line) {
-  std::vector<std::string> cells;
-  for (;;) {
-    const auto comma = line.find(',');
-    cells.emplace_back(Trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return cells;
-    line.remove_prefix(comma + 1);
+// What spreadsheets put between cells: a semicolon where numbers have a decimal comma.
+char SeparatorOf(std::string_view line) {
+  for (const char separator : {';', '\t'}) {
+    if (line.find(separator) != std::string_view::npos) return separator;
   }
+  return ',';
 }
 
-double NumberIn(const std::string& cell) {
+// A separator between quotes belongs to its cell; a doubled quote in them is one.
+std::vector<std::string> CellsOf(std::string_view line, char separator) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      if (quoted && line.substr(i + 1).starts_with('"')) cells.back() += line[i++];
+      quoted = !quoted;
+    } else if (line[i] == separator && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += line[i];
+    }
+  }
+  for (std::string& cell : cells) cell = Trimmed(cell);
+  return cells;
+}
+
+double NumberIn(std::string cell, char separator) {
+  // "1,5" cannot stand in a table whose cells commas part, except in quotes: there it may be 15.
+  if (separator != ',' && cell.find('.') == std::string::npos &&
+      std::count(cell.begin(), cell.end(), ',') == 1) {
+    cell[cell.find(',')] = '.';
+  }
   double value = kNoNumber;
   const char* const end = cell.data() + cell.size();
-  const auto [stop, error] = std::from_chars(cell.data(), end, value);
+  const char* const begin = cell.starts_with('+') ? cell.data() + 1 : cell.data();
+  const auto [stop, error] = std::from_chars(begin, end, value);
   return error == std::errc{} && stop == end && std::isfinite(value) ? value : kNoNumber;
-}
-
-bool Says(const std::string& cell, const std::string& wanted) {
-  return cell == wanted || NumberIn(cell) == NumberIn(wanted);  // false for NaN
 }
 
 class TableReader {
  public:
   TableReader(const std::filesystem::path& path, const CsvTableOptions& options)
       : path_(path.string()), options_(options), lines_(path) {
-    if (options.columns.empty()) {
-      throw InputError(fmt::format(
-          "{}: a table does not say what its columns are; name them with their units, for example "
-          "pivot_1_rad=NAME",
-          path_));
-    }
     recording_.name = path_;
-    for (const MonitoredColumn& column : options.columns) {
+    if (options.columns.empty()) {
+      for (const std::string& name : options.names) {
+        if (name != "-") columns_.push_back({name, name});
+      }
+    } else {
+      columns_ = options.columns;
+    }
+    for (const MonitoredColumn& column : columns_) {
       if (column.name == "time_s") has_time_ = true;
     }
   }
 
   Recording Read() {
     std::optional<std::string_view> line = Next();
-    names_ = line ? CellsOf(*line) : std::vector<std::string>{};
-    for (const MonitoredColumn& column : options_.columns) {
-      from_.push_back(Find(column.channel));
-      const auto was = settings::UnitOf(column.channel), is = settings::UnitOf(column.name);
-      factor_.push_back(was.name.empty() ? 1.0 : was.si / is.si);
+    separator_ = line ? SeparatorOf(*line) : ',';
+    if (options_.names.empty()) {
+      names_ = line ? CellsOf(*line, separator_) : std::vector<std::string>{};
+      line = std::nullopt;
+    } else {
+      names_ = options_.names;
     }
-    for (const auto& [column, wanted] : options_.where) asked_.push_back(Find(column));
-    if (!has_time_) recording_.columns.push_back({"time_s", {}});
-    for (const auto& column : options_.columns) recording_.columns.push_back({column.name, {}});
-    recording_.columns.push_back({"flags", {}});
+    Choose();
     double order = 0.0;
-    for (line = Next(); line; line = Next(), ++order) Take(CellsOf(*line), order);
+    if (!line) line = Next();
+    for (; line; line = Next(), ++order) Take(CellsOf(*line, separator_), order);
     if (recording_.rows() == 0) {
       throw InputError(fmt::format("{}: no row is left; correct --where or the table", path_));
+    }
+    if (!any_good_) {
+      throw InputError(fmt::format(
+          "{}: no row has a number in every column that was asked for; is the table parted by {}?",
+          path_, separator_ == '\t' ? "tabs" : fmt::format("\"{}\"", separator_)));
     }
     recording_.header = Header();
     return std::move(recording_);
   }
 
  private:
+  void Choose() {
+    if (columns_.empty()) {
+      throw InputError(fmt::format(
+          "{}: a table does not say what its columns are ({}); name them with their "
+          "units, for example --column pivot_1_rad=NAME",
+          path_, fmt::join(names_, ", ")));
+    }
+    for (const MonitoredColumn& column : columns_) {
+      sums_.push_back(ParseColumnSum(column.channel, column.name, names_, path_));
+    }
+    for (const auto& [column, wanted] : options_.where) {
+      asked_.push_back(ParseColumnSum(column, column, names_, path_).terms.front().column);
+    }
+    if (!has_time_) recording_.columns.push_back({"time_s", {}});
+    for (const auto& column : columns_) recording_.columns.push_back({column.name, {}});
+    recording_.columns.push_back({"flags", {}});
+  }
+
   std::optional<std::string_view> Next() {
     for (auto line = lines_.Next(); line; line = lines_.Next()) {
+      if (lines_.number() == 1 && line->starts_with(kByteOrderMark)) {
+        line->remove_prefix(kByteOrderMark.size());
+      }
+      if (line->find('\0') != std::string_view::npos) {
+        throw InputError(
+            fmt::format("{}:{}: is no text in UTF-8; save the table as CSV (UTF-8)", path_,
+                        lines_.number()));
+      }
       const std::string_view text = Trimmed(*line);
       if (!text.empty() && !text.starts_with('#')) return line;
     }
     return std::nullopt;
   }
 
-  std::size_t Find(const std::string& name) const {
-    const auto found = std::find(names_.begin(), names_.end(), name);
-    if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
-    throw InputError(
-        fmt::format("{}: has no column \"{}\"; it has {}", path_, name, fmt::join(names_, ", ")));
+  bool Says(const std::string& cell, const std::string& wanted) const {
+    return cell == wanted || NumberIn(cell, separator_) == NumberIn(wanted, ',');  // false for NaN
   }
 
   void Take(const std::vector<std::string>& cells, double order) {
     if (cells.size() != names_.size()) {
-      throw InputError(fmt::format("{}:{}: {} cells, but the table has {} columns", path_,
-                                   lines_.number(), cells.size(), names_.size()));
+      throw InputError(fmt::format("{}:{}: {} cells, but the table has {} columns{}", path_,
+                                   lines_.number(), cells.size(), names_.size(),
+                                   separator_ == ',' && cells.size() > names_.size()
+                                       ? "; does it have decimal commas? then part its cells by ;"
+                                       : ""));
     }
     for (std::size_t i = 0; i < asked_.size(); ++i) {
       if (!Says(cells[asked_[i]], options_.where[i].second)) return;
     }
+    numbers_.clear();
+    for (const std::string& cell : cells) numbers_.push_back(NumberIn(cell, separator_));
     auto column = recording_.columns.begin();
     if (!has_time_) (column++)->values.push_back(order);
     bool good = true;
-    for (std::size_t i = 0; i < from_.size(); ++i) {
-      const double value = factor_[i] * NumberIn(cells[from_[i]]);
+    for (const ColumnSum& sum : sums_) {
+      const double value = sum.Of(numbers_);
       good = good && std::isfinite(value);
       (column++)->values.push_back(value);
     }
+    any_good_ = any_good_ || good;
     column->values.push_back(good ? 0.0 : static_cast<double>(kDeviceError));
   }
 
@@ -124,8 +178,9 @@ class TableReader {
     if (!has_time_) header += "time = \"order\"\n";
     header += fmt::format("imported_from = {}\n[sources]\n",
                           settings::Quoted(std::filesystem::path(path_).filename().string()));
-    for (const MonitoredColumn& column : options_.columns) {
-      header += fmt::format("{} = {}\n", column.name, settings::Quoted(column.channel));
+    for (const MonitoredColumn& column : columns_) {
+      header +=
+          fmt::format("{} = {}\n", settings::Key(column.name), settings::Quoted(column.channel));
     }
     return header;
   }
@@ -133,17 +188,21 @@ class TableReader {
   std::string path_;
   const CsvTableOptions& options_;
   LineReader lines_;
+  char separator_ = ',';
   std::vector<std::string> names_;
-  std::vector<std::size_t> from_, asked_;
-  std::vector<double> factor_;
-  bool has_time_ = false;
+  std::vector<MonitoredColumn> columns_;
+  std::vector<ColumnSum> sums_;
+  std::vector<std::size_t> asked_;
+  std::vector<double> numbers_;  // of the row that is read
+  bool has_time_ = false, any_good_ = false;
   Recording recording_;
 };
 
 }  // namespace
 
 bool IsCsvTable(const std::filesystem::path& path) {
-  if (path.extension() != ".csv") return false;
+  const std::string extension = path.extension().string();
+  if (extension != ".csv" && extension != ".CSV") return false;
   LineReader lines(path);
   const auto first = lines.Next();
   return first && first->find('#') == std::string_view::npos;

@@ -45,7 +45,8 @@ class Lines {
   }
 
   std::size_t size() const { return text_.size(); }
-  void MoveTo(OutputFile& file) {
+  template <typename File>
+  void MoveTo(File& file) {
     file.Append(text_);
     text_.clear();
   }
@@ -58,7 +59,7 @@ class CsvRowFile : public RowFile {
  public:
   CsvRowFile(const std::filesystem::path& path, const std::string& header,
              const std::vector<std::string>& columns)
-      : file_(path, /*only_new=*/true), columns_(columns.size()) {
+      : file_(path), columns_(columns.size()) {
     lines_.Header(header, columns);
     lines_.MoveTo(file_);
     file_.Sync();
@@ -86,11 +87,9 @@ std::unique_ptr<RowFile> CreateCsv(const std::filesystem::path& path, const std:
   return std::make_unique<CsvRowFile>(path, header, columns);
 }
 
-void WriteCsv(const Recording& recording, const std::string& header,
-              const std::filesystem::path& path) {
+void WriteCsv(const Recording& recording, const std::string& header, WholeFile& file) {
   std::vector<std::string> names;
   for (const Column& column : recording.columns) names.push_back(column.name);
-  OutputFile file(path, /*only_new=*/false);
   Lines lines;
   lines.Header(header, names);
   for (std::size_t row = 0; row < recording.rows(); ++row) {
@@ -100,7 +99,6 @@ void WriteCsv(const Recording& recording, const std::string& header,
     if (lines.size() > kBlock) lines.MoveTo(file);
   }
   lines.MoveTo(file);
-  file.Close();
 }
 
 }  // namespace abbe::recording

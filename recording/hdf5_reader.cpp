@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "recording/check.h"
-#include "recording/hdf5_handle.h"
+#include "recording/hdf5_child.h"
 
 namespace abbe::recording {
 namespace {
@@ -31,33 +32,16 @@ OpenFile Open(const std::string& name) {
                                name, open.trouble));
 }
 
-// A text attribute, of fixed length as ours or of variable length as others write it.
-std::string Text(hid_t object, const char* attribute_name, const std::string& file) {
-  const Handle attribute(H5Aopen(object, attribute_name, H5P_DEFAULT), H5Aclose);
-  const Handle type(attribute.good() ? H5Aget_type(attribute.id()) : H5I_INVALID_HID, H5Tclose);
-  if (!type.good() || H5Tget_class(type.id()) != H5T_STRING) {
-    throw InputError(fmt::format("{}: is not a recording: it has no text `{}`; check the path",
-                                 file, attribute_name));
-  }
-  char* variable = nullptr;
-  std::string fixed(H5Tget_size(type.id()), '\0');
-  const bool is_variable = H5Tis_variable_str(type.id()) > 0;
-  void* const to = is_variable ? static_cast<void*>(&variable) : fixed.data();
-  if (H5Aread(attribute.id(), type.id(), to) < 0) {
-    throw InputError(fmt::format("{}: the text `{}` cannot be read: {}; use a copy that is whole",
-                                 file, attribute_name, Hdf5Reason()));
-  }
-  const std::string text = is_variable ? (variable == nullptr ? "" : variable) : fixed.c_str();
-  if (is_variable) H5free_memory(variable);
-  return text;
-}
-
 void CheckVersion(hid_t file, const std::string& name) {
   const Handle attribute(H5Aopen(file, kVersionAttribute, H5P_DEFAULT), H5Aclose);
+  const Handle type(attribute.good() ? H5Aget_type(attribute.id()) : H5I_INVALID_HID, H5Tclose);
+  const Handle space(attribute.good() ? H5Aget_space(attribute.id()) : H5I_INVALID_HID, H5Sclose);
+  const bool number = type.good() && space.good() && H5Tget_class(type.id()) == H5T_INTEGER &&
+                      H5Sget_simple_extent_npoints(space.id()) == 1;
   std::int64_t version = 0;
-  if (!attribute.good() || H5Aread(attribute.id(), H5T_NATIVE_INT64, &version) < 0) {
+  if (!number || H5Aread(attribute.id(), H5T_NATIVE_INT64, &version) < 0) {
     throw InputError(fmt::format(
-        "{}: is an HDF5 file, but not a recording: it has no attribute `{}`; check the path", name,
+        "{}: is an HDF5 file, but not a recording: it has no number `{}`; check the path", name,
         kVersionAttribute));
   }
   if (version != 1) {
@@ -85,35 +69,25 @@ std::vector<std::string> ColumnNames(hid_t file) {
 class DataSet {
  public:
   DataSet(hid_t file, const std::string& name, const std::string& file_name)
-      : name_(name), set_(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose) {
-    const Handle space(set_.good() ? H5Dget_space(set_.id()) : H5I_INVALID_HID, H5Sclose);
-    const Handle type(set_.good() ? H5Dget_type(set_.id()) : H5I_INVALID_HID, H5Tclose);
-    const bool number = type.good() && (H5Tget_class(type.id()) == H5T_FLOAT ||
-                                        H5Tget_class(type.id()) == H5T_INTEGER);
-    if (!space.good() || !number || H5Sget_simple_extent_ndims(space.id()) != 1) {
-      throw InputError(
-          fmt::format("{}: {}: is not a column (one row of numbers); remove it from the file",
-                      file_name, name));
-    }
-    H5Sget_simple_extent_dims(space.id(), &rows_, nullptr);
-  }
+      : numbers_(file, name, 1, file_name) {}
 
-  const std::string& name() const { return name_; }
-  hsize_t rows() const { return rows_; }
+  const std::string& name() const { return numbers_.name(); }
+  hsize_t rows() const { return numbers_.count(); }
+  void RequireStorage(const std::string& file) const { numbers_.RequireStorage(file); }
 
   // The rows before the first chunk that lies beyond the end of a file of `size` bytes. HDF5 would
   // read zeros there.
   hsize_t RowsWithin(std::uintmax_t size) const {
-    const Handle layout(H5Dget_create_plist(set_.id()), H5Pclose);
+    const Handle layout(H5Dget_create_plist(numbers_.id()), H5Pclose);
     hsize_t chunk = 0;
-    if (H5Pget_chunk(layout.id(), 1, &chunk) < 0 || chunk == 0) return rows_;
-    for (hsize_t first = 0; first < rows_; first += chunk) {
+    if (H5Pget_chunk(layout.id(), 1, &chunk) < 0 || chunk == 0) return rows();
+    for (hsize_t first = 0; first < rows(); first += chunk) {
       haddr_t begin = HADDR_UNDEF;
       hsize_t bytes = 0;
-      H5Dget_chunk_info_by_coord(set_.id(), &first, nullptr, &begin, &bytes);
+      H5Dget_chunk_info_by_coord(numbers_.id(), &first, nullptr, &begin, &bytes);
       if (begin != HADDR_UNDEF && begin + bytes > size) return first;
     }
-    return rows_;
+    return rows();
   }
 
   void Read(hsize_t first, hsize_t rows, const std::string& file_name,
@@ -121,19 +95,17 @@ class DataSet {
     values.resize(rows);
     if (rows == 0) return;
     const Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
-    const Handle space(H5Dget_space(set_.id()), H5Sclose);
+    const Handle space(H5Dget_space(numbers_.id()), H5Sclose);
     H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, nullptr, &rows, nullptr);
-    if (H5Dread(set_.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, values.data()) <
+    if (H5Dread(numbers_.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, values.data()) <
         0) {
       throw InputError(fmt::format("{}: {}: cannot be read: {}; use a copy that is whole",
-                                   file_name, name_, Hdf5Reason()));
+                                   file_name, name(), Hdf5Reason()));
     }
   }
 
  private:
-  std::string name_;
-  Handle set_;
-  hsize_t rows_ = 0;
+  Hdf5Numbers numbers_;
 };
 
 std::vector<DataSet> OpenColumns(hid_t file, const std::string& file_name) {
@@ -165,7 +137,7 @@ Content OpenRecording(const std::string& name) {
   Content content{Open(name), {}, {}};
   CheckVersion(content.open.file.id(), name);
   content.head.name = name;
-  content.head.header = Text(content.open.file.id(), kHeaderAttribute, name);
+  content.head.header = TextAttribute(content.open.file.id(), kHeaderAttribute, name);
   content.sets = OpenColumns(content.open.file.id(), name);
   std::vector<std::string> names;
   for (const DataSet& set : content.sets) {
@@ -178,54 +150,150 @@ Content OpenRecording(const std::string& name) {
 }
 
 hsize_t RowsOf(const Content& content) {
+  const std::string& name = content.head.name;
   if (content.open.trouble.empty()) {
     for (const DataSet& set : content.sets) {
+      set.RequireStorage(name);
       if (set.rows() == content.sets.front().rows()) continue;
       throw InputError(
-          fmt::format("{}: {}: has {} rows, but {} has {}; all columns must be of one length",
-                      content.head.name, set.name(), set.rows(), content.sets.front().name(),
+          fmt::format("{}: {}: has {} rows, but {} has {}; all columns must be of one length", name,
+                      set.name(), set.rows(), content.sets.front().name(),
                       content.sets.front().rows()));
     }
     return content.sets.front().rows();
   }
   hsize_t rows = std::numeric_limits<hsize_t>::max();
-  const std::uintmax_t size = std::filesystem::file_size(content.head.name);
+  const std::uintmax_t size = std::filesystem::file_size(name);
   for (const DataSet& set : content.sets) rows = std::min(rows, set.RowsWithin(size));
   return rows;
 }
+
+// What the child sends of a recording, in this order; kValues of one column after the other, and
+// kBlockEnd behind the last, once for each block.
+enum Part : char {
+  kHeader = 'H',
+  kColumn = 'C',
+  kUnclosed = 'U',
+  kRows = 'R',
+  kValues = 'V',
+  kColumnEnd = 'c',
+  kBlockEnd = 'B',
+};
+
+void SendHead(const Content& content, const Hdf5Sender& sender) {
+  sender.Send(kHeader, content.head.header);
+  for (const Column& column : content.head.columns) sender.Send(kColumn, column.name);
+}
+
+void SendAll(const std::string& name, std::size_t rows, const Hdf5Sender& sender) {
+  const Content content = OpenRecording(name);
+  SendHead(content, sender);
+  if (!content.open.trouble.empty()) sender.Send(kUnclosed, std::string_view{});
+  const hsize_t all = RowsOf(content);
+  if (all > MostHdf5Numbers(name) / sizeof(double) / content.sets.size()) {
+    throw InputError(fmt::format(
+        "{}: states {} rows, more than a file of this size can hold; use a copy that is whole",
+        name, all));
+  }
+  const std::uint64_t count = all;
+  sender.Send(kRows, {reinterpret_cast<const char*>(&count), sizeof(count)});
+  std::vector<double> values;
+  hsize_t first = 0;
+  do {
+    const hsize_t wanted = std::min<hsize_t>(rows, all - first);
+    for (const DataSet& set : content.sets) {
+      set.Read(first, wanted, name, values);
+      sender.Send(kValues, std::span<const double>(values));
+      sender.Send(kColumnEnd, std::string_view{});
+    }
+    sender.Send(kBlockEnd, std::string_view{});
+    first += wanted;
+  } while (first < all);
+}
+
+// Puts together what the child sends.
+class BlockTaker {
+ public:
+  BlockTaker(const std::string& name, std::size_t rows, const std::function<void(Recording&)>& use)
+      : rows_(rows), use_(use), check_(Places{name}) {
+    block_.name = name;
+  }
+
+  // False when no more is wanted.
+  bool Take(char part, std::string_view bytes) {
+    if (part == kHeader) {
+      block_.header = bytes;
+    } else if (part == kColumn) {
+      block_.columns.push_back({std::string(bytes), {}});
+    } else if (part == kUnclosed) {
+      unclosed_ = true;
+    } else if (part == kRows) {
+      std::memcpy(&all_, bytes.data(), std::min(bytes.size(), sizeof(all_)));
+      for (Column& column : block_.columns) column.values.reserve(std::min<std::size_t>(rows_, all_));
+    } else if (part == kValues) {
+      std::vector<double>& values = block_.columns.at(column_).values;
+      const std::size_t before = values.size(), count = bytes.size() / sizeof(double);
+      values.resize(before + count);
+      std::memcpy(values.data() + before, bytes.data(), count * sizeof(double));
+    } else if (part == kColumnEnd) {
+      ++column_;
+    } else if (part == kBlockEnd) {
+      return EndBlock();
+    }
+    return true;
+  }
+
+ private:
+  bool EndBlock() {
+    const std::size_t wanted = std::min<std::size_t>(rows_, all_ - block_.first_row);
+    if (unclosed_) KeepWholeRows(block_);
+    const std::size_t next = block_.first_row + block_.rows();
+    const bool more = block_.rows() == wanted && next < all_;
+    if (!more && unclosed_) {
+      block_.warnings.push_back(fmt::format(
+          "{}: was not closed, for its recorder was killed or still records: the {} rows "
+          "that reached the disk are kept",
+          block_.name, next));
+    }
+    check_.Take(block_);
+    use_(block_);
+    for (Column& column : block_.columns) column.values.clear();
+    block_.first_row = next;
+    column_ = 0;
+    return more;
+  }
+
+  std::size_t rows_;
+  const std::function<void(Recording&)>& use_;
+  RowCheck check_;
+  Recording block_;
+  std::uint64_t all_ = 0;
+  std::size_t column_ = 0;
+  bool unclosed_ = false;
+};
 
 }  // namespace
 
 void ReadHdf5(const std::filesystem::path& path, std::size_t rows,
               const std::function<void(Recording& block)>& use) {
-  const QuietHdf5 quiet;
-  const Content content = OpenRecording(path.string());
-  const hsize_t all = RowsOf(content);
-  RowCheck check(Places{path.string()});
-  Recording block = content.head;
-  for (bool more = true; more;) {
-    const hsize_t wanted = std::min<hsize_t>(rows, all - block.first_row);
-    for (std::size_t i = 0; i < content.sets.size(); ++i) {
-      content.sets[i].Read(block.first_row, wanted, block.name, block.columns[i].values);
-    }
-    if (!content.open.trouble.empty()) KeepWholeRows(block);
-    const std::size_t next = block.first_row + block.rows();
-    more = block.rows() == wanted && next < all;
-    if (!more && !content.open.trouble.empty()) {
-      block.warnings.push_back(fmt::format(
-          "{}: was not closed, for its recorder was killed or still records: the {} rows "
-          "that reached the disk are kept",
-          block.name, next));
-    }
-    check.Take(block);
-    use(block);
-    block.first_row = next;
-  }
+  const std::string name = path.string();
+  BlockTaker taker(name, rows, use);
+  ReadInChild(
+      path, [&](const Hdf5Sender& sender) { SendAll(name, rows, sender); },
+      [&](char part, std::string_view bytes) { return taker.Take(part, bytes); });
 }
 
 Recording ReadHdf5Head(const std::filesystem::path& path) {
-  const QuietHdf5 quiet;
-  return OpenRecording(path.string()).head;
+  Recording head;
+  head.name = path.string();
+  ReadInChild(
+      path, [&](const Hdf5Sender& sender) { SendHead(OpenRecording(head.name), sender); },
+      [&](char part, std::string_view bytes) {
+        if (part == kHeader) head.header = bytes;
+        if (part == kColumn) head.columns.push_back({std::string(bytes), {}});
+        return true;
+      });
+  return head;
 }
 
 }  // namespace abbe::recording

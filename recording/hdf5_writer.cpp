@@ -21,6 +21,9 @@ constexpr hsize_t kFinishedChunk = 16384;  // rows
 constexpr hsize_t kPage = 4096;            // bytes, of the kernel's memory
 constexpr unsigned kDeflate = 1;
 
+// A recording as far as the kind of a file is told.
+constexpr const char* kHdf5Begin = "\x89HDF\r\n\x1a\nabbe-recording";
+
 constexpr const char* kNothingSaved = "nothing is saved";
 constexpr const char* kRowsSaved = "the rows of the last flush are saved";
 
@@ -166,25 +169,22 @@ class Hdf5RowFile : public RowFile {
 std::unique_ptr<RowFile> CreateHdf5(const std::filesystem::path& path, const std::string& header,
                                     const std::vector<std::string>& columns) {
   const QuietHdf5 quiet;
-  close(CreateFile(path, /*only_new=*/true));  // takes the name
-  const std::filesystem::path part = path.string() + ".part";
+  close(CreateNewFile(path));  // takes the name
   try {
-    CreateGrowing(part.string(), header, columns);
-    std::filesystem::rename(part, path);
+    WholeFile file(path);
+    CreateGrowing(file.PartToFill(kHdf5Begin), header, columns);
+    file.Finish();
     return std::make_unique<Hdf5RowFile>(path.string(), columns);
   } catch (const std::exception&) {
     std::error_code ignored;
-    std::filesystem::remove(part, ignored);
     std::filesystem::remove(path, ignored);
     throw;
   }
 }
 
-void WriteHdf5(const Recording& recording, const std::string& header,
-               const std::filesystem::path& path) {
+void WriteHdf5(const Recording& recording, const std::string& header, WholeFile& whole) {
   const QuietHdf5 quiet;
-  close(CreateFile(path, /*only_new=*/false));
-  const std::string name = path.string();
+  const std::string name = whole.PartToFill(kHdf5Begin);
   Handle file = CreateWithHeader(name, header);
   const Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   const hsize_t chunk = std::clamp<hsize_t>(recording.rows(), 1, kFinishedChunk);

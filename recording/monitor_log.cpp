@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "recording/line_reader.h"
+#include "settings/toml_text.h"
 
 namespace abbe::recording {
 namespace {
@@ -39,10 +40,22 @@ std::string_view NextWord(std::string_view& line) {
   return word;
 }
 
+// Whether `text` is written as `form`, in which 0 stands for any digit.
+bool IsWritten(std::string_view text, std::string_view form) {
+  return std::equal(text.begin(), text.end(), form.begin(), form.end(), [](char is, char as) {
+    return as == '0' ? is >= '0' && is <= '9' : is == as;
+  });
+}
+
 // "2023-02-08" and "14:21:15.970781" since 1970 of the same clock.
 std::optional<Nanoseconds> Moment(std::string_view date, std::string_view time) {
-  if (date.size() != 10 || time.size() < 8 || date[4] != '-' || date[7] != '-' || time[2] != ':' ||
-      time[5] != ':') {
+  constexpr int kFirstYear = 1970, kLastYear = 2200;  // which nanoseconds can count
+  constexpr std::string_view kSeconds = "00:00:00";
+  const std::string_view decimals = time.substr(std::min(time.size(), kSeconds.size()));
+  if (!IsWritten(date, "0000-00-00") || !IsWritten(time.substr(0, kSeconds.size()), kSeconds) ||
+      (!decimals.empty() &&
+       (decimals[0] != '.' || decimals.size() == 1 ||
+        decimals.find_first_not_of("0123456789", 1) != std::string_view::npos))) {
     return std::nullopt;
   }
   const auto year = Parse<int>(date.substr(0, 4));
@@ -50,6 +63,8 @@ std::optional<Nanoseconds> Moment(std::string_view date, std::string_view time) 
   const auto hour = Parse<int>(time.substr(0, 2)), minute = Parse<int>(time.substr(3, 2));
   const auto second = Parse<double>(time.substr(6));
   if (!year || !month || !day || !hour || !minute || !second) return std::nullopt;
+  if (*year < kFirstYear || *year > kLastYear) return std::nullopt;
+  if (*hour > 23 || *minute > 59 || !(*second < 60.0)) return std::nullopt;
   using namespace std::chrono;
   const year_month_day that_day{std::chrono::year(*year), std::chrono::month(*month),
                                 std::chrono::day(*day)};
@@ -133,11 +148,13 @@ class LogReader {
   Recording Rows() const {
     Recording recording;
     recording.name = path_;
-    recording.header = fmt::format("{}started = {}\nimported_from = '{}'\n[sources]\n", kind_,
-                                   started_, std::filesystem::path(path_).filename().string());
+    recording.header =
+        fmt::format("{}started = {}\nimported_from = {}\n[sources]\n", kind_, started_,
+                    settings::Quoted(std::filesystem::path(path_).filename().string()));
     recording.columns.push_back({"time_s", {}});
     for (const MonitoredColumn& column : columns_) {
-      recording.header += fmt::format("{} = '{}'\n", column.name, column.channel);
+      recording.header +=
+          fmt::format("{} = {}\n", settings::Key(column.name), settings::Quoted(column.channel));
       recording.columns.push_back({column.name, {}});
     }
     for (const auto& [moment, row] : moments_) {

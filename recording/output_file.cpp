@@ -11,9 +11,8 @@
 
 namespace abbe::recording {
 
-int CreateFile(const std::filesystem::path& path, bool only_new) {
-  const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (only_new ? O_EXCL : O_TRUNC);
-  const int file = open(path.c_str(), flags, 0666);
+int CreateNewFile(const std::filesystem::path& path) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_EXCL, 0666);
   if (file >= 0) return file;
   if (errno == EEXIST) {
     throw InputError(
@@ -28,23 +27,14 @@ void ThrowWriteFailure(std::string_view file, std::string_view saved) {
   const int error = errno;
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
     throw DeviceError(
-        fmt::format("{}: disk full; {}; free some space and record again", file, saved));
+        fmt::format("{}: disk full; {}; free some space and try again", file, saved));
   }
   throw DeviceError(fmt::format("{}: cannot be written: {}; {}; check the disk", file,
                                 std::strerror(error), saved));
 }
 
-void Synchronize(const std::filesystem::path& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool done = file >= 0 && fsync(file) == 0;
-  const int error = errno;
-  if (file >= 0) close(file);
-  errno = error;
-  if (!done) ThrowWriteFailure(path.string(), "nothing is saved");
-}
-
-OutputFile::OutputFile(const std::filesystem::path& path, bool only_new)
-    : name_(path.string()), file_(CreateFile(path, only_new)) {}
+OutputFile::OutputFile(const std::filesystem::path& path)
+    : name_(path.string()), file_(CreateNewFile(path)) {}
 
 OutputFile::~OutputFile() {
   if (file_ >= 0) close(file_);

@@ -1,4 +1,4 @@
-// A file that is written, with failures that say what to do.
+// A file that takes rows while they are measured, with failures that say what to do.
 #pragma once
 
 #include <filesystem>
@@ -7,20 +7,17 @@
 
 namespace abbe::recording {
 
-// Creates an empty file, for its owner to write. With `only_new` an existing one is InputError:
-// nothing measured is ever overwritten. Returns its descriptor.
-int CreateFile(const std::filesystem::path& path, bool only_new);
+// Creates an empty file, for its owner to write. An existing one is InputError: nothing measured is
+// ever overwritten. Returns its descriptor.
+int CreateNewFile(const std::filesystem::path& path);
 
 // DeviceError for the current errno: "disk full" where it is that, and what was saved.
 [[noreturn]] void ThrowWriteFailure(std::string_view file, std::string_view saved);
 
-// Returns when what was written to the file is on the disk; DeviceError when it cannot be.
-void Synchronize(const std::filesystem::path& path);
-
 // A plain file that takes bytes at its end. Closes itself, without a word on failure.
 class OutputFile {
  public:
-  OutputFile(const std::filesystem::path& path, bool only_new);
+  explicit OutputFile(const std::filesystem::path& path);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

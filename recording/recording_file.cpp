@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
@@ -16,8 +17,8 @@
 #include "recording/csv_writer.h"
 #include "recording/hdf5_reader.h"
 #include "recording/hdf5_writer.h"
-#include "recording/output_file.h"
 #include "recording/row_file.h"
+#include "recording/whole_file.h"
 
 namespace abbe::recording {
 namespace {
@@ -26,15 +27,54 @@ constexpr std::string_view kHdf5Begin = "\x89HDF\r\n\x1a\n";
 
 constexpr std::size_t kWhole = std::numeric_limits<std::size_t>::max();  // rows of a block
 
+constexpr std::string_view kSpreadsheet =
+    "is the workbook of a spreadsheet; save its sheet as CSV there, and make a recording of that by "
+    "abbe convert TABLE.csv RECORDING.csv --column NAME=COLUMN";
+constexpr std::string_view kMatlab =
+    "is a file of MATLAB; write its columns there as CSV (writetable), and make a recording of that "
+    "by abbe convert TABLE.csv RECORDING.csv --column NAME=COLUMN";
+constexpr std::string_view kOtherProgram =
+    "is a table of another program; write it there as CSV, and make a recording of that by abbe "
+    "convert TABLE.csv RECORDING.csv --column NAME=COLUMN";
+constexpr std::string_view kImportable =
+    "is not a recording, which ends in .csv, .h5 or .hdf5; abbe convert makes one of a table (.dat, "
+    ".txt) or a log (.log)";
+constexpr std::string_view kProgram = "is an NC program, not a recording; are two arguments swapped?";
+
 enum class Form { kCsv, kHdf5 };
+
+// What to do with a file that is no recording, by the end of its name.
+std::string_view WhatToDo(std::string_view extension) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kKnown{{
+      {".xlsx", kSpreadsheet},
+      {".xls", kSpreadsheet},
+      {".ods", kSpreadsheet},
+      {".mat", kMatlab},
+      {".tdms", kOtherProgram},
+      {".dat", kImportable},
+      {".txt", kImportable},
+      {".log", kImportable},
+      {".tsv", kOtherProgram},
+      {".toml",
+       "is a file of settings (a machine file, a map), not a recording; are two arguments swapped?"},
+      {".json", "is a result, not a recording; are two arguments swapped?"},
+      {".ngc", kProgram},
+      {".nc", kProgram},
+      {".mpf", kProgram},
+      {".html", "is a report, not a recording; are two arguments swapped?"},
+  }};
+  for (const auto& [end, advice] : kKnown) {
+    if (extension == end) return advice;
+  }
+  return "is not the name of a recording, which ends in .csv, .h5 or .hdf5; check the path";
+}
 
 Form FormOf(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (extension == ".csv") return Form::kCsv;
   if (extension == ".h5" || extension == ".hdf5") return Form::kHdf5;
-  throw InputError(
-      fmt::format("{}: a recording's name ends in .csv, .h5 or .hdf5; rename it", path.string()));
+  throw InputError(fmt::format("{}: {}", path.string(), WhatToDo(extension)));
 }
 
 std::string Begin(const std::filesystem::path& path) {
@@ -72,7 +112,7 @@ Form FoundForm(const std::filesystem::path& path) {
   }
   if (form == Form::kHdf5 && !hdf5) {
     throw InputError(
-        fmt::format("{}: is not an HDF5 file; check the path, or rename it if it is a CSV file",
+        fmt::format("{}: is not an HDF5 file; check the path, or name it .csv if it is a CSV file",
                     path.string()));
   }
   return form;
@@ -111,18 +151,9 @@ Recording ReadHead(const std::filesystem::path& path) {
 void Write(const Recording& recording, const std::filesystem::path& path) {
   const Form form = FormOf(path);
   Check(recording, Places{path.string()});
-  const std::filesystem::path part = path.string() + ".part";
-  try {
-    (form == Form::kCsv ? WriteCsv : WriteHdf5)(recording, KeptHeader(recording.header), part);
-    Synchronize(part);
-    std::filesystem::rename(part, path);
-  } catch (const std::exception& failure) {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
-    if (dynamic_cast<const Failure*>(&failure) != nullptr) throw;
-    throw InputError(
-        fmt::format("{}: cannot be written: {}; check the path", path.string(), failure.what()));
-  }
+  WholeFile file(path);
+  (form == Form::kCsv ? WriteCsv : WriteHdf5)(recording, KeptHeader(recording.header), file);
+  file.Finish();
 }
 
 std::unique_ptr<Writer> Writer::Create(const std::filesystem::path& path, const std::string& header,

@@ -30,8 +30,9 @@ void ReadBlocks(const std::filesystem::path& path, const UseBlock& use,
 // Name, header and columns, without a row.
 Recording ReadHead(const std::filesystem::path& path);
 
-// Writes the whole recording, over what is there; the file appears under its name only when it is
-// complete. InputError for a recording that Read() would refuse, DeviceError when the disk is full.
+// Writes the whole recording; the file appears under its name only when it is complete, and another
+// recording is not overwritten unless the user says so (recording/whole_file.h). InputError for a
+// recording that Read() would refuse, DeviceError when the disk is full.
 void Write(const Recording& recording, const std::filesystem::path& path);
 
 // Appends rows to a file while they are measured. Within a second, and when Flush() or Close()

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -44,9 +43,18 @@ std::string WhyForeign(const Json& value) {
   return result ? "" : "has no text \"command\", so it is no result of abbe; move it elsewhere";
 }
 
+// Discarded when it is not JSON, or is nested deeper than any result: whoever writes or draws it
+// goes down by recursion.
 Json ReadJson(const fs::path& file) {
+  constexpr int kDeepest = 100;
+  bool too_deep = false;
+  const auto keep = [&](int depth, Json::parse_event_t, Json&) {
+    too_deep = too_deep || depth > kDeepest;
+    return !too_deep;
+  };
   std::ifstream stream(file, std::ios::binary);
-  return Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  Json value = Json::parse(stream, keep, /*allow_exceptions=*/false);
+  return too_deep ? Json(Json::value_t::discarded) : value;
 }
 
 // As text for a script element: nothing in it can end the element or open a comment, because the
@@ -65,31 +73,6 @@ std::string ScriptText(const Json& value) {
   return safe;
 }
 
-[[noreturn]] void ThrowUnwritable(const fs::path& file, int code) {
-  throw InputError(fmt::format(
-      "{}: the page cannot be written ({}); choose a place that can be written with --out",
-      file.string(), std::generic_category().message(code)));
-}
-
-void WriteWhole(const fs::path& file, const std::string& content) {
-  fs::path temporary = file;
-  temporary += ".part";
-  errno = 0;
-  std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-  stream.close();
-  int code = stream ? 0 : errno;
-  if (stream) {
-    std::error_code error;
-    fs::rename(temporary, file, error);
-    code = error.value();
-    if (!error) return;
-  }
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
-  ThrowUnwritable(file, code);
-}
-
 std::string Compose(const Json& content) {
   const std::string_view page = PageTemplate();
   const std::size_t mark = page.find(kResultsMark);
@@ -101,8 +84,8 @@ std::string Compose(const Json& content) {
 
 }  // namespace
 
-WrittenReport WriteReport(const fs::path& folder, const fs::path& output_file) {
-  WrittenReport written;
+Report ComposeReport(const fs::path& folder) {
+  Report report;
   Json results = Json::array();
   Json left_out = Json::array();
   for (const fs::path& file : JsonFiles(folder)) {
@@ -111,7 +94,7 @@ WrittenReport WriteReport(const fs::path& folder, const fs::path& output_file) {
     if (why.empty()) {
       results.push_back({{"file", file.filename().string()}, {"result", std::move(value)}});
     } else {
-      written.notes.push_back(fmt::format("{}: left out: it {}", file.string(), why));
+      report.notes.push_back(fmt::format("{}: left out: it {}", file.string(), why));
       left_out.push_back(fmt::format("{} {}", file.filename().string(), why));
     }
   }
@@ -120,16 +103,15 @@ WrittenReport WriteReport(const fs::path& folder, const fs::path& output_file) {
         "{}: no result of abbe in this folder ({} other *.json); run `abbe sweep --out {}` or "
         "`abbe "
         "reduce RECORDING --json {}` first",
-        folder.string(), written.notes.size(), folder.string(), (folder / "result.json").string()));
+        folder.string(), report.notes.size(), folder.string(), (folder / "result.json").string()));
   }
-  written.results = results.size();
+  report.results = results.size();
   const fs::path name = fs::absolute(folder).lexically_normal();
-  WriteWhole(
-      output_file,
+  report.page =
       Compose({{"folder", (name.has_filename() ? name : name.parent_path()).filename().string()},
                {"results", std::move(results)},
-               {"notes", std::move(left_out)}}));
-  return written;
+               {"notes", std::move(left_out)}});
+  return report;
 }
 
 }  // namespace abbe::report

@@ -1,7 +1,7 @@
 // One HTML page of an output folder: every result in it as a section with its figures and tables.
 //
-//   const auto written = report::WriteReport("out", "out/report.html");
-//   for (const std::string& note : written.notes) fmt::print(stderr, "abbe: {}\n", note);
+//   const auto report = report::ComposeReport("out");
+//   for (const std::string& note : report.notes) fmt::print(stderr, "abbe: {}\n", note);
 //
 // A result is a file *.json whose top is an object with a text "command" ("reduce", ...) and, where
 // a command has several kinds of result, a text "kind" ("sweep", "reference", ...). The page holds
@@ -26,20 +26,16 @@
 
 namespace abbe::report {
 
-struct WrittenReport {
+struct Report {
+  std::string page;  // the whole HTML
   std::size_t results = 0;
   // One line for each *.json that is not a result: which file, why, and what to do. The page has
   // them too.
   std::vector<std::string> notes;
 };
 
-// Reads the results of `folder` (not of folders below it), in the order of their file names, and
-// writes the page under a temporary name beside `output_file`, then renames it: an older page stays
-// whole until the new one is complete.
-//
-// Throws InputError when `folder` is not a folder or holds no result, or when the page cannot be
-// written; `output_file` is then as it was.
-WrittenReport WriteReport(const std::filesystem::path& folder,
-                          const std::filesystem::path& output_file);
+// The results of `folder` (not of folders below it), in the order of their file names, as a page.
+// InputError when `folder` is not a folder or holds no result.
+Report ComposeReport(const std::filesystem::path& folder);
 
 }  // namespace abbe::report

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "hal/sweep_recorder.h"
+#include "rig/course.h"
 #include "rig/hidden_run.h"
 #include "rig/motion.h"
 #include "rig/noise.h"
@@ -52,6 +53,7 @@ class SweepMaker {
   }
 
   recording::Recording Make() {
+    RefuseTooLong(motion_.duration(), options_.rate);
     const auto count = static_cast<std::size_t>(motion_.duration() * options_.rate) + 1;
     if (options_.moving) {
       for (recording::Column& column : sweep_.columns) column.values.reserve(count);

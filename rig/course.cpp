@@ -1,9 +1,13 @@
 #include "rig/course.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+
+#include "failure/failure.h"
 
 namespace abbe::rig {
 namespace {
@@ -163,6 +167,15 @@ Vector3d CourseRun::PointAt(double distance) {
   const double share =
       piece > 0.0 ? std::clamp((distance - lengths_[segment_ - 1]) / piece, 0.0, 1.0) : 1.0;
   return way_[segment_ - 1] + share * (way_[segment_] - way_[segment_ - 1]);
+}
+
+void RefuseTooLong(double duration, double rate) {
+  constexpr double kMostRows = 2e7, kLongest = 86400.0;
+  if (duration <= kLongest && duration * rate <= kMostRows) return;
+  throw InputError(
+      fmt::format("the recording would take {:.3g} hours and have {:.3g} rows, at most 24 and {:.3g} "
+                  "are made; take a higher feed, a lower rate, or fewer points",
+                  duration / 3600.0, duration * rate, kMostRows));
 }
 
 double CourseRun::DurationOf(const Course& course, const Dynamics& dynamics, double step) {

@@ -74,6 +74,10 @@ struct CourseState {
   bool counts = false;    // to be recorded
 };
 
+// InputError when a recording of so many seconds would have more rows than anybody evaluates
+// (20 million), or take more than a day.
+void RefuseTooLong(double duration, double rate);
+
 class CourseRun {
  public:
   struct Dynamics {

@@ -4,6 +4,7 @@
 
 #include "random/counter_random.h"
 #include "rig/streams.h"
+#include "settings/toml_text.h"
 
 namespace abbe::rig {
 namespace {
@@ -19,9 +20,9 @@ recording::Recording RecordLengths(const LinkageRig& rig, const LengthProgram& p
   recording::Recording lengths;
   lengths.name = fmt::format("rig length {}, seed {}", program.axis, world.seed());
   lengths.header = fmt::format(
-      "kind = \"length\"\nmachine = \"{}\"\nstarted = \"{}\"\nsource = \"rig\"\n"
+      "kind = \"length\"\nmachine = {}\nstarted = \"{}\"\nsource = \"rig\"\n"
       "u_scale_ppm = {}\n\n[rig]\nseed = {}\nrun = {}\n",
-      world.settings().name, program.started, program.u_scale / kPpm, world.seed(), program.run);
+      settings::Quoted(world.settings().name), program.started, program.u_scale / kPpm, world.seed(), program.run);
   std::vector<std::string> names = {"time_s",    "x_mm",        "y_mm",      "z_mm",       "pass",
                                     "direction", "feed_mm_min", "length_mm", "u_length_um"};
   names.insert(names.end(), program.sensors.begin(), program.sensors.end());

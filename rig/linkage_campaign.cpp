@@ -8,6 +8,7 @@
 #include "failure/failure.h"
 #include "rig/noise.h"
 #include "rig/streams.h"
+#include "settings/toml_text.h"
 
 namespace abbe::rig {
 namespace {
@@ -52,10 +53,10 @@ class CourseMaker {
     names.emplace_back("flags");
     for (const std::string& name : names) course_.columns.push_back({name, {}});
     course_.header = fmt::format(
-        "kind = \"{}\"\nmachine = \"{}\"\nstarted = \"{}\"\nsource = \"rig\"\n{}\n[rig]\nseed = "
+        "kind = \"{}\"\nmachine = {}\nstarted = \"{}\"\nsource = \"rig\"\n{}\n[rig]\nseed = "
         "{}\n"
         "run = {}\n{}",
-        options.kind, rig.world().settings().name, options.started, options.keys,
+        options.kind, settings::Quoted(rig.world().settings().name), options.started, options.keys,
         rig.world().seed(), options.run, options.tables);
     course_.name = fmt::format("rig {}, seed {}", options.kind, rig.world().seed());
   }
@@ -216,8 +217,10 @@ recording::Recording LinkageRig::Record(const Course& course, const CourseOption
                     "(rig.update_hz)",
                     options.rate, machine.update_rate));
   }
-  CourseMaker maker(*this, options);
   const double step = options.step > 0.0 ? options.step : 1.0 / machine.update_rate;
+  RefuseTooLong(
+      CourseRun::DurationOf(course, {machine.acceleration, machine.lag}, step), options.rate);
+  CourseMaker maker(*this, options);
   CourseRun run(course, {machine.acceleration, machine.lag}, step);
   double next = 0.0;
   while (run.Next()) {

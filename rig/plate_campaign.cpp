@@ -8,6 +8,7 @@
 #include "random/counter_random.h"
 #include "rig/rotation.h"
 #include "rig/streams.h"
+#include "settings/toml_text.h"
 
 namespace abbe::rig {
 namespace {
@@ -62,9 +63,9 @@ class PlateMaker {
  private:
   std::string Header() const {
     std::string header = fmt::format(
-        "kind = \"plate\"\nmachine = \"{}\"\nstarted = \"1970-01-01T00:00:00Z\"\nsource = \"rig\"\n"
+        "kind = \"plate\"\nmachine = {}\nstarted = \"1970-01-01T00:00:00Z\"\nsource = \"rig\"\n"
         "plate = \"rig-{}\"\nu_probing_um = {}\nu_scale_ppm = {}\n\n[rig]\nseed = {}\nrun = {}\n",
-        world_.settings().name, world_.seed(), program_.u_probing / kMicrometre,
+        settings::Quoted(world_.settings().name), world_.seed(), program_.u_probing / kMicrometre,
         program_.u_scale / kPpm, world_.seed(), program_.run);
     for (std::size_t i = 0; i < program_.setups.size(); ++i) {
       const Vector3d tool = program_.setups[i].tool / kMillimetre;

@@ -10,6 +10,7 @@
 #include "rig/hidden_run.h"
 #include "rig/noise.h"
 #include "rig/streams.h"
+#include "settings/toml_text.h"
 #include "settings/unit.h"
 
 namespace abbe::rig {
@@ -44,9 +45,9 @@ class ProbeRunMaker {
     names.emplace_back("flags");
     for (const std::string& name : names) made_.columns.push_back({name, {}});
     made_.header = fmt::format(
-        "kind = \"{}\"\nmachine = \"{}\"\naxis = \"{:c}\"\nstarted = {}\nsource = \"rig\"\n{}\n"
+        "kind = \"{}\"\nmachine = {}\naxis = \"{:c}\"\nstarted = {}\nsource = \"rig\"\n{}\n"
         "[rig]\nseed = {}\nrun = {}\n{}",
-        kind, world.settings().name, axis, options.started, options.keys, world.seed(), options.run,
+        kind, settings::Quoted(world.settings().name), axis, options.started, options.keys, world.seed(), options.run,
         options.tables);
     made_.name = fmt::format("rig {} {:c}, seed {}", kind, axis, world.seed());
   }

@@ -72,6 +72,14 @@ Document Document::Read(const std::filesystem::path& path) {
   }
   std::ostringstream text;
   text << file.rdbuf();
+  const std::string_view begin = text.view();
+  if (begin.starts_with("\x89HDF") || begin.starts_with("# abbe-recording") ||
+      begin.starts_with("#abbe-recording")) {
+    throw InputError(fmt::format(
+        "{}: is a recording or another table, not a file of settings (TOML); are two arguments "
+        "swapped?",
+        path.string()));
+  }
   return Parse(text.str(), path.string());
 }
 

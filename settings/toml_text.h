@@ -8,8 +8,15 @@
 
 namespace abbe::settings {
 
-// A text in quotes; blanks for characters that TOML does not allow there.
+// A text in quotes; blanks for characters that TOML does not allow there, and question marks for
+// bytes that are no UTF-8.
 std::string Quoted(std::string_view text);
+
+// Whether all of it is UTF-8.
+bool IsUtf8(std::string_view text);
+
+// A key of a table: as it is where TOML allows that, else in quotes.
+std::string Key(std::string_view name);
 
 // A float, in the shortest form that reads back the same.
 std::string Float(double value);

@@ -65,6 +65,7 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
   LinkageRun run;
   run.name = recording.name;
   run.mounting = recording.HeaderText("mounting.base").value_or("");
+  run.one_by_one = !recording.KnowsTimes();
   Resize(run, good.readings.angles.rows(), good.readings.poses(), good.readings.warmth.size() > 0);
   run.readings = std::move(good.readings);
   run.rows = std::move(good.rows);
@@ -97,7 +98,7 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
 }
 
 LinkageRun MeansOfStays(LinkageRun run, double window) {
-  if (run.poses() == 0) return run;
+  if (run.poses() == 0 || run.one_by_one) return run;
   const std::vector<Index> starts = StartsOfStays(run, window);
   if (static_cast<Index>(starts.size()) == run.poses() + 1) return run;  // it never stands
   LinkageRun means = Blank(run, static_cast<Index>(starts.size()) - 1);
@@ -182,6 +183,7 @@ LinkageRun Blank(const LinkageRun& run, Index poses) {
   blank.name = run.name;
   blank.mounting = run.mounting;
   blank.referenced = run.referenced;
+  blank.one_by_one = run.one_by_one;
   Resize(blank, run.readings.angles.rows(), poses, run.readings.warmth.size() > 0);
   return blank;
 }

@@ -219,5 +219,21 @@ TEST_F(CandumpTest, TheReplayKeepsThePaceOfTheLog) {
   EXPECT_FALSE(bus.Receive(100.0).has_value());
 }
 
+// A calendar that is set forward makes years of silence, which no rows stand for.
+TEST_F(CandumpTest, TheSilenceOfALogThatWasSetForwardHasNoRows) {
+  for (const char* stamp : {"1763803200.250303", "4294967295.250303"}) {
+    const std::string later(stamp);
+    const auto recording = Record(
+        "(1763716800.250103) can0 080#\n(1763716800.250203) can0 181#0100\n"
+        "(1763716800.250204) can0 182#0100\n"
+        "(" + later + ") can0 080#\n(" + later + ") can0 181#0200\n(" + later + ") can0 182#0200\n");
+    EXPECT_LE(recording.rows(), 5u);
+    ASSERT_EQ(recording.warnings.size(), 1u);
+    EXPECT_NE(recording.warnings[0].find("calendar was set"), std::string::npos);
+    EXPECT_NEAR(recording.At("time_s").back(), std::stod(later) - 1763716800.250103, 1e-3);
+    EXPECT_NEAR(recording.At("pivot_1_rad").back(), 2 * kStep, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace abbe::hal

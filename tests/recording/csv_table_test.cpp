@@ -77,5 +77,63 @@ TEST_F(CsvTable, RefusalsSayWhatIsWrong) {
   EXPECT_THAT(Refusal(kTable, {{}, {}, "linkage"}), HasSubstr("name them with their units"));
 }
 
+TEST_F(CsvTable, IsReadAsSpreadsheetsWriteIt) {
+  const std::string text =
+      "\xEF\xBB\xBF\"time_s\";\"gap 1\";note\r\n0,5;-1,25;\"a;b\"\r\n1;+2;\"say \"\"so\"\"\"\r\n";
+  const CsvTableOptions options{{{"time_s", "time_s"}, {"gap_1_mm", "gap 1"}}, {}, "dwell"};
+  for (const char separator : {';', '\t'}) {
+    std::string other = text;
+    if (separator == '\t') {
+      std::replace(other.begin(), other.end(), ';', separator);
+    }
+    const Recording recording = ReadText(other, options);
+    EXPECT_THAT(recording.At("time_s"), testing::ElementsAre(0.5, 1.0));
+    EXPECT_THAT(recording.At("gap_1_mm"), testing::ElementsAre(-1.25, 2.0));
+    EXPECT_THAT(recording.At("flags"), testing::ElementsAre(0.0, 0.0));
+  }
+  // Where commas part the cells, "1,234" in quotes may be a thousand: it is no number.
+  EXPECT_THAT(Refusal("a,b\n\"1,234\",2\n", {{{"gap_1_mm", "a"}}, {}, "dwell"}),
+              HasSubstr("no row has a number"));
+  EXPECT_THAT(Refusal("a,b\n1,5,2,5\n", {{{"gap_1_mm", "a"}}, {}, "dwell"}),
+              HasSubstr("decimal commas"));
+}
+
+TEST_F(CsvTable, NamesMayBeGivenForATableWithout) {
+  CsvTableOptions options{{{"gap_1_mm", "b"}}, {}, "dwell", {"a", "b"}};
+  EXPECT_THAT(ReadText("1,2\n3,4\n", options).At("gap_1_mm"), testing::ElementsAre(2.0, 4.0));
+  options = {{}, {}, "dwell", {"time_s", "-", "gap_1_mm"}};
+  const Recording recording = ReadText("0,7,2\n1,8,4\n", options);
+  EXPECT_EQ(recording.columns.size(), 3u);  // with flags
+  EXPECT_THAT(recording.At("gap_1_mm"), testing::ElementsAre(2.0, 4.0));
+  EXPECT_THAT(Refusal("1,2\n", options), HasSubstr(":1: 2 cells, but the table has 3"));
+}
+
+TEST_F(CsvTable, AColumnMayBeASumOfOthers) {
+  const auto first = [&](const std::string& sum, const std::string& name = "shaft_deg") {
+    return ReadText("counts,a,b_um,gap-1,x y\n1000,2,3,5,7\n", {{{name, sum}}, {}, "dwell"})
+        .At(name)[0];
+  };
+  EXPECT_DOUBLE_EQ(first("counts*0.00549+3"), 8.49);
+  EXPECT_DOUBLE_EQ(first("3 + 0.00549 * counts"), 8.49);
+  EXPECT_DOUBLE_EQ(first("-a/4 - 1e-1"), -0.6);
+  EXPECT_DOUBLE_EQ(first("counts - a + 2*a*3"), 1010.0);
+  EXPECT_DOUBLE_EQ(first("b_um + a", "z_mm"), 2.003);  // the column of um, in mm
+  EXPECT_DOUBLE_EQ(first("gap-1"), 5.0);               // a name, not a difference
+  EXPECT_DOUBLE_EQ(first("gap-1 - 1"), 4.0);
+  EXPECT_DOUBLE_EQ(first("\"x y\"*2"), 14.0);
+  EXPECT_DOUBLE_EQ(first("x y"), 7.0);
+  const auto refusal = [&](const std::string& sum) {
+    return Refusal("counts,a\n1,2\n", {{{"shaft_deg", sum}}, {}, "dwell"});
+  };
+  EXPECT_THAT(refusal("count*2"), HasSubstr("has no column \"count\"; it has counts, a"));
+  EXPECT_THAT(refusal("a*counts"), HasSubstr("multiplies or divides by a column"));
+  EXPECT_THAT(refusal("2/a"), HasSubstr("multiplies or divides by a column"));
+  EXPECT_THAT(refusal("a/0"), HasSubstr("divides by 0"));
+  EXPECT_THAT(refusal("3"), HasSubstr("names no column"));
+  EXPECT_THAT(refusal("a+"), HasSubstr("is missing"));
+  EXPECT_THAT(refusal("a 2"), HasSubstr("is no sum"));
+  EXPECT_THAT(refusal("1e999*a"), HasSubstr("has no column"));
+}
+
 }  // namespace
 }  // namespace abbe::recording

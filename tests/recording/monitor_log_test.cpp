@@ -88,5 +88,22 @@ TEST_F(MonitorLog, NamesTheWrongLine) {
   EXPECT_THROW(ReadMonitorLog(path_, {}), InputError);
 }
 
+TEST_F(MonitorLog, AMomentIsOneOfTheCalendar) {
+  for (const char* moment :
+       {"9999-12-31 14:21:15.0", "2023-02-08 2147483647:21:15.0", "2023-02-08 14:21:nan",
+        "2023-02-08 14:21:1e5", "2023-02-08 24:00:00", "2023-02-08 14:60:00", "2023-02-08 14:21:60",
+        "2023-02-08 -1:21:15", "2023-02-30 14:21:15", "2023-02-08 14:21:15.", "0000-01-01 00:00:00",
+        "2023-02-08 14:21:15x0"}) {
+    const std::string text = "W:gap 2023-02-08 14:21:15 1\nW:gap " + std::string(moment) + " 1.5\n";
+    EXPECT_THAT(Refusal(text), HasSubstr(":2: no moment after \"W:gap\"")) << moment;
+  }
+}
+
+TEST_F(MonitorLog, NamesWithQuotesStayAHeader) {
+  std::ofstream(path_) << "a'\"b 2023-02-08 14:21:15.5 1\n";
+  const Recording recording = ReadMonitorLog(path_, {{"my gap_mm", "a'\"b"}});
+  EXPECT_EQ(recording.HeaderText("sources.my gap_mm"), "a'\"b");
+}
+
 }  // namespace
 }  // namespace abbe::recording

@@ -1,0 +1,69 @@
+#include "apps/output_guard.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "recording/whole_file.h"
+
+namespace abbe::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of all commands, as they name what they write.
+constexpr std::array<std::string_view, 5> kOutputs{"--out", "--json", "--truth", "--ready-file",
+                                                   "to"};
+
+bool IsOutput(const CLI::Option& option) {
+  const std::string name = option.get_name();
+  const auto& long_names = option.get_lnames();
+  return std::any_of(kOutputs.begin(), kOutputs.end(), [&](std::string_view output) {
+    if (!output.starts_with("--")) return name == output;
+    return std::find(long_names.begin(), long_names.end(), output.substr(2)) != long_names.end();
+  });
+}
+
+struct Places {
+  std::vector<fs::path> inputs, outputs;
+};
+
+void Gather(const CLI::App& command, Places& places) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0) continue;
+    for (const std::string& word : option->results()) {
+      std::error_code error;
+      if (!fs::is_regular_file(word, error)) continue;
+      (IsOutput(*option) ? places.outputs : places.inputs).emplace_back(word);
+    }
+  }
+  for (const CLI::App* below : command.get_subcommands({})) Gather(*below, places);
+}
+
+void AddForce(CLI::App& command, const std::shared_ptr<bool>& force) {
+  const auto options = command.get_options();
+  if (std::any_of(options.begin(), options.end(), [](const auto* each) { return IsOutput(*each); })) {
+    command.add_flag("--force", *force, "Write over whatever is there");
+  }
+  for (CLI::App* below : command.get_subcommands({})) AddForce(*below, force);
+}
+
+}  // namespace
+
+void GuardOutputs(CLI::App& program) {
+  const auto force = std::make_shared<bool>(false);
+  AddForce(program, force);
+  program.parse_complete_callback([&program, force] {
+    Places places;
+    Gather(program, places);
+    recording::SetOverwriting({places.inputs, *force});
+    for (const fs::path& output : places.outputs) recording::RefuseToOverwrite(output);
+  });
+}
+
+}  // namespace abbe::apps

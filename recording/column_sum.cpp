@@ -1,0 +1,166 @@
+#include "recording/column_sum.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "failure/failure.h"
+#include "settings/unit.h"
+
+namespace abbe::recording {
+namespace {
+
+class SumParser {
+ public:
+  SumParser(std::string_view text, std::string_view new_name, const std::vector<std::string>& names,
+            const std::string& place)
+      : whole_(text), rest_(text), unit_(settings::UnitOf(new_name)), names_(names), place_(place) {}
+
+  ColumnSum Parse() {
+    if (IsName(whole_)) {
+      sum_.terms.push_back({ColumnNamed(whole_), FactorOf(whole_)});
+      return std::move(sum_);
+    }
+    double sign = TakeAny("+-") == '-' ? -1.0 : 1.0;
+    for (;;) {
+      TakeTerm(sign);
+      const char next = TakeAny("+-");
+      if (next == 0) break;
+      sign = next == '-' ? -1.0 : 1.0;
+    }
+    if (!Blank()) Refuse("is no sum of columns and numbers");
+    if (sum_.terms.empty()) Refuse("names no column");
+    return std::move(sum_);
+  }
+
+ private:
+  // Numbers and at most one column, joined by * and /.
+  void TakeTerm(double factor) {
+    std::optional<std::size_t> column;
+    bool divides = false;
+    for (;;) {
+      if (const auto number = TakeNumber()) {
+        factor = divides ? factor / *number : factor * *number;
+      } else {
+        if (column || divides) Refuse("multiplies or divides by a column");
+        const std::string name = TakeName();
+        column = ColumnNamed(name);
+        factor *= FactorOf(name);
+      }
+      const char next = TakeAny("*/");
+      if (next == 0) break;
+      divides = next == '/';
+    }
+    if (!std::isfinite(factor)) Refuse("divides by 0, or has a number that is none");
+    if (column) {
+      sum_.terms.push_back({*column, factor});
+    } else {
+      sum_.offset += factor;
+    }
+  }
+
+  // The longest name of the table that stands here whole, or what is in quotes.
+  std::string TakeName() {
+    if (Blank()) Refuse("ends where a column or a number is missing");
+    if (rest_.front() == '"') {
+      const auto end = rest_.find('"', 1);
+      if (end == std::string_view::npos) Refuse("has no closing quote");
+      std::string name(rest_.substr(1, end - 1));
+      rest_.remove_prefix(end + 1);
+      return name;
+    }
+    std::string_view longest;
+    for (const std::string& name : names_) {
+      if (name.size() > longest.size() && rest_.starts_with(name) && EndsAt(name.size())) {
+        longest = name;
+      }
+    }
+    // A word that is no name is shown whole.
+    std::string name(longest.empty() ? rest_.substr(0, rest_.find_first_of(" \t+-*/")) : longest);
+    rest_.remove_prefix(name.size());
+    return name;
+  }
+
+  std::optional<double> TakeNumber() {
+    if (Blank()) return {};
+    double value = 0.0;
+    const auto [stop, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
+    const auto size = static_cast<std::size_t>(stop - rest_.data());
+    const char first = rest_.front();
+    const bool digit = (first >= '0' && first <= '9') || first == '.';
+    if (error != std::errc{} || !digit || !EndsAt(size)) return {};
+    rest_.remove_prefix(size);
+    return value;
+  }
+
+  bool EndsAt(std::size_t size) const {
+    return size == rest_.size() ||
+           std::string_view(" \t+-*/").find(rest_[size]) != std::string_view::npos;
+  }
+
+  bool Blank() {
+    const auto first = rest_.find_first_not_of(" \t");
+    rest_.remove_prefix(std::min(first, rest_.size()));
+    return rest_.empty();
+  }
+
+  // The letter taken, or 0.
+  char TakeAny(std::string_view letters) {
+    if (Blank() || letters.find(rest_.front()) == std::string_view::npos) return 0;
+    const char letter = rest_.front();
+    rest_.remove_prefix(1);
+    return letter;
+  }
+
+  bool IsName(std::string_view text) const {
+    return std::find(names_.begin(), names_.end(), text) != names_.end();
+  }
+
+  std::size_t ColumnNamed(std::string_view name) const {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    if (found == names_.end()) {
+      throw InputError(fmt::format("{}: has no column \"{}\"; it has {}", place_, name,
+                                   fmt::join(names_, ", ")));
+    }
+    if (std::find(found + 1, names_.end(), name) != names_.end()) {
+      throw InputError(
+          fmt::format("{}: has two columns \"{}\"; rename one in the table", place_, name));
+    }
+    return static_cast<std::size_t>(found - names_.begin());
+  }
+
+  double FactorOf(std::string_view column) const {
+    const auto was = settings::UnitOf(column);
+    return was.name.empty() ? 1.0 : was.si / unit_.si;
+  }
+
+  [[noreturn]] void Refuse(std::string_view why) const {
+    throw InputError(fmt::format("{}: the column \"{}\" {}; write for example counts*0.00549+3",
+                                 place_, whole_, why));
+  }
+
+  std::string_view whole_, rest_;
+  settings::Unit unit_;
+  const std::vector<std::string>& names_;
+  const std::string& place_;
+  ColumnSum sum_;
+};
+
+}  // namespace
+
+double ColumnSum::Of(const std::vector<double>& cells) const {
+  double value = offset;
+  for (const Term& term : terms) value += term.factor * cells[term.column];
+  return value;
+}
+
+ColumnSum ParseColumnSum(std::string_view text, std::string_view new_name,
+                         const std::vector<std::string>& names, const std::string& place) {
+  return SumParser(text, new_name, names, place).Parse();
+}
+
+}  // namespace abbe::recording
