@@ -48,11 +48,14 @@ std::string Floats(const Values& values, double si) {
 std::string ParameterText(const ParameterBlock& block, std::size_t i) {
   const Parameter& entry = block.entries[i];
   const auto printed = [&](double value) { return Float(value / block.unit.si); };
+  const auto line = [&](const char* key, double value) {
+    return std::isfinite(value) ? fmt::format("{} = {}\n", key, printed(value)) : std::string();
+  };
   return fmt::format(
-      "\n[[parameter]]\nname = {}\nunit = {}\nvalue = {}\nuncertainty = {}\nnominal = {}\n"
-      "prior = {}\nheld = {}\n",
+      "\n[[parameter]]\nname = {}\nunit = {}\nvalue = {}\n{}nominal = {}\n{}held = {}\n",
       Quoted(block.FullName(i)), Quoted(block.unit.name), printed(entry.value),
-      printed(entry.uncertainty), printed(entry.nominal), printed(entry.prior_sd), entry.held);
+      line("uncertainty", entry.uncertainty), printed(entry.nominal), line("prior", entry.prior_sd),
+      entry.held);
 }
 
 std::string MappedText(const MappedParameters& mapped) {
@@ -79,11 +82,13 @@ void ReadParameter(const Table& table, ParameterBlock& block, std::size_t i) {
   }
   Parameter& entry = block.entries[i];
   const auto number = [&](const char* key) { return table.Number(key) * block.unit.si; };
+  const auto number_or_none = [&](const char* key) {
+    return table.Has(key) ? number(key) : std::numeric_limits<double>::infinity();
+  };
   entry.value = number("value");
-  if (!std::isfinite(entry.value)) throw table.Error("value", "must be a number");
-  entry.uncertainty = number("uncertainty");
+  entry.uncertainty = number_or_none("uncertainty");
   entry.nominal = number("nominal");
-  entry.prior_sd = number("prior");
+  entry.prior_sd = number_or_none("prior");
   entry.held = table.Truth("held", false);
   table.RefuseUnknown();
 }

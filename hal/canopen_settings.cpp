@@ -79,7 +79,8 @@ CanopenSettings ReadCanopen(const Table& device) {
 }
 
 std::int64_t CountOf(const EncoderSettings& encoder, double angle) {
-  const std::int64_t count = encoder.zero + encoder.sense * std::llround(angle / encoder.Step());
+  const double turned = std::fmod(angle / encoder.Step(), static_cast<double>(encoder.range));
+  const std::int64_t count = encoder.zero + encoder.sense * std::llround(turned);
   const std::int64_t wrapped = Wrapped(encoder, count);
   return encoder.is_signed || wrapped >= 0 ? wrapped : wrapped + encoder.range;
 }

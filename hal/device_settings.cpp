@@ -13,6 +13,7 @@ using settings::Table;
 
 constexpr double kMostRegisters = 125.0;  // of one request, by the protocol
 constexpr double kLastAddress = 65535.0;
+constexpr double kFastestBaud = 4e6;  // that Linux knows
 
 RegisterTable ReadTable(const Table& table) {
   return table.Choice("function", {"input", "holding"}) == "input" ? RegisterTable::kInput
@@ -71,7 +72,8 @@ ChannelSettings ReadChannel(const Table& table, const BlockSettings& block, int 
   channel.type =
       ReadChoice<WordType>(table, "type", {"int16", "uint16", "int32", "uint32", "float32"}, true);
   channel.order = ReadChoice<WordOrder>(table, "order", {"ABCD", "CDAB", "BADC", "DCBA"});
-  channel.at = static_cast<int>(table.Integer("at", {.at_least = 0.0}));
+  channel.at =
+      static_cast<int>(table.Integer("at", {.at_least = 0.0, .at_most = block.count - 1.0}));
   if (channel.at + static_cast<int>(WordCount(channel.type)) > block.count) {
     throw table.Error("at", fmt::format("lies outside the block of {} registers", block.count));
   }
@@ -108,7 +110,8 @@ BlockSettings ReadBlock(const Table& table, int base) {
 SerialLine ReadSerial(const Table& table) {
   SerialLine line;
   line.device = table.Text("device");
-  line.baud = static_cast<int>(table.Integer("baud", {.fallback = 19200, .above = 0.0}));
+  line.baud = static_cast<int>(
+      table.Integer("baud", {.fallback = 19200, .above = 0.0, .at_most = kFastestBaud}));
   const std::string parity = table.Choice("parity", {"even", "none", "odd"});
   line.parity = parity == "even" ? 'E' : parity == "none" ? 'N' : 'O';
   line.stop_bits =

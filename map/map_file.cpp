@@ -157,11 +157,10 @@ void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin
   for (const std::string& key : Located(table, "form", [&] { return machine::ShapeNames(form); })) {
     shape[key] = table.Quantities(key, 0);
   }
-  const bool bare = table.Choice("gauge", {"zero at start", "none"}) == "none";
-  model.SetForm(axis, motion, Located(table, "form", [&] { return machine::FormOf(form, shape); }),
-                bare ? machine::Gauge::kNone : machine::Gauge::kZeroAtStart);
-  const auto c = table.Quantities("coefficients",
-                                  static_cast<std::size_t>(model.Function(axis, motion).size()));
+  const auto made = Located(table, "form", [&] { return machine::FormOf(form, shape); });
+  // Before there is memory for as many as the shape says.
+  const auto c = table.Quantities("coefficients", static_cast<std::size_t>(made->size()));
+  Located(table, "form", [&] { return model.SetForm(axis, motion, made); });
   model.SetCoefficients(axis, motion,
                         Eigen::Map<const Eigen::VectorXd>(c.data(), static_cast<Index>(c.size())));
   table.RefuseUnknown();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <vector>
 
 #include "failure/failure.h"
 
@@ -23,7 +24,7 @@ LineReader::LineReader(const std::filesystem::path& path) : name_(path.string())
     throw InputError(
         fmt::format("{}: cannot be read: {}; check the path", name_, std::strerror(errno)));
   }
-  block_.resize(kBytesAtOnce);
+  block_ = std::make_unique_for_overwrite<char[]>(kBlock);
 }
 
 LineReader::~LineReader() { close(file_); }
@@ -43,31 +44,31 @@ std::size_t LineReader::ReadSome(char* to, std::size_t size) {
 std::optional<std::string_view> LineReader::Next() {
   std::size_t searched = begin_;
   while (true) {
-    const void* found = std::memchr(block_.data() + searched, '\n', end_ - searched);
+    const void* found = std::memchr(block_.get() + searched, '\n', end_ - searched);
     if (found != nullptr) {
-      const char* line = block_.data() + begin_;
+      const char* line = block_.get() + begin_;
       const auto length = static_cast<std::size_t>(static_cast<const char*>(found) - line);
       begin_ += length + 1;
       ++number_;
       return std::string_view(line, length > 0 && line[length - 1] == '\r' ? length - 1 : length);
     }
     // Make room for the rest of the line.
-    std::memmove(block_.data(), block_.data() + begin_, end_ - begin_);
+    std::memmove(block_.get(), block_.get() + begin_, end_ - begin_);
     end_ -= begin_;
     begin_ = 0;
     searched = end_;
-    if (end_ == block_.size()) {
+    if (end_ == kBlock) {
       throw InputError(fmt::format("{}:{}: this line is longer than 1 MiB; is this a recording?",
                                    name_, number_ + 1));
     }
-    const std::size_t count = ReadSome(block_.data() + end_, block_.size() - end_);
+    const std::size_t count = ReadSome(block_.get() + end_, kBlock - end_);
     if (count == 0) break;
     end_ += count;
   }
   if (end_ == 0) return std::nullopt;
   complete_ = false;
   ++number_;
-  const std::string_view rest(block_.data(), end_);
+  const std::string_view rest(block_.get(), end_);
   begin_ = end_ = 0;
   return rest;
 }

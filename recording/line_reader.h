@@ -6,10 +6,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace abbe::recording {
 
@@ -36,8 +36,8 @@ class LineReader {
 
   std::string name_;
   int file_ = -1;
-  std::vector<char> block_;
-  std::size_t begin_ = 0;  // of what is not handed out yet, in block_
+  std::unique_ptr<char[]> block_;  // only what is read into it is touched
+  std::size_t begin_ = 0;          // of what is not handed out yet, in block_
   std::size_t end_ = 0;
   std::size_t number_ = 0;
   bool complete_ = true;

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
+#include "fusion/calibration_file.h"
 #include "linkage_world.h"
 
 namespace abbe::fusion {
@@ -71,6 +73,15 @@ TEST(Calibrate, DisplacementFormKnowsNoBase) {
   EXPECT_LT(report.held_out.rms, 1.5e-6);
   const auto other = WorldRun(world, settings, RandomPositions(kCube, 100, 6), 0, 6);
   EXPECT_LT(Against(report, settings, other).rms, 0.6e-6);
+  // A base without a prior goes into the file and comes back.
+  const auto file = std::filesystem::path(testing::TempDir()) / "abbe_displacement.toml";
+  WriteCalibration(report.calibration, file);
+  const Calibration back = ReadCalibration(file, settings);
+  std::filesystem::remove(file);
+  ASSERT_EQ(back.blocks.size(), report.calibration.blocks.size());
+  EXPECT_EQ(back.blocks[0].entries[0].prior_sd, estimation::kNoPrior);
+  EXPECT_NEAR(back.blocks[0].entries[0].value, report.calibration.blocks[0].entries[0].value,
+              1e-15);
 }
 
 TEST(Calibrate, OutlierIsNamedAndDoesNotPull) {

@@ -87,6 +87,20 @@ TEST_F(BrokenMap, ANaNInPlaceOfANumberIsNamed) {
             "coefficients: must be a list of 8 numbers");
 }
 
+// A shape of a few letters that would take gigabytes to make.
+TEST_F(BrokenMap, AShapeBeyondItsFileIsRefused) {
+  const auto with = [&](const std::string& shape) {
+    return Refusal(text_.substr(0, text_.find("\n[[error]]")) +
+                   "\n[[error]]\nname = \"EYX\"\nfrom = \"prior\"\n" + shape +
+                   "coefficients = [1e-6, 0.0]\n");
+  };
+  ExpectHas(with("form = \"fourier\"\nharmonics = [1.0]\nperiod_m = [6e-10]\n"),
+            "form: a Fourier series with 1e+08 waves over the travel");
+  ExpectHas(with("form = \"fourier\"\nharmonics = [1.0]\nperiod_m = [1e-300]\n"), "waves over the");
+  ExpectHas(with("form = \"network\"\nneurons = [1e6]\ngain_per_m = [1.0]\n"),
+            "coefficients: must be a list of 2000000 numbers");
+}
+
 // Wherever the file breaks off it is refused: the covariance comes last, and a file without one
 // differs from a file that lost it only where the cut falls between the tables.
 TEST_F(BrokenMap, ATruncatedFileIsRefused) {

@@ -83,6 +83,15 @@ TEST(DocumentTest, HoldsNumbersToTheirBounds) {
             "m.toml:2: b: is -1, it must be at most -2");
 }
 
+TEST(DocumentTest, AMessageIsOneLineWhateverItQuotes) {
+  const Table root = Parse("form = \"piv\\nots\\u001b[2J\"\n");
+  EXPECT_EQ(Refusal([&] { root.Choice("form", {"pivots"}); }),
+            "m.toml:1: form: \"piv ots [2J\" is not one of: pivots");
+  const std::string broken = Refusal([] { Parse("a = f\n[b]\n"); });
+  EXPECT_THAT(broken, StartsWith("m.toml:1: not valid TOML: "));
+  EXPECT_EQ(broken.find('\n'), std::string::npos) << broken;
+}
+
 TEST(DocumentTest, RefusesAnotherType) {
   const Table root = Parse(
       "text = \"m\"\nnumber = 1.5\ntruth = true\nlist = [1, \"a\"]\ntable = {a = 1}\n"
