@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "recording/whole_file.h"
 #include "settings/document.h"
 #include "settings/toml_text.h"
 #include "simulation/linkage_simulation.h"
@@ -156,7 +157,7 @@ void WriteCalibration(const Calibration& calibration, const std::filesystem::pat
                       Floats(calibration.covariance.reshaped(), 1.0));
   if (calibration.mapped) text += MappedText(*calibration.mapped);
 
-  map::WriteWhole(text, path);
+  recording::WriteWhole(text, path);
 }
 
 Calibration ReadCalibration(const std::filesystem::path& path,

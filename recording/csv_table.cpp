@@ -19,11 +19,9 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-std::string_view Trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const auto first = text.find_first_not_of(kBlanks);
+std::string_view TrimmedCell(std::string_view text) {
+  constexpr std::string_view kCellEdges = " \t\r";
+  const auto first = text.find_first_not_of(kCellEdges);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(kCellEdges) - first + 1);
 }
@@ -50,7 +48,7 @@ std::vector<std::string> CellsOf(std::string_view line, char separator) {
       cells.back() += line[i];
     }
   }
-  for (std::string& cell : cells) cell = Trimmed(cell);
+  for (std::string& cell : cells) cell = TrimmedCell(cell);
   return cells;
 }
 
@@ -130,14 +128,11 @@ class TableReader {
 
   std::optional<std::string_view> Next() {
     for (auto line = lines_.Next(); line; line = lines_.Next()) {
-      if (lines_.number() == 1 && line->starts_with(kByteOrderMark)) {
-        line->remove_prefix(kByteOrderMark.size());
-      }
       if (line->find('\0') != std::string_view::npos) {
         throw InputError(fmt::format("{}:{}: is no text in UTF-8; save the table as CSV (UTF-8)",
                                      path_, lines_.number()));
       }
-      const std::string_view text = Trimmed(*line);
+      const std::string_view text = TrimmedCell(*line);
       if (!text.empty() && !text.starts_with('#')) return line;
     }
     return std::nullopt;

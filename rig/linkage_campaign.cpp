@@ -9,6 +9,7 @@
 #include "rig/noise.h"
 #include "rig/streams.h"
 #include "settings/toml_text.h"
+#include "settings/unit.h"
 
 namespace abbe::rig {
 namespace {

@@ -9,6 +9,7 @@
 #include "rig/rotation.h"
 #include "rig/streams.h"
 #include "settings/toml_text.h"
+#include "settings/unit.h"
 
 namespace abbe::rig {
 namespace {
@@ -68,7 +69,7 @@ class PlateMaker {
         "kind = \"plate\"\nmachine = {}\nstarted = \"1970-01-01T00:00:00Z\"\nsource = \"rig\"\n"
         "plate = \"rig-{}\"\nu_probing_um = {}\nu_scale_ppm = {}\n\n[rig]\nseed = {}\nrun = {}\n",
         settings::Quoted(world_.settings().name), world_.seed(), program_.u_probing / kMicrometre,
-        program_.u_scale / kPpm, world_.seed(), program_.run);
+        program_.u_scale / kMicro, world_.seed(), program_.run);
     for (std::size_t i = 0; i < program_.setups.size(); ++i) {
       const Vector3d tool = program_.setups[i].tool / kMillimetre;
       header +=
