@@ -11,7 +11,7 @@
 // Units: m, rad. T: double, or dual numbers for derivatives.
 // Failure: none; a value that is not finite passes through.
 //
-//   carriage       X_ab = { R = exp([EA EB EC]),  p = s q l + [EX EY EZ] }    b on a, a first bed
+//   carriage       X_ab = { R = exp([EA EB EC]),  p = s q l + [EX EY EZ] }    b on a, the first on the bed
 //   lines          l_X = x,  l_Y = exp(C0Y z) y,  l_Z = exp(A0Z x + B0Z y) z
 //   workpiece      X_MW = product of the carriages from b to w
 //   tool body      X_MT = product of the carriages from b to t
