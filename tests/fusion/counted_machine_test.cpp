@@ -1,12 +1,13 @@
 // Machines of every shape on the virtual rig, counted as their carriages go and as ISO 841 has it:
 // the same machine gives the same errors and the same map at the same places.
+#include "tests/counted_machine.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "fusion/fuse.h"
-#include "probes/sweep_reduction.h"
 #include "simulation/reference_simulation.h"
 #include "tests/fusion/rig_campaign.h"
 
@@ -15,41 +16,15 @@ namespace counted_machine_test {
 
 using Eigen::Vector3d;
 
-constexpr double kTravel = 0.060;  // m
-
-// The demonstration machine with another chain. Counted as the tool goes, an axis that carries the
-// workpiece shows minus where its carriage stands, and its travel is -60 to 0.
-settings::Document MachineOf(const std::string& chain, bool as_tool) {
-  std::ifstream file(std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml");
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    text = std::regex_replace(text, std::regex(from), to);
-  };
-  replace("\\[w X Y b Z t\\]", chain);
-  replace("positive = \"carriage\"\n", "");
-  replace("step_mm = 1.0", "step_mm = 4.0");
-  replace("passes = 5", "passes = 2");
-  for (const char axis : std::string("XYZ")) {
-    if (chain.find(axis) > chain.find('b')) continue;
-    const std::string travel = as_tool ? "[-60.0, 0.0]" : "[0.0, 60.0]";
-    const std::string head = fmt::format("\\[axis.{}\\]\ntravel_mm = \\[0.0, 60.0\\]", axis);
-    replace(head, fmt::format("[axis.{}]\ntravel_mm = {}\npositive = \"{}\"", axis, travel,
-                              as_tool ? "tool" : "carriage"));
-    if (!as_tool) continue;
-    replace(fmt::format("\\[sweep.{}\\]\nfirst_mm = 0.0\nlast_mm = 60.0", axis),
-            fmt::format("[sweep.{}]\nfirst_mm = -60.0\nlast_mm = 0.0", axis));
-  }
-  return settings::Document::Parse(text, as_tool ? "iso841.toml" : "carriage.toml");
-}
+constexpr double kTravelOfDemo = 0.060;  // m
 
 class CountedMachine {
  public:
   CountedMachine(const std::string& chain, bool as_tool, std::uint64_t seed)
-      : document_(MachineOf(chain, as_tool)), campaign_(document_, seed) {}
+      : document_(tests::MachineOf(chain, as_tool)), campaign_(document_, seed) {}
 
   const Campaign& campaign() const { return campaign_; }
   const machine::Chain& chain() const { return campaign_.machine.chain; }
-  const settings::Document& document() const { return document_; }
 
   // What the control shows where the carriages stand.
   Vector3d NumbersOf(const Vector3d& carriages) const {
@@ -60,7 +35,7 @@ class CountedMachine {
   map::ErrorMap Map() const {
     std::vector<simulation::SimulatedRun> runs{campaign_.Sweep('X'), campaign_.Sweep('Y'),
                                                campaign_.Sweep('Z')};
-    const Vector3d middle = NumbersOf(Vector3d::Constant(0.5 * kTravel));
+    const Vector3d middle = NumbersOf(Vector3d::Constant(0.5 * kTravelOfDemo));
     const auto course = rig::DwellCourse(
         rig::GridPlaces(middle, Vector3d::Constant(0.058), {6, 6, 6}), 0.1, 0.1, 1);
     auto grid = campaign_.rig.Record(course, {.kind = "reference", .rate = 100.0});
@@ -77,9 +52,9 @@ class CountedMachine {
 
 std::vector<Vector3d> Places() {
   std::vector<Vector3d> places;
-  for (double x = 0.002; x < kTravel; x += 0.014) {
-    for (double y = 0.002; y < kTravel; y += 0.014) {
-      for (double z = 0.002; z < kTravel; z += 0.014) places.emplace_back(x, y, z);
+  for (double x = 0.002; x < kTravelOfDemo; x += 0.014) {
+    for (double y = 0.002; y < kTravelOfDemo; y += 0.014) {
+      for (double z = 0.002; z < kTravelOfDemo; z += 0.014) places.emplace_back(x, y, z);
     }
   }
   return places;
@@ -128,58 +103,6 @@ TEST_P(HoweverCounted, TheSameMachineHasTheSameMap) {
 INSTANTIATE_TEST_SUITE_P(Chains, HoweverCounted,
                          testing::Values("[w X Y b Z t]", "[w Y X b Z t]", "[w Y b X Z t]",
                                          "[w X b Z Y t]", "[w X Y Z b t]"));
-
-double Mean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-// EYX of the rig at the stations of a sweep, without its least-squares line.
-std::vector<double> Straightness(const rig::World& world, const std::vector<double>& stations) {
-  std::vector<double> values;
-  for (const double x : stations) values.push_back(world.ErrorsOf(0, x)[1]);
-  const double middle = Mean(stations), mean = Mean(values);
-  double product = 0.0, square = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    product += (stations[i] - middle) * (values[i] - mean);
-    square += (stations[i] - middle) * (stations[i] - middle);
-  }
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] -= mean + product / square * (stations[i] - middle);
-  }
-  return values;
-}
-
-// The arm in the Abbe term of a straightness, and how far the target has gone under the probes,
-// have a sign that only the count tells: read the other way, EYX and EZX are wrong by micrometres,
-// far beyond U95.
-TEST(CountedSweep, IsReducedRightWhicheverWayItCountsAndWrongWhenTheFileSaysTheOther) {
-  double worst_wrong = 0.0;
-  for (const bool as_tool : {false, true}) {
-    const CountedMachine machine("[w X Y b Z t]", as_tool, 7);
-    const auto recording = machine.campaign().SweepRecording('X');
-    const probes::SweepSetup right = probes::ReadSweepSetup(machine.document().Root());
-    probes::SweepSetup wrong = right;
-    wrong.machine.chain = machine::Chain::Parse("[w X Y b Z t]");
-    if (!as_tool) wrong.machine.chain.ReadPositive("tool", "");
-    const auto result = probes::ReduceSweep(recording, right);
-    const auto mistaken = probes::ReduceSweep(recording, wrong);
-    EXPECT_EQ(result.positive, as_tool ? "tool" : "carriage");
-    const auto truth = Straightness(machine.campaign().rig.world(), result.stations);
-    for (std::size_t c = 0; c < result.components.size(); ++c) {
-      if (result.components[c].component.name != "EYX") continue;
-      for (std::size_t i = 0; i < truth.size(); ++i) {
-        const auto at = static_cast<Eigen::Index>(i);
-        EXPECT_LT(std::abs(result.components[c].value[at] - truth[i]),
-                  4 * result.components[c].u[at]);
-        worst_wrong = std::max(worst_wrong, std::abs(mistaken.components[c].value[at] - truth[i]) /
-                                                mistaken.components[c].u[at]);
-      }
-    }
-  }
-  EXPECT_GT(worst_wrong, 10.0);
-}
 
 }  // namespace counted_machine_test
 }  // namespace abbe::fusion
