@@ -30,6 +30,9 @@ nlohmann::ordered_json ReadResult(const std::filesystem::path& path) {
     return nlohmann::ordered_json::parse(file);
   } catch (const nlohmann::json::parse_error& failure) {
     throw InputError(fmt::format("{}: not valid JSON at byte {}", path.string(), failure.byte));
+  } catch (const nlohmann::json::out_of_range& failure) {
+    throw InputError(fmt::format("{}: holds a number that fits no double; write it anew ({})",
+                                 path.string(), failure.what()));
   }
 }
 

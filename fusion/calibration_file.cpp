@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "recording/whole_file.h"
 #include "settings/document.h"
 #include "settings/toml_text.h"
 #include "simulation/linkage_simulation.h"
@@ -30,7 +31,7 @@ using settings::Table;
 
 constexpr std::int64_t kFormat = 1;
 constexpr std::array kAxes{"x_mm", "y_mm", "z_mm"};
-constexpr std::array<std::pair<const char*, ErrorModel>, 4> kModels{{
+constexpr std::array<std::pair<const char*, ErrorModel>, 4> kModelNames{{
     {"pivots", ErrorModel::kPivots},
     {"published", ErrorModel::kPublished},
     {"published with bearing", ErrorModel::kPublishedWithBearing},
@@ -48,11 +49,14 @@ std::string Floats(const Values& values, double si) {
 std::string ParameterText(const ParameterBlock& block, std::size_t i) {
   const Parameter& entry = block.entries[i];
   const auto printed = [&](double value) { return Float(value / block.unit.si); };
+  const auto line = [&](const char* key, double value) {
+    return std::isfinite(value) ? fmt::format("{} = {}\n", key, printed(value)) : std::string();
+  };
   return fmt::format(
-      "\n[[parameter]]\nname = {}\nunit = {}\nvalue = {}\nuncertainty = {}\nnominal = {}\n"
-      "prior = {}\nheld = {}\n",
+      "\n[[parameter]]\nname = {}\nunit = {}\nvalue = {}\n{}nominal = {}\n{}held = {}\n",
       Quoted(block.FullName(i)), Quoted(block.unit.name), printed(entry.value),
-      printed(entry.uncertainty), printed(entry.nominal), printed(entry.prior_sd), entry.held);
+      line("uncertainty", entry.uncertainty), printed(entry.nominal), line("prior", entry.prior_sd),
+      entry.held);
 }
 
 std::string MappedText(const MappedParameters& mapped) {
@@ -79,11 +83,13 @@ void ReadParameter(const Table& table, ParameterBlock& block, std::size_t i) {
   }
   Parameter& entry = block.entries[i];
   const auto number = [&](const char* key) { return table.Number(key) * block.unit.si; };
+  const auto number_or_none = [&](const char* key) {
+    return table.Has(key) ? number(key) : std::numeric_limits<double>::infinity();
+  };
   entry.value = number("value");
-  if (!std::isfinite(entry.value)) throw table.Error("value", "must be a number");
-  entry.uncertainty = number("uncertainty");
+  entry.uncertainty = number_or_none("uncertainty");
   entry.nominal = number("nominal");
-  entry.prior_sd = number("prior");
+  entry.prior_sd = number_or_none("prior");
   entry.held = table.Truth("held", false);
   table.RefuseUnknown();
 }
@@ -119,7 +125,7 @@ MappedParameters ReadMapped(const Table& table, Index parameters) {
 }  // namespace
 
 std::string ErrorModelName(ErrorModel model) {
-  for (const auto& [name, value] : kModels) {
+  for (const auto& [name, value] : kModelNames) {
     if (value == model) return name;
   }
   throw InputError("calibration: unknown error model");
@@ -127,7 +133,7 @@ std::string ErrorModelName(ErrorModel model) {
 
 ErrorModel ErrorModelNamed(const std::string& name) {
   std::vector<std::string> names;
-  for (const auto& [known, value] : kModels) {
+  for (const auto& [known, value] : kModelNames) {
     if (name == known) return value;
     names.push_back(Quoted(known));
   }
@@ -151,7 +157,7 @@ void WriteCalibration(const Calibration& calibration, const std::filesystem::pat
                       Floats(calibration.covariance.reshaped(), 1.0));
   if (calibration.mapped) text += MappedText(*calibration.mapped);
 
-  map::WriteWhole(text, path);
+  recording::WriteWhole(text, path);
 }
 
 Calibration ReadCalibration(const std::filesystem::path& path,

@@ -10,9 +10,9 @@
 //   [[parameter]]                 # every parameter in the order of the model, the bases first
 //   name = "tilt.pivot_1_u"
 //   value = 312.4                 # in `unit`, so is all of this table
-//   uncertainty = 4.1             # inf: not determined
+//   uncertainty = 4.1             # left out: not determined
 //   nominal = 0.0
-//   prior = 500.0
+//   prior = 500.0                 # left out: none
 //   held = false
 //   unit = "urad"
 //   [covariance]

@@ -13,6 +13,7 @@ using settings::Table;
 
 constexpr double kMostRegisters = 125.0;  // of one request, by the protocol
 constexpr double kLastAddress = 65535.0;
+constexpr double kFastestBaud = 4e6;  // that Linux knows
 
 RegisterTable ReadTable(const Table& table) {
   return table.Choice("function", {"input", "holding"}) == "input" ? RegisterTable::kInput
@@ -71,7 +72,8 @@ ChannelSettings ReadChannel(const Table& table, const BlockSettings& block, int 
   channel.type =
       ReadChoice<WordType>(table, "type", {"int16", "uint16", "int32", "uint32", "float32"}, true);
   channel.order = ReadChoice<WordOrder>(table, "order", {"ABCD", "CDAB", "BADC", "DCBA"});
-  channel.at = static_cast<int>(table.Integer("at", {.at_least = 0.0}));
+  channel.at =
+      static_cast<int>(table.Integer("at", {.at_least = 0.0, .at_most = block.count - 1.0}));
   if (channel.at + static_cast<int>(WordCount(channel.type)) > block.count) {
     throw table.Error("at", fmt::format("lies outside the block of {} registers", block.count));
   }
@@ -108,7 +110,8 @@ BlockSettings ReadBlock(const Table& table, int base) {
 SerialLine ReadSerial(const Table& table) {
   SerialLine line;
   line.device = table.Text("device");
-  line.baud = static_cast<int>(table.Integer("baud", {.fallback = 19200, .above = 0.0}));
+  line.baud = static_cast<int>(
+      table.Integer("baud", {.fallback = 19200, .above = 0.0, .at_most = kFastestBaud}));
   const std::string parity = table.Choice("parity", {"even", "none", "odd"});
   line.parity = parity == "even" ? 'E' : parity == "none" ? 'N' : 'O';
   line.stop_bits =
@@ -188,8 +191,8 @@ DeviceSettings ReadModbus(const Table& table, const std::string& transport) {
 DevicesSettings ReadDevices(const settings::Table& devices) {
   DevicesSettings all;
   all.rate = devices.Quantity("rate_hz", {.fallback = 200.0, .above = 0.0, .at_most = 1e5});
-  all.max_skew = devices.Quantity("max_skew_ms", {.fallback = 20.0, .above = 0.0, .at_most = 1e4});
-  all.stale = devices.Quantity("stale_ms", {.fallback = 1000.0, .above = 0.0});
+  all.max_skew = devices.Quantity("max_skew_ms", {.fallback = 20.0, .above = 0.0, .at_most = 10e3});
+  all.stale = devices.Quantity("stale_ms", {.fallback = 1000.0, .above = 0.0, .at_most = 60e3});
   std::set<std::string> names;
   const auto take = [&](const Table& table, const char* key, const std::string& name) {
     if (names.insert(name).second) return;

@@ -15,7 +15,8 @@ constexpr double kWindowsBetween = 4.0;
 // A step divides the length when the remainder is below a rounding of decimal fractions in the
 // file.
 constexpr double kStepRemainder = 1e-6;
-constexpr double kMostStations = 1e6;
+constexpr double kMostStations = 1e5;  // of one axis
+constexpr double kMostVisits = 1e6;    // of all passes, there and back
 
 std::vector<double> SteppedStations(const settings::Table& table) {
   const double first = table.Quantity("first_mm");
@@ -88,6 +89,12 @@ SweepPlan ReadSweepPlan(const settings::Table& sweep, char axis) {
                       "one before it",
                       i + 1, least / settings::kMillimetre));
     }
+  }
+  if (2.0 * plan.passes * static_cast<double>(plan.stations.size()) > kMostVisits) {
+    throw sweep.Error("passes",
+                      fmt::format("{} over {} stations are more than a sweep takes ({:g} visits); "
+                                  "give fewer",
+                                  plan.passes, plan.stations.size(), kMostVisits));
   }
   if (plan.overrun < least) {
     throw sweep.Error("overrun_mm", fmt::format("must be at least four windows ({:.6g} mm)",

@@ -12,6 +12,9 @@
 namespace abbe::machine {
 namespace {
 
+// Of the highest harmonic of a Fourier series over a travel; a metre of 0.1 mm each.
+constexpr int kMostWaves = 10000;
+
 class BSplineForm : public FunctionForm {
  public:
   BSplineForm(std::string name, geometry::BSplineBasis basis)
@@ -119,7 +122,14 @@ class FourierForm : public FunctionForm {
 
   // One piece for each wave of the highest harmonic.
   std::vector<double> Pieces(double a, double b) const override {
-    const int waves = 1 + static_cast<int>((b - a) * harmonics_ / period_);
+    const double whole = (b - a) * harmonics_ / period_;
+    if (!(whole <= kMostWaves)) {
+      throw InputError(
+          fmt::format("a Fourier series with {:.3g} waves over the travel: give {} or "
+                      "fewer, by fewer harmonics or a longer period",
+                      whole, kMostWaves));
+    }
+    const int waves = 1 + static_cast<int>(whole);
     std::vector<double> pieces;
     for (int i = 0; i <= waves; ++i) pieces.push_back(a + (b - a) * i / waves);
     return pieces;

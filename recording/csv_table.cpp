@@ -20,11 +20,11 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-std::string_view WithoutBlanks(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const auto first = text.find_first_not_of(kBlanks);
+std::string_view TrimmedCell(std::string_view text) {
+  constexpr std::string_view kCellEdges = " \t\r";
+  const auto first = text.find_first_not_of(kCellEdges);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+  return text.substr(first, text.find_last_not_of(kCellEdges) - first + 1);
 }
 
 // What spreadsheets put between cells: a semicolon where numbers have a decimal comma.
@@ -49,7 +49,7 @@ std::vector<std::string> CellsOf(std::string_view line, char separator) {
       cells.back() += line[i];
     }
   }
-  for (std::string& cell : cells) cell = WithoutBlanks(cell);
+  for (std::string& cell : cells) cell = TrimmedCell(cell);
   return cells;
 }
 
@@ -129,14 +129,11 @@ class TableReader {
 
   std::optional<std::string_view> Next() {
     for (auto line = lines_.Next(); line; line = lines_.Next()) {
-      if (lines_.number() == 1 && line->starts_with(kByteOrderMark)) {
-        line->remove_prefix(kByteOrderMark.size());
-      }
       if (line->find('\0') != std::string_view::npos) {
         throw InputError(fmt::format("{}:{}: is no text in UTF-8; save the table as CSV (UTF-8)",
                                      path_, lines_.number()));
       }
-      const std::string_view text = WithoutBlanks(*line);
+      const std::string_view text = TrimmedCell(*line);
       if (!text.empty() && !text.starts_with('#')) return line;
     }
     return std::nullopt;

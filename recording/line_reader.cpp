@@ -7,13 +7,14 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <vector>
 
 #include "failure/failure.h"
 
 namespace abbe::recording {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 20;
+constexpr std::size_t kBytesAtOnce = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -23,7 +24,7 @@ LineReader::LineReader(const std::filesystem::path& path) : name_(path.string())
     throw InputError(
         fmt::format("{}: cannot be read: {}; check the path", name_, std::strerror(errno)));
   }
-  block_.resize(kBlock);
+  block_ = std::make_unique_for_overwrite<char[]>(kBytesAtOnce);
 }
 
 LineReader::~LineReader() { close(file_); }
@@ -41,33 +42,42 @@ std::size_t LineReader::ReadSome(char* to, std::size_t size) {
 }
 
 std::optional<std::string_view> LineReader::Next() {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  auto line = NextAsItIs();
+  if (line && number_ == 1 && line->starts_with(kByteOrderMark)) {
+    line->remove_prefix(kByteOrderMark.size());
+  }
+  return line;
+}
+
+std::optional<std::string_view> LineReader::NextAsItIs() {
   std::size_t searched = begin_;
   while (true) {
-    const void* found = std::memchr(block_.data() + searched, '\n', end_ - searched);
+    const void* found = std::memchr(block_.get() + searched, '\n', end_ - searched);
     if (found != nullptr) {
-      const char* line = block_.data() + begin_;
+      const char* line = block_.get() + begin_;
       const auto length = static_cast<std::size_t>(static_cast<const char*>(found) - line);
       begin_ += length + 1;
       ++number_;
       return std::string_view(line, length > 0 && line[length - 1] == '\r' ? length - 1 : length);
     }
     // Make room for the rest of the line.
-    std::memmove(block_.data(), block_.data() + begin_, end_ - begin_);
+    std::memmove(block_.get(), block_.get() + begin_, end_ - begin_);
     end_ -= begin_;
     begin_ = 0;
     searched = end_;
-    if (end_ == block_.size()) {
+    if (end_ == kBytesAtOnce) {
       throw InputError(fmt::format("{}:{}: this line is longer than 1 MiB; is this a recording?",
                                    name_, number_ + 1));
     }
-    const std::size_t count = ReadSome(block_.data() + end_, block_.size() - end_);
+    const std::size_t count = ReadSome(block_.get() + end_, kBytesAtOnce - end_);
     if (count == 0) break;
     end_ += count;
   }
   if (end_ == 0) return std::nullopt;
   complete_ = false;
   ++number_;
-  const std::string_view rest(block_.data(), end_);
+  const std::string_view rest(block_.get(), end_);
   begin_ = end_ = 0;
   return rest;
 }
@@ -75,7 +85,7 @@ std::optional<std::string_view> LineReader::Next() {
 std::size_t LineReader::CountLineEnds() {
   const off_t here = lseek(file_, 0, SEEK_CUR);
   lseek(file_, 0, SEEK_SET);
-  std::vector<char> block(kBlock);
+  std::vector<char> block(kBytesAtOnce);
   std::size_t line_ends = 0;
   while (const std::size_t size = ReadSome(block.data(), block.size())) {
     line_ends += static_cast<std::size_t>(std::count(block.data(), block.data() + size, '\n'));

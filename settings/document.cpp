@@ -47,6 +47,14 @@ double AsNumber(const toml::node& node) {
   return node.as_floating_point()->get();
 }
 
+// What a message quotes from a file may hold line ends: a message is one line.
+std::string OneLine(std::string text) {
+  for (char& letter : text) {
+    if (static_cast<unsigned char>(letter) < ' ' || letter == '\x7f') letter = ' ';
+  }
+  return text;
+}
+
 std::string WithUnit(double value, const Unit& unit) {
   return unit.name.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, unit.name);
 }
@@ -81,8 +89,8 @@ Document Document::Parse(std::string_view text, std::string name) {
   try {
     state->root = toml::parse(text, state->name);
   } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}: not valid TOML: {}", state->name,
-                                 error.source().begin.line, error.description()));
+    throw InputError(OneLine(fmt::format("{}:{}: not valid TOML: {}", state->name,
+                                         error.source().begin.line, error.description())));
   }
   return Document(std::move(state));
 }
@@ -112,8 +120,8 @@ InputError Table::Error(std::string_view key, std::string_view message) const {
   const std::size_t line = node != nullptr ? node->source().begin.line : node_->line;
   const std::string place = line > 0 ? fmt::format("{}:{}", state_->name, line) : state_->name;
   const std::string path = key.empty() ? path_ : Join(path_, key);
-  return InputError(path.empty() ? fmt::format("{}: {}", place, message)
-                                 : fmt::format("{}: {}: {}", place, path, message));
+  return InputError(OneLine(path.empty() ? fmt::format("{}: {}", place, message)
+                                         : fmt::format("{}: {}: {}", place, path, message)));
 }
 
 bool Table::Has(std::string_view key) const { return Find(node_->table, key) != nullptr; }

@@ -25,7 +25,7 @@ PERFECT = [(rf"(?m)^{key} = .*", f"{key} = 0.0") for key in (
     "base_um", "base_urad", "ball_um", "compliance_urad", "thermal_ppm_per_c", "encoder_urad", "reference_um")]
 CROOKED = [(r"(?m)^squareness_urad = 30.0", "squareness_urad = 300.0")]  # of the machine: it has something to show
 # The guest has one virtual processor, which the whole computer shares.
-PATIENT = [(r"(?m)^max_skew_ms = .*", "max_skew_ms = 5000.0"), (r"(?m)^stale_ms = .*", "stale_ms = 5000.0"),
+PATIENT = [(r"(?m)^stale_ms = .*", "stale_ms = 5000.0"),
            (r"(?m)^unit = 2", "unit = 2\nresponse_timeout_ms = 2000.0\ndeadline_ms = 4000.0"),
            (r"(?m)^sync_ms = .*", "sync_ms = 1.0\nanswer_timeout_ms = 1000.0\nheartbeat_timeout_ms = 3000.0")]
 
@@ -74,13 +74,18 @@ class EncodersTest(unittest.TestCase):
         return json.loads(result.read_text())["circles"][0]
 
     def test_a_circle_is_recorded_and_evaluated_as_the_rig_ran_it(self):
-        self.describe(PERFECT + CROOKED)
+        # At 20 mm/s, 3 ms are 60 um along a circle of 10 mm, and 0.2 um across it.
+        self.describe([*PERFECT, *CROOKED, (r"(?m)^max_skew_ms = .*", "max_skew_ms = 3.0")])
         rig = self.serve(*COURSE)
         recorded = self.folder / "circle.csv"
         done = self.run_abbe("record", self.machine, "--devices", "machine,linkage", "--start", 4, "--seconds", 23,
                              "--passes-only", "-o", recorded)
         print(done.stdout, end="")
-        self.assertIn("(0 flagged", done.stdout)
+        self.assertIn("# simulated = true", recorded.read_text())
+        # A computer that does other work tears sets apart: they are flagged and left out. What is left says the same.
+        good = [row for row in rows_of(recorded) if row["flags"] == 0]
+        self.assertLessEqual(max(row["skew_ms"] for row in good), 3.0)
+        self.assertGreater(len(good), 300)
         rig.send_signal(signal.SIGTERM)
         said = rig.stdout.read()
         rig.wait(20)

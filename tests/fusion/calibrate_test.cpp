@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
+#include "fusion/calibration_file.h"
 #include "linkage_world.h"
 
 namespace abbe::fusion {
-namespace {
+namespace calibrate_test {
 
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
@@ -39,7 +41,7 @@ TEST(Calibrate, RecoversAnErroneousLinkageFromExactAngles) {
   EXPECT_GT(report.before.rms, 10e-6);
   // The priors pull by (stated noise / prior)^2 of the parameters' errors: below a picometre.
   EXPECT_LT(Against(report, settings, other).max, 1e-11);
-  EXPECT_NEAR(report.fit.Value("link.link_1") + 0 * world.link_1, world.link_1, 1e-6);
+  EXPECT_NEAR(report.fit.Value("link.link_1"), world.link_1, 1e-6);
 }
 
 TEST(Calibrate, ReachesTheNoiseWithEncoderErrors) {
@@ -71,6 +73,15 @@ TEST(Calibrate, DisplacementFormKnowsNoBase) {
   EXPECT_LT(report.held_out.rms, 1.5e-6);
   const auto other = WorldRun(world, settings, RandomPositions(kCube, 100, 6), 0, 6);
   EXPECT_LT(Against(report, settings, other).rms, 0.6e-6);
+  // A base without a prior goes into the file and comes back.
+  const auto file = std::filesystem::path(testing::TempDir()) / "abbe_displacement.toml";
+  WriteCalibration(report.calibration, file);
+  const Calibration back = ReadCalibration(file, settings);
+  std::filesystem::remove(file);
+  ASSERT_EQ(back.blocks.size(), report.calibration.blocks.size());
+  EXPECT_EQ(back.blocks[0].entries[0].prior_sd, estimation::kNoPrior);
+  EXPECT_NEAR(back.blocks[0].entries[0].value, report.calibration.blocks[0].entries[0].value,
+              1e-15);
 }
 
 TEST(Calibrate, OutlierIsNamedAndDoesNotPull) {
@@ -156,5 +167,5 @@ TEST_F(Refusal, ContradictoryPrior) {
       HasSubstr("the data contradict the prior"));
 }
 
-}  // namespace
+}  // namespace calibrate_test
 }  // namespace abbe::fusion

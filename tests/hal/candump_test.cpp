@@ -14,7 +14,7 @@
 #include "hal/candump_recording.h"
 
 namespace abbe::hal {
-namespace {
+namespace candump_test {
 
 class CandumpTest : public testing::Test {
  protected:
@@ -236,5 +236,5 @@ TEST_F(CandumpTest, TheSilenceOfALogThatWasSetForwardHasNoRows) {
   }
 }
 
-}  // namespace
+}  // namespace candump_test
 }  // namespace abbe::hal

@@ -10,7 +10,7 @@
 #include "hal/device_settings.h"
 
 namespace abbe::hal {
-namespace {
+namespace canopen_settings_test {
 
 DevicesSettings Read(const std::string& text) {
   return ReadDevices(settings::Document::Parse(text, "m.toml").Root().Child("devices"));
@@ -89,6 +89,20 @@ TEST(CanopenSettings, RefusesWithLineKeyAndRemedy) {
             "in \"pivot_1_rad\"");
 }
 
+// Counts that no integer holds, before they are wrapped.
+TEST(CanopenSettings, AnAngleBeyondAllCountsStillHasOne) {
+  EncoderSettings encoder;
+  encoder.counts_per_turn = 65536.0;
+  encoder.range = 65536;
+  encoder.sense = -1;
+  encoder.zero = -9007199254740992;
+  for (const double angle : {1e300, -1e300, 1e15}) {
+    const std::int64_t count = CountOf(encoder, angle);
+    EXPECT_GE(count, 0);
+    EXPECT_LT(count, encoder.range);
+  }
+}
+
 RC_GTEST_PROP(CanopenSettings, TheCountOfAnAngleIsThatAngleModuloTheRange, ()) {
   EncoderSettings encoder;
   encoder.counts_per_turn = *rc::gen::inRange(16, 1 << 20);
@@ -106,5 +120,5 @@ RC_GTEST_PROP(CanopenSettings, TheCountOfAnAngleIsThatAngleModuloTheRange, ()) {
   RC_ASSERT(std::abs(std::remainder(back - angle, turn)) <= 0.5 * encoder.Step() + 1e-9);
 }
 
-}  // namespace
+}  // namespace canopen_settings_test
 }  // namespace abbe::hal

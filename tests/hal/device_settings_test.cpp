@@ -6,7 +6,7 @@
 #include <string>
 
 namespace abbe::hal {
-namespace {
+namespace device_settings_test {
 
 DevicesSettings Read(const std::string& text) {
   return ReadDevices(settings::Document::Parse(text, "m.toml").Root().Child("devices"));
@@ -99,6 +99,17 @@ TEST(DeviceSettings, RefusesWithLineKeyAndRemedy) {
   EXPECT_EQ(Refusal(WithBlock("address = 0\ncount = 2\nchannel = [{name = 'a', at = 1, type = "
                               "'int32'}]")),
             "m.toml:6: devices.d.block[0].channel[0].at: lies outside the block of 2 registers");
+  // 32 bits do not hold these: taken as 0, and beyond the block.
+  for (const char* at : {"4294967296", "2147483647"}) {
+    EXPECT_EQ(
+        Refusal(WithBlock(std::string("address = 0\ncount = 2\nchannel = [{name = 'a', at = ") +
+                          at + ", type = 'int32'}]")),
+        std::string("m.toml:6: devices.d.block[0].channel[0].at: is ") + at +
+            ", it must be at most 1");
+  }
+  EXPECT_EQ(Refusal("[devices.d]\ntransport = 'modbus-rtu'\n[devices.d.serial]\ndevice = 't'\n"
+                    "baud = 4294976896\n"),
+            "m.toml:5: devices.d.serial.baud: is 4294976896, it must be at most 4000000");
   EXPECT_EQ(Refusal(WithBlock("address = 0\ncount = 2\nchannel = [{name = 'a', at = 1, type = "
                               "'int16', scal = 2}]")),
             "m.toml:6: devices.d.block[0].channel[0].scal: is not a known key; did you mean "
@@ -123,5 +134,5 @@ TEST(DeviceSettings, RefusesWithLineKeyAndRemedy) {
       "m.toml:2: devices.rate_hx: is not a known key; did you mean \"rate_hz\"?");
 }
 
-}  // namespace
+}  // namespace device_settings_test
 }  // namespace abbe::hal

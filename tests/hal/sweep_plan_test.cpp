@@ -5,7 +5,7 @@
 #include <string>
 
 namespace abbe::hal {
-namespace {
+namespace sweep_plan_test {
 
 SweepPlan Plan(const std::string& text, char axis = 'X') {
   return ReadSweepPlan(settings::Document::Parse(text, "m.toml").Root().Child("sweep"), axis);
@@ -65,9 +65,13 @@ TEST(SweepPlan, RefusesWithLineKeyAndRemedy) {
       "the one before it");
   EXPECT_EQ(Refusal("[sweep]\noverrun_mm = 0.01\n[sweep.X]\nstations_mm = [0, 1]"),
             "m.toml:2: sweep.overrun_mm: must be at least four windows (0.08 mm)");
+  EXPECT_EQ(
+      Refusal("[sweep]\npasses = 1000\n[sweep.X]\nfirst_mm = 0\nlast_mm = 100\nstep_mm = 0.1"),
+      "m.toml:2: sweep.passes: 1000 over 1001 stations are more than a sweep takes (1e+06 "
+      "visits); give fewer");
   EXPECT_EQ(Refusal("[sweep.Y]\nstations_mm = [0, 1]"),
             "m.toml: sweep.X.first_mm: is missing; it must be a number");
 }
 
-}  // namespace
+}  // namespace sweep_plan_test
 }  // namespace abbe::hal

@@ -7,7 +7,7 @@
 #include "tests/probes/synthetic_sweep.h"
 
 namespace abbe::probes {
-namespace {
+namespace sweep_reduction_test {
 
 SweepSetup NoiseOnly() {
   SweepSetup setup = TestSetup();
@@ -170,5 +170,5 @@ TEST(SweepReduction, PullsHaveUnitVariance) {
               2.58 * std::sqrt(2.0 * dof) + 0.02 * dof);  // 2 %: see HuberMean's efficiency
 }
 
-}  // namespace
+}  // namespace sweep_reduction_test
 }  // namespace abbe::probes

@@ -14,7 +14,7 @@
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace damaged_hdf5_test {
 
 const std::filesystem::path kDamaged =
     std::filesystem::path(ABBE_SOURCE_DIR) / "tests/recording/damaged";
@@ -133,5 +133,5 @@ TEST(Hdf5Child, IsMadeWhileOthersUseTheLibrary) {
   }
 }
 
-}  // namespace
+}  // namespace damaged_hdf5_test
 }  // namespace abbe::recording

@@ -14,7 +14,7 @@
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace whole_file_test {
 
 class WholeFileTest : public testing::Test {
  protected:
@@ -171,5 +171,5 @@ TEST_F(WholeFileTest, LeavesTheOldFileAndNothingElseOnAFullDisk) {
   ExpectNoPart();
 }
 
-}  // namespace
+}  // namespace whole_file_test
 }  // namespace abbe::recording

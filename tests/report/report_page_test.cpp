@@ -9,7 +9,7 @@
 #include "report/page_template.h"
 
 namespace abbe::report {
-namespace {
+namespace report_page_test {
 
 namespace fs = std::filesystem;
 
@@ -139,5 +139,5 @@ TEST_F(ReportPage, ComposedTwiceIsTheSamePage) {
   EXPECT_EQ(Page(), first);
 }
 
-}  // namespace
+}  // namespace report_page_test
 }  // namespace abbe::report

@@ -13,7 +13,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace linkage_campaign_test {
 
 using Eigen::Vector3d;
 
@@ -167,5 +167,5 @@ TEST(LinkageRig, RefusesAnUnknownKindAndARateAboveTheSensors) {
   EXPECT_THROW(rig.Record(Line(), {.rate = 0.0}), InputError);
 }
 
-}  // namespace
+}  // namespace linkage_campaign_test
 }  // namespace abbe::rig

@@ -12,7 +12,7 @@
 #include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {
-namespace {
+namespace measuring_campaign_test {
 
 CampaignMachine Demo() { return ReadCampaignMachine(DemoMill().Root()); }
 
@@ -226,5 +226,5 @@ TEST(MeasuringCampaign, ItsRecordingsReadBack) {
   std::filesystem::remove(path);
 }
 
-}  // namespace
+}  // namespace measuring_campaign_test
 }  // namespace abbe::rig

@@ -9,7 +9,7 @@
 #include <fstream>
 
 namespace abbe::settings {
-namespace {
+namespace document_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -81,6 +81,15 @@ TEST(DocumentTest, HoldsNumbersToTheirBounds) {
             "m.toml:1: a_mm: is 1 mm, it must be at least 1.5 mm");
   EXPECT_EQ(Refusal([&] { root.Number("b", {.at_most = -2.0}); }),
             "m.toml:2: b: is -1, it must be at most -2");
+}
+
+TEST(DocumentTest, AMessageIsOneLineWhateverItQuotes) {
+  const Table root = Parse("form = \"piv\\nots\\u001b[2J\"\n");
+  EXPECT_EQ(Refusal([&] { root.Choice("form", {"pivots"}); }),
+            "m.toml:1: form: \"piv ots [2J\" is not one of: pivots");
+  const std::string broken = Refusal([] { Parse("a = f\n[b]\n"); });
+  EXPECT_THAT(broken, StartsWith("m.toml:1: not valid TOML: "));
+  EXPECT_EQ(broken.find('\n'), std::string::npos) << broken;
 }
 
 TEST(DocumentTest, RefusesAnotherType) {
@@ -268,5 +277,5 @@ TEST(DocumentTest, WritesTheErrorOfItsReader) {
   EXPECT_STREQ(root.Error("", "is odd").what(), "m.toml:1: is odd");
 }
 
-}  // namespace
+}  // namespace document_test
 }  // namespace abbe::settings

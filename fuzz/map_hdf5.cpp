@@ -1,0 +1,13 @@
+// A map on a grid as hdf5 (`map/export_grid.h`): a grid that is read can be used.
+#include "fuzz/target.h"
+#include "map/export_grid.h"
+
+namespace abbe::fuzz::map_hdf5 {
+
+void Read(Bytes bytes) {
+  const map::GridFile file = map::ReadHdf5Grid(InputFile(bytes).path());
+  const auto& axes = file.grid.axes();
+  file.grid.Error({axes[0].At(0), axes[1].At(axes[1].count / 2), axes[2].last});
+}
+
+}  // namespace abbe::fuzz::map_hdf5
