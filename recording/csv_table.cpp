@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "recording/column_sum.h"
+#include "recording/csv_form.h"
 #include "recording/line_reader.h"
 #include "settings/toml_text.h"
 
@@ -19,9 +20,9 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-std::string_view TrimmedCell(std::string_view text) {
-  constexpr std::string_view kCellEdges = " \t\r";
-  const auto first = text.find_first_not_of(kCellEdges);
+std::string_view WithoutBlanks(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const auto first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(kCellEdges) - first + 1);
 }
@@ -48,7 +49,7 @@ std::vector<std::string> CellsOf(std::string_view line, char separator) {
       cells.back() += line[i];
     }
   }
-  for (std::string& cell : cells) cell = TrimmedCell(cell);
+  for (std::string& cell : cells) cell = WithoutBlanks(cell);
   return cells;
 }
 
@@ -132,7 +133,7 @@ class TableReader {
         throw InputError(fmt::format("{}:{}: is no text in UTF-8; save the table as CSV (UTF-8)",
                                      path_, lines_.number()));
       }
-      const std::string_view text = TrimmedCell(*line);
+      const std::string_view text = WithoutBlanks(*line);
       if (!text.empty() && !text.starts_with('#')) return line;
     }
     return std::nullopt;

@@ -24,7 +24,7 @@ namespace {
 constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
 constexpr std::size_t kMostBytes = kMebi;  // of a message
 constexpr char kFailed = 'e', kDone = 'd';
-constexpr rlim_t kChildSeconds = 5;
+constexpr rlim_t kSeconds = 3;
 constexpr std::uint64_t kBytesPerSecond = 2'000'000;
 constexpr std::uint64_t kLibrary = 256 * kMebi;  // what libhdf5 takes for itself
 
@@ -213,7 +213,8 @@ void ReadInChild(const std::filesystem::path& path,
   const QuietHdf5 quiet;
   const std::string name = path.string();
   const std::uint64_t size = SizeOf(path), most = MostHdf5Numbers(path);
-  Child child{read, Mapped() + kLibrary + 2 * most, kChildSeconds + size / kBytesPerSecond, {-1, -1}};
+  Child child{
+      read, Mapped() + kLibrary + 2 * most, kChildSeconds + size / kBytesPerSecond, {-1, -1}};
   if (pipe2(child.pipe, O_CLOEXEC) != 0) throw InputError(name + ": too many open files");
   Fork(child);
   close(child.pipe[1]);

@@ -23,7 +23,7 @@ constexpr hsize_t kPage = 4096;            // bytes, of the kernel's memory
 constexpr unsigned kDeflate = 1;
 
 // A recording as far as the kind of a file is told.
-constexpr const char* kHdf5Begin = "\x89HDF\r\n\x1a\nabbe-recording";
+constexpr const char* kRecordingBegin = "\x89HDF\r\n\x1a\nabbe-recording";
 
 constexpr const char* kNothingSaved = "nothing is saved";
 constexpr const char* kRowsSaved = "the rows of the last flush are saved";
@@ -182,7 +182,7 @@ std::unique_ptr<RowFile> CreateHdf5(const std::filesystem::path& path, const std
   close(CreateNewFile(path));  // takes the name
   try {
     WholeFile file(path);
-    CreateGrowing(file.PartToFill(kHdf5Begin), header, columns);
+    CreateGrowing(file.PartToFill(kRecordingBegin), header, columns);
     file.Finish();
     return std::make_unique<Hdf5RowFile>(path.string(), columns);
   } catch (const std::exception&) {
@@ -194,7 +194,7 @@ std::unique_ptr<RowFile> CreateHdf5(const std::filesystem::path& path, const std
 
 void WriteHdf5(const Recording& recording, const std::string& header, WholeFile& whole) {
   const QuietHdf5 quiet;
-  const std::string name = whole.PartToFill(kHdf5Begin);
+  const std::string name = whole.PartToFill(kRecordingBegin);
   Handle file = CreateWithHeader(name, header);
   const Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   const hsize_t chunk = std::clamp<hsize_t>(recording.rows(), 1, kFinishedChunk);

@@ -23,7 +23,7 @@ recording::Recording RecordLengths(const LinkageRig& rig, const LengthProgram& p
   lengths.header = fmt::format(
       "kind = \"length\"\nmachine = {}\nstarted = \"{}\"\nsource = \"rig\"\n"
       "u_scale_ppm = {}\n\n[rig]\nseed = {}\nrun = {}\n",
-      settings::Quoted(world.settings().name), program.started, program.u_scale / kMicro,
+      settings::Quoted(world.settings().name), program.started, program.u_scale / kPpm,
       world.seed(), program.run);
   std::vector<std::string> names = {"time_s",    "x_mm",        "y_mm",      "z_mm",       "pass",
                                     "direction", "feed_mm_min", "length_mm", "u_length_um"};

@@ -10,6 +10,7 @@
 
 #include "recording/background_writer.h"
 #include "recording/recording_file.h"
+#include "recording/whole_file.h"
 #include "scratch.h"
 
 namespace abbe::recording {
@@ -88,11 +89,13 @@ TEST_P(EachForm, RefusesARowOfAnotherWidth) {
 
 TEST_P(EachForm, OverwritesAtOnceOrNotAtAll) {
   Write(Dwell(5), path_);
+  SetOverwriting({{}, true});
   Write(Dwell(3), path_);
   EXPECT_EQ(Read(path_).rows(), 3u);
   Recording bad = Dwell(3);
   bad.columns[0].values[1] = -1.0;
   MessageOf<InputError>([&] { Write(bad, path_); });
+  SetOverwriting({});
   EXPECT_EQ(Read(path_).rows(), 3u);
 }
 

@@ -147,6 +147,7 @@ TEST(LinkageRig, WritesRecordingsThatReadBack) {
   const LinkageRig rig = RigOf(DemoRig(), 3);
   for (const char* kind : {"linkage", "reference"}) {
     const auto made = rig.Record(Line(), {.kind = kind, .rate = 20.0});
+    std::filesystem::remove(path);
     recording::Write(made, path);
     const auto read = recording::Read(path);
     EXPECT_EQ(read.Kind(), kind);

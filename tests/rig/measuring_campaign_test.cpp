@@ -217,6 +217,7 @@ TEST(MeasuringCampaign, ItsRecordingsReadBack) {
   const auto path = std::filesystem::path(::testing::TempDir()) / "rig_campaign.csv";
   for (const recording::Recording& made : Record(CampaignKind::kFull).recordings) {
     if (made.Kind() == "sweep" && !made.name.ends_with("sweep_X")) continue;
+    std::filesystem::remove(path);
     recording::Write(made, path);
     const recording::Recording read = recording::Read(path);
     EXPECT_TRUE(read.warnings.empty()) << made.name;
