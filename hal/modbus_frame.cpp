@@ -7,12 +7,8 @@
 namespace abbe::hal {
 namespace {
 
-constexpr int kReadHolding = 3, kReadInput = 4, kWriteOne = 6, kWhoAreYou = 43;
-constexpr int kDeviceIdentification = 14;  // of the things that function 43 carries
-constexpr std::size_t kIdentityHead = 6;   // type, code, conformity, more, next, count
+constexpr std::size_t kIdentityHead = 6;  // type, code, conformity, more, next, count
 constexpr int kRefusalBit = 0x80;
-constexpr std::size_t kTcpHead = 6;  // transaction, protocol, length; the unit follows
-constexpr std::size_t kCrcSize = 2;
 
 int Word(std::span<const std::uint8_t> bytes, std::size_t at) {
   return bytes[at] << 8 | bytes[at + 1];

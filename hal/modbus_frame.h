@@ -16,6 +16,12 @@ namespace abbe::hal {
 
 enum class ModbusFraming { kTcp, kRtu };
 
+// Function codes; kWhoAreYou with kDeviceIdentification, one of the things that it carries.
+inline constexpr int kReadHolding = 3, kReadInput = 4, kWriteOne = 6, kWriteMany = 16;
+inline constexpr int kWhoAreYou = 43, kDeviceIdentification = 14;
+inline constexpr std::size_t kTcpHead = 6;  // transaction, protocol, length; the unit follows
+inline constexpr std::size_t kCrcSize = 2;
+
 struct ModbusRequest {
   int unit = 1;
   int function = 4;  // 3 and 4: read `value` registers; 6: write `value`; 43: who are you

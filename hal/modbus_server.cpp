@@ -24,11 +24,7 @@ namespace {
 constexpr int kStopLookMs = 20;  // how often a waiting server looks whether to stop
 // A request that has begun must be complete by then.
 constexpr std::chrono::milliseconds kHalfRequest{500};
-constexpr int kReadHolding = 3, kReadInput = 4, kWriteOne = 6, kWriteMany = 16, kWhoAreYou = 43;
-constexpr int kDeviceIdentification = 14;  // of the things that function 43 carries
 constexpr int kMostRead = MODBUS_MAX_READ_REGISTERS, kMostWrite = MODBUS_MAX_WRITE_REGISTERS;
-constexpr std::size_t kTcpHead = 6;  // transaction, protocol, length; the unit follows
-constexpr std::size_t kCrcSize = 2;
 
 using Bytes = std::vector<std::uint8_t>;
 using View = std::span<const std::uint8_t>;
