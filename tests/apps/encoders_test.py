@@ -121,7 +121,7 @@ class EncodersTest(unittest.TestCase):
         self.assertEqual({row["pass"] for row in rows}, {0.0, 1.0})
         stops = {}
         for before, row, after in zip(rows, rows[1:], rows[2:]):
-            if before["pass"] == row["pass"] == after["pass"] == 1 and before["x_mm"] == row["x_mm"] == after["x_mm"]:
+            if all(before[name] == row[name] == after[name] for name in ("pass", "x_mm", "y_mm", "z_mm")) and row["pass"]:
                 place = tuple(min((17.5, 42.5), key=lambda at: abs(at - row[name])) for name in ("x_mm", "y_mm", "z_mm"))
                 self.assertLess(max(abs(at - row[name]) for at, name in zip(place, ("x_mm", "y_mm", "z_mm"))), 1e-3)
                 stops.setdefault(place, []).append(row["pivot_2_rad"])
