@@ -31,8 +31,9 @@ void Read(Bytes bytes) {
     std::ofstream file(folder.path() / "result.json", std::ios::binary | std::ios::trunc);
     file << TextOf(bytes);
   }
-  const auto written = abbe::report::WriteReport(folder.path(), folder.path() / "report.html");
-  Require(written.results == 1, "a page has the one result");
+  const auto composed = abbe::report::ComposeReport(folder.path());
+  Require(composed.results == 1 && composed.page.ends_with("</html>\n"),
+          "a page has the one result and is whole");
 }
 
 }  // namespace abbe::fuzz::report

@@ -109,7 +109,7 @@ std::optional<ModbusFault> ModbusClient::Write(int address, std::uint16_t word, 
 }
 
 std::string ModbusClient::Identity(Time deadline) {
-  if (!Exchange({device_.unit, 43, 0, 0}, deadline)) return IdentityText(objects_);
+  if (!Exchange({device_.unit, kWhoAreYou, 0, 0}, deadline)) return IdentityText(objects_);
   if (!connected_) std::this_thread::sleep_until(std::min(retry_at_, deadline));
   return {};
 }

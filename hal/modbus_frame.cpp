@@ -7,7 +7,7 @@
 namespace abbe::hal {
 namespace {
 
-constexpr std::size_t kIdentityHead = 6;   // type, code, conformity, more, next, count
+constexpr std::size_t kIdentityHead = 6;  // type, code, conformity, more, next, count
 constexpr int kRefusalBit = 0x80;
 
 int Word(std::span<const std::uint8_t> bytes, std::size_t at) {

@@ -16,10 +16,9 @@ namespace abbe::hal {
 
 enum class ModbusFraming { kTcp, kRtu };
 
-// Function codes, of those that abbe sends or answers.
+// Function codes; kWhoAreYou with kDeviceIdentification, one of the things that it carries.
 inline constexpr int kReadHolding = 3, kReadInput = 4, kWriteOne = 6, kWriteMany = 16;
-inline constexpr int kWhoAreYou = 43, kDeviceIdentification = 14;  // 14: of what 43 carries
-
+inline constexpr int kWhoAreYou = 43, kDeviceIdentification = 14;
 inline constexpr std::size_t kTcpHead = 6;  // transaction, protocol, length; the unit follows
 inline constexpr std::size_t kCrcSize = 2;
 

@@ -6,6 +6,5 @@
 namespace abbe::recording {
 
 inline constexpr std::string_view kSignature = "# abbe-recording = 1";
-inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace abbe::recording

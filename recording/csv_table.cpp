@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-std::string_view TrimmedCell(std::string_view text) {
+std::string_view WithoutBlanks(std::string_view text) {
   constexpr std::string_view kCellEdges = " \t\r";
   const auto first = text.find_first_not_of(kCellEdges);
   if (first == std::string_view::npos) return {};
@@ -49,7 +49,7 @@ std::vector<std::string> CellsOf(std::string_view line, char separator) {
       cells.back() += line[i];
     }
   }
-  for (std::string& cell : cells) cell = TrimmedCell(cell);
+  for (std::string& cell : cells) cell = WithoutBlanks(cell);
   return cells;
 }
 
@@ -133,7 +133,7 @@ class TableReader {
         throw InputError(fmt::format("{}:{}: is no text in UTF-8; save the table as CSV (UTF-8)",
                                      path_, lines_.number()));
       }
-      const std::string_view text = TrimmedCell(*line);
+      const std::string_view text = WithoutBlanks(*line);
       if (!text.empty() && !text.starts_with('#')) return line;
     }
     return std::nullopt;

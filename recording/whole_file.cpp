@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMostLinks = 40;           // as many as Linux follows
 constexpr std::size_t kBegin = 1 << 14;  // bytes that tell the kind of a file
-constexpr std::string_view kNothingKept = "nothing is saved";
+constexpr std::string_view kNothingChanged = "nothing is saved";
 
 Overwriting& Policy() {
   static Overwriting policy;
@@ -177,7 +177,7 @@ void WholeFile::Append(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = write(file_, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) ThrowWriteFailure(name_, kNothingKept);
+    if (count < 0) ThrowWriteFailure(name_, kNothingChanged);
     bytes.remove_prefix(static_cast<std::size_t>(count));
   }
 }
@@ -195,11 +195,11 @@ void WholeFile::Finish() {
   if (!begun_) Open({});
   // What has no disk behind it (EINVAL) has taken the bytes already.
   if (fsync(file_) != 0 && errno != EINVAL && errno != EROFS) {
-    ThrowWriteFailure(name_, kNothingKept);
+    ThrowWriteFailure(name_, kNothingChanged);
   }
-  if (close(std::exchange(file_, -1)) != 0) ThrowWriteFailure(name_, kNothingKept);
+  if (close(std::exchange(file_, -1)) != 0) ThrowWriteFailure(name_, kNothingChanged);
   if (special_) return;
-  if (rename(part_.c_str(), target_.c_str()) != 0) ThrowWriteFailure(name_, kNothingKept);
+  if (rename(part_.c_str(), target_.c_str()) != 0) ThrowWriteFailure(name_, kNothingChanged);
   part_.clear();
 }
 

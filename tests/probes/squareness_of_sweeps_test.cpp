@@ -133,9 +133,9 @@ TEST(SquarenessOfSweeps, IsRefusedWhenAConditionFails) {
   const SweepResult x = SweepOfX(setup, level), y = SweepOfY(setup, level);
   EXPECT_EQ(RefusalOf(x, y, setup.target), "accepted");
   EXPECT_THAT(RefusalOf(x, x, setup.target), testing::HasSubstr("both sweep the X axis"));
-  const SweepResult bare = Lean(setup, 'Y', 0.0, 0.0, level, "");
+  const SweepResult bare = Lean(setup, 'Y', 1e-5, 1e-5, level, "");
   EXPECT_THAT(RefusalOf(x, bare, setup.target), testing::HasSubstr("does not say `mounting`"));
-  const SweepResult moved = Lean(setup, 'Y', 0.0, 0.0, level, "[mounting]\nid = \"A18\"\n");
+  const SweepResult moved = Lean(setup, 'Y', 1e-5, 1e-5, level, "[mounting]\nid = \"A18\"\n");
   EXPECT_THAT(RefusalOf(x, moved, setup.target), testing::HasSubstr("mounted anew"));
   TargetSettings target = setup.target;
   target.u_squareness = 0.0;

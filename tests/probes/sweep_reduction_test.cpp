@@ -83,6 +83,7 @@ TEST(SweepReduction, TheReversalIsForwardMinusBackward) {
     HeadErrors<> e;
     e.ecx = direction * 2e-6 + 1e-3 * d;
     e.eyx = direction * 0.1e-6;
+    e.ezx = 10e-6 * d;  // probes that never move are refused
     return e;
   };
   const SweepResult result = ReduceSweep(Record(sweep, NoiseOnly()), NoiseOnly());

@@ -37,7 +37,7 @@ recording::Recording Changed(const std::function<double(double gap, std::size_t 
   return recording;
 }
 
-std::string RefusalOf(const recording::Recording& recording) {
+std::string SlipRefusalOf(const recording::Recording& recording) {
   try {
     ReduceSweep(recording, TestSetup());
   } catch (const InputError& error) {
@@ -57,29 +57,29 @@ TEST(SweepSlips, ASoundSweepHasNoneToTellOf) {
 TEST(SweepSlips, APositionFarOutsideItsTravelIsRefused) {
   SyntheticSweep sweep = Noisy();
   sweep.first = 60e3;  // 60 km
-  const std::string swept = RefusalOf(Record(sweep, TestSetup()));
+  const std::string swept = SlipRefusalOf(Record(sweep, TestSetup()));
   EXPECT_THAT(swept, HasSubstr("synthetic_X.csv: row "));
   EXPECT_THAT(swept, HasSubstr("x_mm is 6e+07, far outside the travel of 0 to 60 mm"));
   recording::Recording other = Record(Noisy(), TestSetup());
   for (double& z : other.columns[3].values) z = -20363.0;
-  EXPECT_THAT(RefusalOf(other), HasSubstr("z_mm is -20363, far outside the travel"));
+  EXPECT_THAT(SlipRefusalOf(other), HasSubstr("z_mm is -20363, far outside the travel"));
   // The overrun of a sweep, and a little more, is none.
   sweep.first = -5e-3;
-  EXPECT_EQ(RefusalOf(Record(sweep, TestSetup())), "");
+  EXPECT_EQ(SlipRefusalOf(Record(sweep, TestSetup())), "");
 }
 
 TEST(SweepSlips, ProbesThatNeverMoveAreRefused) {
-  EXPECT_THAT(RefusalOf(Changed([](double, std::size_t) { return 100.0; })),
+  EXPECT_THAT(SlipRefusalOf(Changed([](double, std::size_t) { return 100.0; })),
               HasSubstr("probe_a_um shows 100 um in every dwell"));
-  EXPECT_THAT(
-      RefusalOf(Changed([](double gap, std::size_t probe) { return probe == 3 ? 31.25 : gap; })),
-      HasSubstr("probe_d_um shows 31.25 um in every dwell"));
+  EXPECT_THAT(SlipRefusalOf(
+                  Changed([](double gap, std::size_t probe) { return probe == 3 ? 31.25 : gap; })),
+              HasSubstr("probe_d_um shows 31.25 um in every dwell"));
 }
 
 TEST(SweepSlips, GapsThatAreNextToNothingAreRefused) {
-  EXPECT_THAT(RefusalOf(Changed([](double, std::size_t) { return 0.0; })),
+  EXPECT_THAT(SlipRefusalOf(Changed([](double, std::size_t) { return 0.0; })),
               HasSubstr("the gaps are 0 um at most"));
-  EXPECT_THAT(RefusalOf(Changed([](double gap, std::size_t) { return gap / 1000.0; })),
+  EXPECT_THAT(SlipRefusalOf(Changed([](double gap, std::size_t) { return gap / 1000.0; })),
               HasSubstr("these are not micrometres"));
 }
 
@@ -118,7 +118,7 @@ TEST(SweepAssumptions, ThePlaceOfTheHeadIsToldWithWhatItMoves) {
   for (const std::size_t component : {std::size_t{3}, std::size_t{4}}) {
     const std::string name = assumed.components[component].component.name;
     std::istringstream numbers(told.substr(told.find(name + " by ") + 7));
-    for (const std::string& place : {"1, 0, 0", "0, 1, 0", "0, 0, 1"}) {
+    for (const char* place : {"1, 0, 0", "0, 1, 0", "0, 0, 1"}) {
       double um = -1.0;
       char comma = ' ';
       numbers >> um >> comma;
