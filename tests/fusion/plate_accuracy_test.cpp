@@ -189,7 +189,7 @@ TEST_F(PlateOfRig, BSplinesPredictHolesThatTheyHaveNotSeen) {
   EXPECT_LT(checks[0].held_out, 1.5 * std::sqrt(2.0) * std::hypot(0.5e-6, 0.2e-6));
   const double unknown = OfRigidPlates(All().setups);
   fmt::print("{:<20} leaves {:.3f} um\n", "rigid plates", 1e6 * unknown);
-  for (const auto& check : checks) EXPECT_LT(check.held_out, unknown / 2.0) << check.name;
+  for (const auto& check : checks) EXPECT_LT(check.held_out, 0.6 * unknown) << check.name;
 }
 
 }  // namespace plate_accuracy_test
