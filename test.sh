@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Installs what the tests need, builds, runs every test. `./test.sh --long [--shard k/n]` runs the long
 # statistical suites instead, `./test.sh --fuzz MINUTES [TARGET...]` fuzzes every reader for so long, two at a
-# time. Quiet unless something fails; can be run again at any time.
+# time. Shows how far it is, details only when something fails; can be run again at any time.
 set -euo pipefail
 cd "$(dirname "$0")"
 select=(-LE long)
+options=()
 while [ $# -gt 0 ]; do
   case $1 in
-    --long) select=(-L long) ;;
+    --long) select=(-L long) options=(-DABBE_LONG_TESTS=ON) ;;
     --fuzz)
       shift
       ./setup/install setup/build_packages setup/test_packages setup/fuzz_packages
@@ -19,5 +20,5 @@ while [ $# -gt 0 ]; do
   shift
 done
 ./setup/install setup/build_packages setup/test_packages
-./setup/build dev
+./setup/build dev ${options[@]+"${options[@]}"}
 ./setup/ctest dev "${select[@]}"

@@ -16,6 +16,7 @@
 #include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "fusion/calibration_file.h"
+#include "simulation/one_ball.h"
 
 namespace abbe::apps {
 namespace {
@@ -101,8 +102,12 @@ class Calibration {
 
   void FromRecordings() {
     std::vector<simulation::LinkageRun> runs;
+    simulation::OneBall ball;
     for (const fs::path& path : arguments_.recordings) {
-      runs.push_back(simulation::MeansOfStays(Read(path)));
+      const recording::Recording recording = ReadWithWarnings(path);
+      runs.push_back(simulation::MeansOfStays(
+          simulation::ReadLinkageRun(causes_.Take(recording), *file_.linkage)));
+      ball.Add(recording, runs.back());
     }
     if (arguments_.poses > 0) KeepBest(runs);
     fusion::CalibrationReport report =

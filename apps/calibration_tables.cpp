@@ -8,13 +8,14 @@
 
 #include "apps/parameters_json.h"
 #include "fusion/calibration_file.h"
+#include "settings/unit.h"
 
 namespace abbe::apps {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kMicro = 1e-6;
+using settings::kMicro;
 constexpr double kMilli = 1e-3;
 constexpr std::size_t kMostOutliers = 10;
 constexpr double kNoticed = 1.5;  // residuals over noise that a person should hear of

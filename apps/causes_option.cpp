@@ -18,7 +18,7 @@ using simulation::Seat;
 
 namespace {
 
-constexpr double kMicro = 1e-6;
+using settings::kMicro;
 
 void Join(const Change& change, Change& all) {
   all.squares += change.squares;

@@ -24,7 +24,7 @@ struct CorrectCommand {
   MapOption map;
   std::filesystem::path from, causes, out, json;
   std::vector<double> work_offset_mm = {0.0, 0.0, 0.0};
-  std::vector<double> start_mm;
+  std::vector<double> start_mm, zero_mm;
   double chord_um = 1.0, feed_mm_min = 0.0;
   double length_mm = 0.0;  // 0: from the map
   bool quiet = false;
@@ -159,6 +159,11 @@ void AddCorrect(CLI::App& program, int& exit_code) {
   command
       ->add_option("--start", options->start_mm,
                    "Programs: where the machine stands at the start, x,y,z in mm of the program")
+      ->delimiter(',')
+      ->expected(3);
+  command
+      ->add_option("--zero", options->zero_mm,
+                   "Keep the zero that was touched off at these axis positions, x,y,z in mm")
       ->delimiter(',')
       ->expected(3);
   command->add_option("--chord-um", options->chord_um, "Arcs: largest distance of a chord (1)")

@@ -22,6 +22,7 @@
 #include "diagnosis/next_run.h"
 #include "failure/failure.h"
 #include "settings/toml_text.h"
+#include "simulation/one_ball.h"
 
 namespace abbe::apps {
 namespace {
@@ -85,6 +86,16 @@ diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
   }
 }
 
+void RefuseOtherBall(const std::vector<recording::Recording>& recordings,
+                     const diagnosis::Setup& setup) {
+  simulation::OneBall ball;
+  for (const recording::Recording& recording : recordings) {
+    if (!setup.linkage || recording.HeaderText("kind") != "linkage") continue;
+    ball.Add(recording,
+             simulation::MeansOfStays(simulation::ReadLinkageRun(recording, *setup.linkage)));
+  }
+}
+
 int Diagnose(const DiagnoseArguments& arguments) {
   if (arguments.plan) {
     return DiagnosePlan({arguments.recordings, arguments.campaign, arguments.machine,
@@ -96,6 +107,7 @@ int Diagnose(const DiagnoseArguments& arguments) {
   std::vector<recording::Recording> recordings;
   for (const fs::path& path : arguments.recordings) recordings.push_back(ReadWithWarnings(path));
   diagnosis::Setup setup = SetupOf(arguments.machine);
+  RefuseOtherBall(recordings, setup);
   diagnosis::UseMeasuredNoise(recordings, setup);
   diagnosis::Campaign campaign(std::move(setup));
   for (const recording::Recording& recording : recordings) campaign.Add(recording);

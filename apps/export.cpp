@@ -54,6 +54,13 @@ void Print(const map::Format& format, const map::Export& done) {
 int RunExport(const ExportCommand& options) {
   const map::Format& format = map::FormatNamed(options.format);
   const map::ErrorMap map = options.map.Read();
+  for (const char axis : {'X', 'Y', 'Z'}) {
+    if (map.model().chain().Text().find(axis) != std::string::npos) continue;
+    throw InputError(
+        fmt::format("{}: the machine has no axis {}; formats of others hold a volume, "
+                    "of X, Y and Z",
+                    options.map.path.string(), axis));
+  }
   std::filesystem::path out = options.out;
   if (out.empty()) {
     out = options.map.path;

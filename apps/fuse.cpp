@@ -23,6 +23,8 @@
 #include "map/map_grid.h"
 #include "simulation/length_simulation.h"
 #include "simulation/linkage_on_machine.h"
+#include "simulation/linkage_parts.h"
+#include "simulation/one_ball.h"
 #include "simulation/plate_simulation.h"
 #include "simulation/reference_simulation.h"
 #include "simulation/sweep_simulation.h"
@@ -63,7 +65,7 @@ class RunReader {
   explicit RunReader(const MachineFile& file)
       : file_(file), machine_(file.sweep_setup.machine), model_(fusion::UnknownMachine(machine_)) {}
 
-  void Add(const Source& source, std::vector<SimulatedRun>& runs) const {
+  void Add(const Source& source, std::vector<SimulatedRun>& runs) {
     const std::string kind = source.head.Kind();
     if (kind == "sweep") {
       AddSweep(source, runs);
@@ -92,15 +94,26 @@ class RunReader {
         simulation::ReadSweepRun(source.head, source.blocks, setup.head, setup.noise)));
   }
 
-  void AddLinkage(const Source& source, std::vector<SimulatedRun>& runs) const {
+  void AddLinkage(const Source& source, std::vector<SimulatedRun>& runs) {
     const relm::LinkageSettings& linkage = file_.Linkage();
     const simulation::LinkageSimulation nominal(
         machine_.chain, linkage, relm::MakeLinkageModel(linkage, relm::ErrorModel::kComplete));
-    runs.push_back(simulation::SimulateLinkage(model_, machine_.reference, nominal,
-                                               simulation::PartsOf(source.blocks, linkage)));
+    const auto parts = simulation::PartsOf(source.blocks, linkage);
+    RefuseOtherBall(source.head, parts);
+    runs.push_back(simulation::SimulateLinkage(model_, machine_.reference, nominal, parts));
     if (source.head.Find("ref_x_mm") || source.head.Find("ref_y_mm") ||
         source.head.Find("ref_z_mm")) {
       AddReference(source, runs);
+    }
+  }
+
+  // A single run is not read for it.
+  void RefuseOtherBall(const recording::Recording& head, const simulation::LinkageParts& parts) {
+    constexpr Eigen::Index kMost = 4096, kSample = 1024;
+    linkages_.emplace_back(recording::Recording{head.name, head.header, {}, {}}, parts);
+    for (; linkages_.size() > 1 && compared_ < linkages_.size(); ++compared_) {
+      const auto& [of, its_parts] = linkages_[compared_];
+      ball_.Add(of, simulation::SampleOf(its_parts, kMost, kSample).run);
     }
   }
 
@@ -112,6 +125,9 @@ class RunReader {
   const MachineFile& file_;
   const machine::Machine& machine_;
   machine::VolumetricModel model_;
+  std::vector<std::pair<recording::Recording, simulation::LinkageParts>> linkages_;
+  std::size_t compared_ = 0;  // of them
+  simulation::OneBall ball_;
 };
 
 struct MapChange {
@@ -171,7 +187,7 @@ int Fuse(const FuseArguments& arguments) {
   const MachineFile file = ReadMachineFile(arguments.machine);
   const machine::Machine& machine = file.sweep_setup.machine;
   CauseCorrection causes(arguments.causes, file, kForMaps);
-  const RunReader reader(file);
+  RunReader reader(file);
   std::vector<SimulatedRun> runs, as_read;
   for (const fs::path& path : arguments.recordings) {
     const Source source = SourceAt(machine, path);

@@ -9,13 +9,14 @@
 
 #include "apps/map_json.h"
 #include "apps/parameters_json.h"
+#include "settings/unit.h"
 
 namespace abbe::apps {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kMicro = 1e-6;
+using settings::kMicro;
 constexpr double kFarOff = 9.0;  // chi-square over redundancy: three times the stated noise
 
 std::string ScaleText(const fusion::ScaleSeen& scale) {

@@ -41,14 +41,6 @@ Eigen::Matrix3Xd LinkageReader::Tips(const Run& run) const {
   return relm::InFrame(linkage.X_MB, p_BT);
 }
 
-Eigen::Vector3d LinkageReader::AxisSigns() const {
-  Eigen::Vector3d signs;
-  for (int axis = 0; axis < 3; ++axis) {
-    signs[axis] = machine().chain.CarriesTarget("XYZ"[axis]) ? -1.0 : 1.0;
-  }
-  return signs;
-}
-
 std::vector<std::vector<Eigen::Matrix3Xd>> LinkageReader::IndependentErrors() const {
   if (!calibrated_ || runs_.empty()) return {};
   std::vector<const relm::LinkageReadings*> readings;
@@ -59,7 +51,7 @@ std::vector<std::vector<Eigen::Matrix3Xd>> LinkageReader::IndependentErrors() co
   }
   auto errors = calibrated_->IndependentErrors(readings, mountings);
   for (auto& error : errors) {
-    for (Eigen::Matrix3Xd& path : error) path = AxisSigns().asDiagonal() * path;
+    for (Eigen::Matrix3Xd& path : error) path = machine().chain.ToolSenses().asDiagonal() * path;
   }
   return errors;
 }

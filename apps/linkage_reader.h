@@ -44,7 +44,6 @@ class LinkageReader {
   };
 
   Eigen::Matrix3Xd Tips(const Run& run) const;
-  Eigen::Vector3d AxisSigns() const;
 
   MachineFile file_;
   std::string name_;  // of the calibration file

@@ -16,6 +16,13 @@ const hal::SweepPlan& MachineFile::SweepPlanOf(char axis) const {
   return plan->second;
 }
 
+void MachineFile::RequireDevices() const {
+  if (!devices.devices.empty() || !devices.canopen.empty()) return;
+  throw InputError(
+      fmt::format("{}: has no table [devices.NAME]; describe the devices to read (docs/devices.md)",
+                  document.name()));
+}
+
 const relm::LinkageSettings& MachineFile::Linkage() const {
   if (linkage) return *linkage;
   throw InputError(fmt::format(
@@ -26,11 +33,18 @@ const relm::LinkageSettings& MachineFile::Linkage() const {
 MachineFile ReadMachineFile(const std::filesystem::path& path) {
   const settings::Document document = settings::Document::Read(path);
   const settings::Table root = document.Root();
-  MachineFile file{
-      document, probes::ReadSweepSetup(root), hal::ReadDevices(root.Child("devices")), {}, {}};
+  MachineFile file{document, probes::ReadSweepSetup(root), {}, {}, {}};
+  if (root.Has("devices")) file.devices = hal::ReadDevices(root.Child("devices"));
   const settings::Table sweep = root.Child("sweep");
   for (const char axis : {'X', 'Y', 'Z'}) {
-    if (sweep.Has(std::string(1, axis))) file.sweep_plans[axis] = hal::ReadSweepPlan(sweep, axis);
+    const std::string name(1, axis);
+    if (!sweep.Has(name)) continue;
+    if (file.sweep_setup.machine.chain.Text().find(axis) == std::string::npos) {
+      throw sweep.Error(name, fmt::format("is no axis of the chain {}; add it there, or remove the "
+                                          "table",
+                                          file.sweep_setup.machine.chain.Text()));
+    }
+    file.sweep_plans[axis] = hal::ReadSweepPlan(sweep, axis);
   }
   if (root.Has("linkage")) file.linkage = relm::ReadLinkageSettings(root);
   rig::ReadRigSettings(root);

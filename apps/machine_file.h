@@ -17,12 +17,14 @@ namespace abbe::apps {
 struct MachineFile {
   settings::Document document;
   probes::SweepSetup sweep_setup;
-  hal::DevicesSettings devices;
+  hal::DevicesSettings devices;                  // none where the file has no table [devices]
   std::map<char, hal::SweepPlan> sweep_plans;    // by axis, of the tables [sweep.X] that are there
   std::optional<relm::LinkageSettings> linkage;  // of the table [linkage], if it is there
 
   // InputError naming the file when it has no [sweep.AXIS].
   const hal::SweepPlan& SweepPlanOf(char axis) const;
+  // InputError naming the file when it has no device.
+  void RequireDevices() const;
   // InputError naming the file when it has no [linkage].
   const relm::LinkageSettings& Linkage() const;
 };

@@ -74,7 +74,7 @@ ordered_json ErrorsJson(const map::ErrorMap& map) {
 ordered_json MapJson(const map::ErrorMap& map) {
   ordered_json json;
   for (const double at : map.origin().tool) json["tool"].push_back(at);
-  for (const double sign : map::AxisSigns(map.model().chain())) json["signs"].push_back(sign);
+  for (const double sign : map.model().chain().ToolSenses()) json["signs"].push_back(sign);
   json["temperature_c"] = map.origin().temperature;
   json["grid"] = GridJson(map);
   json["errors"] = ErrorsJson(map);

@@ -12,6 +12,10 @@ void MapOption::AddTo(CLI::App& command) {
       ->required();
   command.add_option("--chain", chain,
                      "For an imported map that does not say it: \"[w X Y b Z t]\"");
+  command.add_option(
+      "--positive", positive,
+      "For an imported map that does not say how its axes count: tool (ISO 841) or carriage, one "
+      "word for all or one each for X, Y and Z");
   command
       .add_option("--tool", tool_mm,
                   "Tool point from the reference point, x,y,z in mm (the map's own)")
@@ -20,17 +24,15 @@ void MapOption::AddTo(CLI::App& command) {
 }
 
 map::ErrorMap MapOption::Read() const {
-  const map::ImportedMap read = map::ReadAnyMap(path, chain);
-  for (const std::string& note : read.notes)
-    fmt::print(stderr, "abbe: {}: {}\n", path.string(), note);
-  if (!read.map.origin().scale_is_calibrated) {
+  map::ErrorMap map = map::ReadAnyMap(path, chain, positive);
+  if (!map.origin().scale_is_calibrated) {
     fmt::print(
         stderr,
         "abbe: {}: scale: prior only; no calibrated length went into this map, so lengths in "
         "all directions at once may be wrong\n",
         path.string());
   }
-  return read.map;
+  return map;
 }
 
 Eigen::Vector3d MapOption::Tool(const map::ErrorMap& map) const {
@@ -51,8 +53,8 @@ std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given) {
     product *= static_cast<double>(each);
   }
   if (product <= kMost) return points;
-  throw InputError(fmt::format("--points: {:.3g} points in all, at most {:.0g} are written; take fewer",
-                               product, kMost));
+  throw InputError(fmt::format(
+      "--points: {:.3g} points in all, at most {:.0g} are written; take fewer", product, kMost));
 }
 
 Eigen::Vector3d VectorOf(const std::vector<double>& mm) {

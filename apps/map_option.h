@@ -14,12 +14,11 @@ namespace abbe::apps {
 
 struct MapOption {
   std::filesystem::path path;
-  std::string chain;
+  std::string chain, positive;
   std::vector<double> tool_mm;  // empty: the tool of the measurement
 
   void AddTo(CLI::App& command);
-  // Prints the notes of an import, and that the scale is the prior's where it is, on standard
-  // error.
+  // Prints that the scale is the prior's where it is, on standard error.
   map::ErrorMap Read() const;
   // p_TQ, m.
   Eigen::Vector3d Tool(const map::ErrorMap& map) const;

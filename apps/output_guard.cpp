@@ -47,7 +47,8 @@ void Gather(const CLI::App& command, Places& places) {
 
 void AddForce(CLI::App& command, const std::shared_ptr<bool>& force) {
   const auto options = command.get_options();
-  if (std::any_of(options.begin(), options.end(), [](const auto* each) { return IsOutput(*each); })) {
+  if (std::any_of(options.begin(), options.end(),
+                  [](const auto* each) { return IsOutput(*each); })) {
     command.add_flag("--force", *force, "Write over whatever is there");
   }
   for (CLI::App* below : command.get_subcommands({})) AddForce(*below, force);

@@ -6,6 +6,7 @@
 
 #include "settings/unit.h"
 #include "standards/coverage.h"
+#include "standards/student_coverage.h"
 
 namespace abbe::apps {
 namespace {
@@ -20,6 +21,11 @@ double Urad(double angle) { return angle / settings::kMicroradian; }
 
 ordered_json Vector(const Eigen::Vector3d& v, double (*unit)(double)) {
   return {unit(v.x()), unit(v.y()), unit(v.z())};
+}
+
+std::string U95OfCap(const relm::CapDisplacement& one) {
+  return one.dof > 0.0 ? fmt::format("{:.3f}", Um(standards::StudentCoverage(one.dof) * one.u))
+                       : "-";
 }
 
 // Every so many columns, in SI.
@@ -108,15 +114,18 @@ TestResult CapResult(const std::vector<relm::CapDisplacement>& displacements) {
   result.table = fmt::format("  {:>10}{:>14}{:>26}{:>10}{:>13}{:>9}\n", "force, N", "feed, mm/min",
                              "against the motion, um", "U95, um", "scatter, um", "rows");
   for (const relm::CapDisplacement& one : displacements) {
-    result.table += fmt::format("  {:>10}{:>14.0f}{:>26.3f}{:>10.3f}{:>13.3f}{:>9}\n",
+    result.table += fmt::format("  {:>10}{:>14.0f}{:>26.3f}{:>10}{:>13.3f}{:>9}\n",
                                 std::isfinite(one.force) ? fmt::format("{:.2f}", one.force) : "-",
-                                Mm(one.feed) * 60.0, Um(one.displacement),
-                                Um(standards::kCoverage * one.u), Um(one.scatter), one.rows);
+                                Mm(one.feed) * 60.0, Um(one.displacement), U95OfCap(one),
+                                Um(one.scatter), one.rows);
     ordered_json entry{{"feed_mm_min", Mm(one.feed) * 60.0},
                        {"displacement_um", Um(one.displacement)},
-                       {"u_um", Um(one.u)},
                        {"scatter_um", Um(one.scatter)},
                        {"rows", one.rows}};
+    if (one.dof > 0.0) {
+      entry["u_um"] = Um(one.u);
+      entry["coverage"] = standards::StudentCoverage(one.dof);
+    }
     if (std::isfinite(one.force)) entry["force_n"] = one.force;
     result.data["displacements"].push_back(std::move(entry));
   }

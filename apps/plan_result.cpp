@@ -55,16 +55,16 @@ std::string RowsOf(const PlannedCause& planned) {
 }
 
 // Causes of which each is like another one of them.
-struct Group {
+struct ConfusedCauses {
   std::set<std::size_t> causes;
   double cosine = 1.0;  // the smallest of two that are alike
 };
 
-std::vector<Group> GroupsOf(const Plan& plan) {
-  std::vector<Group> groups;
+std::vector<ConfusedCauses> GroupsOf(const Plan& plan) {
+  std::vector<ConfusedCauses> groups;
   for (const auto& [first, second, cosine] : plan.alike) {
-    Group joined{{first, second}, cosine};
-    std::erase_if(groups, [&](const Group& group) {
+    ConfusedCauses joined{{first, second}, cosine};
+    std::erase_if(groups, [&](const ConfusedCauses& group) {
       const bool meets =
           std::any_of(joined.causes.begin(), joined.causes.end(),
                       [&](std::size_t cause) { return group.causes.contains(cause); });
@@ -102,12 +102,13 @@ ordered_json PlanJson(const Plan& plan) {
     json["causes"].push_back(std::move(cause));
     if (!planned.seen()) json["cannot_show"].push_back(planned.candidate.Name());
   }
+  for (const std::string& name : plan.standing) json["cannot_show"].push_back(name);
   for (const auto& [first, second, cosine] : plan.alike) {
     json["alike"].push_back(
         {{"causes", {plan.causes[first].candidate.Name(), plan.causes[second].candidate.Name()}},
          {"cosine", cosine}});
   }
-  for (const Group& group : GroupsOf(plan)) {
+  for (const ConfusedCauses& group : GroupsOf(plan)) {
     std::vector<std::string> names;
     for (const std::size_t cause : group.causes) {
       names.push_back(plan.causes[cause].candidate.Name());
@@ -131,7 +132,11 @@ std::string PlanText(const Plan& plan) {
   if (!hidden.empty()) {
     text += fmt::format("\nWould not be seen at their usual size: {}\n", fmt::join(hidden, ", "));
   }
-  for (const Group& group : GroupsOf(plan)) {
+  if (!plan.standing.empty()) {
+    text += fmt::format("\nWould not be seen, for one of the two axes never moves: {}\n",
+                        fmt::join(plan.standing, ", "));
+  }
+  for (const ConfusedCauses& group : GroupsOf(plan)) {
     std::vector<std::string> names;
     for (const std::size_t cause : group.causes) {
       names.push_back(NameOf(plan.causes[cause].candidate));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/fuse_result.h"
+#include "settings/unit.h"
 
 namespace abbe::apps {
 namespace {
@@ -13,7 +14,8 @@ namespace {
 using Eigen::VectorXd;
 using nlohmann::ordered_json;
 
-constexpr double kMicro = 1e-6, kMillimetre = 1e-3;
+using settings::kMicro;
+using settings::kMillimetre;
 constexpr Eigen::Index kStations = 13;
 constexpr int kMotionErrors = machine::kAxes * machine::kMotions;
 

@@ -15,6 +15,7 @@
 #include "apps/commands.h"
 #include "apps/interrupt.h"
 #include "apps/machine_file.h"
+#include "apps/plausible_channels.h"
 #include "apps/progress.h"
 #include "hal/combined_source.h"
 #include "hal/recorder.h"
@@ -49,13 +50,6 @@ void Select(const RecordCommand& options, hal::DevicesSettings& devices) {
                                options.machine, *unknown.begin()));
 }
 
-hal::RecordAbout AboutOf(const MachineFile& file) {
-  hal::RecordAbout about{file.sweep_setup.machine.name, hal::UtcNow(), {}};
-  for (const auto& device : file.devices.devices) about.transport[device.name] = "modbus";
-  for (const auto& device : file.devices.canopen) about.transport[device.name] = "canopen";
-  return about;
-}
-
 void RequireForOptions(const RecordCommand& options, const hal::OpenedDevices& devices) {
   if (options.program && !devices.start_cycle) {
     throw InputError(fmt::format(
@@ -81,10 +75,15 @@ hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile
         if (opened) fmt::print(stderr, "abbe: {}\n", line);
       });
   opened = true;
-  const auto& channels = devices.source->channels();
+  hal::PlausibleSource source(*devices.source, PlausibleChannels(file));
+  source.Require(1, clock, file.devices.rate);
+  const auto& channels = source.channels();
   RequireForOptions(options, devices);
   const auto writer = recording::Writer::Create(
-      options.out, hal::RecordHeader(AboutOf(file), channels), hal::RecordColumns(channels));
+      options.out,
+      hal::RecordHeader({file.sweep_setup.machine.name, hal::UtcNow(), devices.transport},
+                        channels),
+      hal::RecordColumns(channels));
   const bool endless = std::isinf(options.seconds);
   Progress progress("record", options.quiet || endless);
   hal::RecordOptions record;
@@ -101,16 +100,13 @@ hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile
     fmt::print(stderr, "recording until Ctrl-C\n");
   }
   if (options.program) devices.start_cycle(*options.program);
-  return hal::Record(*devices.source, clock, *writer, record);
+  return hal::Record(source, clock, *writer, record);
 }
 
 int Record(const RecordCommand& options) {
   MachineFile file = ReadMachineFile(options.machine);
   Select(options, file.devices);
-  if (file.devices.devices.empty() && file.devices.canopen.empty()) {
-    throw InputError(fmt::format("{}: has no table [devices.NAME]; describe the devices to record",
-                                 options.machine));
-  }
+  file.RequireDevices();
   InterruptFlag();
   const hal::RecordOutcome outcome = RecordDevices(options, file);
   if (!outcome.worst_channel.empty()) {

@@ -19,7 +19,7 @@ constexpr double kToMicro = 1e6;       // m -> um, rad -> urad
 constexpr double kToNano = 1e9;        // m -> nm
 constexpr double kToMillimetre = 1e3;  // m -> mm
 
-ordered_json List(const Eigen::VectorXd& values) {
+ordered_json NumbersOf(const Eigen::VectorXd& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
 }
 
@@ -48,10 +48,10 @@ ordered_json ErrorData(const ComponentResult& c) {
   ordered_json data{{"unit", UnitOf(c)},
                     {"kind", c.component.kind},
                     {"coverage", c.coverage},
-                    {"value", List(c.value)},
-                    {"u", List(c.u)}};
-  if (c.forward.size() > 0) data["forward"] = List(c.forward);
-  if (c.backward.size() > 0) data["backward"] = List(c.backward);
+                    {"value", NumbersOf(c.value)},
+                    {"u", NumbersOf(c.u)}};
+  if (c.forward.size() > 0) data["forward"] = NumbersOf(c.forward);
+  if (c.backward.size() > 0) data["backward"] = NumbersOf(c.backward);
   return data;
 }
 
@@ -63,7 +63,8 @@ ordered_json LineData(const LineFigure& figure) {
 void AddComponent(const ComponentResult& c, ordered_json& data) {
   const std::string& name = c.component.name;
   data["errors"][name] = ErrorData(c);
-  data["errors_at_target"][name] = {{"value", List(c.at_target)}, {"u", List(c.u_at_target)}};
+  data["errors_at_target"][name] = {{"value", NumbersOf(c.at_target)},
+                                    {"u", NumbersOf(c.u_at_target)}};
   if (c.straightness) {
     const probes::StraightnessFigures& s = *c.straightness;
     data["straightness"][name] = {{"end_points", s.end_points.error},
@@ -77,10 +78,11 @@ void AddComponent(const ComponentResult& c, ordered_json& data) {
   }
   if (c.range) data["angular_ranges"][name] = UncertainData(*c.range);
   if (c.reversal) {
-    data["reversal"][name] = {{"value", List(c.reversal->value)},
-                              {"u", List(c.reversal->u)},
+    data["reversal"][name] = {{"value", NumbersOf(c.reversal->value)},
+                              {"u", NumbersOf(c.reversal->u)},
                               {"mean", UncertainData(c.reversal->mean)},
-                              {"max", UncertainData(c.reversal->largest)}};
+                              {"max", UncertainData(c.reversal->largest)},
+                              {"seen", c.reversal->seen}};
   }
   for (std::size_t source = 0; source < probes::kSources; ++source) {
     data["budget"][name][std::string(probes::kSourceNames[source])] = c.budget[source];
@@ -90,7 +92,7 @@ void AddComponent(const ComponentResult& c, ordered_json& data) {
 void AddDwells(const SweepResult& result, ordered_json& data) {
   for (std::size_t probe = 0; probe < probes::kProbes; ++probe) {
     data["residuals"][ProbeName(probe)] =
-        List(result.residual.row(static_cast<Eigen::Index>(probe)).transpose());
+        NumbersOf(result.residual.row(static_cast<Eigen::Index>(probe)).transpose());
   }
   ordered_json& dwells = data["dwells"];
   for (const probes::Dwell& dwell : result.dwells) {
@@ -114,12 +116,12 @@ ordered_json NoiseData(const probes::NoiseFigures& noise) {
   return data;
 }
 
-// The mean reversal "0.31 +- 0.12", with a star where it exceeds its U95.
+// The mean reversal "0.31 +- 0.12", with a star where it is beyond chance.
 std::string Cell(const std::optional<probes::Reversal>& reversal, double coverage) {
   if (!reversal) return "-";
   const double expanded = coverage * reversal->mean.u;
   return fmt::format("{:.3f} +- {:.3f}{}", reversal->mean.value * kToMicro, expanded * kToMicro,
-                     std::abs(reversal->mean.value) > expanded ? '*' : ' ');
+                     reversal->seen ? '*' : ' ');
 }
 
 std::string AngleTable(const SweepResult& result) {
@@ -170,8 +172,10 @@ ordered_json SweepJson(const SweepResult& result) {
       {"machine", result.machine},
       {"chain", result.chain},
       {"axis", std::string(1, result.axis)},
+      {"positive", result.positive},
       {"moves", result.moving == probes::MovingBody::kTarget ? "target" : "head"},
       {"started", result.conditions.started},
+      {"simulated", result.conditions.simulated},
       {"conditions", ConditionsData(result.conditions)},
       {"stations", result.stations},
       {"passes", result.passes},
@@ -192,15 +196,20 @@ ordered_json SweepJson(const SweepResult& result) {
 std::string SweepTable(const SweepResult& result) {
   const probes::SampleCounts& counts = result.counts;
   std::string text = fmt::format(
-      "{} axis of {} {}, the {} moves: {} stations from {:.3f} to {:.3f} mm, {} passes\n",
+      "{} axis of {} {}, the {} moves, + as the {} goes: {} stations from {:.3f} to {:.3f} mm, {} "
+      "passes\n",
       result.axis, result.machine, result.chain,
-      result.moving == probes::MovingBody::kTarget ? "target" : "head", result.stations.size(),
-      Shown(result.stations.front()), Shown(result.stations.back()), result.passes);
+      result.moving == probes::MovingBody::kTarget ? "target" : "head", result.positive,
+      result.stations.size(), Shown(result.stations.front()), Shown(result.stations.back()),
+      result.passes);
   text += AngleTable(result) + StraightnessTable(result);
-  text += "  reversal: forward - backward, mean over the stations, +- U95; * beyond its U95\n";
+  text +=
+      "  reversal: forward - backward, mean over the stations, +- U95; * beyond chance (1 % for "
+      "all of three axes)\n";
   text += NoiseText(result.noise);
   text += fmt::format("rows: {} read, {} used, {} flagged, {} moving; {} outliers\n", counts.rows,
                       counts.used, counts.flagged, counts.moving, counts.outliers);
+  if (result.conditions.simulated) text += "note: simulated readings, no machine was measured\n";
   for (const std::string& note : result.notes) text += fmt::format("note: {}\n", note);
   return text;
 }

@@ -43,7 +43,7 @@ constexpr std::array<NamedInversion, 3> kInversions{{
 
 nlohmann::ordered_json ToJson(const SimulationErrors& errors) {
   nlohmann::ordered_json components;
-  for (std::size_t c = 0; c < probes::kComponents; ++c) {
+  for (std::size_t c = 0; c < probes::kPublishedComponents; ++c) {
     components[probes::kComponentNames[c]] = {
         {"worst", errors[c].worst}, {"mean", errors[c].mean}, {"std", errors[c].std}};
   }
@@ -54,7 +54,7 @@ void Print(const SimulationErrors& errors, const char* title,
            const probes::PublishedBounds& published) {
   fmt::print("\n{}\n{:<10}{:>6}{:>12}{:>12}{:>12}{:>12}\n", title, "component", "unit", "worst",
              "mean", "std", "published");
-  for (std::size_t c = 0; c < probes::kComponents; ++c) {
+  for (std::size_t c = 0; c < probes::kPublishedComponents; ++c) {
     const bool angle = c < probes::kEyx;
     const double scale = 1e6;  // urad, um
     fmt::print("{:<10}{:>6}{:>12.3g}{:>12.2g}{:>12.3g}{:>12g}\n", probes::kComponentNames[c],

@@ -13,6 +13,7 @@
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/machine_file.h"
+#include "apps/plausible_channels.h"
 #include "apps/progress.h"
 #include "apps/reduce_sweep.h"
 #include "apps/result_file.h"
@@ -21,6 +22,8 @@
 
 namespace abbe::apps {
 namespace {
+
+constexpr int kFirstReadings = 50;  // that are judged before anything moves
 
 struct SweepCommand {
   std::string axis;
@@ -79,9 +82,17 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
         if (opened) fmt::print(stderr, "abbe: {}\n", line);
       });
   opened = true;
-  const hal::SweepAbout about{file.sweep_setup.machine.name, hal::UtcNow(), "modbus",
-                              options.mounting, ""};
-  const auto& channels = devices.source->channels();
+  hal::PlausibleSource source(*devices.source, PlausibleChannels(file));
+  for (const std::string& warning : source.Require(kFirstReadings, clock, file.devices.rate)) {
+    fmt::print(stderr, "abbe: {}\n", warning);
+  }
+  const hal::SweepAbout about{file.sweep_setup.machine.name,
+                              hal::UtcNow(),
+                              "modbus",
+                              options.mounting,
+                              "",
+                              devices.transport};
+  const auto& channels = source.channels();
   const auto writer = recording::Writer::Create(path, hal::SweepHeader(plan, about, channels),
                                                 hal::SweepColumns(channels));
 
@@ -94,12 +105,13 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
   };
   if (operator_asks) {
     sweep.prompt = [&](const hal::Visit& visit) { return AskOperator(plan, visit); };
+    sweep.refused = [](const std::string& why) { fmt::print(stderr, "abbe: {}\n", why); };
   } else if (devices.start_cycle) {
     devices.start_cycle(plan.axis - 'X' + 1);
   } else if (!options.quiet) {
     fmt::print("start the machine's program for {} now\n", plan.axis);
   }
-  return hal::RecordSweep(*devices.source, plan, clock, *writer, sweep);
+  return hal::RecordSweep(source, plan, clock, *writer, sweep);
 }
 
 // What ended the sweep before its last visit, with what to do; the recording is kept in any case.
@@ -126,6 +138,7 @@ void WarnOfLackingVisits(const hal::SweepOutcome& outcome, const hal::SweepPlan&
 
 int Sweep(const SweepCommand& options) {
   const MachineFile file = ReadMachineFile(options.machine);
+  file.RequireDevices();
   const hal::SweepPlan& plan = file.SweepPlanOf(options.axis[0]);
   CauseCorrection causes(options.causes, file, kForMaps);
   InterruptFlag();

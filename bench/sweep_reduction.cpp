@@ -23,7 +23,10 @@ abbe::probes::SweepSetup Setup() {
   const auto document = abbe::settings::Document::Parse(R"(
 name = "bench"
 chain = "[w X Y b Z t]"
-axis = { X.travel_mm = [0, 60], Y.travel_mm = [0, 60], Z.travel_mm = [0, 60] }
+[axis]
+X = {travel_mm = [0, 60], positive = "carriage"}
+Y = {travel_mm = [0, 60], positive = "carriage"}
+Z = {travel_mm = [0, 60]}
 )",
                                                         "bench.toml");
   return abbe::probes::ReadSweepSetup(document.Root());

@@ -27,23 +27,21 @@ function(abbe_folder name)
           FILES_MATCHING PATTERN "*.h" PATTERN "node_modules" EXCLUDE)
 endfunction()
 
-# abbe_tests(NAME LABEL label SOURCES file... [TOGETHER file...] LINKS target... [SEEDS n [LONG_SEEDS n]])
+# abbe_tests(NAME LABEL label SOURCES file... LINKS target... [SEEDS n [LONG_SEEDS n]])
 #
-# Files that are compiled TOGETHER, four at a time, take a third of the time; their names must differ.
 # One GoogleTest program NAME_LABEL_test; every TEST in it is the ctest entry NAME.LABEL.SUITE.TEST with
 # that label. A statistical suite draws SEEDS seeds (ABBE_SEEDS); with LONG_SEEDS its tests are there a
-# second time as NAME.long.SUITE.TEST, with that many.
+# second time as NAME.long.SUITE.TEST, with that many. Programs of label long are built only with ABBE_LONG_TESTS.
 function(abbe_tests name)
-  cmake_parse_arguments(arg "" "LABEL;TIMEOUT;SEEDS;LONG_SEEDS" "SOURCES;LINKS;TOGETHER" ${ARGN})
+  cmake_parse_arguments(arg "" "LABEL;TIMEOUT;SEEDS;LONG_SEEDS" "SOURCES;LINKS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
-  set(program ${name}_${arg_LABEL}_test)
-  add_executable(${program} ${arg_SOURCES} ${arg_TOGETHER})
-  if(arg_TOGETHER)
-    set_target_properties(${program} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
-    set_source_files_properties(${arg_SOURCES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  if(arg_LABEL STREQUAL long AND NOT ABBE_LONG_TESTS)
+    return()
   endif()
+  set(program ${name}_${arg_LABEL}_test)
+  add_executable(${program} ${arg_SOURCES})
   if(arg_LABEL STREQUAL unit)
     add_dependencies(unit_tests ${program})
   endif()

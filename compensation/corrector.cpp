@@ -20,16 +20,48 @@ constexpr int kMostSteps = 50;
 
 }  // namespace
 
-Corrector::Corrector(const machine::VolumetricModel& model, const Vector3d& p_TQ)
-    : field_(model), p_TQ_(p_TQ), signs_(map::AxisSigns(model.chain())) {}
+Corrector::Corrector(const machine::VolumetricModel& model, const Vector3d& p_TQ,
+                     const Limits& limits)
+    : field_(model),
+      travels_(model.travels()),
+      limits_(limits),
+      p_TQ_(p_TQ),
+      signs_(model.chain().ToolSenses()) {}
+
+void Corrector::KeepZero(const Vector3d& zero) {
+  at_zero_.setZero();
+  at_zero_ = Offset(zero);
+}
+
+Vector3d Corrector::InTravels(const Vector3d& position) const {
+  Vector3d inside;
+  for (int axis = 0; axis < 3; ++axis) {
+    const machine::Travel& travel = travels_[static_cast<std::size_t>(axis)];
+    const machine::Travel& limit = limits_[static_cast<std::size_t>(axis)];
+    if (!(position[axis] >= limit.first && position[axis] <= limit.last)) {
+      throw InputError(fmt::format(
+          "{0} = {1:.9g} mm lies beyond the soft limits, {2:.9g} to {3:.9g} mm; keep away from the "
+          "end of the travel, or state the control's own as limit_mm in [axis.{0}] of the machine "
+          "file",
+          "XYZ"[axis], 1e3 * position[axis], 1e3 * limit.first, 1e3 * limit.last));
+    }
+    inside[axis] = std::clamp(position[axis], travel.first, travel.last);
+  }
+  return inside;
+}
 
 Vector3d Corrector::Command(const Vector3d& wanted) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    machine::InTravel(travels_[static_cast<std::size_t>(axis)], axis, wanted[axis]);
+  }
   Vector3d command = wanted - Offset(wanted);
   for (int step = 0; step < kMostSteps; ++step) {
     const Vector3d next = wanted - Offset(command);
     const double change = (next - command).cwiseAbs().maxCoeff();
     command = next;
-    if (change < kSettled) return command;
+    if (change >= kSettled) continue;
+    InTravels(command);
+    return command;
   }
   throw NumericalError(fmt::format(
       "no command found for X {:.6g} Y {:.6g} Z {:.6g} mm after {} steps; the errors of "

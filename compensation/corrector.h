@@ -8,19 +8,25 @@
 // Frames: positions are axis positions [X Y Z] as commanded and read off the scales. What holds is
 // the place of the tool in the workpiece: `wanted` is where the axes of a perfect machine would
 // stand for it. An axis that carries the workpiece moves the tool the other way, so its correction
-// has the other sign (AxisSigns, error_map.h):
+// has the other sign (ToolSense, machine/chain.h):
 //
 //   Made(c) = c + S E(c)        Command(d): c = d - S E(c), by fixed point      S = diag(signs)
 //
-// Units: m. Failure: InputError where a position, or the command that is needed, lies outside the
-// travels; NumericalError for a map whose errors grow as fast as the position, which has no
-// inverse.
-// Source: Ha and Khanh (2011) take the first step of the iteration, X - E(X); it leaves the error
-// times its slope, 0.01 um for 100 um that grow by 100 um/m. Validity: slopes of the error well
-// below 1.
+// KeepZero(z): a zero that was touched off with the tool at the axis positions z already stands
+// where the tool was, S E(z) from where the axes say; S E(z) is taken off everywhere, so that
+// Command(z) = z and all else is corrected against that place.
+// At the ends of the travels a command may lie a little beyond, as far as the soft limits; the
+// errors there are taken as those at the end.
+//
+// Units: m. Failure: InputError where `wanted` lies outside the travels, or a position or the
+// command that is needed beyond the soft limits; NumericalError for a map whose errors grow as fast
+// as the position, which has no inverse. Source: Ha and Khanh (2011) take the first step of the
+// iteration, X - E(X); it leaves the error times its slope, 0.01 um for 100 um that grow by 100
+// um/m. Validity: slopes of the error well below 1.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "machine/volumetric_field.h"
 #include "map/error_map.h"
@@ -29,8 +35,16 @@ namespace abbe::compensation {
 
 class Corrector {
  public:
-  Corrector(const map::ErrorMap& map, const Eigen::Vector3d& p_TQ) : Corrector(map.model(), p_TQ) {}
-  Corrector(const machine::VolumetricModel& model, const Eigen::Vector3d& p_TQ);
+  using Limits = std::array<machine::Travel, 3>;
+
+  Corrector(const map::ErrorMap& map, const Eigen::Vector3d& p_TQ)
+      : Corrector(map.model(), p_TQ, map.Limits()) {}
+  Corrector(const machine::VolumetricModel& model, const Eigen::Vector3d& p_TQ)
+      : Corrector(model, p_TQ, machine::AroundTravels(model.travels())) {}
+  Corrector(const machine::VolumetricModel& model, const Eigen::Vector3d& p_TQ,
+            const Limits& limits);
+
+  void KeepZero(const Eigen::Vector3d& zero);
 
   Eigen::Vector3d Made(const Eigen::Vector3d& position) const {
     return position + Offset(position);
@@ -39,11 +53,15 @@ class Corrector {
 
  private:
   Eigen::Vector3d Offset(const Eigen::Vector3d& position) const {
-    return signs_.cwiseProduct(field_.Error(position, p_TQ_));
+    return signs_.cwiseProduct(field_.Error(InTravels(position), p_TQ_)) - at_zero_;
   }
+  // The position, or the end of a travel that it lies a little beyond.
+  Eigen::Vector3d InTravels(const Eigen::Vector3d& position) const;
 
   machine::VolumetricField field_;
-  Eigen::Vector3d p_TQ_, signs_;
+  std::array<machine::Travel, 3> travels_;
+  Limits limits_;
+  Eigen::Vector3d p_TQ_, signs_, at_zero_ = Eigen::Vector3d::Zero();
 };
 
 // The length over which a straight line of commands between two corrected points strays from the

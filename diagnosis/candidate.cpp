@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string_view>
 
+#include "diagnosis/standing_pairs.h"
 #include "simulation/causes/registry.h"
 
 namespace abbe::diagnosis {
@@ -16,9 +19,38 @@ bool ScalesWith(const simulation::Cause& cause, const std::string& object) {
                      [](const auto& key) { return key.name.ends_with("_um"); });
 }
 
-bool IsOfAxes(const std::string& object) { return object.find_first_of("XYZ") == 0; }
+// The letters of the axes in the name of an object; empty for one that is none.
+std::string_view AxesIn(const std::string& object) {
+  const std::size_t end = object.find_first_not_of("XYZ");
+  return std::string_view(object).substr(0, end == std::string::npos ? object.size() : end);
+}
+
+// An object with axes has only such as the machine has.
+bool IsOnMachine(const simulation::Scene& scene, const std::string& object) {
+  return std::ranges::all_of(
+      AxesIn(object), [&](char axis) { return scene.travel[simulation::AxisOf(axis)] > 0.0; });
+}
+
+// Between all rows of all runs. Beyond the jitter of a drive that stands.
+bool Moves(const simulation::Scene& scene, char axis) {
+  constexpr double kJitter = 1e-3;  // of the travel
+  const int row = simulation::AxisOf(axis);
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const simulation::Trace* trace : scene.traces) {
+    if (trace->axes.cols() == 0) continue;
+    least = std::min(least, trace->axes.row(row).minCoeff());
+    most = std::max(most, trace->axes.row(row).maxCoeff());
+  }
+  return most - least > kJitter * scene.travel[row];
+}
 
 }  // namespace
+
+bool IsStandingPair(const simulation::Scene& scene, const std::string& object) {
+  const std::string_view axes = AxesIn(object);
+  return axes.size() > 1 &&
+         !std::ranges::all_of(axes, [&](char axis) { return Moves(scene, axis); });
+}
 
 double CoarsenessOf(const machine::Population& population) {
   constexpr double kFine = 2e-6;  // m
@@ -31,7 +63,7 @@ std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coar
     const std::vector<Eigen::VectorXd> shapes =
         cause.shapes ? cause.shapes(scene) : std::vector<Eigen::VectorXd>{Eigen::VectorXd()};
     for (const std::string& object : cause.objects(scene)) {
-      if (IsOfAxes(object) && scene.travel.isZero(0.0)) continue;
+      if (!IsOnMachine(scene, object) || IsStandingPair(scene, object)) continue;
       const double own = ScalesWith(cause, object) ? coarseness : 1.0;
       for (const Eigen::VectorXd& shape : shapes) {
         candidates.push_back({&cause, object, shape, {}, own});
@@ -39,6 +71,17 @@ std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coar
     }
   }
   return candidates;
+}
+
+std::vector<std::string> StandingPairs(const simulation::Scene& scene) {
+  std::vector<std::string> names;
+  for (const simulation::Cause& cause : simulation::Causes()) {
+    for (const std::string& object : cause.objects(scene)) {
+      if (!IsOnMachine(scene, object) || !IsStandingPair(scene, object)) continue;
+      names.push_back(Candidate{&cause, object, {}}.Name());
+    }
+  }
+  return names;
 }
 
 Keys KeysOf(const Score& score) {

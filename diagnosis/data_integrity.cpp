@@ -13,10 +13,10 @@
 namespace abbe::diagnosis {
 namespace {
 
-using Values = std::vector<double>;
+using Numbers = std::vector<double>;
 
 constexpr double kStays = 5e-3;    // mm: nearer rows are of one stay
-constexpr double kPause = 0.5;     // s: rows farther apart are no neighbours
+constexpr double kNeighbours = 0.5;     // s: rows farther apart are no neighbours
 constexpr std::size_t kStay = 5;   // rows that have a median worth the name
 constexpr std::size_t kAside = 7;  // rows of a stay to either side that say where it stands
 constexpr double kPeace = 4.0;     // times the usual scatter: noise alone
@@ -24,29 +24,29 @@ constexpr double kFlag = 4.0;      // device error
 
 struct Channel {
   std::string object;
-  Values values;
+  Numbers values;
 };
 
 // What the rows that count have in common, and the channels of the instrument.
 struct Table {
   std::vector<std::size_t> rows;
-  Values time;
-  std::vector<Values> axes;                 // mm
+  Numbers time;
+  std::vector<Numbers> axes;                 // mm
   std::vector<std::size_t> stay_end, stay;  // of each row: the row after its stay, rows in it
   std::vector<int> motion;                  // number of the motion, or the stay, it belongs to
   std::vector<Channel> channels;
 };
 
-double MedianOf(Values values) {
+double MedianOf(Numbers values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-Values At(const recording::Recording& recording, const std::string& column,
+Numbers At(const recording::Recording& recording, const std::string& column,
           const std::vector<std::size_t>& rows) {
   const auto all = recording.Find(column);
-  Values values;
+  Numbers values;
   if (all) {
     for (const std::size_t row : rows) values.push_back((*all)[row]);
   }
@@ -64,10 +64,10 @@ Table TableOf(const recording::Recording& recording) {
   table.stay.resize(table.rows.size());
   for (std::size_t first = 0; first < table.rows.size();) {
     std::size_t last = first + 1;
-    const auto together = [&](const Values& axis) {
+    const auto together = [&](const Numbers& axis) {
       return std::abs(axis[last] - axis[first]) < kStays;
     };
-    while (last < table.rows.size() && table.time[last] - table.time[last - 1] < kPause &&
+    while (last < table.rows.size() && table.time[last] - table.time[last - 1] < kNeighbours &&
            std::all_of(table.axes.begin(), table.axes.end(), together)) {
       ++last;
     }
@@ -80,7 +80,7 @@ Table TableOf(const recording::Recording& recording) {
   table.motion.resize(table.rows.size());
   for (std::size_t i = 1; i < table.rows.size(); ++i) {
     const bool stood = table.stay[i - 1] >= kStay, stands = table.stay[i] >= kStay;
-    const bool other = stood || stands || table.time[i] - table.time[i - 1] > kPause;
+    const bool other = stood || stands || table.time[i] - table.time[i - 1] > kNeighbours;
     table.motion[i] = table.motion[i - 1] + (other ? 1 : 0);
   }
   for (const auto& column : recording.columns) {
@@ -94,7 +94,7 @@ Table TableOf(const recording::Recording& recording) {
 // A reading less what the polynomial through others says in its place.
 class Prediction {
  public:
-  Prediction(const Values& time, std::size_t row, std::vector<std::size_t> others)
+  Prediction(const Numbers& time, std::size_t row, std::vector<std::size_t> others)
       : row_(row), others_(std::move(others)), weights_(others_.size(), 1.0) {
     for (std::size_t k = 0; k < others_.size(); ++k) {
       for (const std::size_t other : others_) {
@@ -104,7 +104,7 @@ class Prediction {
     }
   }
 
-  double Off(const Values& values) const {
+  double Off(const Numbers& values) const {
     double off = values[row_];
     for (std::size_t k = 0; k < others_.size(); ++k) off -= weights_[k] * values[others_[k]];
     return off;
@@ -117,14 +117,14 @@ class Prediction {
  private:
   std::size_t row_;
   std::vector<std::size_t> others_;
-  Values weights_;
+  Numbers weights_;
 };
 
 // How far each reading of a channel stands from what its neighbours say, in units that scatter
 // alike for all; NaN where they say nothing, and for what is an outlier already.
 class Neighbours {
  public:
-  Neighbours(const Table& table, const Values& values)
+  Neighbours(const Table& table, const Numbers& values)
       : table_(table),
         values_(values),
         middle_(values.size()),
@@ -139,7 +139,7 @@ class Neighbours {
     }
   }
 
-  const Values& off() const { return off_; }
+  const Numbers& off() const { return off_; }
   // Whether a reading is an outlier, of which its neighbours take no notice.
   void SetOut(std::size_t row, bool out) {
     out_[row] = out;
@@ -205,7 +205,7 @@ class Neighbours {
     const std::optional<Prediction> cubic = ByCubic(row);
     if (!cubic) return std::numeric_limits<double>::quiet_NaN();
     // Where the way bends the cubic says nothing of the instruments either.
-    const auto bends = [&](const Values& axis) { return std::abs(cubic->Off(axis)) > kStays; };
+    const auto bends = [&](const Numbers& axis) { return std::abs(cubic->Off(axis)) > kStays; };
     if (std::any_of(table_.axes.begin(), table_.axes.end(), bends)) {
       return std::numeric_limits<double>::quiet_NaN();
     }
@@ -213,22 +213,22 @@ class Neighbours {
   }
 
   const Table& table_;
-  const Values& values_;
-  Values middle_;  // of the rows beside it in its stay
+  const Numbers& values_;
+  Numbers middle_;  // of the rows beside it in its stay
   std::vector<bool> out_;
-  Values off_;
+  Numbers off_;
 };
 
-double ScatterOf(const Values& off) {
+double ScatterOf(const Numbers& off) {
   constexpr double kNormal = 1.4826;
-  Values sizes;
+  Numbers sizes;
   for (const double each : off) {
     if (std::isfinite(each)) sizes.push_back(std::abs(each));
   }
   return sizes.empty() ? 0.0 : kNormal * MedianOf(std::move(sizes));
 }
 
-std::size_t Worst(const Values& off) {
+std::size_t Worst(const Numbers& off) {
   const auto smaller = [](double a, double b) { return !(std::abs(a) >= std::abs(b)); };
   std::size_t worst = 0;
   for (std::size_t i = 1; i < off.size(); ++i) {
@@ -267,7 +267,7 @@ std::vector<std::size_t> OutOf(Neighbours& neighbours, std::size_t worst, double
 }
 
 // The worst first, for it makes its neighbours look bad too.
-std::vector<std::size_t> OutliersOf(const Table& table, const Values& values) {
+std::vector<std::size_t> OutliersOf(const Table& table, const Numbers& values) {
   std::vector<std::size_t> outliers;
   const std::size_t at_most = values.size() / 10;
   Neighbours neighbours(table, values);
@@ -287,7 +287,7 @@ std::vector<std::size_t> OutliersOf(const Table& table, const Values& values) {
 
 // First and last row of the longest stretch of one value; the same when there is none.
 std::pair<std::size_t, std::size_t> StuckOf(const Table& table, std::size_t which) {
-  const Values& values = table.channels[which].values;
+  const Numbers& values = table.channels[which].values;
   std::pair<std::size_t, std::size_t> longest{0, 0};
   for (std::size_t first = 0; first < values.size();) {
     std::size_t last = first;
@@ -320,7 +320,7 @@ std::vector<BadData> FlagBadRows(recording::Recording& recording) {
   std::vector<BadData> bad;
   if (table.rows.size() < kLeastStuck) return bad;
   if (!recording.Find("flags")) {
-    recording.columns.push_back({"flags", Values(recording.rows(), 0.0)});
+    recording.columns.push_back({"flags", Numbers(recording.rows(), 0.0)});
   }
   for (std::size_t c = 0; c < table.channels.size(); ++c) {
     const Channel& channel = table.channels[c];

@@ -10,6 +10,7 @@
 #include "diagnosis/scatter.h"
 #include "diagnosis/shape_posterior.h"
 #include "diagnosis/shortlist.h"
+#include "diagnosis/standing_pairs.h"
 #include "failure/failure.h"
 #include "simulation/causes/registry.h"
 #include "simulation/causes/shaft.h"
@@ -202,6 +203,9 @@ class Search {
       if (named.best.visible < kShowable) {
         diagnosis_.cannot_show.push_back(named.best.candidate.Name());
       }
+    }
+    for (std::string& name : StandingPairs(fit_->campaign().scene())) {
+      diagnosis_.cannot_show.push_back(std::move(name));
     }
     std::sort(diagnosis_.cannot_show.begin(), diagnosis_.cannot_show.end());
   }

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 using estimation::Problem;
 using simulation::SimulatedRun;
 
-constexpr Index kBlocks = 16;  // of consecutive poses, which share what no cause explains
+constexpr Index kPoseBlocks = 16;  // of consecutive poses, which share what no cause explains
 
 // The values of a run's own blocks.
 VectorXd ValuesIn(const estimation::Result& result, const SimulatedRun& run) {
@@ -240,8 +240,8 @@ void Fit::Linearize(const Problem& problem, const estimation::Linearization& at)
 double Fit::LeftOut(const VectorXd& r, const std::vector<int>& columns, const MatrixXd& J) const {
   const Index poses = r.size() / 3;
   double sum = 0.0;
-  for (Index block = 0; block < kBlocks; ++block) {
-    const Index first = 3 * (block * poses / kBlocks), last = 3 * ((block + 1) * poses / kBlocks);
+  for (Index block = 0; block < kPoseBlocks; ++block) {
+    const Index first = 3 * (block * poses / kPoseBlocks), last = 3 * ((block + 1) * poses / kPoseBlocks);
     if (last == first) continue;
     MatrixXd A = MatrixXd::Zero(scale_.size(), last - first);
     A(columns, Eigen::all) = J.middleRows(first, last - first).transpose();

@@ -22,7 +22,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using recording::Recording;
 
-constexpr std::size_t kBlocks = 8;
+constexpr std::size_t kHeldOutBlocks = 8;
 
 Recording RowsWhere(const Recording& recording, const std::function<bool(std::size_t)>& wanted) {
   Recording part = recording;
@@ -68,7 +68,7 @@ std::function<bool(std::size_t)> HeldRows(const Recording& recording) {
     return [pass](std::size_t row) { return std::lround((*pass)[row]) % 2 == 0; };
   }
   if (kind == "sweep") return {};
-  const std::size_t block = recording.rows() / kBlocks + 1;
+  const std::size_t block = recording.rows() / kHeldOutBlocks + 1;
   return [block](std::size_t row) { return (row / block) % 2 == 1; };
 }
 

@@ -15,7 +15,7 @@ using Eigen::Index;
 constexpr double kLowest = 1.0, kHighest = 60.0;  // Hz: slower is a drift, faster is mains
 constexpr double kOfAWave = 0.4;                  // over the time, from one frequency to the next
 constexpr std::size_t kMostPeaks = 8;             // of a run
-constexpr Index kMostRows = 400;                  // of a run, its first: more take longer
+constexpr Index kMostLineRows = 400;                  // of a run, its first: more take longer
 constexpr std::size_t kMostRuns = 4;              // looked through one by one
 constexpr std::size_t kMostScored = 3;
 
@@ -43,7 +43,7 @@ std::vector<Rows> RowsOf(const Fit& fit, Index stage) {
     if (trace.rows() < 3 || !AreSingleReadings(trace)) continue;
     const auto of_run = fit.ScoresOf(run, stage);
     if (of_run.scores.size() == 0 || !(of_run.weights.maxCoeff() > 0.0)) continue;
-    const Index rows = std::min(trace.rows(), kMostRows);
+    const Index rows = std::min(trace.rows(), kMostLineRows);
     runs.push_back({trace.clock.head(rows).array(), of_run.scores.head(rows).transpose().array(),
                     of_run.weights.head(rows).transpose().array()});
   }

@@ -13,7 +13,7 @@ namespace {
 using recording::Recording;
 
 constexpr double kTrembles = 5e-6;  // m
-constexpr double kPause = 0.5;      // s: rows farther apart belong to two standstills
+constexpr double kPauseBetweenStays = 0.5;      // s: rows farther apart belong to two standstills
 constexpr double kBelieved = 0.05, kCertain = 4.0;
 
 // Rows whose axes stand where they stood in the row before, by the column's own rows.
@@ -32,7 +32,7 @@ std::vector<bool> Stands(const Recording& recording, const std::vector<std::size
   if (!recording.Find("time_s")) return stands;
   const auto time = recording::ValuesOf(recording, "time_s", rows);
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    stands[i] = stands[i] && time[i] - time[i - 1] < kPause;
+    stands[i] = stands[i] && time[i] - time[i - 1] < kPauseBetweenStays;
   }
   return stands;
 }

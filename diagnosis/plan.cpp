@@ -8,6 +8,7 @@
 #include "diagnosis/diagnose.h"
 #include "diagnosis/drawn_machine.h"
 #include "diagnosis/linear_runs.h"
+#include "diagnosis/standing_pairs.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -154,6 +155,7 @@ Plan PlanOf(const Campaign& campaign, const std::function<double()>& normal) {
   Plan plan;
   plan.causes = BestOf(runs, AllCandidates(campaign.scene()));
   plan.alike = AlikeOf(runs, plan.causes);
+  plan.standing = StandingPairs(campaign.scene());
   return plan;
 }
 

@@ -16,6 +16,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "diagnosis/campaign.h"
@@ -45,8 +46,9 @@ struct Alike {
 };
 
 struct Plan {
-  std::vector<PlannedCause> causes;  // in the order of the registry
-  std::vector<Alike> alike;          // that are seen and cannot be told apart, above kAlike
+  std::vector<PlannedCause> causes;   // in the order of the registry
+  std::vector<Alike> alike;           // that are seen and cannot be told apart, above kAlike
+  std::vector<std::string> standing;  // names of pairs in which an axis never moves
 };
 
 inline constexpr double kAlike = 0.95;

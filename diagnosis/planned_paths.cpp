@@ -7,14 +7,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "settings/unit.h"
+
 namespace abbe::diagnosis {
 namespace {
 
 using Eigen::Vector3d;
 using recording::Recording;
 
-constexpr double kMillimetre = 1e-3;
-constexpr double kFeed = kMillimetre / 60.0;  // mm/min
+using settings::kMillimetre;
+using settings::kMillimetrePerMinute;
 
 struct Row {
   double time;
@@ -44,7 +46,7 @@ class PathMaker {
     for (const double each : row.axes) put(each / kMillimetre);
     put(row.pass);
     put(row.direction);
-    put(row.feed / kFeed);
+    put(row.feed / kMillimetrePerMinute);
     for (const auto& [sensor, temperature] : about_.temperature) put(temperature);
   }
 

@@ -12,7 +12,7 @@ namespace {
 
 using simulation::ReferenceRun;
 
-constexpr Eigen::Index kMostRows = 4000;  // of one run: more tell no more of causes
+constexpr Eigen::Index kMostReferenceRows = 4000;  // of one run: more tell no more of causes
 
 bool StatesNoise(const ReferenceRun& run) { return run.sd.minCoeff() > 0.0; }
 
@@ -49,7 +49,7 @@ DiagnosedRun MakeReferenceRun(const recording::Recording& recording, Setup& setu
   const machine::Machine& mill = setup.machine;
   ReferenceRun run = simulation::Thinned(simulation::MeansOfStays(simulation::ReadReferenceRun(
                                              simulation::WithAllAxes(recording, mill.travels))),
-                                         kMostRows);
+                                         kMostReferenceRows);
   if (!StatesNoise(run)) simulation::SetNoise(NoiseOf(run, setup, notes), run);
   return {simulation::SimulateReference(model, mill.reference, run),
           simulation::TraceOf(recording, run)};

@@ -12,7 +12,7 @@ namespace {
 using simulation::RimRepeats;
 using simulation::ShaftRun;
 
-constexpr Eigen::Index kMostRows = 6000;  // of one run: more tell no more of causes
+constexpr Eigen::Index kMostShaftRows = 6000;  // of one run: more tell no more of causes
 constexpr double kRounding = 1e-12;       // m
 
 void TellSense(const ShaftRun& run, std::vector<std::string>& notes) {
@@ -62,7 +62,7 @@ DiagnosedRun MakeShaftRun(const recording::Recording& recording, Setup& setup,
     run.sd = NoiseOf(run, repeats);
     if (is_new) TellNoise(run, repeats, notes);
   }
-  const ShaftRun thinned = simulation::Thinned(run, kMostRows);
+  const ShaftRun thinned = simulation::Thinned(run, kMostShaftRows);
   return {simulation::SimulateShaft(thinned), simulation::TraceOf(recording, thinned)};
 }
 

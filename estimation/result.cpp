@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 constexpr std::size_t kMostWeakDirections = 12;
 
 // Where a parameter is: block and entry, and its column (-1: held).
-struct Place {
+struct EntryPlace {
   const ParameterBlock* block;
   std::size_t entry;
   Index column;
@@ -29,15 +29,15 @@ void VisitParameters(const std::vector<ParameterBlock>& blocks, Visitor visit) {
   Index column = 0;
   for (const ParameterBlock& block : blocks) {
     for (std::size_t i = 0; i < block.entries.size(); ++i) {
-      visit(Place{&block, i, block.entries[i].held ? -1 : column});
+      visit(EntryPlace{&block, i, block.entries[i].held ? -1 : column});
       column += block.entries[i].held ? 0 : 1;
     }
   }
 }
 
-Place Find(const std::vector<ParameterBlock>& blocks, std::string_view full_name) {
-  Place found{nullptr, 0, -1};
-  VisitParameters(blocks, [&](const Place& place) {
+EntryPlace Find(const std::vector<ParameterBlock>& blocks, std::string_view full_name) {
+  EntryPlace found{nullptr, 0, -1};
+  VisitParameters(blocks, [&](const EntryPlace& place) {
     if (found.block == nullptr && place.block->FullName(place.entry) == full_name) found = place;
   });
   if (found.block == nullptr) {
@@ -46,12 +46,12 @@ Place Find(const std::vector<ParameterBlock>& blocks, std::string_view full_name
   return found;
 }
 
-const Parameter& Get(const Place& place) { return place.block->entries[place.entry]; }
+const Parameter& Get(const EntryPlace& place) { return place.block->entries[place.entry]; }
 
 std::vector<Index> ColumnsOf(const std::vector<ParameterBlock>& blocks,
                              const ParameterBlock& block) {
   std::vector<Index> columns;
-  VisitParameters(blocks, [&](const Place& place) {
+  VisitParameters(blocks, [&](const EntryPlace& place) {
     if (place.block == &block) columns.push_back(place.column);
   });
   return columns;
@@ -88,14 +88,14 @@ void ReportSources(const Result& result, std::string& text) {
 
 void ReportParameters(const Result& result, std::size_t most, std::string& text) {
   std::size_t width = 9, shown = 0, all = 0;
-  VisitParameters(result.blocks, [&](const Place& place) {
+  VisitParameters(result.blocks, [&](const EntryPlace& place) {
     width = std::max(width, place.block->FullName(place.entry).size());
     ++all;
   });
   auto out = std::back_inserter(text);
   fmt::format_to(out, "  {:<{}}  {:>14}  {:>10}  {:<6}  {}\n", "parameter", width, "value", "u",
                  "unit", "seen by");
-  VisitParameters(result.blocks, [&](const Place& place) {
+  VisitParameters(result.blocks, [&](const EntryPlace& place) {
     if (++shown > most) return;
     const Parameter& p = Get(place);
     const PrintUnit& unit = place.block->unit;

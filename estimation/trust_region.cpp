@@ -22,14 +22,14 @@ constexpr double kStepTolerance = 1e-14;
 // Below this many multiplications the QR of the dense Jacobian is fast and the most accurate way.
 constexpr double kDenseQr = 5e8;
 
-struct Place {
+struct ArgumentPlace {
   int block;
   int entry;
 };
 
 // Where each entry is.
-std::vector<Place> Places(const Problem& problem) {
-  std::vector<Place> places;
+std::vector<ArgumentPlace> ArgumentPlaces(const Problem& problem) {
+  std::vector<ArgumentPlace> places;
   for (std::size_t b = 0; b < problem.blocks().size(); ++b) {
     for (Index i = 0; i < problem.blocks()[b].size(); ++i) {
       places.push_back({static_cast<int>(b), static_cast<int>(i)});
@@ -48,14 +48,14 @@ std::pair<double, double> Robustify(const RobustLoss& loss, double t) {
 // A term as Ceres wants it: one Jacobian for each whole block.
 class TermCost : public ceres::CostFunction {
  public:
-  TermCost(const Problem& problem, const Term& term, const std::vector<Place>& places,
+  TermCost(const Problem& problem, const Term& term, const std::vector<ArgumentPlace>& places,
            std::exception_ptr& thrown)
       : term_(term),
         loss_(problem.sources()[static_cast<std::size_t>(term.source.index)].options.loss),
         thrown_(thrown) {
     std::map<int, int> order;
     for (const int entry : term.entries) {
-      const Place place = places[static_cast<std::size_t>(entry)];
+      const ArgumentPlace place = places[static_cast<std::size_t>(entry)];
       const auto [at, is_new] = order.try_emplace(place.block, static_cast<int>(blocks_.size()));
       if (is_new) {
         blocks_.push_back(place.block);
@@ -104,7 +104,7 @@ class TermCost : public ceres::CostFunction {
       const auto [residual, slope] = Robustify(loss_, values[row] * whiten);
       residuals[row] = residual;
       for (std::size_t i = 0; jacobians != nullptr && i < inputs_.size(); ++i) {
-        const Place at = inputs_[i];
+        const ArgumentPlace at = inputs_[i];
         double* of_block = jacobians[at.block];
         if (of_block == nullptr) continue;
         of_block[row * sizes[static_cast<std::size_t>(at.block)] + at.entry] =
@@ -117,7 +117,7 @@ class TermCost : public ceres::CostFunction {
   RobustLoss loss_;
   std::exception_ptr& thrown_;
   std::vector<int> blocks_;    // of the problem, in the order of the arguments
-  std::vector<Place> inputs_;  // argument and entry of each input
+  std::vector<ArgumentPlace> inputs_;  // argument and entry of each input
 };
 
 // (x - nominal) / prior_sd for the free entries of a block that have a prior.
@@ -159,7 +159,7 @@ class CeresProblem {
       AddBlock(block, next);
       next += block.size();
     }
-    const std::vector<Place> places = Places(problem);
+    const std::vector<ArgumentPlace> places = ArgumentPlaces(problem);
     for (const Term& term : problem.terms()) {
       auto cost = std::make_unique<TermCost>(problem, term, places, thrown_);
       std::vector<double*> arguments;
@@ -207,7 +207,7 @@ ceres::LinearSolverType ChooseSolver(const Problem& problem, const Layout& layou
 }  // namespace
 
 std::size_t JacobianBytes(const Problem& problem, const Layout& layout) {
-  const std::vector<Place> places = Places(problem);
+  const std::vector<ArgumentPlace> places = ArgumentPlaces(problem);
   std::vector<std::size_t> free_in_block(problem.blocks().size());
   for (const int entry : layout.entry_of_column) {
     ++free_in_block[static_cast<std::size_t>(places[static_cast<std::size_t>(entry)].block)];

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kLeastNoise = 1e-9;  // m: no probe of a shop has less
+constexpr double kLeastProbeNoise = 1e-9;  // m: no probe of a shop has less
 
 std::string NameOf(const char* wave, int order) { return fmt::format("shaft_{}_{}", wave, order); }
 
@@ -87,10 +87,10 @@ BearingHarmonics FitBearing(std::span<const double> angles, std::span<const doub
   Eigen::MatrixXd A(n, 1 + 2 * static_cast<Index>(orders.size()));
   for (Index i = 0; i < n; ++i) A.row(i) = Row(angles[static_cast<std::size_t>(i)], orders);
   const Eigen::Map<const Eigen::VectorXd> b(values.data(), n);
-  BearingHarmonics fit{orders, Solve(A, b, orders, kLeastNoise)};
+  BearingHarmonics fit{orders, Solve(A, b, orders, kLeastProbeNoise)};
   fit.rms = RmsAbout(fit, angles, values);
   // Once more with the noise that was found, for the uncertainties.
-  fit.result = Solve(A, b, orders, std::max(fit.rms, kLeastNoise));
+  fit.result = Solve(A, b, orders, std::max(fit.rms, kLeastProbeNoise));
   return fit;
 }
 

@@ -22,16 +22,15 @@ using Eigen::VectorXd;
 using estimation::Result;
 using simulation::LinkageRun;
 using simulation::LinkageSimulation;
-using Runs = std::vector<LinkageRun>;
 
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoGap = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBadFit = 5.0;         // residuals over noise from which the encoders are suspect
 constexpr double kContradiction = 6.0;  // prior standard deviations
 constexpr double kOnePlace = 1e-4;      // m
 constexpr double kOneLine = 1e-3;       // second over first extent
 
 // Too few poses, or poses that say nothing about a volume.
-void RefusePoorPoses(const Runs& runs, Index free) {
+void RefusePoorPoses(const std::vector<LinkageRun>& runs, Index free) {
   Index poses = 0;
   for (const LinkageRun& run : runs) poses += run.poses();
   if (3 * poses < free) {
@@ -89,7 +88,7 @@ double Excess(const Result& fit) {
 class CalibrationJob {
  public:
   CalibrationJob(const machine::Chain& chain, const relm::LinkageSettings& settings,
-                 const Runs& runs, const CalibrateOptions& options)
+                 const std::vector<LinkageRun>& runs, const CalibrateOptions& options)
       : settings_(settings),
         simulation_(chain, settings, relm::MakeLinkageModel(settings, options.model)),
         runs_(runs),
@@ -141,7 +140,7 @@ class CalibrationJob {
     for (const LinkageRun& run : runs_) CheckEncoders(simulation_, run);
   }
 
-  Calibration From(const Result& fit, const Runs& runs) const {
+  Calibration From(const Result& fit, const std::vector<LinkageRun>& runs) const {
     Calibration calibration;
     calibration.model = options_.model;
     calibration.displacement = options_.problem.displacement;
@@ -156,7 +155,7 @@ class CalibrationJob {
     return calibration;
   }
 
-  PerRun Gaps(const Calibration& calibration, const Runs& runs) const {
+  PerRun Gaps(const Calibration& calibration, const std::vector<LinkageRun>& runs) const {
     const CalibratedLinkage linkage(settings_, calibration);
     PerRun gaps;
     for (const LinkageRun& run : runs) {
@@ -186,10 +185,10 @@ class CalibrationJob {
   PerRun HeldOut() const {
     PerRun gaps;
     for (const LinkageRun& run : runs_) {
-      gaps.emplace_back(Matrix3Xd::Constant(3, run.poses(), kNotANumber));
+      gaps.emplace_back(Matrix3Xd::Constant(3, run.poses(), kNoGap));
     }
     for (int fold = 0; options_.folds > 1 && fold < options_.folds; ++fold) {
-      Runs rest, left_out;
+      std::vector<LinkageRun> rest, left_out;
       std::vector<std::vector<Index>> chosen;
       for (const LinkageRun& run : runs_) {
         std::vector<Index> in, out;
@@ -242,20 +241,20 @@ class CalibrationJob {
 
   const relm::LinkageSettings& settings_;
   LinkageSimulation simulation_;
-  const Runs& runs_;
+  const std::vector<LinkageRun>& runs_;
   CalibrateOptions options_;
 };
 
 }  // namespace
 
 Distances DistancesOf(const Matrix3Xd& gaps) {
-  if (gaps.cols() == 0) return {kNotANumber, kNotANumber};
+  if (gaps.cols() == 0) return {kNoGap, kNoGap};
   const VectorXd squares = gaps.colwise().squaredNorm();
   return {std::sqrt(squares.mean()), std::sqrt(squares.maxCoeff())};
 }
 
 CalibrationReport Calibrate(const machine::Chain& chain, const relm::LinkageSettings& settings,
-                            const Runs& runs, const CalibrateOptions& options) {
+                            const std::vector<LinkageRun>& runs, const CalibrateOptions& options) {
   return CalibrationJob(chain, settings, runs, options).Run();
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "recording/whole_file.h"
 #include "settings/document.h"
 #include "settings/toml_text.h"
 #include "simulation/linkage_simulation.h"
@@ -30,7 +31,7 @@ using settings::Table;
 
 constexpr std::int64_t kFormat = 1;
 constexpr std::array kAxes{"x_mm", "y_mm", "z_mm"};
-constexpr std::array<std::pair<const char*, ErrorModel>, 4> kModels{{
+constexpr std::array<std::pair<const char*, ErrorModel>, 4> kModelNames{{
     {"pivots", ErrorModel::kPivots},
     {"published", ErrorModel::kPublished},
     {"published with bearing", ErrorModel::kPublishedWithBearing},
@@ -124,7 +125,7 @@ MappedParameters ReadMapped(const Table& table, Index parameters) {
 }  // namespace
 
 std::string ErrorModelName(ErrorModel model) {
-  for (const auto& [name, value] : kModels) {
+  for (const auto& [name, value] : kModelNames) {
     if (value == model) return name;
   }
   throw InputError("calibration: unknown error model");
@@ -132,7 +133,7 @@ std::string ErrorModelName(ErrorModel model) {
 
 ErrorModel ErrorModelNamed(const std::string& name) {
   std::vector<std::string> names;
-  for (const auto& [known, value] : kModels) {
+  for (const auto& [known, value] : kModelNames) {
     if (name == known) return value;
     names.push_back(Quoted(known));
   }
@@ -156,7 +157,7 @@ void WriteCalibration(const Calibration& calibration, const std::filesystem::pat
                       Floats(calibration.covariance.reshaped(), 1.0));
   if (calibration.mapped) text += MappedText(*calibration.mapped);
 
-  map::WriteWhole(text, path);
+  recording::WriteWhole(text, path);
 }
 
 Calibration ReadCalibration(const std::filesystem::path& path,

@@ -18,13 +18,12 @@ namespace {
 using estimation::Problem;
 using relm::CirclePoint;
 using relm::CircleRun;
-using Runs = std::vector<const CircleRun*>;
 using standards::Signature;
 
 constexpr std::size_t kSectors = 36;  // whose means tell what neighbouring rows share
 // m: the first guess of the noise, so small that the priors do not pull; no instrument of a
 // machine shop has less.
-constexpr double kLeastNoise = 10e-9;
+constexpr double kLeastRadialNoise = 10e-9;
 constexpr double kSameRadius = 0.01;  // of the radius: lag makes a fast circle smaller
 constexpr double kLargePart = 0.3;    // of a weak direction of length 1
 
@@ -32,7 +31,7 @@ bool IsCentre(const Signature& signature) { return signature.cause == "centre"; 
 
 std::string Name(const Signature& signature) { return signature.cause + "." + signature.object; }
 
-void CheckRuns(const Runs& runs) {
+void CheckCircles(const std::vector<const CircleRun*>& runs) {
   if (runs.empty()) throw InputError("no circle to find the causes of");
   for (const CircleRun* run : runs) {
     if (run->plane.Inclined()) {
@@ -123,7 +122,7 @@ CircleRun About(const Eigen::Vector2d& middle, const CircleRun& run) {
 }
 
 // Of run number `at`.
-Equations CentredEquations(const Runs& runs, std::size_t at, const CauseOptions& options) {
+Equations CentredEquations(const std::vector<const CircleRun*>& runs, std::size_t at, const CauseOptions& options) {
   const Eigen::Vector2d middle = runs[at]->middle;
   Equations equations = EquationsOf(About(middle, *runs[at]), options);
   for (std::size_t k = 0; k < options.shifted.size(); ++k) {
@@ -211,7 +210,7 @@ double Rms(const std::vector<Eigen::VectorXd>& residuals) {
 }
 
 // By how much the means of sectors scatter more than those of independent rows would: at least 1.
-double Correlated(const Runs& runs, const std::vector<Eigen::VectorXd>& residuals, double rms) {
+double Correlated(const std::vector<const CircleRun*>& runs, const std::vector<Eigen::VectorXd>& residuals, double rms) {
   double excess = 0.0, sectors = 0.0;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     std::array<std::array<double, kSectors>, 2> sums{}, counts{};
@@ -253,8 +252,8 @@ bool IsOfCauses(const estimation::Result& result, const estimation::WeakDirectio
 
 }  // namespace
 
-CircleCauses FitCircleCauses(const Runs& runs, const CauseOptions& options) {
-  CheckRuns(runs);
+CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs, const CauseOptions& options) {
+  CheckCircles(runs);
   std::vector<Signature> table = SignaturesOf(*runs.front(), options);
   std::erase_if(table, IsCentre);
   std::vector<Equations> equations;
@@ -266,8 +265,8 @@ CircleCauses FitCircleCauses(const Runs& runs, const CauseOptions& options) {
     before.emplace_back(radial.array() - radial.mean());
   }
   found.rms_before = Rms(before);
-  const Fit first = Solve(equations, table, options, kLeastNoise);
-  const double rms = std::max(Rms(first.noise), kLeastNoise);
+  const Fit first = Solve(equations, table, options, kLeastRadialNoise);
+  const double rms = std::max(Rms(first.noise), kLeastRadialNoise);
   found.correlated = Correlated(runs, first.noise, rms);
   const Fit fit = Solve(equations, table, options, rms * found.correlated);
   found.rms_smooth = Rms(fit.smooth);

@@ -83,7 +83,7 @@ constexpr double kSpread = 1e-4;    // m: what the tolerances of a linkage leave
 constexpr double kLeftOver = 5e-3;  // of the reach: a gap beyond it is no explanation
 constexpr double kReversed = -2.0;  // gain of an encoder of the other sense
 
-std::optional<Assumption> Fit(const LinkageSimulation& simulation, const Matrix3Xd& p_MT,
+std::optional<Assumption> FitAssuming(const LinkageSimulation& simulation, const Matrix3Xd& p_MT,
                               const MatrixXd& angles, bool with_gains, double start_gain = 0.0,
                               Index started = 0) {
   const Index n = angles.rows();
@@ -120,7 +120,7 @@ std::vector<Finding> Swaps(const LinkageSimulation& simulation, const Matrix3Xd&
     for (Index j = i + 1; j < angles.rows(); ++j) {
       MatrixXd swapped = angles;
       swapped.row(i).swap(swapped.row(j));
-      const auto fit = Fit(simulation, p_MT, swapped, false);
+      const auto fit = FitAssuming(simulation, p_MT, swapped, false);
       if (!fit) continue;
       findings.push_back(
           {fit->rms, fmt::format("the encoders of pivot_{} and pivot_{} are swapped", i + 1, j + 1),
@@ -149,12 +149,12 @@ Finding FromGains(const Assumption& fit) {
 void CheckEncoders(const LinkageSimulation& simulation, const simulation::LinkageRun& run) {
   const Matrix3Xd p_MT = simulation.Ball(run);
   const MatrixXd& angles = run.readings.angles;
-  const auto stated = Fit(simulation, p_MT, angles, false);
+  const auto stated = FitAssuming(simulation, p_MT, angles, false);
   const double gap = stated ? stated->rms : std::numeric_limits<double>::infinity();
   std::vector<Finding> findings = Swaps(simulation, p_MT, angles);
   for (Index i = 0; i < angles.rows(); ++i) {
     for (const double start : {0.0, kReversed}) {
-      if (const auto fit = Fit(simulation, p_MT, angles, true, start, i)) {
+      if (const auto fit = FitAssuming(simulation, p_MT, angles, true, start, i)) {
         findings.push_back(FromGains(*fit));
       }
     }

@@ -25,7 +25,7 @@ using simulation::SimulatedRun;
 
 constexpr std::array<double, 6> kLengthsTried{0.5, 0.71, 1.0, 1.41, 2.0, 2.83};  // of the file's
 constexpr double kHalf = 0.5;
-constexpr Index kStations = 25;  // over a travel, for variances
+constexpr Index kTravelStations = 25;  // over a travel, for variances
 
 double LogDeterminant(const Eigen::LDLT<MatrixXd>& factor) {
   return factor.vectorD().cwiseMax(std::numeric_limits<double>::min()).array().log().sum();
@@ -196,27 +196,30 @@ class FuseJob {
     }
     const auto& function = model_.Function(axis, motion);
     const auto& travel = machine_.travels[static_cast<std::size_t>(axis)];
-    const VectorXd stations = VectorXd::LinSpaced(kStations, travel.first, travel.last);
-    MatrixXd rows = MatrixXd::Zero(kStations, n);
+    const VectorXd stations = VectorXd::LinSpaced(kTravelStations, travel.first, travel.last);
+    MatrixXd rows = MatrixXd::Zero(kTravelStations, n);
     VectorXd gradient(function.size());
-    for (Index i = 0; i < kStations; ++i) {
+    for (Index i = 0; i < kTravelStations; ++i) {
       function.Evaluate(stations[i], nullptr, gradient.data());
       rows.row(i).segment(first, function.size()) = gradient.transpose();
     }
     return rows;
   }
 
-  // The mean slope of EXX, EYY and EZZ.
+  // The mean slope of EXX, EYY and EZZ, of the axes that there are.
   Eigen::RowVectorXd ScaleRow() const {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(model_.ParameterCount());
+    int axes = 0;
     for (int axis = 0; axis < machine::kAxes; ++axis) {
       const auto& travel = machine_.travels[static_cast<std::size_t>(axis)];
-      const VectorXd x = VectorXd::LinSpaced(kStations, travel.first, travel.last);
+      if (!(travel.last > travel.first)) continue;
+      const VectorXd x = VectorXd::LinSpaced(kTravelStations, travel.first, travel.last);
       const VectorXd centred = x.array() - x.mean();
-      row += centred.transpose() * ValuesOf(machine::kMotions * axis + axis) /
-             (3.0 * centred.squaredNorm());
+      row +=
+          centred.transpose() * ValuesOf(machine::kMotions * axis + axis) / centred.squaredNorm();
+      ++axes;
     }
-    return row;
+    return row / axes;
   }
 
   void Describe(const Fitted& now) {
@@ -270,6 +273,7 @@ class FuseJob {
     origin.reference = machine_.reference;
     origin.tool = -machine_.reference;
     origin.scale_is_calibrated = scale_.calibrated;
+    origin.limits = machine_.limits;
     for (std::size_t error = 0; error < functions_.size(); ++error) {
       const auto& by = functions_[error].determined_by;
       if (!by.empty()) origin.sources[error] = SourceOf(by.front());

@@ -26,7 +26,7 @@ constexpr double kNothing = 1e-12;     // m or rad
 constexpr double kSharpness = 0.1;     // of kLearned: how near a network should come
 constexpr double kWeights = 3.0;       // prior of the inputs of a neuron
 constexpr double kOutputs = 10.0;      // prior of its output, of the function's largest value
-constexpr std::size_t kStations = 40;  // of an axis, at most
+constexpr std::size_t kMostStations = 40;  // of an axis, at most
 
 // x: the coefficients of one network.
 class NetworkResidual : public estimation::Residual {
@@ -173,7 +173,7 @@ VectorXd InputsOf(const SimulatedRun& run, const machine::VolumetricModel& model
   return x;
 }
 
-double HeldOut(const machine::Machine& machine, const machine::VolumetricModel& model,
+double HeldOutRms(const machine::Machine& machine, const machine::VolumetricModel& model,
                const std::vector<PlateSetUp>& setups, const Folds& folds, int fold,
                const estimation::Result& fit) {
   double squares = 0.0, holes = 0.0;
@@ -244,7 +244,7 @@ std::array<std::vector<double>, machine::kAxes> StationsOf(const std::vector<Pla
       for (const double at : setup.points.axes.row(axis))
         places.emplace(std::lround(at / kApart), at);
     }
-    const std::size_t step = places.size() / kStations + 1;
+    const std::size_t step = places.size() / kMostStations + 1;
     std::size_t i = 0;
     for (const auto& [key, at] : places) {
       if (i++ % step == 0) stations[static_cast<std::size_t>(axis)].push_back(at);
@@ -269,7 +269,7 @@ std::vector<InterpolatorCheck> CompareInterpolators(const machine::Machine& mach
           check.name == "network" ? NetworkBias::kAsPrinted : NetworkBias::kWithBias;
       const machine::VolumetricModel interpolated =
           check.name == "b-spline" ? model : AsNetworks(model, stations, bias, &check.learning);
-      check.held_out += HeldOut(machine, interpolated, setups, split, fold, fit) / folds;
+      check.held_out += HeldOutRms(machine, interpolated, setups, split, fold, fit) / folds;
     }
   }
   return checks;

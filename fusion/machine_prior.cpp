@@ -39,6 +39,7 @@ machine::VolumetricModel UnknownMachine(const machine::Machine& machine) {
   machine::VolumetricModel model(machine.chain, machine.travels);
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     const machine::Travel& travel = machine.travels[static_cast<std::size_t>(axis)];
+    if (!(travel.last > travel.first)) continue;  // the machine lacks it
     const double spans =
         std::ceil(kKnotsPerLength * (travel.last - travel.first) / machine.population.smoothness);
     const auto form = machine::MakeBSplineForm(

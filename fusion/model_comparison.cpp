@@ -18,9 +18,9 @@ using Eigen::Matrix3Xd;
 using relm::ErrorModel;
 using simulation::LinkageRun;
 
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNoCircle = 0.01;  // of the radius
-constexpr std::array kModels{ErrorModel::kPivots, ErrorModel::kPublished,
+constexpr std::array kModelsCompared{ErrorModel::kPivots, ErrorModel::kPublished,
                              ErrorModel::kPublishedWithBearing, ErrorModel::kComplete};
 
 class Comparison {
@@ -33,7 +33,7 @@ class Comparison {
   }
 
   std::vector<ComparedModel> Rows() {
-    for (const ErrorModel model : kModels) {
+    for (const ErrorModel model : kModelsCompared) {
       if (settings_.segments.empty() && model != ErrorModel::kComplete) continue;
       if (!settings_.pivots && model == ErrorModel::kPivots) continue;
       Add(model);
@@ -59,7 +59,7 @@ class Comparison {
     rows_.push_back({made.name() + ", one cell",
                      parameters,
                      Distance(one_cell, run_),
-                     {kNotANumber, kNotANumber},
+                     {kUnknown, kUnknown},
                      Checked(one_cell)});
     rows_.push_back({made.name() + ", mapped", parameters, mapped.after, mapped.held_out,
                      Checked(mapped.calibration)});
@@ -103,7 +103,7 @@ class Comparison {
   // The reference, and displacements of the nominal linkage.
   void AddWithoutCalibration(const Distances& before) {
     const auto simulation = Simulation();
-    const Distances none{kNotANumber, kNotANumber};
+    const Distances none{kUnknown, kUnknown};
     ComparedModel reference{"reference", 0, none, none, {}},
         nominal{"nominal", 0, before, before, {}};
     for (const LinkageRun& check : checks_) {
@@ -139,9 +139,9 @@ double CircleDeviation(const Matrix3Xd& path) {
     for (const double each : standards::RadialDeviations(circle, x, y)) {
       largest = std::max(largest, std::abs(each));
     }
-    return largest < kNoCircle * circle.radius ? largest : kNotANumber;
+    return largest < kNoCircle * circle.radius ? largest : kUnknown;
   } catch (const NumericalError&) {
-    return kNotANumber;  // so far from a circle that none settles
+    return kUnknown;  // so far from a circle that none settles
   }
 }
 

@@ -1,7 +1,13 @@
 #include "fusion/plate_diagonals.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "fusion/machine_problem.h"
 
 namespace abbe::fusion {
 namespace {
@@ -9,12 +15,14 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Eigen::VectorXd;
+using estimation::Result;
 using simulation::PlateSetUp;
 
 constexpr double kAlong = 0.99;  // cosine
 
 // Where a hole is in the plate: its certificate and the form that the fit found.
-Vector2d PlaceInPlate(const PlateSetUp& setup, Index point, const estimation::Result& fit) {
+Vector2d PlaceInPlate(const PlateSetUp& setup, Index point, const Result& fit) {
   const int hole = setup.holes[static_cast<std::size_t>(point)];
   Vector2d place = setup.certificate.col(point);
   if (setup.u_form.maxCoeff() > 0.0) {
@@ -23,22 +31,83 @@ Vector2d PlaceInPlate(const PlateSetUp& setup, Index point, const estimation::Re
   return place;
 }
 
+// The holes at its ends, and what a squareness does to it.
 struct Diagonal {
-  double stretch, product, length;
+  Index from = 0, to = 0;
+  Vector2d direction;  // in the plate
+  double true_length, stretch, product;
 };
 
 // Between the outermost holes along u + v (sense 1) or u - v (-1).
 Diagonal DiagonalOf(const PlateSetUp& setup, const Eigen::Matrix3Xd& places, double sense,
-                    Index normal, const estimation::Result& fit) {
+                    Index normal, const Result& fit) {
+  Diagonal diagonal;
   const Eigen::RowVectorXd along = setup.certificate.row(0) + sense * setup.certificate.row(1);
-  Index from = 0, to = 0;
-  along.minCoeff(&from);
-  along.maxCoeff(&to);
-  const Vector3d apart = places.col(to) - places.col(from);
-  const double true_length = (PlaceInPlate(setup, to, fit) - PlaceInPlate(setup, from, fit)).norm();
+  along.minCoeff(&diagonal.from);
+  along.maxCoeff(&diagonal.to);
+  const Vector3d apart = places.col(diagonal.to) - places.col(diagonal.from);
+  const Vector2d in_plate =
+      PlaceInPlate(setup, diagonal.to, fit) - PlaceInPlate(setup, diagonal.from, fit);
   const Vector3d d = apart.normalized();
-  return {true_length / apart.norm() - 1.0, d[(normal + 1) % 3] * d[(normal + 2) % 3],
-          apart.norm()};
+  diagonal.direction = in_plate.normalized();
+  diagonal.true_length = in_plate.norm();
+  diagonal.stretch = diagonal.true_length / apart.norm() - 1.0;
+  diagonal.product = d[(normal + 1) % 3] * d[(normal + 2) % 3];
+  return diagonal;
+}
+
+// By the whitened residuals of the set-up: a hole that reads too far out shortens the stretch.
+void AddWeights(const Diagonal& diagonal, double factor, const PlateSetUp& setup, VectorXd& b) {
+  const Vector2d weight = factor * setup.u_probing / diagonal.true_length * diagonal.direction;
+  b.segment<2>(2 * diagonal.to) -= weight;
+  b.segment<2>(2 * diagonal.from) += weight;
+}
+
+// The squareness that one set-up tells, and its derivatives by the residuals.
+struct OfSetUp {
+  Index normal;
+  double value;
+  VectorXd b;
+};
+
+std::optional<OfSetUp> SquarenessOf(const machine::VolumetricModel& square,
+                                    const Vector3d& reference, const PlateSetUp& setup,
+                                    const Result& fit) {
+  const simulation::PointsOnMachine points(square, reference, setup.points);
+  Index normal = 0;
+  const Vector3d w = simulation::PlatePose(points, setup).R.col(2);
+  if (w.cwiseAbs().maxCoeff(&normal) < kAlong) return std::nullopt;
+  const Eigen::Matrix3Xd places = points.Places(square.Parameters());
+  const Diagonal one = DiagonalOf(setup, places, 1.0, normal, fit);
+  const Diagonal other = DiagonalOf(setup, places, -1.0, normal, fit);
+  const double factor = (normal == 1 ? 1.0 : -1.0) / (one.product - other.product);
+  OfSetUp found{normal, factor * (one.stretch - other.stretch),
+                VectorXd::Zero(2 * setup.points.count())};
+  AddWeights(one, factor, setup, found.b);
+  AddWeights(other, -factor, setup, found.b);
+  return found;
+}
+
+// J' b of a set-up by the free parameters of the fit.
+VectorXd ByParameters(const simulation::SimulatedRun& run, const VectorXd& b, const Result& fit) {
+  std::map<std::string_view, Index> columns;
+  for (std::size_t c = 0; c < fit.names.size(); ++c) {
+    columns.emplace(fit.names[c], static_cast<Index>(c));
+  }
+  const VectorXd x = ValuesFound(fit, run.blocks);
+  VectorXd values(b.size());
+  estimation::RowMatrix J(b.size(), x.size());
+  run.residual->Evaluate(x, values, &J);
+  const VectorXd by_entries = J.transpose() * b;
+  VectorXd by_columns = VectorXd::Zero(fit.covariance.cols());
+  Index entry = 0;
+  for (const auto& block : run.blocks) {
+    for (std::size_t i = 0; i < block.entries.size(); ++i, ++entry) {
+      const auto column = columns.find(block.FullName(i));
+      if (column != columns.end()) by_columns[column->second] += by_entries[entry];
+    }
+  }
+  return by_columns;
 }
 
 }  // namespace
@@ -46,29 +115,30 @@ Diagonal DiagonalOf(const PlateSetUp& setup, const Eigen::Matrix3Xd& places, dou
 std::array<DiagonalSquareness, 3> SquarenessByDiagonals(const machine::VolumetricModel& model,
                                                         const Vector3d& reference,
                                                         const std::vector<PlateSetUp>& setups,
-                                                        const estimation::Result& fit) {
+                                                        const Result& fit) {
   machine::VolumetricModel square = model;
   square.SetSquareness(Vector3d::Zero());
   std::array<DiagonalSquareness, 3> found{};
+  std::array<double, 3> bb{};
+  std::array<VectorXd, 3> Jb;
+  Jb.fill(VectorXd::Zero(fit.covariance.cols()));
   for (const PlateSetUp& setup : setups) {
-    const simulation::PointsOnMachine points(square, reference, setup.points);
-    Index normal = 0;
-    const Vector3d w = simulation::PlatePose(points, setup).R.col(2);
-    if (w.cwiseAbs().maxCoeff(&normal) < kAlong) continue;
-    const Eigen::Matrix3Xd places = points.Places(square.Parameters());
-    const Diagonal one = DiagonalOf(setup, places, 1.0, normal, fit);
-    const Diagonal other = DiagonalOf(setup, places, -1.0, normal, fit);
-    const double products = one.product - other.product;
-    auto& [value, u, count] = found[static_cast<std::size_t>(normal)];
-    value += (normal == 1 ? 1.0 : -1.0) * (one.stretch - other.stretch) / products;
-    // Two holes at the ends of each diagonal.
-    u += 2.0 * std::pow(setup.u_probing / products, 2) *
-         (std::pow(one.length, -2) + std::pow(other.length, -2));
-    ++count;
+    const auto here = SquarenessOf(square, reference, setup, fit);
+    if (!here) continue;
+    const auto k = static_cast<std::size_t>(here->normal);
+    found[k].value += here->value;
+    ++found[k].setups;
+    bb[k] += here->b.squaredNorm();
+    Jb[k] += ByParameters(simulation::SimulatePlate(model, reference, setup), here->b, fit);
   }
-  for (auto& [value, u, count] : found) {
+  const Eigen::Matrix3d of_fit = fit.Covariance("squareness", "squareness");
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    auto& [value, u, count] = found[k];
+    const double seen = bb[k] - Jb[k].dot(fit.covariance * Jb[k]);
+    const auto diagonal = static_cast<Index>(k);
     value = count == 0 ? std::numeric_limits<double>::quiet_NaN() : value / count;
-    u = count == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(u) / count;
+    u = count == 0 ? std::numeric_limits<double>::infinity()
+                   : std::sqrt(of_fit(diagonal, diagonal) + std::max(seen, 0.0) / (count * count));
   }
   return found;
 }

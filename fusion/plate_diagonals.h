@@ -10,10 +10,18 @@
 //
 // d the direction of a diagonal, i and j the axes; sign is + for B0Z, - for A0Z and C0Y. Set-ups in
 // one plane are averaged; a plate that lies askew (beyond 8 degrees) is left out.
+//
+// What is taken off was fitted to the same readings. To first order the value is that of the fit
+// plus b' r: r the whitened residuals that the fit leaves, b as above, not zero for the holes at
+// the ends of the diagonals. The errors of a fit are uncorrelated with what it leaves, which has
+// the covariance I - J C J', so that
+//
+//   u^2 = u_fit^2 + b' b - (J' b)' C (J' b)
+//
 // Units: rad. Failure: none; without a plate in a plane `setups` is 0 and the value NaN.
 // Source: Ha and Khanh, "An application of neural network in calibration of coordinate measuring
-// machines" (2011), section 3: squareness by the diagonal method and the errors calculated before.
-// Validity: first order. u is that of the probing alone; the fit uses every hole and is better.
+// machines" (2011), section 3: squareness by the diagonal method and the errors calculated before;
+// the uncertainty is ours. Validity: first order. The fit uses every hole and is never worse.
 #pragma once
 
 #include <array>

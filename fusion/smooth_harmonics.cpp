@@ -37,10 +37,7 @@ Circle CircleOf(const machine::Machine& machine, const relm::CircleRun& run) {
     const double t = AngleOf(i);
     const Eigen::Vector3d out = std::cos(t) * run.plane.first + std::sin(t) * run.plane.second;
     circle.positions.col(i) = run.centre + run.radius * out;
-    Eigen::Vector3d out_W = out;  // an axis that carries the workpiece counts the other way there
-    for (int axis = 0; axis < machine::kAxes; ++axis) {
-      if (machine.chain.CarriesTarget("XYZ"[axis])) out_W[axis] = -out_W[axis];
-    }
+    const Eigen::Vector3d out_W = machine.chain.ToolSenses().cwiseProduct(out);
     const auto J = machine::VolumetricErrorAndJacobian(machine.chain, circle.positions.col(i),
                                                        -machine.reference, {});
     circle.J_radial.row(i) = out_W.transpose() * J.J_error_motions;

@@ -11,7 +11,7 @@ namespace {
 
 using settings::Table;
 
-constexpr double kLastNode = 127.0, kMostBits = 48.0, kPdoBits = 64.0;
+constexpr double kMostNodes = 127.0, kMostBits = 48.0, kPdoBits = 64.0;
 
 EncoderSettings ReadEncoder(const Table& table) {
   EncoderSettings encoder;
@@ -22,7 +22,7 @@ EncoderSettings ReadEncoder(const Table& table) {
   const auto integer = [&](const char* key, const settings::NumberRule& rule) {
     return static_cast<int>(table.Integer(key, rule));
   };
-  encoder.node = integer("id", {.at_least = 1.0, .at_most = kLastNode});
+  encoder.node = integer("id", {.at_least = 1.0, .at_most = kMostNodes});
   encoder.tpdo = integer("tpdo", {.fallback = 1.0, .at_least = 1.0, .at_most = 4.0});
   encoder.at_bit = integer("at_bit", {.fallback = 0.0, .at_least = 0.0, .at_most = kPdoBits - 1});
   encoder.bits = integer("bits", {.fallback = 32.0, .at_least = 1.0, .at_most = kMostBits});

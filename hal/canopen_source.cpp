@@ -70,8 +70,9 @@ SampleSet CanopenSource::Read() {
   SampleSet set;
   set.sequence = ++sequence_;
   const double now = clock_.Now();
-  const bool torn = bus_->lost() != lost_before_ || foreign_sync_;
+  lost_now_ = bus_->lost() - lost_before_;
   lost_before_ = bus_->lost();
+  const bool torn = lost_now_ > 0 || foreign_sync_;
   for (Encoder& encoder : encoders_) set.samples.push_back(SampleOf(encoder, torn, now));
   FinishSet(set, now);
   Note(FaultNow(now));
@@ -230,6 +231,10 @@ Sample CanopenSource::SampleOf(Encoder& encoder, bool torn, double now_s) {
 
 std::string CanopenSource::FaultNow(double now_s) const {
   if (std::string fault = bus_->Fault(); !fault.empty()) return fault;
+  if (lost_now_ > 0) {
+    return fmt::format("{} frames found no room to wait: the computer is too busy for this bus",
+                       lost_now_);
+  }
   if (foreign_sync_)
     return "a SYNC came that abbe did not send; stop the other master or set sync_ms = 0";
   for (const Encoder& encoder : encoders_) {
@@ -265,6 +270,16 @@ void CanopenSource::Note(const std::string& fault) {
     log_(fmt::format("{}: all is well again", place()));
   }
   fault_ = fault;
+  const bool errors = bus_->state() == CanState::kWarning || bus_->state() == CanState::kPassive;
+  if (log_ && errors && !errors_) {
+    log_(
+        fmt::format("{}: the bus is {}: its readings are good as yet; check wiring, termination "
+                    "and bit rate before it goes off",
+                    place(), NameOf(bus_->state())));
+  } else if (log_ && errors_ && bus_->state() == CanState::kActive) {
+    log_(fmt::format("{}: the bus has no more errors", place()));
+  }
+  errors_ = errors;
 }
 
 std::string CanopenSource::Fault() const {

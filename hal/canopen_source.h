@@ -98,7 +98,8 @@ class CanopenSource : public SampleSource {
   bool sync_due_ = false;             // sent and not yet heard
   bool foreign_sync_ = false;         // heard one that was not sent
   std::optional<CanReceived> ahead_;  // the frame that began the next cycle (listener)
-  std::uint64_t lost_before_ = 0;
+  std::uint64_t lost_before_ = 0, lost_now_ = 0;
+  bool errors_ = false;  // the controller has counted many, and the bus still works
   std::uint64_t sequence_ = 0;
   std::string fault_;
   CanopenCounts counts_;

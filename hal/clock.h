@@ -1,15 +1,32 @@
 // The one monotonic clock of a measurement, behind a seam.
 //
 // Time is seconds since the clock was made. Every stamp of every sample comes from the same clock.
-// Deadlines on sockets do not: a device answers in real time, whatever this clock says.
+// Deadlines on sockets do not: a device answers in real time, whatever this clock says. Both go on
+// while the computer sleeps, and neither heeds its calendar being set.
 #pragma once
 
 #include <chrono>
 #include <condition_variable>
+#include <ctime>
 #include <mutex>
 #include <thread>
 
 namespace abbe::hal {
+
+// Real time that never goes back and goes on while the computer sleeps (std::chrono::steady_clock
+// stands still then), as a clock of the standard library.
+struct BootClock {
+  using duration = std::chrono::nanoseconds;
+  using rep = duration::rep;
+  using period = duration::period;
+  using time_point = std::chrono::time_point<BootClock>;
+  static constexpr bool is_steady = true;
+  static time_point now() {
+    timespec now{};
+    clock_gettime(CLOCK_BOOTTIME, &now);
+    return time_point(std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec));
+  }
+};
 
 class Clock {
  public:
@@ -25,14 +42,13 @@ class Clock {
   virtual double speed() const { return 1.0; }
 };
 
-// The computer's monotonic clock, `speed` seconds a second: 1 for real devices, more for a virtual
+// The computer's BootClock, `speed` seconds a second: 1 for real devices, more for a virtual
 // machine that runs faster than a real one.
 class SteadyClock : public Clock {
  public:
   explicit SteadyClock(double speed = 1.0) : speed_(speed) {}
   double Now() override {
-    return speed_ *
-           std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    return speed_ * std::chrono::duration<double>(BootClock::now() - start_).count();
   }
   void SleepUntil(double time_s) override { std::this_thread::sleep_until(RealTime(time_s)); }
   void WaitUntil(double time_s, std::unique_lock<std::mutex>& lock,
@@ -42,13 +58,12 @@ class SteadyClock : public Clock {
   double speed() const override { return speed_; }
 
  private:
-  std::chrono::time_point<std::chrono::steady_clock, std::chrono::duration<double>> RealTime(
-      double time_s) const {
+  std::chrono::time_point<BootClock, std::chrono::duration<double>> RealTime(double time_s) const {
     return start_ + std::chrono::duration<double>(time_s / speed_);
   }
 
   double speed_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  BootClock::time_point start_ = BootClock::now();
 };
 
 // A clock that stands still until somebody sleeps on it or moves it: no test waits.

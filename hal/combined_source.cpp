@@ -54,6 +54,8 @@ OpenedDevices OpenDevices(const DevicesSettings& devices, Clock& clock, Presence
   for (const DeviceSettings& device : devices.devices) {
     auto source = std::make_unique<ModbusSource>(device, devices.stale, clock, log);
     if (presence == Presence::kRequired) source->Require();
+    const std::string& identity = source->identity();
+    opened.transport[device.name] = identity.empty() ? "modbus" : "modbus, " + identity;
     if (device.cycle_start) {
       opened.start_cycle = [it = source.get()](int program) {
         it->StartCycle(static_cast<std::uint16_t>(program));
@@ -68,6 +70,7 @@ OpenedDevices OpenDevices(const DevicesSettings& devices, Clock& clock, Presence
     auto source =
         std::make_unique<CanopenSource>(device, devices.stale, std::move(bus), clock, log);
     if (presence == Presence::kRequired) source->Require();
+    opened.transport[device.name] = "canopen";
     encoders.push_back(source.get());
     parts.push_back(std::move(source));
   }

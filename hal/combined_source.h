@@ -6,7 +6,9 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "hal/can_bus.h"
@@ -46,6 +48,8 @@ struct OpenedDevices {
   // Believes encoders again that have lost their reference (CanopenSource::ConfirmReference);
   // empty when there are none.
   std::function<void()> confirm_reference;
+  // How each device is read, for a header: "modbus", "modbus, Moxa E1240 2.1", "canopen".
+  std::map<std::string, std::string> transport;
 };
 
 // The bus behind an interface's name.

@@ -191,8 +191,8 @@ DeviceSettings ReadModbus(const Table& table, const std::string& transport) {
 DevicesSettings ReadDevices(const settings::Table& devices) {
   DevicesSettings all;
   all.rate = devices.Quantity("rate_hz", {.fallback = 200.0, .above = 0.0, .at_most = 1e5});
-  all.max_skew = devices.Quantity("max_skew_ms", {.fallback = 20.0, .above = 0.0, .at_most = 1e4});
-  all.stale = devices.Quantity("stale_ms", {.fallback = 1000.0, .above = 0.0});
+  all.max_skew = devices.Quantity("max_skew_ms", {.fallback = 20.0, .above = 0.0, .at_most = 10e3});
+  all.stale = devices.Quantity("stale_ms", {.fallback = 1000.0, .above = 0.0, .at_most = 60e3});
   std::set<std::string> names;
   const auto take = [&](const Table& table, const char* key, const std::string& name) {
     if (names.insert(name).second) return;

@@ -8,7 +8,6 @@
 namespace abbe::hal {
 namespace {
 
-using Kind = FakeFault::Kind;
 
 // A value beyond every integer type, or beyond the maximum of a float.
 double Saturated(const ChannelSettings& channel) {
@@ -63,26 +62,26 @@ Sample FakeSource::ReadChannel(std::size_t at, double now_s) {
   };
   if (fault != nullptr) {
     switch (fault->kind) {
-      case Kind::kLost:
+      case FakeFault::Kind::kLost:
         return missing(Cause::kNoReply, "no answer");
-      case Kind::kCorrupt:
+      case FakeFault::Kind::kCorrupt:
         return missing(Cause::kNoReply, "a reply that fails its check");
-      case Kind::kRefused:
+      case FakeFault::Kind::kRefused:
         return missing(Cause::kRefused, "exception 4 (device failure)");
-      case Kind::kLate:
+      case FakeFault::Kind::kLate:
         reading.time_s = now_s - fault->late_s;
         StoreValue(channel, truth_(channel.name, reading.time_s), reading.words);
         break;
-      case Kind::kDoubled:
+      case FakeFault::Kind::kDoubled:
         reading = last_[at];
         break;
-      case Kind::kFrozen:
+      case FakeFault::Kind::kFrozen:
         reading.words = last_[at].words;
         break;
-      case Kind::kSaturated:
+      case FakeFault::Kind::kSaturated:
         StoreValue(channel, Saturated(channel), reading.words);
         break;
-      case Kind::kSentinel:
+      case FakeFault::Kind::kSentinel:
         if (!channel.sentinels.empty()) {
           StoreNumber(channel.sentinels.front(), channel.type, channel.order, reading.words);
         }

@@ -17,17 +17,19 @@ namespace abbe::hal {
 namespace {
 
 using Kind = ModbusFault::Kind;
-using std::chrono::steady_clock;
+
+// s: a wait that ends so much later than it should is that of a program that did not run.
+constexpr double kAway = 0.1;
 
 std::string ErrorText(int error) { return std::generic_category().message(error); }
 
 ModbusClient::Time After(ModbusClient::Time start, double seconds) {
   return start +
-         std::chrono::duration_cast<steady_clock::duration>(std::chrono::duration<double>(seconds));
+         std::chrono::duration_cast<BootClock::duration>(std::chrono::duration<double>(seconds));
 }
 
 double SecondsTo(ModbusClient::Time time) {
-  return std::chrono::duration<double>(time - steady_clock::now()).count();
+  return std::chrono::duration<double>(time - BootClock::now()).count();
 }
 
 int MillisecondsTo(ModbusClient::Time time) {
@@ -87,7 +89,7 @@ ModbusClient::ModbusClient(const DeviceSettings& device)
 ModbusClient::~ModbusClient() = default;
 
 ModbusClient::Time ModbusClient::Deadline() const {
-  return After(steady_clock::now(), device_.times.deadline);
+  return After(BootClock::now(), device_.times.deadline);
 }
 
 std::optional<ModbusFault> ModbusClient::Read(RegisterTable table, int address,
@@ -106,6 +108,12 @@ std::optional<ModbusFault> ModbusClient::Write(int address, std::uint16_t word, 
   return Exchange({device_.unit, 6, address, word}, deadline);
 }
 
+std::string ModbusClient::Identity(Time deadline) {
+  if (!Exchange({device_.unit, kWhoAreYou, 0, 0}, deadline)) return IdentityText(objects_);
+  if (!connected_) std::this_thread::sleep_until(std::min(retry_at_, deadline));
+  return {};
+}
+
 ModbusClient::Fault ModbusClient::Exchange(const ModbusRequest& request, Time deadline) {
   if (!connected_) {
     if (Fault fault = Connect(deadline)) return fault;
@@ -115,23 +123,25 @@ ModbusClient::Fault ModbusClient::Exchange(const ModbusRequest& request, Time de
   ++transaction_;
   if (Fault fault = Send(Encode(request, framing_, transaction_).view(), request)) return fault;
   if (Fault fault = Receive(request, deadline)) return fault;
-  quiet_since_ = steady_clock::now();
+  quiet_since_ = BootClock::now();
   const ModbusReply reply =
       CheckReply(request, framing_, transaction_, std::span(reply_.data(), reply_size_));
   if (!reply.wrong.empty()) {
-    return Drop(Kind::kBadReply, fmt::format("{} to: {}", reply.wrong, request.Text()));
+    return Drop(ModbusFault::Kind::kBadReply,
+                fmt::format("{} to: {}", reply.wrong, request.Text()));
   }
   backoff_s_ = 0.0;
   if (reply.exception != 0) {
-    return ModbusFault{Kind::kException, reply.exception,
+    return ModbusFault{ModbusFault::Kind::kException, reply.exception,
                        fmt::format("{} to: {}", ExceptionText(reply.exception), request.Text())};
   }
   words_ = reply.words;
+  objects_ = reply.objects;
   return {};
 }
 
 ModbusClient::Fault ModbusClient::Connect(Time deadline) {
-  const auto now = steady_clock::now();
+  const auto now = BootClock::now();
   if (now < retry_at_) return ModbusFault{Kind::kNoLink, 0, last_fault_};
   const double limit =
       std::clamp(std::min(device_.times.response, SecondsTo(deadline)), 1e-3, 60.0);
@@ -140,7 +150,7 @@ ModbusClient::Fault ModbusClient::Connect(Time deadline) {
                               static_cast<std::uint32_t>(1e6 * (limit - whole)));
   if (modbus_connect(link_->context) != 0) {
     const int error = errno;
-    return Drop(Kind::kNoLink, fmt::format("cannot connect: {}", ErrorText(error)));
+    return Drop(ModbusFault::Kind::kNoLink, fmt::format("cannot connect: {}", ErrorText(error)));
   }
   connected_ = true;
   ++connections_;
@@ -154,12 +164,12 @@ ModbusClient::Fault ModbusClient::Send(std::span<const std::uint8_t> frame,
                            : write(link_->socket(), frame.data(), frame.size());
   if (sent == static_cast<ssize_t>(frame.size())) return {};
   const int error = sent < 0 ? errno : EIO;
-  return Drop(Kind::kNoLink,
+  return Drop(ModbusFault::Kind::kNoLink,
               fmt::format("the link broke ({}) at: {}", ErrorText(error), request.Text()));
 }
 
 ModbusClient::Fault ModbusClient::Receive(const ModbusRequest& request, Time deadline) {
-  const auto start = steady_clock::now();
+  const auto start = BootClock::now();
   Time limit = std::min(After(start, device_.times.response), deadline);
   pollfd end{link_->socket(), POLLIN, 0};
   reply_size_ = 0;
@@ -168,8 +178,15 @@ ModbusClient::Fault ModbusClient::Receive(const ModbusRequest& request, Time dea
   while (reply_size_ < wanted) {
     const int ready = poll(&end, 1, MillisecondsTo(limit));
     if (ready < 0 && errno == EINTR) continue;
-    if (ready <= 0) {
-      const double waited_ms = -1e3 * SecondsTo(start);
+    const double over = -SecondsTo(limit), waited_ms = -1e3 * SecondsTo(start);
+    if (over > kAway) {
+      // What has come meanwhile came at a time that nobody knows.
+      return Drop(Kind::kSuspended,
+                  fmt::format("abbe did not run for {:.0f} ms (suspended, or the computer is too "
+                              "busy) while it waited for the answer to: {}",
+                              1e3 * over, request.Text()));
+    }
+    if (ready <= 0 || over > 0.0) {
       return Drop(Kind::kTimeout,
                   reply_size_ == 0
                       ? fmt::format("no answer within {:.0f} ms to: {}", waited_ms, request.Text())
@@ -181,11 +198,12 @@ ModbusClient::Fault ModbusClient::Receive(const ModbusRequest& request, Time dea
     if (size < 0 && errno == EINTR) continue;
     if (size <= 0) {
       const std::string why = size == 0 ? "closed by the device" : ErrorText(errno);
-      return Drop(Kind::kNoLink, fmt::format("the link broke ({}) at: {}", why, request.Text()));
+      return Drop(ModbusFault::Kind::kNoLink,
+                  fmt::format("the link broke ({}) at: {}", why, request.Text()));
     }
     reply_size_ += static_cast<std::size_t>(size);
     wanted = ReplyLength(got(), framing_);
-    limit = std::min(After(steady_clock::now(), device_.times.byte), deadline);
+    limit = std::min(After(BootClock::now(), device_.times.byte), deadline);
   }
   reply_size_ = wanted;  // what follows a complete reply is not part of it
   return {};
@@ -194,7 +212,7 @@ ModbusClient::Fault ModbusClient::Receive(const ModbusRequest& request, Time dea
 ModbusClient::Fault ModbusClient::Drop(ModbusFault::Kind kind, std::string text) {
   modbus_close(link_->context);
   connected_ = false;
-  const auto now = steady_clock::now();
+  const auto now = BootClock::now();
   // Serial replies carry no number: one that is still under way must have died out before the next
   // request, or it would be taken for the answer to it.
   const bool tcp = framing_ == ModbusFraming::kTcp;

@@ -2,7 +2,8 @@
 // request.
 //
 // libmodbus opens and closes the link (TCP connect within a time, serial modes); the frames are
-// made and checked in modbus_frame.h. After any fault but an exception the link is closed. It is
+// made and checked in modbus_frame.h. A reply that is found after its time is late, whatever kept
+// this program from looking. After any fault but an exception the link is closed. It is
 // opened again at the next call; if that fails too, later calls return at once until the back-off
 // has passed (doubled each time). Bytes left over from before are thrown away ahead of each
 // request.
@@ -11,13 +12,13 @@
 // their own client; on a serial line they must be called in turn, by one thread.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "hal/clock.h"
 #include "hal/device_settings.h"
 #include "hal/modbus_frame.h"
 
@@ -28,6 +29,7 @@ struct ModbusFault {
     kNoLink,     // no connection, or the back-off is running
     kTimeout,    // no reply, or half of one
     kBadReply,   // a reply that does not belong to the request, or a broken one
+    kSuspended,  // this program did not run while the reply was due: when it came is not known
     kException,  // the device refuses; the link stays
   };
   Kind kind;
@@ -37,7 +39,7 @@ struct ModbusFault {
 
 class ModbusClient {
  public:
-  using Time = std::chrono::steady_clock::time_point;
+  using Time = BootClock::time_point;
 
   // Looks up the host name (this alone may take longer than a deadline) and opens nothing.
   // DeviceError when the name cannot be resolved.
@@ -51,6 +53,9 @@ class ModbusClient {
   std::optional<ModbusFault> Read(RegisterTable table, int address, std::span<std::uint16_t> words,
                                   Time deadline);
   std::optional<ModbusFault> Write(int address, std::uint16_t word, Time deadline);
+  // What the device says of itself, "vendor product revision"; empty when it does not. A device
+  // that takes the question amiss is given its time to recover, its response time at most.
+  std::string Identity(Time deadline);
 
   // `deadline` seconds (of the settings) from now.
   Time Deadline() const;
@@ -81,7 +86,7 @@ class ModbusClient {
   std::string last_fault_;
   std::array<std::uint8_t, kLongestFrame> reply_{};
   std::size_t reply_size_ = 0;
-  std::span<const std::uint8_t> words_;  // of the last good reply
+  std::span<const std::uint8_t> words_, objects_;  // of the last good reply
 };
 
 }  // namespace abbe::hal

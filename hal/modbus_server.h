@@ -1,4 +1,4 @@
-// A small Modbus server on libmodbus: TCP with any number of clients and unit ids, or one unit on a
+// A small Modbus server: TCP with any number of clients and unit ids, or one unit on a
 // serial line. It answers from a RegisterBank, which the virtual rig and the tests implement.
 //
 //   RegisterImage image;                                     // or an own RegisterBank
@@ -7,6 +7,7 @@
 //   use(server->port());                                     // the free port that was found
 //
 // The bank is called on the server's own thread, one call at a time, at the moment of the request.
+// A client that sends half a request, or takes no reply, holds up nobody else; its link is closed.
 #pragma once
 
 #include <array>
@@ -21,6 +22,7 @@
 #include <string>
 #include <thread>
 #include <tuple>
+#include <vector>
 
 #include "failure/failure.h"
 #include "hal/register_table.h"
@@ -49,6 +51,8 @@ class RegisterBank {
                       std::span<std::uint16_t> words) = 0;
   // Takes holding registers (1 to 123 words). Without an own version nothing can be written.
   virtual Answer Write(int unit, int address, std::span<const std::uint16_t> words);
+  // What a unit says of itself: vendor, product, revision (function 43); empty: nothing.
+  virtual std::vector<std::string> Identity(int unit);
 };
 
 // Registers kept in memory, safe to change from any thread; unknown registers are an illegal
@@ -96,9 +100,11 @@ class ModbusServer {
  private:
   struct Link;  // hides libmodbus
   ModbusServer(std::unique_ptr<Link> link, RegisterBank& bank);
+  struct Client;
   void ServeTcp(const std::stop_token& stop);
   void ServeSerial(const std::stop_token& stop);
-  bool AnswerOne();  // false: this connection is over
+  bool AnswerTcp(Client& client);  // false: this connection is over
+  void AnswerSerial(Client& client, std::size_t length);
 
   std::unique_ptr<Link> link_;
   RegisterBank& bank_;

@@ -2,7 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <thread>
+
 namespace abbe::hal {
+namespace {
+
+constexpr int kAcknowledge = 5, kBusy = 6;  // exceptions
+
+}  // namespace
 
 ModbusSource::ModbusSource(const DeviceSettings& device, double stale_s, Clock& clock, Log log)
     : device_(device), clock_(clock), log_(std::move(log)), client_(device_) {
@@ -15,16 +23,25 @@ ModbusSource::ModbusSource(const DeviceSettings& device, double stale_s, Clock& 
   }
 }
 
-DeviceError ModbusSource::Error(const std::string& fault) const {
+DeviceError ModbusSource::Error(const std::string& fault, int exception) const {
+  const std::string remedy =
+      exception != 0 ? ExceptionRemedy(exception)
+                     : "check that it is on, the link, and its place and unit in the machine file";
   return DeviceError(
-      fmt::format("device \"{}\" ({}): {}; check that it is on, the link, and its place "
-                  "and unit in the machine file",
-                  device_.name, PlaceOf(device_), fault));
+      fmt::format("device \"{}\" ({}): {}; {}", device_.name, PlaceOf(device_), fault, remedy));
 }
 
 void ModbusSource::Require() {
-  Read();
-  if (!fault_.empty()) throw Error(fault_);
+  constexpr std::chrono::milliseconds kBusyFor{2000}, kAgain{50};
+  const auto until = BootClock::now() + kBusyFor;
+  while (true) {
+    Read();
+    const bool busy = exception_ == kAcknowledge || exception_ == kBusy;
+    if (!busy || BootClock::now() >= until) break;
+    std::this_thread::sleep_for(kAgain);
+  }
+  if (!fault_.empty()) throw Error(fault_, exception_);
+  identity_ = client_.Identity(client_.Deadline());
 }
 
 void ModbusSource::StartCycle(std::uint16_t word) {
@@ -35,7 +52,7 @@ void ModbusSource::StartCycle(std::uint16_t word) {
                     device_.name));
   }
   const auto fault = client_.Write(device_.cycle_start->address, word, client_.Deadline());
-  if (fault) throw Error(fault->text);
+  if (fault && fault->exception != kAcknowledge) throw Error(fault->text, fault->exception);
 }
 
 SampleSet ModbusSource::Read() {
@@ -53,6 +70,7 @@ SampleSet ModbusSource::Read() {
           reading.cause != Cause::kNone
               ? judge.Missing(reading.cause, now)
               : judge.Judge(reading.words, StatusOf(channel), reading.time_s, now));
+      set.samples.back().within_s = reading.within_s;
     }
   }
   FinishSet(set, now);
@@ -61,7 +79,7 @@ SampleSet ModbusSource::Read() {
 
 void ModbusSource::ReadBlocks() {
   const auto deadline = client_.Deadline();
-  std::string fault_text;
+  std::optional<ModbusFault> first_fault;
   bool link_lost = false;
   for (std::size_t b = 0; b < readings_.size(); ++b) {
     BlockReading& reading = readings_[b];
@@ -70,16 +88,19 @@ void ModbusSource::ReadBlocks() {
     const BlockSettings& block = device_.blocks[b];
     const double start = clock_.Now();
     const auto fault = client_.Read(block.table, block.address, reading.words, deadline);
-    reading.time_s = 0.5 * (start + clock_.Now());
+    const double end = clock_.Now();
+    reading.time_s = 0.5 * (start + end);
+    reading.within_s = 0.5 * (end - start);
     if (!fault) {
       reading.cause = Cause::kNone;
       continue;
     }
     if (fault->kind == ModbusFault::Kind::kException) reading.cause = Cause::kRefused;
+    if (fault->kind == ModbusFault::Kind::kSuspended) reading.cause = Cause::kClockJump;
     link_lost = fault->kind != ModbusFault::Kind::kException;
-    if (fault_text.empty()) fault_text = fault->text;
+    if (!first_fault) first_fault = fault;
   }
-  Note(fault_text);
+  Note(first_fault);
 }
 
 std::optional<std::uint16_t> ModbusSource::StatusOf(const ChannelSettings& channel) const {
@@ -94,7 +115,8 @@ std::optional<std::uint16_t> ModbusSource::StatusOf(const ChannelSettings& chann
   return {};
 }
 
-void ModbusSource::Note(const std::string& fault) {
+void ModbusSource::Note(const std::optional<ModbusFault>& first) {
+  const std::string fault = first ? first->text : std::string();
   if (!fault.empty()) {
     ++failures_;
     ++failures_in_a_row_;
@@ -108,6 +130,7 @@ void ModbusSource::Note(const std::string& fault) {
   }
   if (fault.empty()) failures_in_a_row_ = 0;
   fault_ = fault;
+  exception_ = first ? first->exception : 0;
 }
 
 std::string ModbusSource::Fault() const {

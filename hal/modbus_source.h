@@ -1,8 +1,9 @@
 // The readings of one Modbus device.
 //
 // Each Read() asks for every block of the device, one request each, and judges every channel. A
-// sample is stamped with the middle of its exchange. A block that the device refuses (exception) is
-// bad and the others are still read; after any other fault all channels not yet read are bad, too.
+// sample is stamped with the middle of its exchange, within half of which it was measured. A block
+// that the device refuses (exception) is bad and the others are still read; after any other fault
+// all channels not yet read are bad, too.
 #pragma once
 
 #include <memory>
@@ -23,11 +24,15 @@ class ModbusSource : public SampleSource {
   // DeviceError when a host name cannot be resolved.
   ModbusSource(const DeviceSettings& device, double stale_s, Clock& clock, Log log = {});
 
-  // DeviceError, naming the device and what it answered, unless it now answers every block.
+  // DeviceError, naming the device and what it answered, unless it now answers every block; one
+  // that is busy is given two seconds. Then asks it who it is.
   void Require();
+  // As Require() learned it, "vendor product revision"; empty when it does not say.
+  const std::string& identity() const { return identity_; }
 
   // Writes `word` to the register that starts the machine's program. DeviceError when the device
-  // does not take it; InputError when it has no such register.
+  // does not take it (exception 5, "acknowledge", says that it does); InputError when it has no
+  // such register.
   void StartCycle(std::uint16_t word);
 
   const std::vector<Channel>& channels() const override { return channels_; }
@@ -40,13 +45,13 @@ class ModbusSource : public SampleSource {
  private:
   struct BlockReading {
     std::vector<std::uint16_t> words;
-    double time_s = 0.0;
+    double time_s = 0.0, within_s = 0.0;
     Cause cause = Cause::kNone;
   };
   void ReadBlocks();
   std::optional<std::uint16_t> StatusOf(const ChannelSettings& channel) const;
-  void Note(const std::string& fault);  // counts, and logs a change
-  DeviceError Error(const std::string& fault) const;
+  void Note(const std::optional<ModbusFault>& fault);  // counts, and logs a change
+  DeviceError Error(const std::string& fault, int exception) const;
 
   DeviceSettings device_;
   Clock& clock_;
@@ -57,6 +62,8 @@ class ModbusSource : public SampleSource {
   std::vector<BlockReading> readings_;
   std::uint64_t sequence_ = 0;
   std::string fault_;
+  int exception_ = 0;  // that `fault_` is
+  std::string identity_;
   std::uint64_t failures_ = 0;
   std::uint64_t failures_in_a_row_ = 0;
 };

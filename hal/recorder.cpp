@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <utility>
 
+#include "hal/pace.h"
 #include "hal/sample_row.h"
 
 namespace abbe::hal {
@@ -31,19 +33,20 @@ RecordOutcome Record(SampleSource& source, Clock& clock, recording::Writer& writ
   RecordOutcome outcome;
   const auto pass = options.passes_only ? PassOf(source) : std::nullopt;
   const double start_s = clock.Now();
-  double next_s = start_s, row_s = -1.0, skews_s = 0.0;
+  Pace pace(clock, options.rate);
+  double row_s = -1.0, skews_s = 0.0;
+  bool jumped = false;
   try {
     while (!(options.stopped && options.stopped()) && !source.Ended()) {
-      clock.SleepUntil(next_s);
-      const double now_s = clock.Now();
-      if (now_s - start_s >= options.seconds) break;
-      next_s = std::max(next_s + 1.0 / options.rate, now_s);
+      jumped = !pace.Await() || jumped;
+      if (pace.now_s() - start_s >= options.seconds) break;
       const SampleSet set = source.Read();
+      pace.Done();
       const double set_s = set.time_s - start_s;
       if (!(set_s > row_s)) continue;  // the very same set again is no new row
       if (pass && set.samples[*pass].value == 0.0) continue;
       row[0] = row_s = set_s;
-      row.back() = samples.Fill(set, row);
+      row.back() = samples.Fill(set, row, std::exchange(jumped, false));
       row[row.size() - 2] = 1e3 * set.skew_s;
       skews_s += set.skew_s;
       writer.Append(row);

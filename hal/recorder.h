@@ -25,7 +25,7 @@ namespace abbe::hal {
 struct RecordAbout {
   std::string machine;
   std::string started;                           // "2026-11-21T09:00:00Z"
-  std::map<std::string, std::string> transport;  // of each device, "canopen"
+  std::map<std::string, std::string> transport;  // of each device (OpenedDevices)
 };
 
 // "linkage" when the channels have encoders and all three positions, "reference" when they have
@@ -34,7 +34,8 @@ std::string KindOf(const std::vector<Channel>& channels);
 
 std::vector<std::string> RecordColumns(const std::vector<Channel>& channels);
 
-// The header of the recording: kind, machine, started, the sources of the channels.
+// The header of the recording: kind, machine, started, the sources of the channels; "simulated =
+// true" where a device says so.
 std::string RecordHeader(const RecordAbout& about, const std::vector<Channel>& channels);
 
 struct RecordOptions {

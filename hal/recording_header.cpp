@@ -36,6 +36,14 @@ std::string SourcesText(const std::vector<Channel>& channels,
   return text;
 }
 
+// What a device says of itself stays with its readings to the very end.
+std::string SimulatedText(const std::map<std::string, std::string>& transport) {
+  const auto says = [](const auto& one) {
+    return one.second.find("simulated") != std::string::npos;
+  };
+  return std::ranges::any_of(transport, says) ? "simulated = true\n" : "";
+}
+
 }  // namespace
 
 std::string UtcNow() {
@@ -55,11 +63,11 @@ std::vector<std::string> SweepColumns(const std::vector<Channel>& channels) {
 
 std::string SweepHeader(const SweepPlan& plan, const SweepAbout& about,
                         const std::vector<Channel>& channels) {
-  std::map<std::string, std::string> transport;
-  for (const Channel& channel : channels) transport[channel.device] = about.source;
+  std::map<std::string, std::string> transport = about.transport;
+  for (const Channel& channel : channels) transport.try_emplace(channel.device, about.source);
   std::string text = fmt::format("kind = \"sweep\"\nmachine = {}\naxis = \"{:c}\"\nstarted = {}\n",
                                  Quoted(about.machine), plan.axis, about.started);
-  text += SourcesText(channels, transport);
+  text += SimulatedText(transport) + SourcesText(channels, transport);
   std::string stations;
   for (const double station : plan.stations) {
     stations += fmt::format("{}{:.9g}", stations.empty() ? "" : ", ", station / kMillimetre);
@@ -93,7 +101,7 @@ std::vector<std::string> RecordColumns(const std::vector<Channel>& channels) {
 std::string RecordHeader(const RecordAbout& about, const std::vector<Channel>& channels) {
   return fmt::format("kind = \"{}\"\nmachine = {}\nstarted = {}\n", KindOf(channels),
                      Quoted(about.machine), about.started) +
-         SourcesText(channels, about.transport);
+         SimulatedText(about.transport) + SourcesText(channels, about.transport);
 }
 
 }  // namespace abbe::hal

@@ -30,7 +30,7 @@ enum class Cause {
   kMismatch,       // the device is not the one that the machine file describes
   kIncoherent,     // too far in time from the other samples of its set
   kInterpolated,   // uncertain: made from neighbours, by whoever wrote the recording
-  kClockJump,      // uncertain: the clock of the recording jumped here
+  kClockJump,      // time went on by more than it should: when it was measured is not known
 };
 
 // As printed: "good", "out of range".
@@ -44,12 +44,14 @@ struct Sample {
   double time_s = 0.0;         // when it was measured, by the clock of the measurement
   std::uint64_t sequence = 0;  // counts the readings of this channel; 0: none yet
   double age_s = 0.0;          // at the moment it was handed over
+  double within_s = 0.0;       // it was measured within time_s -+ this
 
   static Sample Good(double value, double time_s, std::uint64_t sequence) {
-    return {value, Quality::kGood, Cause::kNone, time_s, sequence, 0.0};
+    return {value, Quality::kGood, Cause::kNone, time_s, sequence, 0.0, 0.0};
   }
   static Sample Bad(Cause cause, double time_s, std::uint64_t sequence) {
-    return {std::numeric_limits<double>::quiet_NaN(), Quality::kBad, cause, time_s, sequence, 0.0};
+    return {
+        std::numeric_limits<double>::quiet_NaN(), Quality::kBad, cause, time_s, sequence, 0.0, 0.0};
   }
   bool good() const { return quality == Quality::kGood; }
 };
@@ -58,7 +60,7 @@ struct Sample {
 struct SampleSet {
   double time_s = 0.0;         // middle of the samples' times
   std::uint64_t sequence = 0;  // counts the sets, from 1
-  double skew_s = 0.0;         // between the earliest and the latest sample that is not bad
+  double skew_s = 0.0;         // within which all samples that are not bad were measured
   std::vector<Sample> samples;
 
   bool AllGood() const;

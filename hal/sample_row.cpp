@@ -11,8 +11,8 @@ namespace abbe::hal {
 SampleRow::SampleRow(std::vector<Channel> channels, std::vector<std::size_t> columns)
     : channels_(std::move(channels)), columns_(std::move(columns)), bad_(channels_.size()) {}
 
-std::uint32_t SampleRow::Fill(const SampleSet& set, std::span<double> row) {
-  std::uint32_t flags = 0;
+std::uint32_t SampleRow::Fill(const SampleSet& set, std::span<double> row, bool jumped) {
+  std::uint32_t flags = jumped ? FlagOf(Cause::kClockJump) : 0;
   for (std::size_t i = 0; i < set.samples.size(); ++i) {
     const Sample& sample = set.samples[i];
     row[columns_[i]] = sample.value;

@@ -18,8 +18,9 @@ class SampleRow {
   // The column of each channel.
   SampleRow(std::vector<Channel> channels, std::vector<std::size_t> columns);
 
-  // Stores the samples in their columns and returns the flags of the set.
-  std::uint32_t Fill(const SampleSet& set, std::span<double> row);
+  // Stores the samples in their columns and returns the flags of the set; `jumped`: time went on by
+  // more than it should before it.
+  std::uint32_t Fill(const SampleSet& set, std::span<double> row, bool jumped = false);
 
   std::uint64_t flagged() const { return flagged_; }  // sets with a flag
   double worst_skew_s() const { return worst_skew_s_; }

@@ -40,8 +40,8 @@ class SampleSource {
   virtual std::string Fault() const { return {}; }
 };
 
-// Sets time_s and skew_s of a set from its samples, and the age of each at `now_s`. `time_s` is
-// `now_s` when every sample is bad.
+// Sets time_s and skew_s of a set from its samples, what is not known of their times included, and
+// the age of each at `now_s`. `time_s` is `now_s` when every sample is bad.
 void FinishSet(SampleSet& set, double now_s);
 
 }  // namespace abbe::hal

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "hal/pace.h"
 #include "hal/sample_row.h"
 #include "hal/sweep_follower.h"
 #include "settings/unit.h"
@@ -49,6 +50,7 @@ class SweepRecorder {
         options_(options),
         visits_(plan.Visits()),
         follower_(plan),
+        pace_(clock, options.rate),
         row_(SweepColumns(source.channels()).size()),
         samples_(source.channels(), ColumnsOf(source.channels())) {
     for (std::size_t i = 0; i < 3; ++i) row_[kX + i] = options.rest[i] / kMillimetre;
@@ -58,7 +60,8 @@ class SweepRecorder {
   }
 
   SweepOutcome Run() {
-    start_s_ = next_s_ = clock_.Now();
+    start_s_ = clock_.Now();
+    pace_.Begin();
     try {
       outcome_.end = options_.prompt ? Prompted() : Followed();
     } catch (...) {
@@ -76,11 +79,11 @@ class SweepRecorder {
  private:
   // Reads one set into the row; the flags of the set.
   std::uint32_t Read() {
-    clock_.SleepUntil(next_s_);
-    next_s_ = std::max(next_s_ + 1.0 / options_.rate, clock_.Now());
+    const bool kept = pace_.Await();
     const SampleSet set = source_.Read();
+    pace_.Done();
     set_s_ = set.time_s - start_s_;
-    return samples_.Fill(set, row_);
+    return samples_.Fill(set, row_, !kept);
   }
 
   void Write(int pass, int direction, std::uint32_t flags) {
@@ -143,7 +146,7 @@ class SweepRecorder {
 
   SweepEnd Prompted() {
     for (std::size_t i = 0; i < visits_.size(); ++i) {
-      const bool goes_on = !Stopped() && options_.prompt(visits_[i]) && Dwell(visits_[i]);
+      const bool goes_on = Arrived(visits_[i]) && Dwell(visits_[i]);
       if (!goes_on) {
         outcome_.lacking.insert(outcome_.lacking.end(), visits_.begin() + static_cast<long>(i),
                                 visits_.end());
@@ -154,11 +157,33 @@ class SweepRecorder {
     return SweepEnd::kComplete;
   }
 
+  // Asks until the axis stands where it should; false when that is no longer wanted.
+  bool Arrived(const Visit& visit) {
+    while (!Stopped() && !source_.Ended() && options_.prompt(visit)) {
+      if (!has_position_) return true;
+      pace_.Begin();
+      Read();
+      const double station = plan_.stations[visit.station];
+      const double position = row_[swept_] * kMillimetre;
+      if (std::abs(position - station) <= plan_.window) return true;
+      if (!options_.refused) continue;
+      const std::string fault = source_.Fault();
+      options_.refused(
+          std::isnan(position)
+              ? fmt::format("the {:c} axis gives no position{}{}; mend it and confirm again",
+                            plan_.axis, fault.empty() ? "" : ": ", fault)
+              : fmt::format("{:c} stands at {:.4f} mm, not within {:.3g} mm of {:.4f} mm: move it "
+                            "there and confirm again, or correct the station or window_um",
+                            plan_.axis, position / kMillimetre, plan_.window / kMillimetre,
+                            station / kMillimetre));
+    }
+    return false;
+  }
+
   // Records one visit that the operator has confirmed; false when it was cut short.
   bool Dwell(const Visit& visit) {
-    next_s_ = clock_.Now();
-    const double end_s = next_s_ + plan_.settle + plan_.dwell;
-    const double settled_s = next_s_ + plan_.settle;
+    if (!has_position_) pace_.Begin();  // else Arrived() has
+    const double settled_s = pace_.next_s() + plan_.settle;
     bool good = false;
     do {
       if (Stopped() || source_.Ended()) return false;
@@ -166,7 +191,7 @@ class SweepRecorder {
       if (!has_position_) row_[swept_] = plan_.stations[visit.station] / kMillimetre;
       good = good || (flags == 0 && set_s_ + start_s_ >= settled_s);
       Write(visit.pass, visit.direction, flags);
-    } while (next_s_ <= end_s);
+    } while (pace_.next_s() <= settled_s + plan_.dwell);
     if (!good) outcome_.lacking.push_back(visit);
     return true;
   }
@@ -178,11 +203,12 @@ class SweepRecorder {
   const SweepOptions& options_;
   const std::vector<Visit> visits_;
   SweepFollower follower_;
+  Pace pace_;
   std::vector<double> row_;
   SampleRow samples_;
   std::size_t swept_ = kX;
   bool has_position_ = false;
-  double start_s_ = 0.0, next_s_ = 0.0, set_s_ = 0.0, row_s_ = -1.0;
+  double start_s_ = 0.0, set_s_ = 0.0, row_s_ = -1.0;
   std::size_t reported_ = 0;
   std::string reported_fault_;
   SweepOutcome outcome_;

@@ -6,8 +6,9 @@
 //   const SweepOutcome outcome = RecordSweep(source, plan, clock, *writer, options);
 //
 // The sweep is followed by the channel of the swept axis ("x_mm"); where `prompt` is set, the
-// operator says when the axis stands, and a position that no device gives is that of the plan. The
-// recording begins with the first pass, so no row has direction 0. Axes without a channel are
+// operator says when the axis stands; a position that a device gives must then be within `window`
+// of the station, or the operator is asked again, and one that no device gives is that of the plan.
+// The recording begins with the first pass, so no row has direction 0. Axes without a channel are
 // written as `rest`.
 //
 // A sample that is not good is written as NaN (an uncertain one as its number) and its cause is a
@@ -17,6 +18,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,8 @@ struct SweepOptions {
   std::function<void(const SweepProgress&)> progress = {};  // at each visit done and each new fault
   std::function<bool()> stopped = {};                       // true: end cleanly now
   std::function<bool(const Visit&)> prompt = {};  // returns when the axis stands; false: end now
+  // Why a visit that was prompted does not begin: it is prompted again.
+  std::function<void(const std::string& why)> refused = {};
 };
 
 enum class SweepEnd {
@@ -67,15 +71,17 @@ std::vector<std::string> SweepColumns(const std::vector<Channel>& channels);
 struct SweepAbout {
   std::string machine;
   std::string started;        // "2026-11-21T09:00:00Z"
-  std::string source;         // where the readings come from, "modbus"
+  std::string source;         // where the readings of a device come from that has no `transport`
   std::string mounting = {};  // which set-up of head and target this is; empty: not stated
   std::string more = {};      // further lines of TOML
+  std::map<std::string, std::string> transport = {};  // of each device, "modbus, maker's name"
 };
 
 // The present time as a header writes it.
 std::string UtcNow();
 
-// The header of the recording: kind, machine, axis, started, the sources of the channels, the plan.
+// The header of the recording: kind, machine, axis, started, the sources of the channels, the plan;
+// "simulated = true" where a device says so.
 std::string SweepHeader(const SweepPlan& plan, const SweepAbout& about,
                         const std::vector<Channel>& channels);
 

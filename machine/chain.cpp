@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cctype>
+#include <sstream>
+#include <vector>
 
 #include "failure/failure.h"
 
@@ -72,18 +74,77 @@ Chain Chain::Parse(std::string_view text) {
     }
   }
   if (!past_bed) throw Refuse(text, "has no b");
-  for (const char axis : std::string_view("XYZ")) {
-    if ((chain.workpiece_axes_ + chain.tool_axes_).find(axis) == std::string::npos) {
-      throw Refuse(text, fmt::format("lacks the axis {}", axis));
-    }
+  if (chain.workpiece_axes_.empty() && chain.tool_axes_.empty()) {
+    throw Refuse(text, "names none of the axes X, Y and Z");
   }
   return chain;
 }
 
 bool Chain::CarriesTarget(char axis) const {
-  if (workpiece_axes_.find(axis) != std::string::npos) return true;
-  if (tool_axes_.find(axis) != std::string::npos) return false;
+  if (axis >= 'X' && axis <= 'Z') return workpiece_axes_.find(axis) != std::string::npos;
   throw InputError(fmt::format("'{}' is no axis of the chain {}; name X, Y or Z", axis, Text()));
+}
+
+std::optional<Positive> PositiveNamed(std::string_view word) {
+  if (word == "tool") return Positive::kTool;
+  if (word == "carriage") return Positive::kCarriage;
+  return std::nullopt;
+}
+
+void Chain::SetPositive(const std::array<Positive, 3>& positive) {
+  for (std::size_t i = 0; i < positive.size(); ++i) {
+    const bool against = positive[i] == Positive::kTool && CarriesTarget("XYZ"[i]);
+    carriage_sense_[i] = against ? -1.0 : 1.0;
+  }
+}
+
+void Chain::ReadPositive(std::string_view words, std::string_view how) {
+  std::vector<Positive> read;
+  std::istringstream text{std::string(words)};
+  for (std::string word; text >> word;) {
+    const std::optional<Positive> positive = PositiveNamed(word);
+    if (!positive) {
+      throw InputError(
+          fmt::format("\"{}\" is no way to count an axis: write \"tool\" or \"carriage\"", word));
+    }
+    read.push_back(*positive);
+  }
+  if (read.empty() && workpiece_axes_.empty()) return;
+  if (read.empty()) {
+    throw InputError(fmt::format(
+        "nothing says which way {} counts, which carries the workpiece; {}: tool, where the "
+        "number rises as the tool goes towards + against the workpiece (ISO 841), or carriage, "
+        "where it rises as the workpiece goes towards +",
+        workpiece_axes_.front(), how));
+  }
+  if (read.size() != 1 && read.size() != 3) {
+    throw InputError(
+        fmt::format("\"{}\" must be one word for all axes or one each for X, Y and Z: tool or "
+                    "carriage",
+                    words));
+  }
+  SetPositive({read.front(), read.size() == 1 ? read.front() : read[1], read.back()});
+}
+
+std::string Chain::PositiveText() const {
+  std::string text;
+  for (const char axis : std::string_view("XYZ")) {
+    if (!text.empty()) text += ' ';
+    text += ToolSense(axis) > 0.0 ? "tool" : "carriage";
+  }
+  return text;
+}
+
+double Chain::CarriageSense(char axis) const {
+  return carriage_sense_[static_cast<std::size_t>(axis - 'X')];
+}
+
+double Chain::ToolSense(char axis) const {
+  return CarriesTarget(axis) ? -CarriageSense(axis) : CarriageSense(axis);
+}
+
+Eigen::Vector3d Chain::ToolSenses() const {
+  return {ToolSense('X'), ToolSense('Y'), ToolSense('Z')};
 }
 
 std::string Chain::Movers(char axis) const {

@@ -40,10 +40,12 @@ LineRule RuleFor(const FunctionForm& form, const Travel& travel) {
 
 }  // namespace
 
-ErrorFunction::ErrorFunction(int axis, int motion, SharedForm form, const Travel& travel)
+ErrorFunction::ErrorFunction(int axis, int motion, SharedForm form, const Travel& travel,
+                             Gauge gauge)
     : axis_(axis),
       motion_(motion),
       form_(std::move(form)),
+      gauge_(gauge),
       travel_(travel),
       coefficients_(Eigen::VectorXd::Zero(form_->size())) {
   if (!(travel.first < travel.last)) {
@@ -64,13 +66,17 @@ void ErrorFunction::SetCoefficients(const Eigen::Ref<const Eigen::VectorXd>& coe
         fmt::format("a coefficient of {} is not a finite number", MotionName(axis_, motion_)));
   }
   coefficients_ = coefficients;
-  if (form_ == nullptr) return;
+  if (form_ == nullptr || gauge_ == Gauge::kNone) return;
   if (!form_->IsLinear()) return UpdateGauge();
   offset_ = offset_gradient_.dot(coefficients_);
   slope_ = slope_gradient_.dot(coefficients_);
 }
 
 void ErrorFunction::UpdateGauge() {
+  if (gauge_ == Gauge::kNone) {
+    offset_gradient_ = slope_gradient_ = Eigen::VectorXd::Zero(size());
+    return;
+  }
   const double* const c = coefficients_.data();
   Eigen::VectorXd row(size());
   offset_ = form_->Evaluate(travel_.first, c, nullptr, row.data());

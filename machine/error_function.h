@@ -1,11 +1,13 @@
 // One error motion over the travel of its axis: a form, its coefficients and the gauge.
+// Positions are those that the control shows (chain.h).
 //
 //   f(x) = form(x; c) - form(x0; c) - s (x - x0)         x0 the first end of the travel [x0, x1]
 //
 // Gauge: every error function is zero at x0. A straightness has no linear part besides, because the
 // slope of an axis is its squareness: s is then the slope of the least-squares line of the form
 // over the full travel with uniform weight, else 0. The integral in s is exact to rounding for
-// every form, so the gauge holds for any coefficients and needs no constraint.
+// every form, so the gauge holds for any coefficients and needs no constraint. With Gauge::kNone f
+// is the form itself: for tables of others, whose constants and slopes are part of what they say.
 //
 //   ErrorFunction eyx(0, 1, MakePolynomialForm(4, 0.0, 0.06), {0.0, 0.06});
 //   eyx.SetCoefficients(c);
@@ -25,14 +27,18 @@
 
 namespace abbe::machine {
 
+enum class Gauge { kZeroAtStart, kNone };
+
 class ErrorFunction {
  public:
   ErrorFunction() = default;  // zero at every x, no coefficients
   // Motion `motion` of axis `axis`, error_motion.h; c = 0.
-  ErrorFunction(int axis, int motion, SharedForm form, const Travel& travel);
+  ErrorFunction(int axis, int motion, SharedForm form, const Travel& travel,
+                Gauge gauge = Gauge::kZeroAtStart);
 
   int size() const { return static_cast<int>(coefficients_.size()); }
   const SharedForm& form() const { return form_; }  // null: zero at every x
+  Gauge gauge() const { return gauge_; }
   const Eigen::VectorXd& coefficients() const { return coefficients_; }
   void SetCoefficients(const Eigen::Ref<const Eigen::VectorXd>& coefficients);
 
@@ -44,6 +50,7 @@ class ErrorFunction {
 
   int axis_ = 0, motion_ = 0;
   SharedForm form_;
+  Gauge gauge_ = Gauge::kZeroAtStart;
   Travel travel_{0.0, 0.0};
   Eigen::VectorXd coefficients_;
   double offset_ = 0.0, slope_ = 0.0;

@@ -23,11 +23,39 @@ Chain ReadChain(const settings::Table& root) {
 
 Travel ReadTravel(const settings::Table& axis) {
   const std::vector<double> ends = axis.Quantities("travel_mm", 2);
-  axis.RefuseUnknown();
   if (!(ends[0] < ends[1])) {
     throw axis.Error("travel_mm", "must be [first, last] with the first below the last");
   }
   return {ends[0], ends[1]};
+}
+
+Travel ReadLimit(const settings::Table& axis, const Travel& travel) {
+  if (!axis.Has("limit_mm")) {
+    axis.Quantities("limit_mm", 0, std::vector<double>{});  // known, but has no value of its own
+    return {travel.first - kBeyondTravel, travel.last + kBeyondTravel};
+  }
+  const std::vector<double> ends = axis.Quantities("limit_mm", 2);
+  if (ends[0] > travel.first || ends[1] < travel.last) {
+    throw axis.Error("limit_mm", "must be [first, last], the soft limits, and hold the travel_mm");
+  }
+  return {ends[0], ends[1]};
+}
+
+// An axis that carries the tool may say it too: both words then mean the same.
+Positive ReadPositive(const settings::Table& axis, char letter, const Chain& chain) {
+  if (!axis.Has("positive") && chain.CarriesTarget(letter)) {
+    throw axis.Error(
+        "positive",
+        fmt::format("is missing: {} carries the workpiece; write positive = \"tool\" where its "
+                    "number rises as the tool goes towards + against the workpiece (ISO 841, the "
+                    "table then goes towards -), or positive = \"carriage\" where it rises as the "
+                    "table itself goes towards +",
+                    letter));
+  }
+  const std::string word = axis.Text("positive", "tool");
+  const std::optional<Positive> positive = PositiveNamed(word);
+  if (positive) return *positive;
+  throw axis.Error("positive", fmt::format("\"{}\" is not one of: tool, carriage", word));
 }
 
 Population ReadPopulation(const settings::Table& table) {
@@ -61,6 +89,12 @@ double InTravel(const Travel& travel, int axis, double position) {
   const double rounding = 16 * std::numeric_limits<double>::epsilon() *
                           std::max(std::abs(travel.first), std::abs(travel.last));
   if (!(position >= travel.first - rounding && position <= travel.last + rounding)) {
+    if (!(travel.last > travel.first)) {
+      throw InputError(
+          fmt::format("{} = {:.9g} mm, but the machine has no axis {}: add it to the "
+                      "chain and as [axis.{}], or leave the position out",
+                      "XYZ"[axis], 1e3 * position, "XYZ"[axis], "XYZ"[axis]));
+    }
     throw InputError(
         fmt::format("{} = {:.9g} mm lies outside its travel, {:.9g} to {:.9g} mm: the errors of "
                     "the machine are "
@@ -68,6 +102,12 @@ double InTravel(const Travel& travel, int axis, double position) {
                     "XYZ"[axis], 1e3 * position, 1e3 * travel.first, 1e3 * travel.last));
   }
   return std::clamp(position, travel.first, travel.last);
+}
+
+std::array<Travel, 3> AroundTravels(const std::array<Travel, 3>& travels) {
+  std::array<Travel, 3> around = travels;
+  for (Travel& each : around) each = {each.first - kBeyondTravel, each.last + kBeyondTravel};
+  return around;
 }
 
 Machine ReadMachine(const settings::Table& root) {
@@ -78,10 +118,20 @@ Machine ReadMachine(const settings::Table& root) {
       .name = root.Text("name"),
       .chain = ReadChain(root),
       .reference = Eigen::Vector3d(reference[0], reference[1], reference[2]),
-      .travels = {ReadTravel(axes.Child("X")), ReadTravel(axes.Child("Y")),
-                  ReadTravel(axes.Child("Z"))},
+      .travels = {},
+      .limits = {},
       .population = ReadPopulation(root.Child("population")),
   };
+  std::array<Positive, 3> positive{};
+  for (std::size_t i = 0; i < machine.travels.size(); ++i) {
+    const char letter = "XYZ"[i];
+    const settings::Table axis = axes.Child(std::string_view(&letter, 1));
+    machine.travels[i] = ReadTravel(axis);
+    machine.limits[i] = ReadLimit(axis, machine.travels[i]);
+    positive[i] = ReadPositive(axis, letter, machine.chain);
+    axis.RefuseUnknown();
+  }
+  machine.chain.SetPositive(positive);
   axes.RefuseUnknown();
   return machine;
 }
@@ -91,6 +141,7 @@ Machine ReadMachineWithoutAxes(const settings::Table& root) {
           .chain = Chain::Parse("[w b X Y Z t]"),
           .reference = Eigen::Vector3d::Zero(),
           .travels = {},
+          .limits = {},
           .population = ReadPopulation(root.Child("population"))};
 }
 

@@ -22,9 +22,14 @@ namespace abbe::machine {
 int AxisIndex(char axis);
 
 struct Travel {
-  double first;  // m
+  double first;  // m, as the control counts
   double last;   // m, above first
 };
+
+// How far beyond the travel the soft limits lie where the machine file does not say.
+inline constexpr double kBeyondTravel = 0.1e-3;  // m
+
+std::array<Travel, 3> AroundTravels(const std::array<Travel, 3>& travels);
 
 // The position itself, or the end of the travel where only rounding puts it beyond (16 eps).
 // InputError names the axis 0, 1, 2 and its travel: nothing is known outside it.
@@ -45,9 +50,10 @@ struct Population {
 
 struct Machine {
   std::string name;
-  Chain chain;
+  Chain chain;                    // with the way in which the control counts
   Eigen::Vector3d reference;      // m, in M
-  std::array<Travel, 3> travels;  // of X, Y, Z
+  std::array<Travel, 3> travels;  // of X, Y, Z: where the errors are known
+  std::array<Travel, 3> limits;   // the soft limits, which hold the travels
   Population population;
 };
 

@@ -4,15 +4,17 @@
 // Frames, all in one place and parallel to M when the axes are at zero: W the workpiece, T the tool
 // body, and one carriage for each axis, all with their origin in the machine's reference point. The
 // bed is M. The tool vector p_TQ is the tool point Q seen from that origin.
-// Position: [X Y Z] as commanded, m. An axis between b and t takes the tool towards +, one between
-// w and b takes the workpiece towards +, so the tool then moves the other way in W.
+// Position: [X Y Z] as the control counts, m. The chain says which way that is (chain.h): with s =
+// CarriageSense the carriage of an axis at the number q stands at s q, and its positioning error,
+// as ISO 230-2 has it, is how much further along its own count it stands: it acts as s EXX. The
+// other five errors are motions of the carriage in M, whichever way it counts.
 // Units: m, rad. T: double, or dual numbers for derivatives.
 // Failure: none; a value that is not finite passes through.
 //
-//   carriage       X_ab = { R = exp([EA EB EC]),  p = q l + [EX EY EZ] }      b on a, a first the
-//   bed lines          l_X = x,  l_Y = exp(C0Y z) y,  l_Z = exp(A0Z x + B0Z y) z workpiece X_MW =
-//   product of the carriages from b to w tool body      X_MT = product of the carriages from b to t
-//   error          p_WQ - nominal = X_MW^-1 X_MT p_TQ - (p_TQ +- positions)
+//   carriage       X_ab = { R = exp([EA EB EC]),  p = s q l + [EX EY EZ] }    b on a, the first on
+//   the bed lines          l_X = x,  l_Y = exp(C0Y z) y,  l_Z = exp(A0Z x + B0Z y) z workpiece X_MW
+//   = product of the carriages from b to w tool body      X_MT = product of the carriages from b to
+//   t error          p_WQ - nominal = X_MW^-1 X_MT p_TQ - (p_TQ +- positions)
 //
 // The X line is the primary and the XY plane the secondary: C0Y turns the Y line about +z, A0Z and
 // B0Z turn the Z line about +x and +y (signs of standards/squareness.h).
@@ -52,23 +54,39 @@ Eigen::Vector3<T> LineOf(int axis, const Eigen::Vector3<T>& squareness) {
   return geometry::ExpRotation<T>(LineTurn<T>(axis, squareness)).col(axis);
 }
 
+// `sense`: the chain's CarriageSense of the axis.
 template <typename T>
-geometry::Transform<T> CarriagePose(int axis, const T& position, const MotionErrors<T>& errors) {
+geometry::Transform<T> CarriagePose(int axis, double sense, const T& position,
+                                    const MotionErrors<T>& errors) {
   geometry::Transform<T> X = geometry::ErrorTransform<T>(errors.axes[axis]);
-  X.p += position * LineOf<T>(axis, errors.squareness);
+  X.p[axis] *= sense;
+  X.p += sense * position * LineOf<T>(axis, errors.squareness);
   return X;
 }
 
 // Of the body at the end of these axes, which stand in the order from the bed.
 template <typename T>
-geometry::Transform<T> BodyPose(const std::string& axes_from_bed, const Eigen::Vector3<T>& position,
-                                const MotionErrors<T>& errors) {
+geometry::Transform<T> BodyPose(const Chain& chain, const std::string& axes_from_bed,
+                                const Eigen::Vector3<T>& position, const MotionErrors<T>& errors) {
   geometry::Transform<T> X;
   for (const char letter : axes_from_bed) {
     const int axis = letter - 'X';
-    X = X * CarriagePose<T>(axis, position[axis], errors);
+    X = X * CarriagePose<T>(axis, chain.CarriageSense(letter), position[axis], errors);
   }
   return X;
+}
+
+template <typename T>
+geometry::Transform<T> WorkpiecePose(const Chain& chain, const Eigen::Vector3<T>& position,
+                                     const MotionErrors<T>& errors) {
+  const std::string& from_workpiece = chain.workpiece_axes();
+  return BodyPose<T>(chain, {from_workpiece.rbegin(), from_workpiece.rend()}, position, errors);
+}
+
+template <typename T>
+geometry::Transform<T> ToolPose(const Chain& chain, const Eigen::Vector3<T>& position,
+                                const MotionErrors<T>& errors) {
+  return BodyPose<T>(chain, chain.tool_axes(), position, errors);
 }
 
 // p_WQ of a perfect machine.
@@ -76,8 +94,9 @@ template <typename T>
 Eigen::Vector3<T> NominalToolInWork(const Chain& chain, const Eigen::Vector3<T>& position,
                                     const Eigen::Vector3<T>& p_TQ) {
   Eigen::Vector3<T> p_WQ = p_TQ;
-  for (const char axis : chain.workpiece_axes()) p_WQ[axis - 'X'] -= position[axis - 'X'];
-  for (const char axis : chain.tool_axes()) p_WQ[axis - 'X'] += position[axis - 'X'];
+  for (const char axis : {'X', 'Y', 'Z'}) {
+    p_WQ[axis - 'X'] += chain.ToolSense(axis) * position[axis - 'X'];
+  }
   return p_WQ;
 }
 
@@ -85,10 +104,8 @@ Eigen::Vector3<T> NominalToolInWork(const Chain& chain, const Eigen::Vector3<T>&
 template <typename T>
 Eigen::Vector3<T> ToolInWork(const Chain& chain, const Eigen::Vector3<T>& position,
                              const Eigen::Vector3<T>& p_TQ, const MotionErrors<T>& errors) {
-  const std::string& from_workpiece = chain.workpiece_axes();
-  const auto X_MW = BodyPose<T>({from_workpiece.rbegin(), from_workpiece.rend()}, position, errors);
-  const auto X_MT = BodyPose<T>(chain.tool_axes(), position, errors);
-  return X_MW.Inverse() * (X_MT * p_TQ);
+  const auto X_MW = WorkpiecePose<T>(chain, position, errors);
+  return X_MW.Inverse() * (ToolPose<T>(chain, position, errors) * p_TQ);
 }
 
 template <typename T>

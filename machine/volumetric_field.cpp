@@ -40,7 +40,11 @@ Vector3d VolumetricField::ErrorOf(const Vector3d& position, const Vector3d& p_TQ
                                   const AxisErrors& errors) const {
   Vector3d p = p_TQ;
   const auto shift = [&](std::size_t axis) -> Vector3d {
-    return errors[axis].head<3>() + position[static_cast<int>(axis)] * lines_[axis];
+    const auto at = static_cast<Eigen::Index>(axis);
+    const double sense = chain_.CarriageSense("XYZ"[axis]);
+    Vector3d way = errors[axis].head<3>() + sense * position[at] * lines_[axis];
+    if (sense < 0.0) way[at] -= 2.0 * errors[axis][at];
+    return way;
   };
   const std::string& tool = chain_.tool_axes();
   for (auto letter = tool.rbegin(); letter != tool.rend(); ++letter) {

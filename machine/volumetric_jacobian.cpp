@@ -18,17 +18,19 @@ Matrix3d LineJacobian(int axis, const Vector3d& squareness) {
   return by_squareness;
 }
 
-// What a change of one carriage does; side is 1 for the tool's, -1 for the workpiece's.
-void AddCarriage(int axis, double side, const Matrix3d& R_Wa, const Vector3d& arm, double q,
-                 const MotionErrors<double>& errors, VolumetricJacobian& out) {
+// What a change of one carriage does; side is 1 for the tool's, -1 for the workpiece's; sense is
+// that of its count.
+void AddCarriage(int axis, double side, double sense, const Matrix3d& R_Wa, const Vector3d& arm,
+                 double q, const MotionErrors<double>& errors, VolumetricJacobian& out) {
   const Vector3d turn = errors.axes[static_cast<std::size_t>(axis)].tail<3>();
   const Matrix3d R = side * R_Wa;
   out.J_error_motions.middleCols<3>(kMotions * axis) = R;
+  out.J_error_motions.col(kMotions * axis + axis) *= sense;
   out.J_error_motions.middleCols<3>(kMotions * axis + 3) =
       -R * geometry::Skew<double>(arm) * geometry::ExpRotationJacobian<double>(turn);
-  out.J_error_squareness += q * R * LineJacobian(axis, errors.squareness);
+  out.J_error_squareness += sense * q * R * LineJacobian(axis, errors.squareness);
   out.J_error_position.col(axis) =
-      R * LineOf<double>(axis, errors.squareness) - side * Vector3d::Unit(axis);
+      sense * (R * LineOf<double>(axis, errors.squareness) - side * Vector3d::Unit(axis));
 }
 
 }  // namespace
@@ -38,8 +40,8 @@ VolumetricJacobian VolumetricErrorAndJacobian(const Chain& chain, const Vector3d
                                               const MotionErrors<double>& errors) {
   const std::string& tool = chain.tool_axes();
   const std::string work(chain.workpiece_axes().rbegin(), chain.workpiece_axes().rend());
-  const Transform<double> X_WM = BodyPose<double>(work, position, errors).Inverse();
-  const Vector3d p_MQ = BodyPose<double>(tool, position, errors) * p_TQ;
+  const Transform<double> X_WM = BodyPose<double>(chain, work, position, errors).Inverse();
+  const Vector3d p_MQ = BodyPose<double>(chain, tool, position, errors) * p_TQ;
   VolumetricJacobian out;
   out.error = X_WM * p_MQ - NominalToolInWork<double>(chain, position, p_TQ);
   out.J_error_squareness.setZero();
@@ -49,8 +51,9 @@ VolumetricJacobian VolumetricErrorAndJacobian(const Chain& chain, const Vector3d
     Vector3d p_aQ = p_MQ;
     for (const char letter : axes_from_bed) {
       const int axis = letter - 'X';
-      const auto X_ab = CarriagePose<double>(axis, position[axis], errors);
-      AddCarriage(axis, side, R_Wa, p_aQ - X_ab.p, position[axis], errors, out);
+      const double sense = chain.CarriageSense(letter);
+      const auto X_ab = CarriagePose<double>(axis, sense, position[axis], errors);
+      AddCarriage(axis, side, sense, R_Wa, p_aQ - X_ab.p, position[axis], errors, out);
       p_aQ = X_ab.Inverse() * p_aQ;
       R_Wa = R_Wa * X_ab.R;
     }

@@ -31,9 +31,9 @@ const ErrorFunction& VolumetricModel::Function(int axis, int motion) const {
   return functions_[axis][motion];
 }
 
-void VolumetricModel::SetForm(int axis, int motion, SharedForm form) {
+void VolumetricModel::SetForm(int axis, int motion, SharedForm form, Gauge gauge) {
   RefuseUnknownMotion(axis, motion);
-  functions_[axis][motion] = ErrorFunction(axis, motion, std::move(form), travels_[axis]);
+  functions_[axis][motion] = ErrorFunction(axis, motion, std::move(form), travels_[axis], gauge);
 }
 
 void VolumetricModel::SetCoefficients(int axis, int motion, const Eigen::VectorXd& coefficients) {

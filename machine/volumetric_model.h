@@ -35,8 +35,8 @@ class VolumetricModel {
   const ErrorFunction& Function(int axis, int motion) const;
   const Eigen::Vector3d& squareness() const { return squareness_; }  // [A0Z B0Z C0Y], rad
 
-  // The form of one function, with the gauge that belongs to it and all coefficients 0.
-  void SetForm(int axis, int motion, SharedForm form);
+  // The form of one function, with its gauge and all coefficients 0.
+  void SetForm(int axis, int motion, SharedForm form, Gauge gauge = Gauge::kZeroAtStart);
   void SetCoefficients(int axis, int motion, const Eigen::VectorXd& coefficients);
   void SetSquareness(const Eigen::Vector3d& squareness) { squareness_ = squareness; }
 

@@ -15,9 +15,6 @@ namespace {
 using machine::kAxes;
 using machine::kMotions;
 
-// What rounding in a file leaves of a gauge that held: 1e-12 m or rad.
-constexpr double kNothing = 1e-12;
-
 machine::Travel TravelOf(const AxisTables& tables, int axis) {
   machine::Travel travel{-std::numeric_limits<double>::infinity(),
                          std::numeric_limits<double>::infinity()};
@@ -37,14 +34,23 @@ machine::Travel TravelOf(const AxisTables& tables, int axis) {
   return travel;
 }
 
-// d squareness [A0Z B0Z C0Y] / d slope of a straightness, standards/squareness.h; zero for the
-// others.
-Eigen::Vector3d SquarenessOfSlope(int axis, int motion) {
-  const std::string name = machine::MotionName(axis, motion);
-  if (name == "EZY" || name == "EYZ") return {-1.0, 0.0, 0.0};
-  if (name == "EZX" || name == "EXZ") return {0.0, 1.0, 0.0};
-  if (name == "EYX" || name == "EXY") return {0.0, 0.0, -1.0};
-  return Eigen::Vector3d::Zero();
+// Axes that carry the workpiece and all count as the tool goes are, for a control, axes of the
+// tool: with X_ab the pose of their carriage, (X_Y X_X)^-1 X_Z = X_X^-1 X_Y^-1 X_Z.
+bool CountsAsTool(const machine::Chain& chain) {
+  const std::string& work = chain.workpiece_axes();
+  return !work.empty() && std::all_of(work.begin(), work.end(),
+                                      [&](char axis) { return chain.CarriageSense(axis) < 0.0; });
+}
+
+// X_ab^-1 = {exp(E'), q l + e'}: the errors of the same axis on the tool's side, at the number q.
+geometry::ErrorVector<double> OnToolSide(const machine::Chain& chain, int axis, double q,
+                                         const machine::MotionErrors<double>& errors) {
+  const double sense = chain.CarriageSense("XYZ"[axis]);
+  const auto X = machine::CarriagePose<double>(axis, sense, q, errors).Inverse();
+  geometry::ErrorVector<double> turned;
+  turned << X.p - q * machine::LineOf<double>(axis, errors.squareness),
+      -errors.axes[static_cast<std::size_t>(axis)].tail<3>();
+  return turned;
 }
 
 }  // namespace
@@ -55,72 +61,93 @@ AxisTables Tabulate(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
                     const std::array<Eigen::Index, 3>& counts) {
   AxisTables tables;
   tables.header = HeaderOf(map, p_TQ);
-  tables.squareness = map.model().squareness();
+  const machine::VolumetricModel& model = map.model();
+  tables.squareness = model.squareness();
+  const bool as_tool = CountsAsTool(model.chain());
+  if (as_tool) {
+    const machine::Chain all_tool = machine::Chain::Parse("[wb" + model.chain().workpiece_axes() +
+                                                          model.chain().tool_axes() + "t]");
+    tables.header.chain = all_tool.Text();
+    tables.header.positive = all_tool.PositiveText();
+  }
   for (int axis = 0; axis < kAxes; ++axis) {
-    const machine::Travel& travel = map.model().travels()[static_cast<std::size_t>(axis)];
+    const machine::Travel& travel = model.travels()[static_cast<std::size_t>(axis)];
     const auto count = counts[static_cast<std::size_t>(axis)];
     if (count < 2)
       throw InputError(fmt::format("{} points along an axis: give two or more", count));
-    for (int motion = 0; motion < kMotions; ++motion) {
-      ErrorTable& table = tables.errors[static_cast<std::size_t>(kMotions * axis + motion)];
-      for (Eigen::Index i = 0; i < count; ++i) {
-        const double along = static_cast<double>(i) / static_cast<double>(count - 1);
-        table.positions.push_back(
-            i == count - 1 ? travel.last : travel.first + along * (travel.last - travel.first));
-        table.values.push_back(map.model().Function(axis, motion).Evaluate(table.positions.back()));
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double along = static_cast<double>(i) / static_cast<double>(count - 1);
+      const double q =
+          i == count - 1 ? travel.last : travel.first + along * (travel.last - travel.first);
+      machine::MotionErrors<double> errors;
+      errors.squareness = model.squareness();
+      auto& own = errors.axes[static_cast<std::size_t>(axis)];
+      for (int motion = 0; motion < kMotions; ++motion) {
+        own[motion] = model.Function(axis, motion).Evaluate(q);
+      }
+      if (as_tool && model.chain().CarriesTarget("XYZ"[axis])) {
+        own = OnToolSide(model.chain(), axis, q, errors);
+      }
+      for (int motion = 0; motion < kMotions; ++motion) {
+        ErrorTable& table = tables.errors[static_cast<std::size_t>(kMotions * axis + motion)];
+        table.positions.push_back(q);
+        table.values.push_back(own[motion]);
       }
     }
   }
   return tables;
 }
 
-ImportedMap MapOfTables(const AxisTables& tables) {
-  if (tables.header.chain.empty()) {
-    throw InputError(
-        "the file does not say the order of the axes; give it with --chain \"[w X Y b Z t]\"");
+std::vector<std::string> SignOfTables(const AxisTables& tables) {
+  const machine::Chain chain = ChainOf(tables.header);
+  std::vector<std::string> lines = {
+      "actual - nominal of the carriage of each axis, positions and EXX, EYY, EZZ as the control "
+      "counts; turns right-handed, about the carriage's reference point",
+      "C0Y turns the line of Y about +z, A0Z and B0Z that of Z about +x and +y"};
+  if (chain.workpiece_axes().empty()) {
+    lines.emplace_back(
+        "all axes on the side of the tool (ISG: workpiece_axes 0): where an error is +, the tool "
+        "stands towards + in the workpiece");
   }
+  for (const char axis : chain.workpiece_axes()) {
+    lines.push_back(
+        chain.CarriageSense(axis) > 0.0
+            ? fmt::format(
+                  "{} carries the workpiece and counts as its carriage goes: where an error "
+                  "of {} is +, the tool stands towards - in the workpiece",
+                  axis, axis)
+            : fmt::format("{} carries the workpiece and counts as the tool goes: where E{}{} is +, "
+                          "the tool stands towards + in the workpiece, where another error of {} "
+                          "is +, towards -",
+                          axis, axis, axis, axis));
+  }
+  return lines;
+}
+
+ErrorMap MapOfTables(const AxisTables& tables) {
   std::array<machine::Travel, kAxes> travels;
+  const machine::Chain chain = ChainOf(tables.header);
   for (int axis = 0; axis < kAxes; ++axis)
     travels[static_cast<std::size_t>(axis)] = TravelOf(tables, axis);
-  machine::VolumetricModel model(machine::Chain::Parse(tables.header.chain), travels);
-  Eigen::Vector3d squareness = tables.squareness;
-  std::vector<std::string> notes;
+  machine::VolumetricModel model(chain, travels);
   for (int axis = 0; axis < kAxes; ++axis) {
     for (int motion = 0; motion < kMotions; ++motion) {
       const ErrorTable& table = tables.errors[static_cast<std::size_t>(kMotions * axis + motion)];
       if (table.positions.empty()) continue;
-      model.SetForm(axis, motion, machine::MakeTableForm(table.positions));
-      const Eigen::Map<const Eigen::VectorXd> values(
-          table.values.data(), static_cast<Eigen::Index>(table.values.size()));
-      model.SetCoefficients(axis, motion, values);
-      // What the gauge takes off: offset + slope (x - first).
-      const machine::Travel& travel = travels[static_cast<std::size_t>(axis)];
-      const double kept_first = model.Function(axis, motion).Evaluate(travel.first);
-      const double kept_last = model.Function(axis, motion).Evaluate(travel.last);
-      const auto form = machine::MakeTableForm(table.positions);
-      const double first = form->Evaluate(travel.first, table.values.data(), nullptr, nullptr);
-      const double last = form->Evaluate(travel.last, table.values.data(), nullptr, nullptr);
-      const double slope = (last - first - (kept_last - kept_first)) / (travel.last - travel.first);
-      squareness += slope * SquarenessOfSlope(axis, motion);
-      const std::string name = machine::MotionName(axis, motion);
-      const char* const unit = motion < 3 ? "um" : "urad";
-      if (std::abs(first) > kNothing) {
-        notes.push_back(fmt::format("{} starts at {:.3g} {}; that constant is taken off", name,
-                                    1e6 * first, unit));
-      }
-      if (std::abs(slope) > kNothing / (travel.last - travel.first)) {
-        notes.push_back(fmt::format("{} has a slope of {:.3g} urad, which goes into the squareness",
-                                    name, 1e6 * slope));
-      }
+      model.SetForm(axis, motion, machine::MakeTableForm(table.positions), machine::Gauge::kNone);
+      model.SetCoefficients(
+          axis, motion,
+          Eigen::Map<const Eigen::VectorXd>(table.values.data(),
+                                            static_cast<Eigen::Index>(table.values.size())));
     }
   }
-  model.SetSquareness(squareness);
+  model.SetSquareness(tables.squareness);
   MapOrigin origin;
   origin.machine = tables.header.machine;
   origin.tool = tables.header.tool;
   origin.temperature = tables.header.temperature;
   origin.scale_is_calibrated = tables.header.scale == "calibrated";
-  return {ErrorMap(std::move(origin), std::move(model), {}), std::move(notes)};
+  return {std::move(origin), std::move(model), {}};
 }
 
 }  // namespace abbe::map

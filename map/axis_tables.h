@@ -1,16 +1,20 @@
 // A map as the tables of its 21 errors, which is what controls and other programs exchange.
 //
 //   const AxisTables tables = Tabulate(map, p_TQ, {31, 31, 31});
-//   const ImportedMap back = MapOfTables(tables);
+//   const ErrorMap back = MapOfTables(tables);
 //
 // Order of the tables: error_motion.h. Units: SI. A table without positions is an error that the
 // file does not hold: zero.
-// Failure: InputError for an axis without any table, a table of one position or whose positions do
-// not increase, and for a file that does not say its chain.
-// Validity: between the positions straight lines. A foreign table may break our gauge
-// (error_function.h). The slope of a straightness then goes into the squareness, which changes the
-// map by a turn of the whole workpiece only; a value at the start of the travel is taken off.
-// Both are told in `notes`.
+//
+// The tables state the errors of the carriages, volumetric_error.h, as their header says. Axes that
+// carry the workpiece and count as the tool goes (ISO 841) are for a control axes of the tool:
+// where all of them do, Tabulate gives the errors of the same machine with its axes on the tool's
+// side, chain and all, and every error in the file is then one of the tool against the workpiece.
+// The volumetric error is the same, exactly. Failure: InputError for an axis without any table, a
+// table of one position or whose positions do not increase, and for a file that does not say its
+// chain or how it counts. Validity: between the positions straight lines. Tables are taken as they
+// stand, constants and slopes included (Gauge::kNone, error_function.h): nothing of the volumetric
+// error is lost.
 #pragma once
 
 #include <Eigen/Core>
@@ -40,11 +44,10 @@ double TableUnit(int error);
 AxisTables Tabulate(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
                     const std::array<Eigen::Index, 3>& counts);
 
-struct ImportedMap {
-  ErrorMap map;                    // without uncertainty, sources all "prior"
-  std::vector<std::string> notes;  // for a person, one line each
-};
+// What the numbers mean, for a person and for a reader to be built from: one line each.
+std::vector<std::string> SignOfTables(const AxisTables& tables);
 
-ImportedMap MapOfTables(const AxisTables& tables);
+// Without uncertainty, sources all "prior".
+ErrorMap MapOfTables(const AxisTables& tables);
 
 }  // namespace abbe::map

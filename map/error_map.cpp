@@ -112,10 +112,8 @@ ErrorMap::Curve ErrorMap::CurveOf(int error, const Eigen::VectorXd& positions) c
   return curve;
 }
 
-Eigen::Vector3d AxisSigns(const machine::Chain& chain) {
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  for (const char axis : chain.workpiece_axes()) signs[axis - 'X'] = -1.0;
-  return signs;
+std::array<machine::Travel, 3> ErrorMap::Limits() const {
+  return origin_.limits.value_or(machine::AroundTravels(model_.travels()));
 }
 
 }  // namespace abbe::map

@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,9 +41,10 @@ int ErrorNamed(std::string_view name);
 // Where a map comes from.
 struct MapOrigin {
   std::string machine;
-  Eigen::Vector3d reference = Eigen::Vector3d::Zero();  // m, in M, with all axes at zero
-  Eigen::Vector3d tool = Eigen::Vector3d::Zero();       // p_TQ of the measurement, m
-  double temperature = 20.0;                            // of the machine, degC
+  Eigen::Vector3d reference = Eigen::Vector3d::Zero();   // m, in M, with all axes at zero
+  Eigen::Vector3d tool = Eigen::Vector3d::Zero();        // p_TQ of the measurement, m
+  double temperature = 20.0;                             // of the machine, degC
+  std::optional<std::array<machine::Travel, 3>> limits;  // the soft limits, where they are known
   // Whether a calibrated length or scale went into it; if not, its isotropic scale is the prior's.
   bool scale_is_calibrated = false;
   std::array<Source, kErrors> sources = {};
@@ -60,6 +62,8 @@ class ErrorMap {
   std::vector<std::string> ParameterNames() const;
   // "calibrated" or "prior only".
   std::string_view Scale() const;
+  // The soft limits; where none are known, the travels and kBeyondTravel.
+  std::array<machine::Travel, 3> Limits() const;
 
   Eigen::Vector3d Error(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const {
     return model_.Error(position, p_TQ);
@@ -82,9 +86,5 @@ class ErrorMap {
   machine::VolumetricModel model_;
   Eigen::MatrixXd cov_pp_;
 };
-
-// +1 for an axis that carries the tool, -1 for one that carries the workpiece: axis position =
-// nominal + AxisSigns .* (error in W) is where the axis should read for the tool to be there.
-Eigen::Vector3d AxisSigns(const machine::Chain& chain);
 
 }  // namespace abbe::map

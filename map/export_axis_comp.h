@@ -10,8 +10,10 @@
 // The axes X, Y, Z are called AX1, AX2, AX3.
 //
 // Frames: a table moves an axis, so for an axis that carries the workpiece its sign is that of the
-// carriage, AxisSigns (error_map.h). LinuxCNC: actual = nominal + sign * (error in W).
+// carriage, ToolSense (machine/chain.h). LinuxCNC: actual = nominal + sign * (error in W).
 // The lines run through the middle of the other two travels.
+// Positions and corrections are in the numbers of the control, so a table of an axis onto itself
+// says the same for an axis that counts as the tool goes, whichever side it stands on.
 // Failure: InputError with file and line.
 // Source: the LinuxCNC manual, COMP_FILE; the Siemens function manual on compensations (K3); the
 // signs of LinuxCNC are tested against the program itself.

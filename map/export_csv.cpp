@@ -32,7 +32,7 @@ Format::Paths WriteCsvGrid(const ErrorMap& map, const ExportOptions& options,
                            const std::filesystem::path& path) {
   const GridFile file = GridFileOf(map, options);
   const bool has_u95 = file.grid.u95().size() > 0;
-  std::string text = HeaderText(file.header, "#");
+  std::string text = HeaderText(file.header, "#", {kSignOfPoints});
   text += kColumns;
   if (has_u95) text += kUncertainties;
   text += '\n';

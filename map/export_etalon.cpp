@@ -8,11 +8,12 @@
 #include "map/export_tables.h"
 #include "map/text_file.h"
 #include "map/words.h"
+#include "settings/unit.h"
 
 namespace abbe::map {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
+using settings::kMillimetre;
 constexpr int kFunctions = kErrors - 3;
 
 class EtalonReader {
@@ -95,7 +96,7 @@ class EtalonReader {
 Format::Paths WriteEtalon(const ErrorMap& map, const ExportOptions& options,
                           const std::filesystem::path& path) {
   const AxisTables tables = Tabulate(map, options.tool, options.counts);
-  std::string text = HeaderText(tables.header, "//");
+  std::string text = HeaderText(tables.header, "//", SignOfTables(tables));
   for (int error = 0; error < kFunctions; ++error) {
     const ErrorTable& table = tables.errors[static_cast<std::size_t>(error)];
     text += fmt::format("[{}]\nGridpoints = {{\n", ErrorName(error));

@@ -6,13 +6,14 @@
 #include "map/export_tables.h"
 #include "map/text_file.h"
 #include "map/words.h"
+#include "settings/unit.h"
 
 namespace abbe::map {
 namespace {
 
 using machine::kMotions;
 
-constexpr double kMillimetre = 1e-3;
+using settings::kMillimetre;
 
 int ColumnNamed(std::string_view name, const std::string& where) {
   const int error = ErrorNamed(name);
@@ -75,7 +76,7 @@ void TakeRow(const std::vector<double>& row, const Columns& columns, AxisTables&
 Format::Paths WriteIsg(const ErrorMap& map, const ExportOptions& options,
                        const std::filesystem::path& path) {
   const AxisTables tables = Tabulate(map, options.tool, options.counts);
-  std::string text = HeaderText(tables.header, "//");
+  std::string text = HeaderText(tables.header, "//", SignOfTables(tables));
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     const auto first = static_cast<std::size_t>(kMotions * axis);
     text += "XYZ"[axis];
@@ -128,7 +129,7 @@ AxisTables ReadIsg(const std::filesystem::path& file) {
 }
 
 ErrorField FieldOf(const AxisTables& tables) {
-  const ErrorMap map = MapOfTables(tables).map;
+  const ErrorMap map = MapOfTables(tables);
   return [map, tool = tables.header.tool](const Eigen::Vector3d& p) { return map.Error(p, tool); };
 }
 

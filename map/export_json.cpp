@@ -32,18 +32,19 @@ Eigen::Matrix3Xd OfTriples(const Json& list) {
   return values;
 }
 
-constexpr std::array kAxisKeys{"x_mm", "y_mm", "z_mm"};
+constexpr std::array kPositionKeys{"x_mm", "y_mm", "z_mm"};
 
 GridFile FileOf(const Json& json, const std::string& where) {
   FileHeader header;
   header.machine = json.at("machine").get<std::string>();
   header.chain = json.at("chain").get<std::string>();
+  header.positive = json.at("positive").get<std::string>();
   header.temperature = json.at("temperature_c").get<double>();
   header.scale = json.at("scale").get<std::string>();
   std::array<GridAxis, 3> axes;
   for (std::size_t k = 0; k < 3; ++k) {
     header.tool[static_cast<Eigen::Index>(k)] = json.at("tool_mm").at(k).get<double>() * 1e-3;
-    auto positions = json.at(kAxisKeys[k]).get<std::vector<double>>();
+    auto positions = json.at(kPositionKeys[k]).get<std::vector<double>>();
     for (double& position : positions) position *= 1e-3;
     axes[k] = AxisOfPositions(positions, where);
   }
@@ -61,12 +62,13 @@ Format::Paths WriteJsonGrid(const ErrorMap& map, const ExportOptions& options,
   Json json = {{"abbe-map-grid", 1},
                {"machine", file.header.machine},
                {"chain", file.header.chain},
+               {"positive", file.header.positive},
                {"tool_mm", {tool.x(), tool.y(), tool.z()}},
                {"temperature_c", file.header.temperature},
                {"scale", file.header.scale},
-               {"sign", "actual - nominal of the tool in the workpiece"}};
+               {"sign", kSignOfPoints}};
   for (std::size_t k = 0; k < 3; ++k) {
-    json[kAxisKeys[k]] = Millimetres(file.grid.axes()[k]);
+    json[kPositionKeys[k]] = Millimetres(file.grid.axes()[k]);
   }
   json["error_um"] = Triples(file.grid.error());
   if (file.grid.u95().size() > 0) json["u95_um"] = Triples(file.grid.u95());

@@ -8,11 +8,12 @@
 #include "map/export_axis_comp.h"
 #include "map/text_file.h"
 #include "map/words.h"
+#include "settings/unit.h"
 
 namespace abbe::map {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
+using settings::kMillimetre;
 
 std::filesystem::path PathOf(const std::filesystem::path& path, int axis) {
   std::filesystem::path file = path;
@@ -33,7 +34,7 @@ double AxisCurve::At(double position) const {
 
 Format::Paths WriteLinuxcnc(const ErrorMap& map, const ExportOptions& options,
                             const std::filesystem::path& path) {
-  const Eigen::Vector3d signs = AxisSigns(map.model().chain());
+  const Eigen::Vector3d signs = map.model().chain().ToolSenses();
   const auto& travels = map.model().travels();
   const Eigen::Vector3d middle((travels[0].first + travels[0].last) / 2,
                                (travels[1].first + travels[1].last) / 2,
@@ -94,7 +95,7 @@ AxisCurve ReadComp(const std::filesystem::path& file) {
 ErrorField ReadBackLinuxcnc(const Format::Paths& files, const machine::Chain& chain) {
   const std::array<AxisCurve, 3> curves = {ReadComp(files.at(0)), ReadComp(files.at(1)),
                                            ReadComp(files.at(2))};
-  const Eigen::Vector3d signs = AxisSigns(chain);
+  const Eigen::Vector3d signs = chain.ToolSenses();
   return [curves, signs](const Eigen::Vector3d& p) {
     const Eigen::Vector3d off(curves[0].At(p.x()), curves[1].At(p.y()), curves[2].At(p.z()));
     return Eigen::Vector3d(signs.cwiseProduct(off));

@@ -9,12 +9,19 @@
 #include "map/export_axis_comp.h"
 #include "map/text_file.h"
 #include "map/words.h"
+#include "settings/unit.h"
 
 namespace abbe::map {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
+using settings::kMillimetre;
 constexpr int kTables = 9;
+const std::vector<std::string> kSignOfCec = {
+    "a correction: the control adds it to the position of the output axis, in mm as it counts that "
+    "axis",
+    "it is minus the error: minus what the place of the tool in the workpiece is, in the numbers "
+    "of "
+    "the axis, less what was commanded"};
 
 // One CEC table as its file says it, mm.
 struct CecTable {
@@ -109,15 +116,15 @@ AxisCurve CurveOf(const CecTable& table, int number, const std::string& file) {
 
 Format::Paths WriteSinumerik(const ErrorMap& map, const ExportOptions& options,
                              const std::filesystem::path& path) {
-  const Eigen::Vector3d signs = AxisSigns(map.model().chain());
+  const Eigen::Vector3d signs = map.model().chain().ToolSenses();
   const auto& travels = map.model().travels();
   Eigen::Vector3d middle;
   for (std::size_t k = 0; k < 3; ++k) {
     middle[static_cast<int>(k)] = (travels[k].first + travels[k].last) / 2;
   }
   const Eigen::Vector3d at_middle = map.Error(middle, options.tool);
-  std::string text =
-      "%_N_NC_CEC_INI\n" + HeaderText(HeaderOf(map, options.tool), ";") + "CHANDATA(1)\n";
+  std::string text = "%_N_NC_CEC_INI\n" + HeaderText(HeaderOf(map, options.tool), ";", kSignOfCec) +
+                     "CHANDATA(1)\n";
   for (int table = 0; table < kTables; ++table) {
     const int input = table / 3, output = table % 3;
     const auto k = static_cast<std::size_t>(input);
@@ -160,7 +167,7 @@ ErrorField ReadBackSinumerik(const Format::Paths& files, const machine::Chain& c
     const CecTable& table = tables[static_cast<std::size_t>(t)];
     relations.push_back({table.input, table.output, CurveOf(table, t, files.front().string())});
   }
-  const Eigen::Vector3d signs = AxisSigns(chain);
+  const Eigen::Vector3d signs = chain.ToolSenses();
   return [relations, signs](const Eigen::Vector3d& p) {
     Eigen::Vector3d correction = Eigen::Vector3d::Zero();
     for (const Relation& relation : relations) {

@@ -12,7 +12,7 @@
 namespace abbe::map {
 namespace {
 
-constexpr std::array kAxisNames{"x_mm", "y_mm", "z_mm"};
+constexpr std::array kVtkAxes{"x_mm", "y_mm", "z_mm"};
 
 template <typename Values>
 void AddArray(std::string& text, std::string_view name, int components, const Values& values) {
@@ -35,7 +35,7 @@ std::vector<double> InMicrometres(const Eigen::Matrix3Xd& values) {
 
 // The header as an XML comment, which must not hold "--".
 std::string CommentOf(const FileHeader& header) {
-  std::string text = HeaderText(header, "");
+  std::string text = HeaderText(header, "", {kSignOfPoints});
   for (std::size_t at; (at = text.find("--")) != std::string::npos;) text.replace(at, 2, "- -");
   return "<!--\n" + text + "-->\n";
 }
@@ -75,7 +75,7 @@ Format::Paths WriteVtkGrid(const ErrorMap& map, const ExportOptions& options,
   if (file.grid.u95().size() > 0) AddArray(text, "u95_um", 3, InMicrometres(file.grid.u95()));
   text += "</PointData>\n<Coordinates>\n";
   for (std::size_t k = 0; k < 3; ++k) {
-    AddArray(text, kAxisNames[k], 1, Millimetres(axes[k]));
+    AddArray(text, kVtkAxes[k], 1, Millimetres(axes[k]));
   }
   text += "</Coordinates>\n</Piece>\n</RectilinearGrid>\n</VTKFile>\n";
   WriteWhole(text, path);
@@ -93,7 +93,7 @@ GridFile ReadVtkGrid(const std::filesystem::path& path) {
   for (std::string_view line; lines.Next(line) && line != "-->";) ReadComment(line, header);
   std::array<GridAxis, 3> axes;
   for (std::size_t k = 0; k < 3; ++k) {
-    auto positions = ArrayNamed(text, kAxisNames[k], where);
+    auto positions = ArrayNamed(text, kVtkAxes[k], where);
     for (double& position : positions) position *= 1e-3;
     axes[k] = AxisOfPositions(positions, where);
   }

@@ -62,13 +62,15 @@ Export ExportMap(const ErrorMap& map, const Format& format, const ExportOptions&
   return done;
 }
 
-ImportedMap ReadAnyMap(const std::filesystem::path& path, std::string_view chain) {
-  if (path.extension() == ".toml") return {ReadMap(path), {}};
+ErrorMap ReadAnyMap(const std::filesystem::path& path, std::string_view chain,
+                    std::string_view positive) {
+  if (path.extension() == ".toml") return ReadMap(path);
   const std::string text = ReadWhole(path);
   const bool is_etalon =
       text.find("Gridpoints") != std::string::npos || text.find("VALUE") != std::string::npos;
   AxisTables tables = FormatNamed(is_etalon ? "etalon" : "isg").import(path);
   if (!chain.empty()) tables.header.chain = chain;
+  if (!positive.empty()) tables.header.positive = positive;
   if (tables.header.machine.empty()) tables.header.machine = path.stem().string();
   try {
     return MapOfTables(tables);

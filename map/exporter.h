@@ -55,7 +55,8 @@ Export ExportMap(const ErrorMap& map, const Format& format, const ExportOptions&
                  const std::filesystem::path& path);
 
 // A map in our own form (map.toml) or in one that can be imported, told apart by content. `chain`
-// is for files that do not say theirs, else empty.
-ImportedMap ReadAnyMap(const std::filesystem::path& path, std::string_view chain = {});
+// and `positive` (Chain::ReadPositive) are for files that do not say theirs, else empty.
+ErrorMap ReadAnyMap(const std::filesystem::path& path, std::string_view chain = {},
+                    std::string_view positive = {});
 
 }  // namespace abbe::map

@@ -20,7 +20,7 @@ namespace {
 
 using recording::Handle;
 
-constexpr std::array kAxisNames{"x_mm", "y_mm", "z_mm"};
+constexpr std::array kGridAxes{"x_mm", "y_mm", "z_mm"};
 
 void Need(bool is_good, const std::filesystem::path& path) {
   if (is_good) return;
@@ -69,12 +69,13 @@ void SendAll(const std::string& file_name, const recording::Hdf5Sender& sender) 
   const Handle properties = recording::FileProperties();
   const Handle file(H5Fopen(file_name.c_str(), H5F_ACC_RDONLY, properties.id()), H5Fclose);
   Need(file.good(), file_name);
-  for (const char* name : {"machine", "chain", "scale"}) {
+  for (const char* name : {"machine", "chain", "positive", "scale"}) {
+    if (H5Aexists(file.id(), name) == 0 && std::string_view(name) == "positive") continue;
     const std::string text = recording::TextAttribute(file.id(), name, file_name);
     sender.Send('T', name);
     sender.Send('t', text);
   }
-  for (const char* name : {"tool_mm", "temperature_c", kAxisNames[0], kAxisNames[1], kAxisNames[2]}) {
+  for (const char* name : {"tool_mm", "temperature_c", kGridAxes[0], kGridAxes[1], kGridAxes[2]}) {
     SendNumbers(file.id(), name, 1, file_name, sender);
   }
   SendNumbers(file.id(), "error_um", 4, file_name, sender);
@@ -111,7 +112,7 @@ void PutGrid(hid_t file, const GridFile& content, const std::filesystem::path& p
   std::vector<hsize_t> shape = {3};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::vector<double> positions = Millimetres(axes[k]);
-    PutNumbers(file, kAxisNames[k], {positions.size()}, positions.data(), path);
+    PutNumbers(file, kGridAxes[k], {positions.size()}, positions.data(), path);
     shape.insert(shape.begin(), positions.size());
   }
   const Eigen::Matrix3Xd error_um = content.grid.error() * 1e6;
@@ -138,9 +139,10 @@ Format::Paths WriteHdf5Grid(const ErrorMap& map, const ExportOptions& options,
   const Eigen::Vector3d tool_mm = header.tool * 1e3;
   PutText(file.id(), "machine", header.machine);
   PutText(file.id(), "chain", header.chain);
+  PutText(file.id(), "positive", header.positive);
   PutText(file.id(), "scale", header.scale);
   PutText(file.id(), "unit", "um");
-  PutText(file.id(), "sign", "actual - nominal of the tool in the workpiece");
+  PutText(file.id(), "sign", kSignOfPoints);
   PutText(file.id(), "frame", "axes of the workpiece; positions as the axes are commanded");
   PutNumbers(file.id(), "tool_mm", {3}, tool_mm.data(), path);
   PutNumbers(file.id(), "temperature_c", {1}, &header.temperature, path);
@@ -160,12 +162,13 @@ GridFile ReadHdf5Grid(const std::filesystem::path& path) {
   FileHeader header;
   header.machine = held.texts["machine"];
   header.chain = held.texts["chain"];
+  header.positive = held.texts["positive"];
   header.scale = held.texts["scale"];
   header.tool = 1e-3 * Eigen::Vector3d(tool_mm.data());
   header.temperature = temperature[0];
   std::array<GridAxis, 3> axes;
   for (std::size_t k = 0; k < 3; ++k) {
-    std::vector<double>& positions = held.numbers[kAxisNames[k]];
+    std::vector<double>& positions = held.numbers[kGridAxes[k]];
     for (double& position : positions) position *= 1e-3;
     axes[k] = AxisOfPositions(positions, path.string());
   }

@@ -25,7 +25,7 @@ using settings::QuotedList;
 using settings::Table;
 
 constexpr std::int64_t kFormat = 1;
-constexpr std::array kAxisKeys{"x", "y", "z"};
+constexpr std::array kTravelKeys{"x", "y", "z"};
 
 std::string_view NameOf(Source source) { return kSourceNames[static_cast<std::size_t>(source)]; }
 
@@ -36,16 +36,25 @@ std::string HeadText(const ErrorMap& map) {
   };
   std::string text = fmt::format(
       "# An error map: docs/map.md says what each key means.\nformat = {}\nmachine = {}\n"
-      "chain = {}\nreference = {}\ntool = {}\ntemperature_c = {}\nscale = {}\nsquareness = {}\n"
+      "chain = {}\npositive = {}\nreference = {}\ntool = {}\ntemperature_c = {}\nscale = "
+      "{}\nsquareness = {}\n"
       "squareness_from = {}\n\n[travel]\n",
-      kFormat, Quoted(origin.machine), Quoted(map.model().chain().Text()), Floats(origin.reference),
-      Floats(origin.tool), Float(origin.temperature), Quoted(map.Scale()),
-      Floats(map.model().squareness()),
+      kFormat, Quoted(origin.machine), Quoted(map.model().chain().Text()),
+      Quoted(map.model().chain().PositiveText()), Floats(origin.reference), Floats(origin.tool),
+      Float(origin.temperature), Quoted(map.Scale()), Floats(map.model().squareness()),
       QuotedList(std::array{of_squareness(0), of_squareness(1), of_squareness(2)}));
-  for (std::size_t axis = 0; axis < kAxisKeys.size(); ++axis) {
+  for (std::size_t axis = 0; axis < kTravelKeys.size(); ++axis) {
     const machine::Travel& travel = map.model().travels()[axis];
+    if (!(travel.last > travel.first)) continue;  // the machine lacks it
     text +=
-        fmt::format("{} = {}\n", kAxisKeys[axis], Floats(std::array{travel.first, travel.last}));
+        fmt::format("{} = {}\n", kTravelKeys[axis], Floats(std::array{travel.first, travel.last}));
+  }
+  if (!origin.limits) return text;
+  text += "\n[limit]\n";
+  for (std::size_t axis = 0; axis < kTravelKeys.size(); ++axis) {
+    const machine::Travel& limit = (*origin.limits)[axis];
+    text +=
+        fmt::format("{} = {}\n", kTravelKeys[axis], Floats(std::array{limit.first, limit.last}));
   }
   return text;
 }
@@ -57,6 +66,7 @@ std::string FunctionText(const std::string& name, Source source,
   for (const auto& [key, numbers] : function.form()->Shape()) {
     text += fmt::format("{} = {}\n", key, Floats(numbers));
   }
+  if (function.gauge() == machine::Gauge::kNone) text += "gauge = \"none\"\n";
   return text + fmt::format("coefficients = {}\n", Floats(function.coefficients()));
 }
 
@@ -108,20 +118,27 @@ auto Located(const Table& table, const char* key, const Make& make) {
   }
 }
 
-machine::VolumetricModel ReadFrame(const Table& root) {
+std::array<machine::Travel, machine::kAxes> ReadTravels(const Table& table) {
   std::array<machine::Travel, machine::kAxes> travels;
-  const Table table = root.Child("travel");
-  for (std::size_t axis = 0; axis < kAxisKeys.size(); ++axis) {
-    const auto ends = table.Quantities(kAxisKeys[axis], 2);
+  for (std::size_t axis = 0; axis < kTravelKeys.size(); ++axis) {
+    const auto ends = table.Quantities(kTravelKeys[axis], 2);
     if (!(ends[0] < ends[1])) {
-      throw table.Error(kAxisKeys[axis], "must be [first, last] with the first below the last");
+      throw table.Error(kTravelKeys[axis], "must be [first, last] with the first below the last");
     }
     travels[axis] = {ends[0], ends[1]};
   }
   table.RefuseUnknown();
-  const machine::Chain chain =
+  return travels;
+}
+
+machine::VolumetricModel ReadFrame(const Table& root) {
+  machine::Chain chain =
       Located(root, "chain", [&] { return machine::Chain::Parse(root.Text("chain")); });
-  return {chain, travels};
+  Located(root, "positive", [&] {
+    chain.ReadPositive(root.Text("positive", ""), "write positive = \"...\" of X, Y and Z");
+    return 0;
+  });
+  return {chain, ReadTravels(root.Child("travel"))};
 }
 
 void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin& origin,
@@ -187,6 +204,7 @@ ErrorMap ReadMap(const std::filesystem::path& path) {
   }
   MapOrigin origin = ReadOrigin(root);
   machine::VolumetricModel model = ReadFrame(root);
+  if (root.Has("limit")) origin.limits = ReadTravels(root.Child("limit"));
   model.SetSquareness(Vector(root, "squareness"));
   std::array<bool, kErrors> seen{};
   for (const Table& table : root.Children("error")) ReadFunction(table, model, origin, seen);

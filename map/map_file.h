@@ -3,6 +3,7 @@
 //   format = 1
 //   machine = "demo-mill"
 //   chain = "[w X Y b Z t]"
+//   positive = "carriage carriage tool"         # how X, Y and Z count, machine/chain.h
 //   reference = [0.0, 0.0, 0.0]                 # m
 //   tool = [0.0, 0.0, 0.0]                      # m, of the measurement
 //   temperature_c = 20.0
@@ -11,12 +12,15 @@
 //   squareness_from = ["linkage", "linkage", "prior"]
 //   [travel]
 //   x = [0.0, 0.06]  y = ...  z = ...           # m
+//   [limit]                                     # the soft limits, m; left out: not known
+//   x = [-0.0001, 0.0601]  y = ...  z = ...
 //   [[error]]                                   # 18 of them, those that are zero may be left out
 //   name = "EXX"
 //   from = "sweep"                              # sweep, linkage, reference, plate, length, prior
 //   form = "b-spline"                           # machine/form_of_shape.h
 //   degree = [3.0]
 //   knots_m = [...]
+//   gauge = "none"                              # of an imported table; left out: "zero at start"
 //   coefficients = [...]                        # m or rad
 //   [covariance]                                # left out: the map states no uncertainty
 //   names = ["EXX.c0", ...]

@@ -26,6 +26,8 @@ constexpr PerProbe<NominalProbe> kNominal{{{"probe_a", "top", 10.0, 0.0},
 
 void ReadProbe(const Table& table, std::size_t i, HeadSettings& head) {
   const NominalProbe& nominal = kNominal[i];
+  if (!table.Has("position_mm"))
+    head.assumed.insert(fmt::format("head.{}.position_mm", nominal.table));
   if (table.Text("unit", nominal.unit) != nominal.unit) {
     throw table.Error("unit", fmt::format("must be \"{}\": A, B and C look on the top surface, D "
                                           "and E on the side surface",
@@ -99,7 +101,12 @@ HeadSettings ReadHeadSettings(const Table& root) {
   head.tolerance = ReadTolerance(table.Child("tolerance"));
   head.installation = ReadInstallation(table.Child("installation"));
   for (int axis = 0; axis < 3; ++axis) {
-    head.axes[axis] = ReadFrame(table.Child(fmt::format("axis_{}", "XYZ"[axis])), axis);
+    const std::string name = fmt::format("axis_{}", "XYZ"[axis]);
+    const Table frame = table.Child(name);
+    for (const char* key : {"position_mm", "rotation"}) {
+      if (!frame.Has(key)) head.assumed.insert(fmt::format("head.{}.{}", name, key));
+    }
+    head.axes[axis] = ReadFrame(frame, axis);
   }
   table.RefuseUnknown();
   return head;

@@ -11,6 +11,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "machine/machine.h"
 #include "probes/electrode.h"
@@ -47,6 +49,8 @@ struct HeadSettings {
   Installation<> installation;
   HeadTolerance tolerance;
   std::array<AxisFrame, 3> axes;  // of the sweeps of X, Y, Z
+  // Keys that move results and that the file leaves to their defaults: "head.axis_X.position_mm".
+  std::set<std::string> assumed;
 
   // The largest gap of each probe, m.
   PerProbe<> Ranges() const {

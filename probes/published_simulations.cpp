@@ -37,9 +37,9 @@ constexpr std::size_t kLanes = 4;
 using Column = std::array<double, kBlock>;
 
 struct Draws {
-  std::array<Column, kComponents> errors;
+  std::array<Column, kPublishedComponents> errors;
   Column d;
-  std::array<std::uint32_t, 2 * kComponents * kBlock> words;
+  std::array<std::uint32_t, 2 * kPublishedComponents * kBlock> words;
 
   HeadErrors<> Errors(std::size_t i) const {
     return {.eax = errors[kEax][i],
@@ -51,10 +51,10 @@ struct Draws {
 };
 
 struct Sums {
-  std::array<std::array<double, kLanes>, kComponents> worst{}, sum{}, squares{};
+  std::array<std::array<double, kLanes>, kPublishedComponents> worst{}, sum{}, squares{};
 
   void Add(const Sums& other) {
-    for (std::size_t c = 0; c < kComponents; ++c) {
+    for (std::size_t c = 0; c < kPublishedComponents; ++c) {
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         worst[c][lane] = std::max(worst[c][lane], other.worst[c][lane]);
         sum[c][lane] += other.sum[c][lane];
@@ -71,11 +71,11 @@ double Centred(std::uint32_t word) {
 
 void Draw(const SimulationOptions& options, std::uint64_t first, Draws& draws) {
   const bool one = options.simulation == Simulation::kOne;
-  const std::size_t words = (one ? 1 : 2) * kComponents;
+  const std::size_t words = (one ? 1 : 2) * kPublishedComponents;
   const double step = (one ? 60e-3 : 10e-3) / (kStations - 1);
   random::FillWords(options.seed, one ? 1 : 2, first * words / 4,
                     std::span(draws.words).first(words * kBlock));
-  for (std::size_t c = 0; c < kComponents; ++c) {
+  for (std::size_t c = 0; c < kPublishedComponents; ++c) {
     const double size = c < kEyx ? kAngle : kStraightness;
     for (std::size_t i = 0; i < kBlock; ++i) {
       draws.errors[c][i] = size * Centred(draws.words[c * kBlock + i]);
@@ -91,7 +91,7 @@ void Draw(const SimulationOptions& options, std::uint64_t first, Draws& draws) {
 HeadLayout<> DrawnLayout(const HeadLayout<>& nominal, const Draws& draws, std::size_t i) {
   HeadLayout<> layout = nominal;
   for (std::size_t probe = 0; probe < kProbes; ++probe) {
-    const std::uint32_t word = draws.words[(kComponents + probe) * kBlock + i];
+    const std::uint32_t word = draws.words[(kPublishedComponents + probe) * kBlock + i];
     const double angle = std::numbers::pi * Centred(word);
     const double du = kPlaceRadius * std::cos(angle), dv = kPlaceRadius * std::sin(angle);
     if (probe < kTopProbes) {
@@ -157,7 +157,7 @@ void EvaluateBlock(const SimulationOptions& options, Draws& draws) {
 }
 
 void AddBlock(const Draws& draws, Sums& sums) {
-  for (std::size_t c = 0; c < kComponents; ++c) {
+  for (std::size_t c = 0; c < kPublishedComponents; ++c) {
     const Column& errors = draws.errors[c];
     auto worst = sums.worst[c], sum = sums.sum[c], squares = sums.squares[c];
     for (std::size_t i = 0; i < kBlock; i += kLanes) {
@@ -207,7 +207,8 @@ SimulationErrors RunSimulation(const SimulationOptions& options) {
   constexpr std::uint64_t kChunk = kBlock * kBlocksPerChunk;
   const std::uint64_t chunks = (options.draws + kChunk - 1) / kChunk;
   std::vector<Sums> parts(chunks);
-  const int threads = options.threads == 0 ? tbb::info::default_concurrency() : std::min(options.threads, kMostThreads);
+  const int threads = options.threads == 0 ? tbb::info::default_concurrency()
+                                           : std::min(options.threads, kMostThreads);
   const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(threads);
   arena.execute([&] {
@@ -219,7 +220,8 @@ SimulationErrors RunSimulation(const SimulationOptions& options) {
   Sums sums;
   for (const Sums& part : parts) sums.Add(part);
   SimulationErrors errors;
-  for (std::size_t c = 0; c < kComponents; ++c) errors[c] = Statistics(sums, c, options.draws);
+  for (std::size_t c = 0; c < kPublishedComponents; ++c)
+    errors[c] = Statistics(sums, c, options.draws);
   return errors;
 }
 

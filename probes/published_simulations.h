@@ -51,11 +51,11 @@ struct ErrorStatistics {
   double std = 0;  // about the mean
 };
 
-enum Component : std::size_t { kEax, kEbx, kEcx, kEyx, kEzx };
-inline constexpr std::size_t kComponents = 5;
-inline constexpr std::array<const char*, kComponents> kComponentNames{"EAX", "EBX", "ECX", "EYX",
+enum PublishedComponent : std::size_t { kEax, kEbx, kEcx, kEyx, kEzx };
+inline constexpr std::size_t kPublishedComponents = 5;
+inline constexpr std::array<const char*, kPublishedComponents> kComponentNames{"EAX", "EBX", "ECX", "EYX",
                                                                       "EZX"};
-using SimulationErrors = std::array<ErrorStatistics, kComponents>;
+using SimulationErrors = std::array<ErrorStatistics, kPublishedComponents>;
 
 // The largest errors that the source reports for the simplified inversion. For kOne it shows one
 // run of 61 draws; of 20 000 draws the largest translation is 0.09 um.

@@ -64,8 +64,9 @@ SquarenessResult SquarenessOfSweeps(const SweepResult& one, const SweepResult& o
   const SweepResult& second = in_order ? other : one;
   const StraightnessFigures& of_first = StraightnessOf(first, second.axis);
   const StraightnessFigures& of_second = StraightnessOf(second, first.axis);
-  const standards::Line a{.slope = of_first.slope.value};
-  const standards::Line b{.slope = of_second.slope.value};
+  // Over the way of the carriage in the machine, not over the numbers of the control.
+  const standards::Line a{.slope = first.sense * of_first.slope.value};
+  const standards::Line b{.slope = second.sense * of_second.slope.value};
   SquarenessResult result{};
   if (second.axis == 'Y') {
     result.name = "C0Y";

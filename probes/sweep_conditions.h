@@ -21,6 +21,7 @@ struct SweepConditions {
   double duration = 0;  // s
   double feed = 0;      // m/s, the largest commanded one
   std::vector<Temperature> temperatures;
+  bool simulated = false;  // no machine was measured: the header says so
 };
 
 // Rows with a flag do not count. Any recording with the column time_s.

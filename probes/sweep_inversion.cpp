@@ -51,6 +51,7 @@ SweepInversion::SweepInversion(const machine::Machine& machine, const HeadSettin
       moving_(machine.chain.CarriesTarget(axis) ? MovingBody::kTarget : MovingBody::kHead),
       invert_(InstalledLines(head.layout, head.installation), moving_),
       R_MH_(head.Frame(axis).R_MH),
+      sense_(machine.chain.CarriageSense(axis)),
       start_(start[machine::AxisIndex(axis)]) {
   const AxisFrame& frame = head.Frame(axis);
   const int swept = machine::AxisIndex(axis);
@@ -59,7 +60,7 @@ SweepInversion::SweepInversion(const machine::Machine& machine, const HeadSettin
   lever_ = frame.p_MH - machine.reference;
   for (const char mover : machine.chain.Movers(axis)) {
     const int index = machine::AxisIndex(mover);
-    lever_[index] -= start[index];
+    lever_[index] -= machine.chain.CarriageSense(mover) * start[index];
   }
 }
 

@@ -58,8 +58,10 @@ class SweepInversion {
   const std::array<Component, kComponents>& components() const { return components_; }
   MovingBody moving() const { return moving_; }
 
-  // The travel since the start towards +u, m.
-  double Travel(double position) const { return position - start_; }
+  // How far the carriage has gone towards +u since the start, m.
+  double Travel(double position) const { return sense_ * (position - start_); }
+  // +1 where the carriage goes towards +u as the number rises, else -1 (machine/chain.h).
+  double sense() const { return sense_; }
 
   // Errors per group, before any gauge. `first` groups, the first ones, belong to the first
   // station.
@@ -83,6 +85,7 @@ class SweepInversion {
   std::array<int, 2> across_;  // indices in M of the two straightness directions
   Eigen::Matrix3d R_MH_;
   Eigen::Vector3d lever_;  // m, in M: r above
+  double sense_ = 1.0;
   double start_ = 0.0;
 };
 

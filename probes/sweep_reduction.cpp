@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <set>
+#include <string_view>
 
 #include "failure/failure.h"
+#include "probes/sweep_slips.h"
 #include "recording/made_on.h"
 #include "standards/straightness.h"
+#include "standards/student_coverage.h"
 
 namespace abbe::probes {
 namespace {
@@ -68,7 +73,13 @@ class ComponentEvaluation {
           RootMeanSquare(Means(gauge_.Covariance(kind, reference_sources[source])));
       if (source == 0) noise = result.budget[source];
     }
-    result.coverage = Coverage(noise, RootMeanSquare(station_V));
+    const double dof = Freedom(noise, RootMeanSquare(station_V));
+    result.coverage = Quantile(0.975, dof);
+    if (result.reversal) {
+      const Uncertain& mean = result.reversal->mean;
+      result.reversal->seen =
+          std::abs(mean.value) > Quantile(1.0 - kFalseAlarm / 2.0, dof) * mean.u;
+    }
     return result;
   }
 
@@ -126,15 +137,21 @@ class ComponentEvaluation {
             .slope = {w.dot(raw), std::sqrt(std::max(0.0, w.dot(raw_V * w)))}};
   }
 
-  // Student's t for 95 % at the degrees of freedom of Welch and Satterthwaite; all sources but the
-  // noise are known as they are stated.
-  double Coverage(double noise, double total) const {
-    constexpr double kNormal = 1.959964;
-    if (noise <= 0.0 || means_.noise.u_dof <= 0.0) return kNormal;
-    const double dof = means_.noise.u_dof * std::pow(total / noise, 4.0);
-    if (dof > 1e6) return kNormal;
-    return boost::math::quantile(boost::math::students_t(dof), 0.975);
+  // The degrees of freedom of Welch and Satterthwaite; all sources but the noise are known as they
+  // are stated.
+  double Freedom(double noise, double total) const {
+    if (noise <= 0.0 || means_.noise.u_dof <= 0.0) return kKnown;
+    return means_.noise.u_dof * std::pow(total / noise, 4.0);
   }
+
+  // Student's t.
+  static double Quantile(double share, double dof) {
+    if (dof > kKnown / 2.0) return boost::math::quantile(boost::math::normal(), share);
+    return boost::math::quantile(boost::math::students_t(dof), share);
+  }
+
+  static constexpr double kKnown = 2e6;               // degrees of freedom as good as infinite
+  static constexpr double kFalseAlarm = 0.01 / 15.0;  // of one reversal
 
   const StationMeans& means_;
   const SweepGauge& gauge_;
@@ -147,6 +164,58 @@ int PassesOf(const std::vector<Dwell>& dwells) {
   return static_cast<int>(passes.size());
 }
 
+// What the place of the head moves, in um for each mm of it: the straightness that the measured
+// angles make at the end of that lever.
+std::string LeverText(const SweepResult& result, const GroupErrors& errors,
+                      const SweepGauge& gauge) {
+  std::string text;
+  for (std::size_t i = 3; i < kComponents; ++i) {
+    const std::string& name = result.components[i].component.name;
+    const int across = name[1] - 'X';
+    text += fmt::format("{}{} by", text.empty() ? "" : " and ", name);
+    for (int along = 0; along < 3; ++along) {
+      // -(w x e) in the direction `across`, w the rows 0 to 2 of the errors.
+      Eigen::VectorXd moved = Eigen::VectorXd::Zero(errors.cols());
+      if (along != across) {
+        const double sign = (along + 1) % 3 == across ? -1.0 : 1.0;
+        moved = sign * errors.row(3 - along - across).transpose();
+      }
+      const Eigen::VectorXd bow = gauge.StationMeans(gauge.Apply(SweepGauge::Kind::kLine, moved));
+      text += fmt::format("{} {:.2g}", along == 0 ? "" : ",",
+                          (bow.maxCoeff() - bow.minCoeff()) * 1e3);  // um for a mm
+    }
+  }
+  return text;
+}
+
+std::vector<std::string> AssumptionNotes(const HeadSettings& head, const SweepResult& result,
+                                         const GroupErrors& errors, const SweepGauge& gauge) {
+  std::vector<std::string> notes;
+  const std::string place = fmt::format("head.axis_{}.position_mm", result.axis);
+  if (head.assumed.contains(place)) {
+    notes.push_back(
+        fmt::format("{} is not in the machine file and is taken as [0, 0, 0]: each mm of it in x, "
+                    "y, z moves {} um; state it",
+                    place, LeverText(result, errors, gauge)));
+  }
+  const std::string turn = fmt::format("head.axis_{}.rotation", result.axis);
+  if (head.assumed.contains(turn)) {
+    notes.push_back(fmt::format(
+        "{} is not in the machine file: a head that stands otherwise changes names and signs of "
+        "the errors; state it",
+        turn));
+  }
+  const auto placed = [&](char probe) {
+    return !head.assumed.contains(fmt::format("head.probe_{}.position_mm", probe));
+  };
+  if (!std::ranges::all_of(std::string_view("abcde"), placed)) {
+    notes.push_back(
+        "probes without position_mm are taken to stand as drawn, 10 and 20 mm from the edge: 1 % "
+        "of it moves an angle by 1 %; state them");
+  }
+  return notes;
+}
+
 }  // namespace
 
 SweepSetup ReadSweepSetup(const settings::Table& root) {
@@ -157,6 +226,7 @@ SweepSetup ReadSweepSetup(const settings::Table& root) {
 SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup& setup) {
   recording::RefuseOtherMachine(recording, setup.machine.name);
   const SweepDwells sweep = FindDwells(recording, DwellRuleOf(recording), setup.head.Ranges());
+  RefuseSlips(recording.name, sweep, setup.machine, setup.head);
   const StationMeans means = FitStations(recording.name, sweep, setup.noise);
   const SweepInversion inversion(setup.machine, setup.head, sweep.axis, sweep.start);
   const auto directions = static_cast<Eigen::Index>(means.directions.size());
@@ -170,6 +240,8 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
   result.chain = setup.machine.chain.Text();
   result.axis = sweep.axis;
   result.moving = inversion.moving();
+  result.sense = inversion.sense();
+  result.positive = setup.machine.chain.ToolSense(sweep.axis) > 0.0 ? "tool" : "carriage";
   result.mounting = recording.HeaderText("mounting").value_or("");
   result.conditions = ConditionsOf(recording);
   result.stations = means.stations;
@@ -179,6 +251,7 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
   result.residual = means.residual;
   result.noise = means.noise;
   result.notes = means.notes;
+  std::ranges::move(SlipNotes(sweep, means.noise, setup.noise), std::back_inserter(result.notes));
   const SweepGauge gauge(
       Eigen::Map<const Eigen::VectorXd>(means.stations.data(),
                                         static_cast<Eigen::Index>(means.stations.size())),
@@ -191,6 +264,8 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
                  uncertainty.Covariance(i), errors.row(at_target).transpose(),
                  uncertainty.Covariance(at_target));
   }
+  std::ranges::move(AssumptionNotes(setup.head, result, errors, gauge),
+                    std::back_inserter(result.notes));
   return result;
 }
 

@@ -27,11 +27,13 @@ struct Uncertain {
   double u = 0.0;
 };
 
-// forward - backward (ISO: up - down).
+// forward - backward (ISO: up - down). Where there is none at all, one of the fifteen means of
+// three axes is `seen` in 1 % of all machines (Bonferroni), as far as the noise model holds.
 struct Reversal {
   Eigen::VectorXd value, u;
   Uncertain mean;
   Uncertain largest;  // by magnitude, with its sign
+  bool seen;          // the mean is beyond chance
 };
 
 // A reference line through ComponentResult::value over the stations, and the error about it.
@@ -43,7 +45,7 @@ struct LineFigure {
 struct StraightnessFigures {
   LineFigure end_points, least_squares, minimum_zone;
   double u;         // m, of the error about the least-squares line
-  Uncertain slope;  // rad: of the least-squares line that the gauge took off
+  Uncertain slope;  // rad: of the least-squares line over the positions, which the gauge took off
 };
 
 struct ComponentResult {
@@ -63,6 +65,8 @@ struct SweepResult {
   std::string recording, machine, chain;
   char axis = 'X';
   MovingBody moving = MovingBody::kTarget;
+  double sense = 1.0;    // of the axis: CarriageSense, machine/chain.h
+  std::string positive;  // "tool" or "carriage": how its control counts
   std::string mounting;  // as the header says it; empty when it does not
   SweepConditions conditions;
   std::vector<double> stations;  // m, ascending

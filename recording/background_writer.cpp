@@ -10,7 +10,7 @@
 namespace abbe::recording {
 namespace {
 
-constexpr std::chrono::milliseconds kPeriod{500};
+constexpr std::chrono::milliseconds kPeriod{250};
 
 }  // namespace
 
@@ -19,7 +19,8 @@ BackgroundWriter::BackgroundWriter(std::string name, std::unique_ptr<RowFile> fi
     : name_(std::move(name)),
       file_(std::move(file)),
       columns_(columns),
-      thread_([this](const std::stop_token& stop) { Run(stop); }) {}
+      writes_([this](const std::stop_token& stop) { RunWrites(stop); }),
+      syncs_([this](const std::stop_token& stop) { RunSyncs(stop); }) {}
 
 BackgroundWriter::~BackgroundWriter() {
   try {
@@ -34,7 +35,7 @@ void BackgroundWriter::Append(std::span<const double> row) {
     throw InputError(fmt::format("{}: a row of {} values was appended, but there are {} columns",
                                  name_, row.size(), columns_));
   }
-  if (!thread_.joinable()) throw std::logic_error("a row was appended after Close()");
+  if (!writes_.joinable()) throw std::logic_error("a row was appended after Close()");
   bool many = false;
   {
     const std::lock_guard lock(waiting_mutex_);
@@ -43,49 +44,87 @@ void BackgroundWriter::Append(std::span<const double> row) {
     }
     many = waiting_.size() >= kMostWaiting;
   }
-  if (many || failed_) Flush();
+  if (many) WriteWaiting();
+  if (failed_) ThrowFailure();
 }
 
 void BackgroundWriter::Flush() {
-  const std::lock_guard lock(file_mutex_);
   WriteWaiting();
-  if (failure_) std::rethrow_exception(failure_);
+  Sync();
+  ThrowFailure();
 }
 
 void BackgroundWriter::Close() {
-  thread_.request_stop();
-  if (thread_.joinable()) thread_.join();
-  const std::lock_guard lock(file_mutex_);
+  for (std::jthread* thread : {&writes_, &syncs_}) {
+    thread->request_stop();
+    if (thread->joinable()) thread->join();
+  }
   if (closed_) return;
   WriteWaiting();
+  Sync();
   closed_ = true;
   file_->Close();
-  if (failure_) std::rethrow_exception(failure_);
+  ThrowFailure();
 }
 
-// With file_mutex_ held.
 void BackgroundWriter::WriteWaiting() {
+  const std::lock_guard lock(file_mutex_);
   leaving_.clear();
   {
-    const std::lock_guard lock(waiting_mutex_);
+    const std::lock_guard waiting_lock(waiting_mutex_);
     leaving_.swap(waiting_);
   }
-  if (leaving_.empty() || failure_ || closed_) return;
+  if (leaving_.empty() || failed_ || closed_) return;
   try {
     file_->Write(leaving_);
   } catch (const std::exception&) {
-    failure_ = std::current_exception();
-    failed_ = true;
+    Fail();
+    return;
+  }
+  {
+    const std::lock_guard unsynced_lock(unsynced_mutex_);
+    unsynced_ = true;
+  }
+  wake_.notify_all();
+}
+
+void BackgroundWriter::Sync() {
+  if (failed_ || closed_) return;
+  try {
+    file_->Sync();
+  } catch (const std::exception&) {
+    Fail();
   }
 }
 
-void BackgroundWriter::Run(const std::stop_token& stop) {
+void BackgroundWriter::Fail() {
+  const std::lock_guard lock(failure_mutex_);
+  if (!failure_) failure_ = std::current_exception();
+  failed_ = true;
+}
+
+void BackgroundWriter::ThrowFailure() {
+  const std::lock_guard lock(failure_mutex_);
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+void BackgroundWriter::RunWrites(const std::stop_token& stop) {
   std::mutex idle;
+  std::condition_variable_any nobody;
   std::unique_lock lock(idle);
   while (!stop.stop_requested()) {
-    wake_.wait_for(lock, stop, kPeriod, [] { return false; });
-    const std::lock_guard file_lock(file_mutex_);
+    nobody.wait_for(lock, stop, kPeriod, [] { return false; });
     WriteWaiting();
+  }
+}
+
+void BackgroundWriter::RunSyncs(const std::stop_token& stop) {
+  std::unique_lock lock(unsynced_mutex_);
+  while (wake_.wait(lock, stop, [this] { return unsynced_; })) {
+    unsynced_ = false;
+    lock.unlock();
+    Sync();
+    lock.lock();
   }
 }
 

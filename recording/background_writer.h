@@ -1,5 +1,5 @@
-// A writer that hands rows to the disk from a thread of its own, so that a slow disk does not hold
-// up a measurement and rows reach it though no further row comes.
+// A writer that hands rows to the kernel and then to the disk from threads of its own, so that a
+// slow disk holds up neither a measurement nor the rows that come meanwhile.
 #pragma once
 
 #include <atomic>
@@ -18,8 +18,9 @@
 
 namespace abbe::recording {
 
-// Rows wait in memory for at most half a second, and at most kMostWaiting numbers of them: then
-// Append() writes them itself. One thread appends. A failure of the thread is thrown by the next
+// Rows wait in memory for at most a quarter of a second, and at most kMostWaiting numbers of them:
+// then Append() hands them over itself. From then on they outlive this program, and the power as
+// soon as the disk confirms them. One thread appends. A failure of a thread is thrown by the next
 // call.
 class BackgroundWriter : public Writer {
  public:
@@ -33,8 +34,12 @@ class BackgroundWriter : public Writer {
  private:
   static constexpr std::size_t kMostWaiting = std::size_t{1} << 17;
 
-  void Run(const std::stop_token& stop);
+  void RunWrites(const std::stop_token& stop);
+  void RunSyncs(const std::stop_token& stop);
   void WriteWaiting();
+  void Sync();
+  void Fail();  // keeps the exception at hand
+  void ThrowFailure();
 
   const std::string name_;
   const std::unique_ptr<RowFile> file_;
@@ -42,15 +47,20 @@ class BackgroundWriter : public Writer {
 
   std::mutex file_mutex_;  // held while rows go to file_, so that they keep their order
   std::vector<double> leaving_;
-  std::exception_ptr failure_;
-  std::atomic<bool> failed_ = false;
   bool closed_ = false;
+
+  std::mutex failure_mutex_;
+  std::exception_ptr failure_;  // the first
+  std::atomic<bool> failed_ = false;
 
   std::mutex waiting_mutex_;  // taken after file_mutex_, and only to move rows
   std::vector<double> waiting_;
 
+  std::mutex unsynced_mutex_;
+  bool unsynced_ = false;  // the kernel has rows that the disk may not have
+
   std::condition_variable_any wake_;
-  std::jthread thread_;  // last, so that it ends before what it uses
+  std::jthread writes_, syncs_;  // last, so that they end before what they use
 };
 
 }  // namespace abbe::recording

@@ -18,7 +18,11 @@ class SumParser {
  public:
   SumParser(std::string_view text, std::string_view new_name, const std::vector<std::string>& names,
             const std::string& place)
-      : whole_(text), rest_(text), unit_(settings::UnitOf(new_name)), names_(names), place_(place) {}
+      : whole_(text),
+        rest_(text),
+        unit_(settings::UnitOf(new_name)),
+        names_(names),
+        place_(place) {}
 
   ColumnSum Parse() {
     if (IsName(whole_)) {

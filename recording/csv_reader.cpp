@@ -15,7 +15,6 @@
 namespace abbe::recording {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::string_view kBlanks = " \t";
 
 std::string_view Trimmed(std::string_view text) {
@@ -30,7 +29,6 @@ InputError Error(const Places& places, std::size_t line, std::string_view messag
 
 // "abbe-recording = 1", whatever the blanks.
 void CheckSignature(std::string_view line, const Places& places) {
-  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
   std::string packed;
   for (const char c : line) {
     if (kBlanks.find(c) == std::string_view::npos) packed += c;

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "recording/column_sum.h"
+#include "recording/csv_form.h"
 #include "recording/line_reader.h"
 #include "settings/toml_text.h"
 
@@ -19,13 +20,11 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-std::string_view Trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const auto first = text.find_first_not_of(kBlanks);
+std::string_view WithoutBlanks(std::string_view text) {
+  constexpr std::string_view kCellEdges = " \t\r";
+  const auto first = text.find_first_not_of(kCellEdges);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+  return text.substr(first, text.find_last_not_of(kCellEdges) - first + 1);
 }
 
 // What spreadsheets put between cells: a semicolon where numbers have a decimal comma.
@@ -50,7 +49,7 @@ std::vector<std::string> CellsOf(std::string_view line, char separator) {
       cells.back() += line[i];
     }
   }
-  for (std::string& cell : cells) cell = Trimmed(cell);
+  for (std::string& cell : cells) cell = WithoutBlanks(cell);
   return cells;
 }
 
@@ -112,10 +111,10 @@ class TableReader {
  private:
   void Choose() {
     if (columns_.empty()) {
-      throw InputError(fmt::format(
-          "{}: a table does not say what its columns are ({}); name them with their "
-          "units, for example --column pivot_1_rad=NAME",
-          path_, fmt::join(names_, ", ")));
+      throw InputError(
+          fmt::format("{}: a table does not say what its columns are ({}); name them with their "
+                      "units, for example --column pivot_1_rad=NAME",
+                      path_, fmt::join(names_, ", ")));
     }
     for (const MonitoredColumn& column : columns_) {
       sums_.push_back(ParseColumnSum(column.channel, column.name, names_, path_));
@@ -130,15 +129,11 @@ class TableReader {
 
   std::optional<std::string_view> Next() {
     for (auto line = lines_.Next(); line; line = lines_.Next()) {
-      if (lines_.number() == 1 && line->starts_with(kByteOrderMark)) {
-        line->remove_prefix(kByteOrderMark.size());
-      }
       if (line->find('\0') != std::string_view::npos) {
-        throw InputError(
-            fmt::format("{}:{}: is no text in UTF-8; save the table as CSV (UTF-8)", path_,
-                        lines_.number()));
+        throw InputError(fmt::format("{}:{}: is no text in UTF-8; save the table as CSV (UTF-8)",
+                                     path_, lines_.number()));
       }
-      const std::string_view text = Trimmed(*line);
+      const std::string_view text = WithoutBlanks(*line);
       if (!text.empty() && !text.starts_with('#')) return line;
     }
     return std::nullopt;

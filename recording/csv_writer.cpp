@@ -14,7 +14,7 @@
 namespace abbe::recording {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 16;
+constexpr std::size_t kBytesHeld = std::size_t{1} << 16;
 
 // Lines of text, collected before they go to the file.
 class Lines {
@@ -70,8 +70,8 @@ class CsvRowFile : public RowFile {
       lines_.Field(rows[i], (i + 1) % columns_ == 0);
     }
     lines_.MoveTo(file_);
-    file_.Sync();
   }
+  void Sync() override { file_.Sync(); }
   void Close() override { file_.Close(); }
 
  private:
@@ -96,7 +96,7 @@ void WriteCsv(const Recording& recording, const std::string& header, WholeFile& 
     for (const Column& column : recording.columns) {
       lines.Field(column.values[row], &column == &recording.columns.back());
     }
-    if (lines.size() > kBlock) lines.MoveTo(file);
+    if (lines.size() > kBytesHeld) lines.MoveTo(file);
   }
   lines.MoveTo(file);
 }

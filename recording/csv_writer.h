@@ -8,8 +8,8 @@
 
 namespace abbe::recording {
 
-// Writes the columns of `recording` under `header`; the caller finishes the file. Failures are those
-// of WholeFile.
+// Writes the columns of `recording` under `header`; the caller finishes the file. Failures are
+// those of WholeFile.
 void WriteCsv(const Recording& recording, const std::string& header, WholeFile& file);
 
 }  // namespace abbe::recording

@@ -24,7 +24,7 @@ namespace {
 constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
 constexpr std::size_t kMostBytes = kMebi;  // of a message
 constexpr char kFailed = 'e', kDone = 'd';
-constexpr rlim_t kSeconds = 5;
+constexpr rlim_t kChildSeconds = 3;
 constexpr std::uint64_t kBytesPerSecond = 2'000'000;
 constexpr std::uint64_t kLibrary = 256 * kMebi;  // what libhdf5 takes for itself
 
@@ -150,7 +150,8 @@ class Ending {
 };
 
 [[noreturn]] void ThrowEnded(const std::string& name, int status) {
-  const bool slow = WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL);
+  const bool slow =
+      WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL);
   throw InputError(fmt::format("{}: this HDF5 file is damaged: {}; use a copy that is whole", name,
                                slow ? "reading it finds no end"
                                : WIFSIGNALED(status)
@@ -212,7 +213,8 @@ void ReadInChild(const std::filesystem::path& path,
   const QuietHdf5 quiet;
   const std::string name = path.string();
   const std::uint64_t size = SizeOf(path), most = MostHdf5Numbers(path);
-  Child child{read, Mapped() + kLibrary + 2 * most, kSeconds + size / kBytesPerSecond, {-1, -1}};
+  Child child{
+      read, Mapped() + kLibrary + 2 * most, kChildSeconds + size / kBytesPerSecond, {-1, -1}};
   if (pipe2(child.pipe, O_CLOEXEC) != 0) throw InputError(name + ": too many open files");
   Fork(child);
   close(child.pipe[1]);
@@ -223,9 +225,8 @@ void ReadInChild(const std::filesystem::path& path,
   for (bool more = true; more;) {
     char kind = 0;
     std::uint64_t length = 0;
-    if (!ReadAll(child.pipe[0], &kind, 1) ||
-        !ReadAll(child.pipe[0], &length, sizeof(length)) || length > kMostBytes ||
-        (received += length) > 2 * most) {
+    if (!ReadAll(child.pipe[0], &kind, 1) || !ReadAll(child.pipe[0], &length, sizeof(length)) ||
+        length > kMostBytes || (received += length) > 2 * most) {
       ThrowEnded(name, ending.End(0));
     }
     bytes.resize(length);
@@ -246,8 +247,8 @@ std::string TextAttribute(hid_t object, const char* attribute_name, const std::s
   }
   const auto refuse_long = [&](std::size_t size) {
     if (size <= kMostHdf5Text) return;
-    throw InputError(fmt::format("{}: its text `{}` is longer than 1 MiB; shorten it", file,
-                                 attribute_name));
+    throw InputError(
+        fmt::format("{}: its text `{}` is longer than 1 MiB; shorten it", file, attribute_name));
   };
   char* variable = nullptr;
   const bool is_variable = H5Tis_variable_str(type.id()) > 0;
@@ -279,9 +280,9 @@ Hdf5Numbers::Hdf5Numbers(hid_t file, const std::string& name, int rank,
   set_ = Handle(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
   const Handle space(set_.good() ? H5Dget_space(set_.id()) : H5I_INVALID_HID, H5Sclose);
   const Handle type(set_.good() ? H5Dget_type(set_.id()) : H5I_INVALID_HID, H5Tclose);
-  const bool number = type.good() && H5Tget_size(type.id()) <= 16 &&
-                      (H5Tget_class(type.id()) == H5T_FLOAT ||
-                       H5Tget_class(type.id()) == H5T_INTEGER);
+  const bool number =
+      type.good() && H5Tget_size(type.id()) <= 16 &&
+      (H5Tget_class(type.id()) == H5T_FLOAT || H5Tget_class(type.id()) == H5T_INTEGER);
   if (!space.good() || !number || H5Sget_simple_extent_ndims(space.id()) != rank) {
     RefuseNumbers(file_name, name,
                   rank == 1 ? std::string("is not a column (one row of numbers); remove it from "

@@ -97,8 +97,8 @@ class DataSet {
     const Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
     const Handle space(H5Dget_space(numbers_.id()), H5Sclose);
     H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, nullptr, &rows, nullptr);
-    if (H5Dread(numbers_.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, values.data()) <
-        0) {
+    if (H5Dread(numbers_.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT,
+                values.data()) < 0) {
       throw InputError(fmt::format("{}: {}: cannot be read: {}; use a copy that is whole",
                                    file_name, name(), Hdf5Reason()));
     }
@@ -155,10 +155,9 @@ hsize_t RowsOf(const Content& content) {
     for (const DataSet& set : content.sets) {
       set.RequireStorage(name);
       if (set.rows() == content.sets.front().rows()) continue;
-      throw InputError(
-          fmt::format("{}: {}: has {} rows, but {} has {}; all columns must be of one length", name,
-                      set.name(), set.rows(), content.sets.front().name(),
-                      content.sets.front().rows()));
+      throw InputError(fmt::format(
+          "{}: {}: has {} rows, but {} has {}; all columns must be of one length", name, set.name(),
+          set.rows(), content.sets.front().name(), content.sets.front().rows()));
     }
     return content.sets.front().rows();
   }
@@ -229,7 +228,8 @@ class BlockTaker {
       unclosed_ = true;
     } else if (part == kRows) {
       std::memcpy(&all_, bytes.data(), std::min(bytes.size(), sizeof(all_)));
-      for (Column& column : block_.columns) column.values.reserve(std::min<std::size_t>(rows_, all_));
+      for (Column& column : block_.columns)
+        column.values.reserve(std::min<std::size_t>(rows_, all_));
     } else if (part == kValues) {
       std::vector<double>& values = block_.columns.at(column_).values;
       const std::size_t before = values.size(), count = bytes.size() / sizeof(double);

@@ -66,9 +66,8 @@ double Number(std::string_view word, const std::string& place) {
 Recording ReadHoleTable(const std::filesystem::path& path, double u_probing_um) {
   Recording recording;
   recording.name = path.string();
-  recording.header =
-      fmt::format("kind = \"plate\"\nimported_from = {}\n",
-                  settings::Quoted(path.filename().string()));
+  recording.header = fmt::format("kind = \"plate\"\nimported_from = {}\n",
+                                 settings::Quoted(path.filename().string()));
   if (u_probing_um > 0.0) recording.header += fmt::format("u_probing_um = {}\n", u_probing_um);
   for (const char* name : {"x_mm", "y_mm", "z_mm", "setup", "hole", "plate_x_mm", "plate_y_mm"}) {
     recording.columns.push_back({name, {}});

@@ -14,7 +14,7 @@
 namespace abbe::recording {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 20;
+constexpr std::size_t kBytesAtOnce = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -24,7 +24,7 @@ LineReader::LineReader(const std::filesystem::path& path) : name_(path.string())
     throw InputError(
         fmt::format("{}: cannot be read: {}; check the path", name_, std::strerror(errno)));
   }
-  block_ = std::make_unique_for_overwrite<char[]>(kBlock);
+  block_ = std::make_unique_for_overwrite<char[]>(kBytesAtOnce);
 }
 
 LineReader::~LineReader() { close(file_); }
@@ -42,6 +42,15 @@ std::size_t LineReader::ReadSome(char* to, std::size_t size) {
 }
 
 std::optional<std::string_view> LineReader::Next() {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  auto line = NextAsItIs();
+  if (line && number_ == 1 && line->starts_with(kByteOrderMark)) {
+    line->remove_prefix(kByteOrderMark.size());
+  }
+  return line;
+}
+
+std::optional<std::string_view> LineReader::NextAsItIs() {
   std::size_t searched = begin_;
   while (true) {
     const void* found = std::memchr(block_.get() + searched, '\n', end_ - searched);
@@ -57,11 +66,11 @@ std::optional<std::string_view> LineReader::Next() {
     end_ -= begin_;
     begin_ = 0;
     searched = end_;
-    if (end_ == kBlock) {
+    if (end_ == kBytesAtOnce) {
       throw InputError(fmt::format("{}:{}: this line is longer than 1 MiB; is this a recording?",
                                    name_, number_ + 1));
     }
-    const std::size_t count = ReadSome(block_.get() + end_, kBlock - end_);
+    const std::size_t count = ReadSome(block_.get() + end_, kBytesAtOnce - end_);
     if (count == 0) break;
     end_ += count;
   }
@@ -76,7 +85,7 @@ std::optional<std::string_view> LineReader::Next() {
 std::size_t LineReader::CountLineEnds() {
   const off_t here = lseek(file_, 0, SEEK_CUR);
   lseek(file_, 0, SEEK_SET);
-  std::vector<char> block(kBlock);
+  std::vector<char> block(kBytesAtOnce);
   std::size_t line_ends = 0;
   while (const std::size_t size = ReadSome(block.data(), block.size())) {
     line_ends += static_cast<std::size_t>(std::count(block.data(), block.data() + size, '\n'));

@@ -21,7 +21,7 @@ class LineReader {
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
 
-  // The next line without its "\n" or "\r\n"; nothing at the end of the file. InputError when a
+  // The next line without its "\n" or "\r\n", the first one without a byte-order mark; nothing at the end of the file. InputError when a
   // line is longer than the block (1 MiB).
   std::optional<std::string_view> Next();
   // Whether the line that Next() gave last ended in a line end, and its number, from 1.
@@ -32,12 +32,13 @@ class LineReader {
   std::size_t CountLineEnds();
 
  private:
+  std::optional<std::string_view> NextAsItIs();
   std::size_t ReadSome(char* to, std::size_t size);
 
   std::string name_;
   int file_ = -1;
   std::unique_ptr<char[]> block_;  // only what is read into it is touched
-  std::size_t begin_ = 0;  // of what is not handed out yet, in block_
+  std::size_t begin_ = 0;          // of what is not handed out yet, in block_
   std::size_t end_ = 0;
   std::size_t number_ = 0;
   bool complete_ = true;

@@ -42,9 +42,8 @@ std::string_view NextWord(std::string_view& line) {
 
 // Whether `text` is written as `form`, in which 0 stands for any digit.
 bool IsWritten(std::string_view text, std::string_view form) {
-  return std::equal(text.begin(), text.end(), form.begin(), form.end(), [](char is, char as) {
-    return as == '0' ? is >= '0' && is <= '9' : is == as;
-  });
+  return std::equal(text.begin(), text.end(), form.begin(), form.end(),
+                    [](char is, char as) { return as == '0' ? is >= '0' && is <= '9' : is == as; });
 }
 
 // "2023-02-08" and "14:21:15.970781" since 1970 of the same clock.

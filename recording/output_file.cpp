@@ -26,8 +26,7 @@ int CreateNewFile(const std::filesystem::path& path) {
 void ThrowWriteFailure(std::string_view file, std::string_view saved) {
   const int error = errno;
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
-    throw DeviceError(
-        fmt::format("{}: disk full; {}; free some space and try again", file, saved));
+    throw DeviceError(fmt::format("{}: disk full; {}; free some space and try again", file, saved));
   }
   throw DeviceError(fmt::format("{}: cannot be written: {}; {}; check the disk", file,
                                 std::strerror(error), saved));

@@ -28,18 +28,22 @@ constexpr std::string_view kHdf5Begin = "\x89HDF\r\n\x1a\n";
 constexpr std::size_t kWhole = std::numeric_limits<std::size_t>::max();  // rows of a block
 
 constexpr std::string_view kSpreadsheet =
-    "is the workbook of a spreadsheet; save its sheet as CSV there, and make a recording of that by "
+    "is the workbook of a spreadsheet; save its sheet as CSV there, and make a recording of that "
+    "by "
     "abbe convert TABLE.csv RECORDING.csv --column NAME=COLUMN";
 constexpr std::string_view kMatlab =
-    "is a file of MATLAB; write its columns there as CSV (writetable), and make a recording of that "
+    "is a file of MATLAB; write its columns there as CSV (writetable), and make a recording of "
+    "that "
     "by abbe convert TABLE.csv RECORDING.csv --column NAME=COLUMN";
 constexpr std::string_view kOtherProgram =
     "is a table of another program; write it there as CSV, and make a recording of that by abbe "
     "convert TABLE.csv RECORDING.csv --column NAME=COLUMN";
 constexpr std::string_view kImportable =
-    "is not a recording, which ends in .csv, .h5 or .hdf5; abbe convert makes one of a table (.dat, "
+    "is not a recording, which ends in .csv, .h5 or .hdf5; abbe convert makes one of a table "
+    "(.dat, "
     ".txt) or a log (.log)";
-constexpr std::string_view kProgram = "is an NC program, not a recording; are two arguments swapped?";
+constexpr std::string_view kProgram =
+    "is an NC program, not a recording; are two arguments swapped?";
 
 enum class Form { kCsv, kHdf5 };
 
@@ -56,7 +60,8 @@ std::string_view WhatToDo(std::string_view extension) {
       {".log", kImportable},
       {".tsv", kOtherProgram},
       {".toml",
-       "is a file of settings (a machine file, a map), not a recording; are two arguments swapped?"},
+       "is a file of settings (a machine file, a map), not a recording; are two arguments "
+       "swapped?"},
       {".json", "is a result, not a recording; are two arguments swapped?"},
       {".ngc", kProgram},
       {".nc", kProgram},

@@ -35,9 +35,9 @@ Recording ReadHead(const std::filesystem::path& path);
 // recording that Read() would refuse, DeviceError when the disk is full.
 void Write(const Recording& recording, const std::filesystem::path& path);
 
-// Appends rows to a file while they are measured. Within a second, and when Flush() or Close()
-// returns, a row is on the disk, also when no other follows it. Memory does not grow with the
-// length. One thread appends; a thread of the writer's own waits for the disk.
+// Appends rows to a file while they are measured. Within a second a row is with the kernel and
+// outlives this program, however slow the disk; when Flush() or Close() returns it is on the disk.
+// Memory does not grow with the length. One thread appends; threads of the writer's own wait.
 class Writer {
  public:
   virtual ~Writer() = default;

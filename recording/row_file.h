@@ -12,9 +12,13 @@ namespace abbe::recording {
 class RowFile {
  public:
   virtual ~RowFile() = default;
-  // Puts whole rows (row after row, one value per column) at the end; they are on the disk when it
-  // returns. DeviceError when the disk takes no more: the rows of earlier calls stay readable.
+  // Puts whole rows (row after row, one value per column) at the end. When it returns the kernel
+  // has them: they outlive this program. DeviceError when the disk takes no more: the rows of
+  // earlier calls stay readable.
   virtual void Write(std::span<const double> rows) = 0;
+  // Returns when what Write() took is on the disk: it outlives the power. Another thread may
+  // Write() meanwhile. DeviceError when the disk does not confirm.
+  virtual void Sync() = 0;
   virtual void Close() = 0;
 };
 

@@ -20,9 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostLinks = 40;                // as many as Linux follows
-constexpr std::size_t kBegin = 1 << 14;       // bytes that tell the kind of a file
-constexpr std::string_view kNothingSaved = "nothing is saved";
+constexpr int kMostLinks = 40;           // as many as Linux follows
+constexpr std::size_t kBegin = 1 << 14;  // bytes that tell the kind of a file
+constexpr std::string_view kNothingChanged = "nothing is saved";
 
 Overwriting& Policy() {
   static Overwriting policy;
@@ -77,16 +77,17 @@ void RefuseInput(const struct stat& status, const std::string& name) {
     const auto read = StatOf(input);
     if (!read || read->st_dev != status.st_dev || read->st_ino != status.st_ino) continue;
     throw InputError(fmt::format(
-        "{}: exists already, and this command reads it; choose another name, or say --force", name));
+        "{}: exists already, and this command reads it; choose another name, or say --force",
+        name));
   }
 }
 
 void RefuseRecording(const std::string& kind, const std::string& name) {
   if (kind != "a recording") return;
-  throw InputError(
-      fmt::format("{}: exists already, and nothing recorded is overwritten; choose another name, or "
-                  "say --force",
-                  name));
+  throw InputError(fmt::format(
+      "{}: exists already, and nothing recorded is overwritten; choose another name, or "
+      "say --force",
+      name));
 }
 
 [[noreturn]] void RefusePlace(const std::string& name, int error) {
@@ -176,15 +177,15 @@ void WholeFile::Append(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = write(file_, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) ThrowWriteFailure(name_, kNothingSaved);
+    if (count < 0) ThrowWriteFailure(name_, kNothingChanged);
     bytes.remove_prefix(static_cast<std::size_t>(count));
   }
 }
 
 fs::path WholeFile::PartToFill(std::string_view kind_of) {
   if (special_) {
-    throw InputError(
-        fmt::format("{}: is a device or a pipe, which HDF5 cannot be written to; name a file", name_));
+    throw InputError(fmt::format(
+        "{}: is a device or a pipe, which HDF5 cannot be written to; name a file", name_));
   }
   if (!begun_) Open(kind_of);
   return part_;
@@ -194,11 +195,11 @@ void WholeFile::Finish() {
   if (!begun_) Open({});
   // What has no disk behind it (EINVAL) has taken the bytes already.
   if (fsync(file_) != 0 && errno != EINVAL && errno != EROFS) {
-    ThrowWriteFailure(name_, kNothingSaved);
+    ThrowWriteFailure(name_, kNothingChanged);
   }
-  if (close(std::exchange(file_, -1)) != 0) ThrowWriteFailure(name_, kNothingSaved);
+  if (close(std::exchange(file_, -1)) != 0) ThrowWriteFailure(name_, kNothingChanged);
   if (special_) return;
-  if (rename(part_.c_str(), target_.c_str()) != 0) ThrowWriteFailure(name_, kNothingSaved);
+  if (rename(part_.c_str(), target_.c_str()) != 0) ThrowWriteFailure(name_, kNothingChanged);
   part_.clear();
 }
 

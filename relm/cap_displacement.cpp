@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,9 +20,11 @@ using recording::Recording;
 constexpr double kMoving = 0.5;       // of the median speed of what moves
 constexpr double kStandstill = 1e-6;  // m/s
 constexpr Eigen::Index kSpan = 3;     // rows before and after over which a velocity is taken
-// What the directions of motion must leave to tell the displacement from the offsets: the smallest
-// scaled singular value of the equations.
-constexpr double kTold = 0.05;
+constexpr double kStraight = 0.9;     // cosine of the turn that ends a stroke
+constexpr double kParallel = 0.99;    // cosine
+constexpr double kSameWay = 0.1;      // of the length: how far apart strokes of one way may lie
+constexpr double kSeen = 0.05;        // of the direction that the gauges read, squared
+constexpr double kOneWay = 0.999;     // mean sense
 
 struct Readings {
   std::vector<char> axes;         // of the columns of `displacement`
@@ -73,7 +75,7 @@ Readings FromGauges(const Recording& recording, const std::vector<std::size_t>& 
 }
 
 // Positions, times, force and feed of the rows without a flag; the reference where it is there.
-MeasuredPath Motion(const Recording& recording) {
+MeasuredPath SteadyMotion(const Recording& recording) {
   if (HasReference(recording)) return ReferencePath(recording);
   Recording with = recording;  // the commanded position as its own reference: motion only
   for (const char axis : {'x', 'y', 'z'}) {
@@ -113,55 +115,140 @@ std::vector<Eigen::Index> Steady(const std::vector<Eigen::Index>& group,
   return steady;
 }
 
-// Strokes: rows in sequence, told apart by a pause or a turn of more than a right angle.
-std::size_t Strokes(const std::vector<Eigen::Index>& rows, const Eigen::Matrix3Xd& velocity) {
-  std::size_t strokes = 1;
-  Eigen::Index begin = rows.front();
-  for (std::size_t k = 1; k < rows.size(); ++k) {
-    const bool pause = rows[k] > rows[k - 1] + 1;
-    if (pause || velocity.col(rows[k]).dot(velocity.col(begin)) < 0.0) {
-      ++strokes;
-      begin = rows[k];
-    }
+// Rows in sequence and in one direction.
+struct Stroke {
+  std::vector<Eigen::Index> rows;
+  Eigen::Vector3d direction;         // of its first row
+  Eigen::Vector3d middle, from, to;  // commanded, m
+  double along = 0.0;                // mean reading along the line
+};
+
+// Told apart by a pause or a turn.
+std::vector<Stroke> StrokesOf(const std::vector<Eigen::Index>& rows,
+                              const Eigen::Matrix3Xd& velocity, const Eigen::Matrix3Xd& commanded) {
+  std::vector<Stroke> strokes;
+  for (const Eigen::Index row : rows) {
+    const Eigen::Vector3d direction = velocity.col(row).normalized();
+    const bool goes_on = !strokes.empty() && row == strokes.back().rows.back() + 1 &&
+                         direction.dot(strokes.back().direction) > kStraight;
+    if (!goes_on)
+      strokes.push_back({{}, direction, {0, 0, 0}, commanded.col(row), commanded.col(row), 0.0});
+    Stroke& stroke = strokes.back();
+    stroke.rows.push_back(row);
+    stroke.to = commanded.col(row);
+    stroke.middle += commanded.col(row);
+  }
+  // The rows of a turn itself.
+  std::erase_if(strokes, [](const Stroke& stroke) {
+    return stroke.rows.size() <= static_cast<std::size_t>(2 * kSpan);
+  });
+  for (Stroke& stroke : strokes) {
+    stroke.middle /= static_cast<double>(stroke.rows.size());
+    stroke.direction = (stroke.to - stroke.from).normalized();
   }
   return strokes;
 }
 
-CapDisplacement Evaluate(const Readings& readings, const std::vector<Eigen::Index>& rows,
-                         const Eigen::Matrix3Xd& velocity, const std::string& recording) {
-  const Eigen::Index axes = readings.displacement.cols(),
-                     n = static_cast<Eigen::Index>(rows.size());
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n * axes, axes + 1);
-  Eigen::VectorXd d(n * axes);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::Index row = rows[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d direction = velocity.col(row).normalized();
-    for (Eigen::Index k = 0; k < axes; ++k) {
-      A(i * axes + k, k) = 1.0;
-      A(i * axes + k, axes) = -direction[readings.axes[static_cast<std::size_t>(k)] - 'X'];
-      d[i * axes + k] = readings.displacement(row, k);
+// Strokes to and fro, and what the readings say along their direction.
+struct Line {
+  std::vector<Stroke*> strokes;
+  Eigen::VectorXd seen;  // of the direction, along the axes that are read
+  double weight = 0.0;   // square of its length
+  double sense = 0.0;    // mean over its strokes
+  double along = 0.0;
+
+  double SenseOf(const Stroke& stroke) const {
+    return stroke.direction.dot(strokes.front()->direction) > 0.0 ? 1.0 : -1.0;
+  }
+};
+
+bool ShareALine(const Stroke& one, const Stroke& other, bool same_way) {
+  if (std::abs(one.direction.dot(other.direction)) < kParallel) return false;
+  const double apart = (one.middle - other.middle).norm();
+  return !same_way || apart < kSameWay * (one.to - one.from).norm();
+}
+
+std::vector<Line> LinesOf(std::vector<Stroke>& strokes, const Readings& readings, bool same_way) {
+  std::vector<Line> lines;
+  for (Stroke& stroke : strokes) {
+    const auto line = std::ranges::find_if(lines, [&](const Line& each) {
+      return ShareALine(*each.strokes.front(), stroke, same_way);
+    });
+    (line == lines.end() ? lines.emplace_back() : *line).strokes.push_back(&stroke);
+  }
+  for (Line& line : lines) {
+    line.seen.resize(readings.displacement.cols());
+    for (Eigen::Index k = 0; k < line.seen.size(); ++k) {
+      line.seen[k] =
+          line.strokes.front()->direction[readings.axes[static_cast<std::size_t>(k)] - 'X'];
+    }
+    line.weight = line.seen.squaredNorm();
+    if (line.weight < kSeen) continue;
+    const auto count = static_cast<double>(line.strokes.size());
+    for (Stroke* stroke : line.strokes) {
+      stroke->along =
+          (readings.displacement(stroke->rows, Eigen::all) * line.seen).mean() / line.weight;
+      line.along += stroke->along / count;
+      line.sense += line.SenseOf(*stroke) / count;
     }
   }
-  const Eigen::VectorXd scale = A.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
-  const Eigen::MatrixXd scaled = A * scale.cwiseInverse().asDiagonal();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled.transpose() * scaled);
-  if (svd.singularValues().minCoeff() < kTold) {
+  // What is passed one way only says nothing.
+  std::erase_if(lines, [](const Line& line) {
+    return line.weight < kSeen || std::abs(line.sense) > kOneWay;
+  });
+  return lines;
+}
+
+double Displacement(const std::vector<Line>& lines) {
+  double product = 0.0, square = 0.0;
+  for (const Line& line : lines) {
+    for (const Stroke* stroke : line.strokes) {
+      const double sense = line.SenseOf(*stroke) - line.sense;
+      product -= line.weight * sense * (stroke->along - line.along);
+      square += line.weight * sense * sense;
+    }
+  }
+  return product / square;
+}
+
+// u, its degrees of freedom, the scatter of the rows.
+void AddScatter(const std::vector<Line>& lines, const Readings& readings, CapDisplacement& result) {
+  double left = 0.0, square = 0.0, rows = 0.0, strokes = 0.0;
+  for (const Line& line : lines) {
+    for (const Stroke* stroke : line.strokes) {
+      const double sense = line.SenseOf(*stroke) - line.sense;
+      const double expected = line.along - result.displacement * sense;
+      left += line.weight * std::pow(stroke->along - expected, 2);
+      square += line.weight * sense * sense;
+      const Eigen::VectorXd along =
+          readings.displacement(stroke->rows, Eigen::all) * line.seen / line.weight;
+      rows += (along.array() - expected).square().sum();
+      result.rows += stroke->rows.size();
+      strokes += 1.0;
+    }
+  }
+  result.dof = strokes - static_cast<double>(lines.size()) - 1.0;
+  result.u = result.dof > 0.0 ? std::sqrt(left / result.dof / square)
+                              : std::numeric_limits<double>::infinity();
+  result.scatter = std::sqrt(rows / static_cast<double>(result.rows));
+}
+
+CapDisplacement Evaluate(const Readings& readings, const std::vector<Eigen::Index>& rows,
+                         const Eigen::Matrix3Xd& velocity, const std::string& recording) {
+  std::vector<Stroke> strokes = StrokesOf(rows, velocity, readings.commanded);
+  std::vector<Line> lines = LinesOf(strokes, readings, true);
+  if (lines.empty()) lines = LinesOf(strokes, readings, false);
+  if (lines.empty()) {
     throw InputError(
         fmt::format("{}: at {:.0f} mm/min the gauges see motion in one direction alone: the "
-                    "displacement cannot "
-                    "be told from their offsets; move to and fro",
+                    "displacement cannot be told from their offsets; move to and fro",
                     recording, readings.feed[rows.front()] / settings::kMillimetre * 60.0));
   }
-  const Eigen::VectorXd x = A.colPivHouseholderQr().solve(d);
   CapDisplacement result;
-  result.displacement = x[axes];
-  result.scatter = std::sqrt((d - A * x).squaredNorm() / static_cast<double>(d.size()));
-  // Within a stroke readings share form and noise of low frequency: a stroke counts as one.
-  const double strokes = static_cast<double>(Strokes(rows, velocity));
-  result.u = result.scatter / std::sqrt(std::max(1.0, strokes));
-  result.rows = rows.size();
+  result.displacement = Displacement(lines);
   result.force = readings.force[rows.front()];
   result.feed = readings.feed[rows.front()];
+  AddScatter(lines, readings, result);
   return result;
 }
 
@@ -205,7 +292,7 @@ std::vector<CapDisplacement> EvaluateCap(const Recording& recording,
         "--gauge X=probe_d_um",
         recording.name));
   }
-  const MeasuredPath motion = Motion(recording);
+  const MeasuredPath motion = SteadyMotion(recording);
   return Displacements(recording, motion,
                        gauges.empty() ? Beside(motion, motion.measured, motion.commanded)
                                       : FromGauges(recording, motion.rows, gauges));

@@ -7,10 +7,15 @@
 // the tool, read a displacement d along their axes; all moving rows of one force and feed give, by
 // least squares,
 //
-//   d_axis = offset_axis - e v_axis / |v|
+//   y_stroke = offset_line - e sense         y: mean of d along the line; sense +1 or -1
 //
-// so form and set-up of the gauges (offsets) fall out as soon as there is motion in both
-// directions. Units: m, N, m/s. Shapes: one result for each force and feed. Failure: InputError
+// A stroke is the way between two pauses or turns; a line is what strokes to and fro have in
+// common: the same way, or, where none is passed both ways, the same direction. So set-up and form
+// of the gauges (offsets) fall out, and what errs alike to and fro on one way: the machine, the
+// calibration of a linkage. Each stroke counts as one reading, however many rows it has, for within
+// it rows share what changes slowly; u comes from how well strokes repeat, with strokes - lines - 1
+// degrees of freedom.
+// Units: m, N, m/s. Shapes: one result for each force and feed. Failure: InputError
 // with the recording for a gauge whose column is missing, no moving row, or motion in one direction
 // alone. Source: the study of the magnetic tool cap in the linkage's second paper (8.5 N, 100
 // mm/min: below 2 um). Validity: with a reference instead of gauges, backlash and servo lag of the
@@ -38,8 +43,9 @@ struct CapDisplacement {
   double force = 0.0;         // N; NaN where the recording has no cap_force_n
   double feed = 0.0;          // m/s
   double displacement = 0.0;  // e, m; > 0: against the motion
-  double u = 0.0;             // standard uncertainty, from the scatter of the strokes
-  double scatter = 0.0;       // m: rms of the residuals
+  double u = 0.0;             // m: standard uncertainty; infinite without degrees of freedom
+  double dof = 0.0;           // degrees of freedom of u
+  double scatter = 0.0;       // m: rms of what is left of single rows
   std::size_t rows = 0;
 };
 

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double kAcross = 1e-9;  // m
+constexpr double kLeastAcross = 1e-9;  // m
 
 // The coordinate direction that stands best across `axis`, made exactly so.
 Vector3d AnyAcross(const Vector3d& axis) {
@@ -24,7 +24,7 @@ Vector3d AnyAcross(const Vector3d& axis) {
 
 Vector3d Across(const Vector3d& axis, const Vector3d& preferred) {
   const Vector3d across = preferred - axis * axis.dot(preferred);
-  return across.norm() > kAcross ? across.normalized() : AnyAcross(axis);
+  return across.norm() > kLeastAcross ? across.normalized() : AnyAcross(axis);
 }
 
 struct PivotMotions {
@@ -43,11 +43,11 @@ PivotMotions AddPivot(const LinkageSettings& settings, Index joint, MotionChain&
   pivot.shift_u = motions.Shift(u);
   pivot.shift_v = motions.Shift(v);
   pivot.turn = motions.Joint(static_cast<int>(joint));
-  const double along_link = arriving.norm() > kAcross ? arriving.normalized().dot(u) : 0.0;
+  const double along_link = arriving.norm() > kLeastAcross ? arriving.normalized().dot(u) : 0.0;
   pivot.shift_u_sd =
       std::hypot(settings.tolerance.link * along_link, settings.tolerance.pivot_offset);
   const Vector3d link = settings.chain.Link(joint);
-  pivot.growth = link.norm() > kAcross ? motions.Shift(link.normalized()) : -1;
+  pivot.growth = link.norm() > kLeastAcross ? motions.Shift(link.normalized()) : -1;
   return pivot;
 }
 
@@ -58,7 +58,7 @@ struct BallMotions {
 BallMotions AddBall(const SerialChain& chain, MotionChain& motions) {
   const Vector3d& axis = chain.axes().back().direction;
   const Vector3d link = chain.Link(chain.joints() - 1);
-  const Vector3d along = link.norm() > kAcross ? link.normalized() : AnyAcross(axis);
+  const Vector3d along = link.norm() > kLeastAcross ? link.normalized() : AnyAcross(axis);
   const Vector3d across = Across(along, axis.cross(along));
   return {motions.Shift(along), motions.Shift(across), motions.Shift(along.cross(across))};
 }

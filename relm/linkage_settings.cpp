@@ -178,11 +178,7 @@ LinkageSettings ReadLinkageSettings(const Table& root) {
 }
 
 Vector3d NominalTip(const machine::Chain& chain, const Vector3d& axis_positions) {
-  Vector3d p_MT;
-  for (int i = 0; i < 3; ++i) {
-    p_MT[i] = chain.CarriesTarget("XYZ"[i]) ? -axis_positions[i] : axis_positions[i];
-  }
-  return p_MT;
+  return chain.ToolSenses().cwiseProduct(axis_positions);
 }
 
 LinkageModel MakeLinkageModel(const LinkageSettings& settings, ErrorModel model) {

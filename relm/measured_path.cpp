@@ -74,9 +74,7 @@ MeasuredPath LinkagePath(const Recording& recording, const machine::Chain& chain
   MeasuredPath path = Commanded(recording, rows);
   path.instrument = "linkage";
   path.seen = {true, true, true};
-  for (int axis = 0; axis < 3; ++axis) {
-    path.measured.row(axis) = (chain.CarriesTarget("XYZ"[axis]) ? -1.0 : 1.0) * p_MT.row(axis);
-  }
+  path.measured = chain.ToolSenses().asDiagonal() * p_MT;
   return path;
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kAcross = 1e-9;  // m: an arm shorter than this across an axis is no arm
+constexpr double kLeastArm = 1e-9;  // m: an arm shorter than this across an axis is no arm
 
 std::size_t At(Eigen::Index index) { return static_cast<std::size_t>(index); }
 
@@ -53,7 +53,7 @@ Vector3d MotionChain::ArmAfter(int joint) const {
   for (Eigen::Index link = joint; link < joints(); ++link) {
     const Vector3d along = chain_.Link(link);
     const Vector3d across = along - axis * axis.dot(along);
-    if (across.norm() > kAcross) return across.normalized();
+    if (across.norm() > kLeastArm) return across.normalized();
   }
   return Vector3d::Zero();
 }

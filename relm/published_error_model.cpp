@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kAcross = 0.5;  // sine of the angle from which a segment stands across an axis
+constexpr double kAcrossFrom = 0.5;  // sine of the angle from which a segment stands across an axis
 
 // A segment as it stands in B at encoder zero.
 struct PlacedSegment {
@@ -38,7 +38,7 @@ std::vector<PlacedSegment> Place(const std::vector<Segment>& segments) {
 }
 
 bool StandsAcross(const PlacedSegment& segment, const JointAxis& axis) {
-  return segment.direction.cross(axis.direction).norm() > kAcross;
+  return segment.direction.cross(axis.direction).norm() > kAcrossFrom;
 }
 
 // The segment about which the next pivot is twisted: the longest one across the axis of the pivot

@@ -39,30 +39,35 @@ std::string MotionName(int axis, int motion) {
 }
 
 AxisErrors::AxisErrors(const RigSettings& settings, int axis, std::uint64_t seed)
-    : smoothness_(settings.population.smoothness),
-      reference_(settings.travels[axis].first),
+    : axis_(axis),
+      sense_(settings.sense[axis]),
+      smoothness_(settings.population.smoothness),
+      low_(sense_ * (sense_ > 0.0 ? settings.travels[axis].first : settings.travels[axis].last)),
+      high_(sense_ * (sense_ > 0.0 ? settings.travels[axis].last : settings.travels[axis].first)),
       scale_(settings.population.scale *
              random::CounterRandom(seed, kScaleStream).Normal(static_cast<std::uint64_t>(axis))) {
-  const auto [low, high] = settings.travels[axis];
   for (int motion = 0; motion < kMotions; ++motion) {
     const auto stream = kErrorStream + static_cast<std::uint64_t>(kMotions * axis + motion);
     functions_.emplace_back(random::CounterRandom(seed, stream),
-                            DeviationOf(settings.population, axis, motion), smoothness_, low, high);
-    offsets_[motion] = functions_[motion](reference_);
+                            DeviationOf(settings.population, axis, motion), smoothness_, low_,
+                            high_);
+    offsets_[motion] = functions_[motion](low_);
     if (IsStraightness(axis, motion)) {
-      slopes_[motion] = Slope(functions_[motion], low, high, smoothness_);
+      slopes_[motion] = Slope(functions_[motion], low_, high_, smoothness_);
     }
     if (motion == axis) slopes_[motion] = -scale_;
   }
 }
 
 Motions AxisErrors::At(double position) const {
-  const BellWindow window(position, smoothness_);
+  const double place = sense_ * position;
+  const BellWindow window(place, smoothness_);
   Motions errors;
   for (int motion = 0; motion < kMotions; ++motion) {
-    errors[motion] = functions_[motion].At(window) - offsets_[motion] -
-                     slopes_[motion] * (position - reference_);
+    errors[motion] =
+        functions_[motion].At(window) - offsets_[motion] - slopes_[motion] * (place - low_);
   }
+  errors[axis_] *= sense_;
   return errors;
 }
 

@@ -3,7 +3,8 @@
 //
 // Population: each function is a stationary Gaussian process (gaussian_field.h) with the standard
 // deviation and the correlation length of the machine file, and after the draw
-//  - every function is shifted to be zero at the axis reference, the first end of the travel;
+//  - every function is shifted to be zero at the axis reference, the end of the travel where the
+//    carriage stands lowest in M;
 //  - a straightness loses the slope of its least-squares line over the full travel (uniform
 //  weight),
 //    because the slope of an axis is its squareness;
@@ -11,6 +12,9 @@
 //
 // Order: [EXX EYX EZX EAX EBX ECX] and alike for Y and Z, m then rad, in the machine frame: for
 // every axis entry 0, 1, 2 is the translation along x, y, z and 3, 4, 5 the turn about x, y, z.
+// The positioning error is counted as the controller counts the axis (rig_settings.h), the other
+// five in M; the functions are drawn over where the carriage stands, so a machine that is counted
+// the other way is the same machine.
 // Squareness: the X line is the primary, the XY plane the secondary: a positive C0Y turns the Y
 // line about +z, A0Z and B0Z turn the Z line about +x and +y.
 #pragma once
@@ -37,13 +41,15 @@ class AxisErrors {
  public:
   AxisErrors(const RigSettings& settings, int axis, std::uint64_t seed);
 
-  // At a commanded position, m; defined also outside the travel.
+  // At a position as the controller counts, m; defined also outside the travel.
   Motions At(double position) const;
   double scale() const { return scale_; }
 
  private:
+  int axis_;
+  double sense_;
   double smoothness_;
-  double reference_;
+  double low_, high_;  // m, where the carriage stands at the ends of its travel
   double scale_;
   std::vector<GaussianProcess> functions_;
   Motions offsets_ = Motions::Zero();  // value of the processes at the reference

@@ -172,10 +172,10 @@ Vector3d CourseRun::PointAt(double distance) {
 void RefuseTooLong(double duration, double rate) {
   constexpr double kMostRows = 2e7, kLongest = 86400.0;
   if (duration <= kLongest && duration * rate <= kMostRows) return;
-  throw InputError(
-      fmt::format("the recording would take {:.3g} hours and have {:.3g} rows, at most 24 and {:.3g} "
-                  "are made; take a higher feed, a lower rate, or fewer points",
-                  duration / 3600.0, duration * rate, kMostRows));
+  throw InputError(fmt::format(
+      "the recording would take {:.3g} hours and have {:.3g} rows, at most 24 and {:.3g} "
+      "are made; take a higher feed, a lower rate, or fewer points",
+      duration / 3600.0, duration * rate, kMostRows));
 }
 
 double CourseRun::DurationOf(const Course& course, const Dynamics& dynamics, double step) {

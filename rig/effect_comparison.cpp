@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
 std::string NameOf(const ordered_json& effect) {
   return effect.at("cause").get<std::string>() + ":" + effect.at("object").get<std::string>();
@@ -33,7 +33,7 @@ EffectComparison Compared(const ordered_json& effect, const ordered_json& findin
     const ordered_json& truth = effect.at("parameters");
     if (!truth.contains(key) || !truth.at(key).is_number()) continue;
     KeyComparison at{key, truth.at(key), each.at("value"), each.at("u95")};
-    if (key == "phase_rad") at.found += kTurn * std::round((at.truth - at.found) / kTurn);
+    if (key == "phase_rad") at.found += kFullTurn * std::round((at.truth - at.found) / kFullTurn);
     compared.keys.push_back(std::move(at));
   }
   return compared;

@@ -1,7 +1,7 @@
 #include "rig/hidden_channels.h"
 
 #include <cmath>
-#include <numbers>
+
 
 #include "rig/hidden_motion.h"
 #include "rig/noise.h"
@@ -9,16 +9,15 @@
 namespace abbe::rig {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr std::uint64_t kSizesOfOutliers = 2000;  // index of draws
 
 using Probe = std::function<double(const MachineState&)>;
 using Pivot = std::function<double(const MachineState&, double)>;
 using Said = std::function<double(double, double)>;
 
-double WarmUp(double time, double time_constant) { return 1.0 - std::exp(-time / time_constant); }
+double WarmUpShare(double time, double time_constant) { return 1.0 - std::exp(-time / time_constant); }
 
-Probe Line(double frequency, double amplitude, double phase) {
+Probe Hum(double frequency, double amplitude, double phase) {
   return [=](const MachineState& state) {
     return amplitude * std::sin(kTurn * frequency * state.time + phase);
   };
@@ -87,15 +86,15 @@ std::vector<ProbeAddition> ProbeAdditions(const HiddenEffects& hidden) {
     const auto add = [&](Probe gap) { additions.push_back({e.place(), std::move(gap)}); };
     switch (e.cause()) {
       case Cause::kMainsPickup:
-        add(Line(e.At("frequency_hz"), e.At("amplitude_um"), e.At("phase_rad")));
+        add(Hum(e.At("frequency_hz"), e.At("amplitude_um"), e.At("phase_rad")));
         break;
       case Cause::kWarmUpDrift:
         if (e.entry->objects != kProbeObject) break;
         add([amplitude = e.At("amplitude_um"), constant = e.At("time_constant_s")](
-                const MachineState& state) { return amplitude * WarmUp(state.time, constant); });
+                const MachineState& state) { return amplitude * WarmUpShare(state.time, constant); });
         break;
       case Cause::kUnknownHum:
-        add(Line(1.0 / e.At("period_s"), e.At("amplitude_um"), e.At("phase_rad")));
+        add(Hum(1.0 / e.At("period_s"), e.At("amplitude_um"), e.At("phase_rad")));
         break;
       case Cause::kUnknownStepAndBack:
         add(StepAndBack(e.At("height_um"), e.At("from_s"), e.At("to_s")));
@@ -126,7 +125,7 @@ std::vector<PivotAddition> PivotAdditions(const HiddenEffects& hidden) {
         if (e.entry->objects != kPivotObject) break;
         add([amplitude = e.At("amplitude_urad"), constant = e.At("time_constant_s")](
                 const MachineState& state, double) {
-          return amplitude * WarmUp(state.time, constant);
+          return amplitude * WarmUpShare(state.time, constant);
         });
         break;
       case Cause::kEncoderCountSlip:

@@ -14,8 +14,7 @@ namespace {
 
 using Shift = std::function<double(const MachineState&)>;
 
-constexpr std::uint64_t kPhase = 1000;  // index of the draw of a phase that is no key
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr std::uint64_t kFreePhase = 1000;  // index of the draw of a phase that is no key
 
 Shift Backlash(int axis, double width) {
   return [axis, play = Play(width)](const MachineState& state) mutable {
@@ -51,7 +50,7 @@ Shift WarmUp(double amplitude, double time_constant) {
   };
 }
 
-Shift Line(double frequency, double amplitude, double phase) {
+Shift ShakenMotion(double frequency, double amplitude, double phase) {
   return [=](const MachineState& state) {
     return amplitude * std::sin(kTurn * frequency * state.time + phase);
   };
@@ -124,7 +123,7 @@ std::vector<AxisShift> AxisShifts(const HiddenEffects& hidden) {
         break;
       case Cause::kVibration:
         add(axis,
-            Line(e.At("frequency_hz"), e.At("amplitude_um"), e.random.Uniform(kPhase, 0.0, kTurn)));
+            ShakenMotion(e.At("frequency_hz"), e.At("amplitude_um"), e.random.Uniform(kFreePhase, 0.0, kTurn)));
         break;
       case Cause::kLoadCoupling:
         add(third(), Load(e.places, e.At("coefficient_nm_per_mm2")));

@@ -10,12 +10,15 @@
 #pragma once
 
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include "rig/hidden_effect.h"
 #include "rig/machine_state.h"
 
 namespace abbe::rig {
+
+inline constexpr double kTurn = 2.0 * std::numbers::pi;
 
 // A play that follows a motion by half of its width behind it.
 class Play {

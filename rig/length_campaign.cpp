@@ -5,6 +5,7 @@
 #include "random/counter_random.h"
 #include "rig/streams.h"
 #include "settings/toml_text.h"
+#include "settings/unit.h"
 
 namespace abbe::rig {
 namespace {
@@ -14,7 +15,7 @@ constexpr double kApproach = 1e-3;  // m, from where the axis comes to the first
 }  // namespace
 
 recording::Recording RecordLengths(const LinkageRig& rig, const LengthProgram& program) {
-  constexpr double kMillimetre = 1e-3, kMicrometre = 1e-6, kPpm = 1e-6;
+  using settings::kMicro, settings::kMicrometre, settings::kMillimetre;
   const World& world = rig.world();
   const random::CounterRandom random(world.seed(), kLengthStream + kRunStreams * program.run);
   recording::Recording lengths;
@@ -22,7 +23,8 @@ recording::Recording RecordLengths(const LinkageRig& rig, const LengthProgram& p
   lengths.header = fmt::format(
       "kind = \"length\"\nmachine = {}\nstarted = \"{}\"\nsource = \"rig\"\n"
       "u_scale_ppm = {}\n\n[rig]\nseed = {}\nrun = {}\n",
-      settings::Quoted(world.settings().name), program.started, program.u_scale / kPpm, world.seed(), program.run);
+      settings::Quoted(world.settings().name), program.started, program.u_scale / kMicro,
+      world.seed(), program.run);
   std::vector<std::string> names = {"time_s",    "x_mm",        "y_mm",      "z_mm",       "pass",
                                     "direction", "feed_mm_min", "length_mm", "u_length_um"};
   names.insert(names.end(), program.sensors.begin(), program.sensors.end());

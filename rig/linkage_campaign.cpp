@@ -9,6 +9,7 @@
 #include "rig/noise.h"
 #include "rig/streams.h"
 #include "settings/toml_text.h"
+#include "settings/unit.h"
 
 namespace abbe::rig {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 using nlohmann::ordered_json;
 
-constexpr double kMillimetre = 1e-3;
+using settings::kMillimetre;
 constexpr double kMetrePerSecond = 60e3;  // in mm/min
 
 // The rows of one recording as they are made.
@@ -167,7 +168,7 @@ Vector3d LinkageRig::ToolAt(const Vector3d& position) const {
 Vector3d LinkageRig::ReferenceAt(const Vector3d& position) const {
   Vector3d place = ToolAt(position);
   for (int axis = 0; axis < kAxes; ++axis) {
-    if (world_.settings().CarriesTarget(axis)) place[axis] = -place[axis];
+    place[axis] *= world_.settings().ToolWay(axis);
   }
   return place;
 }
@@ -218,8 +219,8 @@ recording::Recording LinkageRig::Record(const Course& course, const CourseOption
                     options.rate, machine.update_rate));
   }
   const double step = options.step > 0.0 ? options.step : 1.0 / machine.update_rate;
-  RefuseTooLong(
-      CourseRun::DurationOf(course, {machine.acceleration, machine.lag}, step), options.rate);
+  RefuseTooLong(CourseRun::DurationOf(course, {machine.acceleration, machine.lag}, step),
+                options.rate);
   CourseMaker maker(*this, options);
   CourseRun run(course, {machine.acceleration, machine.lag}, step);
   double next = 0.0;

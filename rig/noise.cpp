@@ -24,12 +24,20 @@ double SlowDrift::At(double time) {
   const double place = time / step_;
   const auto before = static_cast<std::size_t>(place);
   const double fresh = std::sqrt(1.0 - kept_ * kept_);
-  while (grid_.size() < before + 2) {
-    const double normal = random_.Normal(grid_.size());
+  if (before < first_) {
+    grid_.clear();
+    first_ = 0;
+  }
+  while (first_ + grid_.size() < before + 2) {
+    if (grid_.size() >= 2 * kKept) {
+      grid_.erase(grid_.begin(), grid_.begin() + kKept);
+      first_ += kKept;
+    }
+    const double normal = random_.Normal(first_ + grid_.size());
     grid_.push_back(grid_.empty() ? sd_ * normal : kept_ * grid_.back() + sd_ * fresh * normal);
   }
   const double share = place - static_cast<double>(before);
-  return (1.0 - share) * grid_[before] + share * grid_[before + 1];
+  return (1.0 - share) * grid_[before - first_] + share * grid_[before - first_ + 1];
 }
 
 Eigen::Vector3d WhiteNoise::At(std::uint64_t number) const {

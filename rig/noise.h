@@ -21,14 +21,17 @@ class SlowDrift {
  public:
   SlowDrift(const random::CounterRandom& random, double sd, double time_constant);
 
-  // At a time of at least 0, s. Keeps the grid up to the latest time asked for: 80 bytes/s at most.
+  // At a time of at least 0, s. Keeps no more than the last kKept to 2 kKept points of the grid; a
+  // time before these draws it anew from the beginning.
   double At(double time);
 
  private:
   random::CounterRandom random_;
   double sd_;
   double step_;
-  double kept_;  // share of the old value in the next one
+  double kept_;                               // share of the old value in the next one
+  static constexpr std::size_t kKept = 4096;  // 7 min at least
+  std::size_t first_ = 0;                     // the point that grid_ begins with
   std::vector<double> grid_;
 };
 

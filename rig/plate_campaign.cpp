@@ -9,6 +9,7 @@
 #include "rig/rotation.h"
 #include "rig/streams.h"
 #include "settings/toml_text.h"
+#include "settings/unit.h"
 
 namespace abbe::rig {
 namespace {
@@ -17,7 +18,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kMillimetre = 1e-3, kMicrometre = 1e-6, kPpm = 1e-6;
+using settings::kMicro;
+using settings::kMicrometre;
+using settings::kMillimetre;
 constexpr double kOffPlace = 0.2e-3, kOffTurn = 1e-3;  // m, rad: how well a plate is put down
 constexpr double kDepth = 10e-6;                       // m
 constexpr double kShareOfTravel = 0.9;
@@ -45,7 +48,7 @@ class PlateMaker {
       middle_[axis] = (travel.first + travel.last) / 2;
       const double side = kShareOfTravel * (travel.last - travel.first);
       side_ = axis == 0 ? side : std::min(side_, side);
-      sign_[axis] = world.settings().CarriesTarget(axis) ? -1.0 : 1.0;
+      sign_[axis] = world.settings().ToolWay(axis);
     }
   }
 
@@ -66,7 +69,7 @@ class PlateMaker {
         "kind = \"plate\"\nmachine = {}\nstarted = \"1970-01-01T00:00:00Z\"\nsource = \"rig\"\n"
         "plate = \"rig-{}\"\nu_probing_um = {}\nu_scale_ppm = {}\n\n[rig]\nseed = {}\nrun = {}\n",
         settings::Quoted(world_.settings().name), world_.seed(), program_.u_probing / kMicrometre,
-        program_.u_scale / kPpm, world_.seed(), program_.run);
+        program_.u_scale / kMicro, world_.seed(), program_.run);
     for (std::size_t i = 0; i < program_.setups.size(); ++i) {
       const Vector3d tool = program_.setups[i].tool / kMillimetre;
       header +=

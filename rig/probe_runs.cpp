@@ -47,8 +47,8 @@ class ProbeRunMaker {
     made_.header = fmt::format(
         "kind = \"{}\"\nmachine = {}\naxis = \"{:c}\"\nstarted = {}\nsource = \"rig\"\n{}\n"
         "[rig]\nseed = {}\nrun = {}\n{}",
-        kind, settings::Quoted(world.settings().name), axis, options.started, options.keys, world.seed(), options.run,
-        options.tables);
+        kind, settings::Quoted(world.settings().name), axis, options.started, options.keys,
+        world.seed(), options.run, options.tables);
     made_.name = fmt::format("rig {} {:c}, seed {}", kind, axis, world.seed());
   }
 

@@ -119,6 +119,10 @@ Answer RegisterServer::Write(int unit, int address, std::span<const std::uint16_
   return Answer::kIllegalAddress;
 }
 
+std::vector<std::string> RegisterServer::Identity(int) {
+  return {"abbe", "virtual rig (simulated)"};
+}
+
 void RegisterServer::Refresh() {
   const Moment now = machine_.Now();
   for (const DeviceSettings& device : devices_.devices) {

@@ -12,7 +12,8 @@
 // illegal value, 3, when none is programmed), and the register after it shows the program: 0 idle,
 // 1 running, 2 done.
 //
-// All TCP devices of the file are served on one address, each by its unit.
+// All TCP devices of the file are served on one address, each by its unit. Asked who it is
+// (function 43), the rig says that it is simulated.
 #pragma once
 
 #include <map>
@@ -57,6 +58,7 @@ class RegisterServer : private hal::RegisterBank {
   hal::Answer Read(int unit, hal::RegisterTable table, int address,
                    std::span<std::uint16_t> words) override;
   hal::Answer Write(int unit, int address, std::span<const std::uint16_t> words) override;
+  std::vector<std::string> Identity(int unit) override;
   void Refresh();
   void RefreshBlock(const hal::DeviceSettings& device, const hal::BlockSettings& block,
                     const Moment& now);

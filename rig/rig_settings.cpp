@@ -47,15 +47,29 @@ void ReadChain(const Table& root, RigSettings& rig) {
   std::string axes = letters;
   std::erase_if(axes, [](char letter) { return letter == 'w' || letter == 'b' || letter == 't'; });
   std::sort(axes.begin(), axes.end());
-  if (letters.size() != 6 || letters.front() != 'w' || letters.back() != 't' ||
-      bed == std::string::npos || axes != "XYZ") {
+  const bool linear = !axes.empty() && axes.find_first_not_of("XYZ") == std::string::npos &&
+                      std::adjacent_find(axes.begin(), axes.end()) == axes.end();
+  if (letters.size() != axes.size() + 3 || letters.front() != 'w' || letters.back() != 't' ||
+      bed == std::string::npos || !linear) {
     throw root.Error(
         "chain",
-        "must hold w, then X, Y, Z and b in any order, then t: \"[w X Y b Z t]\", or the "
-        "name of a configuration");
+        "must hold w, then b and the axes of X, Y, Z that there are in any order, then t: "
+        "\"[w X Y b Z t]\", or the name of a configuration");
   }
   rig.workpiece_axes = letters.substr(1, bed - 1);
   rig.tool_axes = letters.substr(bed + 1, letters.size() - bed - 2);
+}
+
+double ReadSense(const Table& axis, const RigSettings& rig, int number) {
+  const bool carries_workpiece = rig.CarriesTarget(number);
+  const std::string positive = axis.Text("positive", "tool");
+  const bool said = axis.Has("positive") || !carries_workpiece;
+  if (said && positive == "tool") return carries_workpiece ? -1.0 : 1.0;
+  if (said && positive == "carriage") return 1.0;
+  throw axis.Error(
+      "positive",
+      "must be \"tool\", where the number rises as the tool goes towards + against the "
+      "workpiece (ISO 841), or \"carriage\", where it rises as the carriage does");
 }
 
 void ReadMachine(const Table& root, RigSettings& rig) {
@@ -64,8 +78,11 @@ void ReadMachine(const Table& root, RigSettings& rig) {
   const auto reference = root.Quantities("reference_mm", 3, std::vector{0.0, 0.0, 0.0});
   rig.reference = Eigen::Vector3d(reference[0], reference[1], reference[2]);
   for (int axis = 0; axis < kAxes; ++axis) {
+    rig.travels[axis] = {0.0, 0.0};  // of an axis that there is not
+    if ((rig.workpiece_axes + rig.tool_axes).find(*kAxisNames[axis]) == std::string::npos) continue;
     const auto ends = root.Child("axis").Child(kAxisNames[axis]).Quantities("travel_mm", 2);
     rig.travels[axis] = {ends[0], ends[1]};
+    rig.sense[axis] = ReadSense(root.Child("axis").Child(kAxisNames[axis]), rig, axis);
   }
   const Table table = root.Child("population");
   const auto sd = [&](const char* key, double fallback) {
@@ -154,12 +171,6 @@ void ReadOwn(const Table& own, RigSettings& rig) {
   own.RefuseUnknown();
 }
 
-Eigen::Vector3d Selected(const std::string& axes, const Eigen::Vector3d& command) {
-  Eigen::Vector3d travel = Eigen::Vector3d::Zero();
-  for (const char letter : axes) travel[letter - 'X'] = command[letter - 'X'];
-  return travel;
-}
-
 }  // namespace
 
 RigSettings ReadRigSettings(const Table& root) {
@@ -195,12 +206,22 @@ Eigen::Vector3d RigSettings::StartOf(int axis) const {
   return start;
 }
 
+Eigen::Vector3d RigSettings::MovedBy(const std::string& axes,
+                                     const Eigen::Vector3d& command) const {
+  Eigen::Vector3d travel = Eigen::Vector3d::Zero();
+  for (const char letter : axes) {
+    const int axis = letter - 'X';
+    travel[axis] = sense[axis] * command[axis];
+  }
+  return travel;
+}
+
 Eigen::Vector3d RigSettings::TargetTravel(const Eigen::Vector3d& command) const {
-  return Selected(workpiece_axes, command);
+  return MovedBy(workpiece_axes, command);
 }
 
 Eigen::Vector3d RigSettings::HeadTravel(const Eigen::Vector3d& command) const {
-  return Selected(tool_axes, command);
+  return MovedBy(tool_axes, command);
 }
 
 int AxisNumber(char letter) {

@@ -52,10 +52,14 @@ struct HeadPlace {
 
 struct RigSettings {
   std::string name;
-  std::string workpiece_axes;  // "XY" of [w X Y b Z t]: from the workpiece to the bed
-  std::string tool_axes;       // "Z": from the bed to the tool
-  Eigen::Vector3d reference;   // in M: where the error motions act
-  std::array<AxisTravel, kAxes> travels;
+  std::string workpiece_axes;             // "XY" of [w X Y b Z t]: from the workpiece to the bed
+  std::string tool_axes;                  // "Z": from the bed to the tool
+  Eigen::Vector3d reference;              // in M: where the error motions act
+  std::array<AxisTravel, kAxes> travels;  // as the controller counts
+  // Which way a carriage goes as the controller's number rises: +1 towards + of M, -1 towards -.
+  // An axis with the workpiece on it that is counted after ISO 841 goes towards -. The world stands
+  // where the carriages are; programs, scales and recordings hold the controller's numbers.
+  std::array<double, kAxes> sense = {1.0, 1.0, 1.0};
   ErrorPopulation population;
 
   std::array<ProbePlace, kProbes> probes;
@@ -78,12 +82,17 @@ struct RigSettings {
   double encoder_counts;            // a turn
 
   bool CarriesTarget(int axis) const;
+  // Which way the tool goes in the workpiece as the controller's number rises: +1 or -1.
+  double ToolWay(int axis) const { return CarriesTarget(axis) ? -sense[axis] : sense[axis]; }
   // The command at which the sweep of an axis begins to count: its first station, the other axes at
   // the first ends of their travels.
   Eigen::Vector3d StartOf(int axis) const;
-  // How far the axes have moved the target, and the head, nominally, at a command.
+  // How far the axes have moved the target, and the head, nominally and in M, at a command.
   Eigen::Vector3d TargetTravel(const Eigen::Vector3d& command) const;
   Eigen::Vector3d HeadTravel(const Eigen::Vector3d& command) const;
+
+ private:
+  Eigen::Vector3d MovedBy(const std::string& axes, const Eigen::Vector3d& command) const;
 };
 
 RigSettings ReadRigSettings(const settings::Table& root);

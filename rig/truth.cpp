@@ -44,7 +44,7 @@ ordered_json AxisTruth(const World& world, int axis) {
   return truth;
 }
 
-std::vector<double> Listed(const Eigen::Vector3d& vector) {
+std::vector<double> ListedNumbers(const Eigen::Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
 
@@ -57,12 +57,12 @@ ordered_json HeadTruth(const World& world) {
   }
   for (int axis = 0; axis < kAxes; ++axis) {
     const HeadInstallation& installed = world.InstallationOf(axis);
-    head["axis_" + AxisName(axis)] = {{"angles_rad", Listed(installed.angles)},
-                                      {"offsets_m", Listed(installed.offsets)},
+    head["axis_" + AxisName(axis)] = {{"angles_rad", ListedNumbers(installed.angles)},
+                                      {"offsets_m", ListedNumbers(installed.offsets)},
                                       {"set_gap_m", installed.set_gap}};
   }
-  head["target"] = {{"tilt_rad", Listed(world.target().tilt)},
-                    {"squareness_rad", Listed(world.target().squareness)}};
+  head["target"] = {{"tilt_rad", ListedNumbers(world.target().tilt)},
+                    {"squareness_rad", ListedNumbers(world.target().squareness)}};
   return head;
 }
 
@@ -156,6 +156,7 @@ ordered_json TruthOf(const World& world) {
   truth["machine"] = world.settings().name;
   truth["seed"] = world.seed();
   for (int axis = 0; axis < kAxes; ++axis) {
+    if (!(world.settings().travels[axis].last > world.settings().travels[axis].first)) continue;
     truth["axes"][AxisName(axis)] = AxisTruth(world, axis);
     truth["scale"][AxisName(axis)] = world.ScaleOf(axis);
   }

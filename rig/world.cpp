@@ -111,7 +111,7 @@ World::InstalledHead World::Mount(int axis, HeadPlace& place) const {
       const double length = settings_.sweeps[axis]
                                 ? settings_.sweeps[axis]->last() - settings_.sweeps[axis]->first()
                                 : settings_.travels[axis].last - settings_.travels[axis].first;
-      face.Reverse((settings_.CarriesTarget(axis) ? -0.5 : 0.5) * length * along);
+      face.Reverse(0.5 * settings_.ToolWay(axis) * length * along);
     }
     head.faces.push_back(std::move(face));
   }
@@ -152,8 +152,11 @@ Displacement World::PoseOf(const std::string& axes_from_bed, const Eigen::Vector
   Displacement pose;
   for (const char letter : axes_from_bed) {
     const int axis = letter - 'X';
-    pose = pose * CarriageDisplacement(squareness_.LineOf(axis), settings_.reference, command[axis],
-                                       errors_[axis].At(command[axis]));
+    const double sense = settings_.sense[axis];
+    Motions errors = errors_[axis].At(command[axis]);
+    errors[axis] *= sense;
+    pose = pose * CarriageDisplacement(squareness_.LineOf(axis), settings_.reference,
+                                       sense * command[axis], errors);
   }
   return pose;
 }

@@ -10,6 +10,8 @@ inline constexpr double kMillimetre = 1e-3;
 inline constexpr double kMicrometre = 1e-6;
 inline constexpr double kNanometre = 1e-9;
 inline constexpr double kMicroradian = 1e-6;
+inline constexpr double kMillimetrePerMinute = kMillimetre / 60.0;
+inline constexpr double kMicro = 1e-6;  // of either: a table that has both
 
 struct Unit {
   std::string_view name;  // as printed: "um", "mm/min"; empty for a plain number

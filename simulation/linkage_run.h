@@ -11,9 +11,9 @@
 // with a flag are left out. Failure: InputError with the recording's name for another kind of
 // recording, a missing column, or a number that is not finite in a row without a flag; see
 // relm/tip_path.h for the angles. Validity: a stay is a sequence of rows whose commanded position
-// keeps within `window` of that of its first row, in a recording that knows its times (the rows of a
-// table are poses of their own, however well a robot repeats them); its mean is as good as its rows as long as the
-// errors of the linkage do not change over the window.
+// keeps within `window` of that of its first row, in a recording that knows its times (the rows of
+// a table are poses of their own, however well a robot repeats them); its mean is as good as its
+// rows as long as the errors of the linkage do not change over the window.
 #pragma once
 
 #include <Eigen/Core>

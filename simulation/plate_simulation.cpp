@@ -85,7 +85,7 @@ void RefuseLine(const PlateSetUp& setup) {
 }
 
 // The part of a plate that was measured in one set-up.
-PlateSetUp Part(const PlateSetUp& all, const std::vector<Index>& of) {
+PlateSetUp Subset(const PlateSetUp& all, const std::vector<Index>& of) {
   PlateSetUp part = all;
   const auto n = static_cast<Index>(of.size());
   part.points.axes = all.points.axes(Eigen::all, of);
@@ -199,7 +199,7 @@ std::vector<PlateSetUp> ReadPlate(const recording::Recording& recording) {
   }
   std::vector<PlateSetUp> setups;
   for (const int number : order) {
-    PlateSetUp& part = setups.emplace_back(Part(all, rows[number]));
+    PlateSetUp& part = setups.emplace_back(Subset(all, rows[number]));
     part.points.tool = ToolOf(recording, number, part.points.rows.front());
     part.points.name = fmt::format("{} set-up {}", recording.name, number);
     RefuseLine(part);

@@ -15,14 +15,15 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using recording::Recording;
 
-struct Part {
+struct PartOfRecording {
   MachinePoints points;  // where the trace has its rows
   Trace trace;
   std::vector<std::size_t> rows;  // of the recording: all that belong to them
 };
 
-std::vector<Part> PartsOf(const Recording& recording, const machine::Machine& machine) {
-  std::vector<Part> parts;
+std::vector<PartOfRecording> PartsOfRecording(const Recording& recording,
+                                              const machine::Machine& machine) {
+  std::vector<PartOfRecording> parts;
   if (recording.Kind() == "reference") {
     const ReferenceRun rows = ReadReferenceRun(WithAllAxes(recording, machine.travels));
     const ReferenceRun stays = MeansOfStays(rows);
@@ -47,10 +48,7 @@ Matrix3Xd StepsOf(const MachinePoints& points, const Sums& sums, const machine::
                        .J_error_motions *
                    sums.machine.col(i).head<kToolStage>();
   }
-  for (Index axis = 0; axis < 3; ++axis) {
-    if (machine.chain.CarriesTarget("XYZ"[axis])) steps.row(axis) *= -1.0;
-  }
-  return steps;
+  return machine.chain.ToolSenses().asDiagonal() * steps;
 }
 
 }  // namespace
@@ -62,7 +60,7 @@ Correction CorrectPoints(const Recording& recording, const std::vector<ModelledC
   for (Index axis = 0; axis < 3; ++axis) {
     axes.emplace_back(corrected.recording, PositionColumn(axis), corrected.changes.positions);
   }
-  for (Part& part : PartsOf(recording, on.machine)) {
+  for (PartOfRecording& part : PartsOfRecording(recording, on.machine)) {
     const Matrix3Xd steps = StepsOf(part.points, SumsOf(part.trace, causes, origin), on.machine);
     std::size_t point = 0;
     for (const std::size_t row : part.rows) {

@@ -34,11 +34,7 @@ std::vector<Index> AxesShown(const ReferenceRun& run) {
 
 // In M, from axis coordinates.
 Matrix3Xd PlacesInMachine(const machine::Chain& chain, const ReferenceRun& run) {
-  Matrix3Xd places = run.place;
-  for (Index axis = 0; axis < 3; ++axis) {
-    if (chain.CarriesTarget("XYZ"[axis])) places.row(axis) *= -1.0;
-  }
-  return places;
+  return chain.ToolSenses().asDiagonal() * run.place;
 }
 
 class PlaceResponse : public StageResponse {

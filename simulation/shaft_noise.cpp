@@ -65,7 +65,7 @@ std::vector<Complex> WavesOf(const VectorXd& found) {
 }
 
 // How much of the waves a rim that goes by in this sense could be.
-double Together(const std::vector<std::vector<Complex>>& waves, const std::vector<double>& places,
+double Coherence(const std::vector<std::vector<Complex>>& waves, const std::vector<double>& places,
                 int sense) {
   double power = 0.0;
   for (int n = 1; n <= kTellingOrders; ++n) {
@@ -106,9 +106,9 @@ RimRepeats RepeatsOf(const ShaftRun& run) {
     repeats.scatter[sensor] = std::sqrt(variance);
     repeats.sd[sensor] = std::sqrt(variance * Inflation(left));
   }
-  repeats.sense = Together(waves, places, -1) > Together(waves, places, 1) ? -1 : 1;
-  constexpr Index kLeastFreedom = 12;
-  if (repeats.turns < kLeastTurns || repeats.freedom < kLeastFreedom) {
+  repeats.sense = Coherence(waves, places, -1) > Coherence(waves, places, 1) ? -1 : 1;
+  constexpr Index kLeastTurnFreedom = 12;
+  if (repeats.turns < kLeastTurns || repeats.freedom < kLeastTurnFreedom) {
     repeats.scatter.resize(0);
     repeats.sd.resize(0);
   }

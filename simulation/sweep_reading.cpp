@@ -5,9 +5,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-Vector3d TravelOf(const std::string& axes, const Vector3d& position) {
+// How far the carriages of these axes stand from where they are at zero.
+Vector3d TravelOf(const machine::Chain& chain, const std::string& axes, const Vector3d& position) {
   Vector3d travel = Vector3d::Zero();
-  for (const char axis : axes) travel[axis - 'X'] += position[axis - 'X'];
+  for (const char axis : axes) {
+    travel[axis - 'X'] += chain.CarriageSense(axis) * position[axis - 'X'];
+  }
   return travel;
 }
 
@@ -21,8 +24,8 @@ SweepPlan MakeSweepPlan(const machine::Chain& chain, const Vector3d& reference,
   SweepPlan plan{chain,
                  machine::AxisIndex(run.axis),
                  R_MH,
-                 frame.p_MH - TravelOf(chain.tool_axes(), run.start) - reference,
-                 frame.p_MH - TravelOf(chain.workpiece_axes(), run.start) - reference,
+                 frame.p_MH - TravelOf(chain, chain.tool_axes(), run.start) - reference,
+                 frame.p_MH - TravelOf(chain, chain.workpiece_axes(), run.start) - reference,
                  head.electrode,
                  {}};
   for (std::size_t i = 0; i < kProbes; ++i) plan.height[i] = head.probes[i].range / 2;

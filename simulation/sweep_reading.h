@@ -64,11 +64,9 @@ Eigen::Vector3<T> FaceNormal(const Eigen::Vector3d& nominal, const Circumstances
 template <typename T>
 geometry::Transform<T> ToolSeenFromWork(const SweepPlan& plan, const Eigen::Vector3d& axes,
                                         const machine::MotionErrors<T>& errors) {
-  const std::string& from_work = plan.chain.workpiece_axes();
   const Eigen::Vector3<T> position = axes.cast<T>();
-  const auto X_MW = machine::BodyPose<T>({from_work.rbegin(), from_work.rend()}, position, errors);
-  const auto X_MT = machine::BodyPose<T>(plan.chain.tool_axes(), position, errors);
-  return X_MW.Inverse() * X_MT;
+  const auto X_MW = machine::WorkpiecePose<T>(plan.chain, position, errors);
+  return X_MW.Inverse() * machine::ToolPose<T>(plan.chain, position, errors);
 }
 
 inline double ValueOf(double value) { return value; }

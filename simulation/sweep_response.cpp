@@ -22,8 +22,7 @@ MatrixXd FaceCovariance(const SweepPlan& plan, const SweepInstrument& instrument
                         const SweepRun& run, std::size_t first, std::size_t count) {
   const Index n = run.rows();
   const auto probes_of_face = static_cast<Index>(count);
-  const bool target_moves = plan.chain.CarriesTarget(run.axis);
-  const double sign = (target_moves ? -1.0 : 1.0) * plan.R_MH.col(0)[plan.axis];
+  const double sign = plan.chain.ToolSense(run.axis) * plan.R_MH.col(0)[plan.axis];
   const double variance = instrument.target.form * instrument.target.form;
   const double length = instrument.target.form_length;
   MatrixXd V(n * probes_of_face, n * probes_of_face);

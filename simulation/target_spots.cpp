@@ -11,7 +11,7 @@ using Eigen::Index;
 Eigen::MatrixXd SpotsOnTarget(const machine::Chain& chain, const probes::HeadSettings& head,
                               const SweepRun& run) {
   const double along_axis = head.Frame(run.axis).R_MH.col(0)[machine::AxisIndex(run.axis)];
-  const double way = (chain.CarriesTarget(run.axis) ? -1.0 : 1.0) * along_axis;
+  const double way = chain.ToolSense(run.axis) * along_axis;
   const double turned = run.mounted.head_turned ? -1.0 : 1.0;
   const double middle = 0.5 * way * (run.position.minCoeff() + run.position.maxCoeff());
   Eigen::MatrixXd spots(2 * static_cast<Index>(kProbes), run.rows());

@@ -54,7 +54,7 @@ function pathLists(test) {
     ['Sides', test.sides], ['Displacement in the cap', test.displacements]
   ].filter(([, list]) => list?.length);
   const text = (key, value) => Array.isArray(value) ? value.map((one) => fixed(one, 2)).join(', ') :
-      !isNumber(value)                              ? value :
+      !isNumber(value)                              ? value ?? '-' :
       key.endsWith('_um')                           ? fixed(value, 2) :
                                                       positionText(value);
   return lists.map(([name, list]) => {

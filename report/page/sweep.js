@@ -41,10 +41,11 @@ function shownQuantity({value, u}, error) {
   return quantity(value * scale, coverageOf(error) * u * scale);
 }
 
-// The components whose mean reversal exceeds its U95. The mean decides, not the largest: among many
-// stations some exceed it by chance.
+// The components whose mean reversal is beyond chance, as the result says; an older one does not, and
+// its U95 decides. The mean decides, not the largest: among many stations some exceed it by chance.
 const seenReversals = (result) =>
     Object.entries(result.reversal ?? {}).filter(([component, one]) => {
+      if (typeof one.seen === 'boolean') return one.seen;
       const {value, u} = meanReversal([component, one]);
       return Math.abs(value) > coverageOf(result.errors?.[component] ?? {}) * u;
     });
@@ -81,7 +82,8 @@ const TURN_VERBS = {
 // ..."
 function sweepSummary(result) {
   const sentences = [
-    turnSentence(result), straightSentence(result), leverSentence(result), reversalSentence(result)
+    turnSentence(result), straightSentence(result), leverSentence(result), reversalSentence(result),
+    result.simulated ? 'The readings are simulated: no machine was measured' : null
   ];
   return sentences.filter(Boolean).map((sentence) => `${capital(sentence)}.`).join(' ');
 }

@@ -94,6 +94,28 @@ class Calibrate(unittest.TestCase):
             # Rows beyond three deviations, one in 370, pull less here: a few hundredths of u.
             self.assertLess(abs((entry["value"] - entry["nominal"]) * si - x * prior), 0.3 * u * prior, name)
 
+    def test_recordings_of_two_balls_are_refused(self):
+        """Stated in the header; or the same angles with distances that no base can make."""
+        one, other = self.record("one.csv"), self.record("other.csv")
+        for number, recording in enumerate((one, other), 1):
+            text = pathlib.Path(recording).read_text()
+            pathlib.Path(recording).write_text(
+                text.replace('kind = "linkage"', f'kind = "linkage"\n# mounting = {{ ball = "{number}" }}', 1))
+        self.assertIn('other.csv: header: mounting.ball is "2", and "1" in', self.refusal(one, other))
+        one, other = self.record("one.csv"), self.record("other.csv")
+        lines = pathlib.Path(other).read_text().splitlines()
+        names = next(line for line in lines if line[0] != "#").split(",")
+        at = names.index("ref_x_mm")
+        for i, line in enumerate(lines):
+            if line[0] == "#" or line.startswith(names[0]):
+                continue
+            words = line.split(",")
+            turn = float(words[names.index("pivot_1_rad")]) + float(words[names.index("pivot_2_rad")])
+            words[at] = repr(float(words[at]) + 30 * np.sin(5 * turn))
+            lines[i] = ",".join(words)
+        pathlib.Path(other).write_text("\n".join(lines) + "\n")
+        self.assertIn("two balls", self.refusal(one, other))
+
     def test_cube_of_the_document_leaves_combinations_unseen_and_names_them(self):
         result, text = self.result(self.record(n=(7, 7, 12)), "--model", "published with bearing")
         self.assertEqual(result["combinations"], 30)  # 24 and the base

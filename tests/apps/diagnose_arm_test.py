@@ -31,8 +31,8 @@ def machine(rows):
     return MACHINE.format(joints="".join(JOINT.format(*row) for row in rows))
 
 
-def tip(angles):
-    x, y, z = 0.0, 0.0, 0.0
+def tip(angles, ball=(0.0, 0.0, 0.0)):
+    x, y, z = ball
     for (theta, d, a, alpha), angle in reversed(list(zip(ROWS, angles))):
         c, s = math.cos(math.radians(alpha)), math.sin(math.radians(alpha))
         x, y, z = x + a, c * y - s * z, s * y + c * z + d
@@ -41,13 +41,13 @@ def tip(angles):
     return x, y, z
 
 
-def table():
+def table(ball=(0.0, 0.0, 0.0)):
     """The encoder of the first joint shows more than the joint turns; arm 2 has other rows."""
     draw = random.Random(6)
     lines = ["arm,q1,q2,q3,q4,x_m,y_m,z_m"]
     for _ in range(POSES):
         turned = [draw.uniform(-2.0, 2.0) for _ in ROWS]
-        x, y, z = tip(turned)
+        x, y, z = tip(turned, ball)
         place = [-y + 1500.0, x - 700.0, z + 50.0]  # the tracker is turned and stands aside
         shown = [q + draw.gauss(0, 5e-6) for q in turned]
         shown[0] += GAIN * turned[0]
@@ -75,6 +75,21 @@ class DiagnoseArm(ProgramCase):
         gain, = result["findings"][0]["parameters"]
         self.assertAlmostEqual(gain["value"], 1e6 * GAIN, delta=2 * gain["u95"])
         self.assertGreater(result["heldout_arm"]["rms_before_mm"], 2 * result["heldout_arm"]["rms_after_mm"])
+
+    def test_three_balls_under_one_name_are_refused(self):
+        runs = []
+        for number, ball in enumerate(((0, 0, 0), (20, -30, 10), (-25, 5, 30)), 1):
+            table_file, recording = self.path / f"ball_{number}.txt", self.path / f"ball_{number}.csv"
+            table_file.write_text(table(ball))
+            self.done(table_file, recording, "--where=arm=1", *COLUMNS, command="convert")
+            runs.append(recording)
+        arm = ("--machine", self.path / "arm.toml")
+        self.refuse(*runs, *arm, saying=["ball_2.csv", "ball_1.csv", "two balls", "one ball at a time"])
+        # Stated, they need no angles in common.
+        for number, recording in enumerate(runs, 1):
+            text = recording.read_text()
+            recording.write_text(text.replace('kind = "linkage"', f'kind = "linkage"\n# mounting = {{ ball = "{number}" }}', 1))
+        self.refuse(*runs[1:], *arm, saying=["ball_3.csv", 'mounting.ball is "3"', '"2" in', "one ball at a time"])
 
     def test_what_does_not_belong_together_is_refused(self):
         (self.path / "three.toml").write_text(machine(ROWS[:3]))

@@ -9,8 +9,10 @@ MACHINE = """name = "stage"
 chain = "[w X Y b Z t]"
 [axis.X]
 travel_mm = [0.0, 60.0]
+positive = "carriage"
 [axis.Y]
 travel_mm = [0.0, 60.0]
+positive = "carriage"
 [axis.Z]
 travel_mm = [0.0, 60.0]
 [population]

@@ -25,7 +25,7 @@ PERFECT = [(rf"(?m)^{key} = .*", f"{key} = 0.0") for key in (
     "base_um", "base_urad", "ball_um", "compliance_urad", "thermal_ppm_per_c", "encoder_urad", "reference_um")]
 CROOKED = [(r"(?m)^squareness_urad = 30.0", "squareness_urad = 300.0")]  # of the machine: it has something to show
 # The guest has one virtual processor, which the whole computer shares.
-PATIENT = [(r"(?m)^max_skew_ms = .*", "max_skew_ms = 5000.0"), (r"(?m)^stale_ms = .*", "stale_ms = 5000.0"),
+PATIENT = [(r"(?m)^stale_ms = .*", "stale_ms = 5000.0"),
            (r"(?m)^unit = 2", "unit = 2\nresponse_timeout_ms = 2000.0\ndeadline_ms = 4000.0"),
            (r"(?m)^sync_ms = .*", "sync_ms = 1.0\nanswer_timeout_ms = 1000.0\nheartbeat_timeout_ms = 3000.0")]
 
@@ -74,13 +74,25 @@ class EncodersTest(unittest.TestCase):
         return json.loads(result.read_text())["circles"][0]
 
     def test_a_circle_is_recorded_and_evaluated_as_the_rig_ran_it(self):
-        self.describe(PERFECT + CROOKED)
-        rig = self.serve(*COURSE)
-        recorded = self.folder / "circle.csv"
-        done = self.run_abbe("record", self.machine, "--devices", "machine,linkage", "--start", 4, "--seconds", 23,
-                             "--passes-only", "-o", recorded)
-        print(done.stdout, end="")
-        self.assertIn("(0 flagged", done.stdout)
+        # At 20 mm/s, 3 ms are 60 um along a circle of 10 mm, and 0.2 um across it.
+        self.describe([*PERFECT, *CROOKED, (r"(?m)^max_skew_ms = .*", "max_skew_ms = 3.0")])
+        # A computer that does other work tears sets apart: they are flagged and left out, and what is left says the
+        # same. Where too little is left the machine runs more slowly.
+        for speed in (1, 0.2):
+            rig = self.serve(*COURSE, "--speed", speed)
+            recorded = self.folder / f"circle_{speed}.csv"
+            done = self.run_abbe("record", self.machine, "--devices", "machine,linkage", "--start", 4, "--seconds", 23,
+                                 "--clock-speed", speed, "--passes-only", "-o", recorded)
+            print(done.stdout, end="")
+            self.assertIn("# simulated = true", recorded.read_text())
+            good = [row for row in rows_of(recorded) if row["flags"] == 0]
+            if len(good) > 300:
+                break
+            rig.kill()
+            rig.wait()
+            (self.folder / "port").unlink()
+        self.assertGreater(len(good), 300)
+        self.assertLessEqual(max(row["skew_ms"] for row in good), 3.0)
         rig.send_signal(signal.SIGTERM)
         said = rig.stdout.read()
         rig.wait(20)
@@ -101,15 +113,15 @@ class EncodersTest(unittest.TestCase):
         self.assertGreater(theirs["G_b_um"], 2.0)
 
     def test_a_course_may_run_from_the_start(self):
-        self.describe()
+        self.describe([(r"(?m)^max_skew_ms = .*", "max_skew_ms = 400.0")])  # it stands for longer
         self.serve("--course", "stepping", "--points", 2, "--dwell", 0.5, "--feed", 3000, "--start", "course")
         recorded = self.folder / "stepping.csv"
         self.run_abbe("record", self.machine, "--devices", "machine,linkage", "--seconds", 4, "-o", recorded)
         rows = [row for row in rows_of(recorded) if row["flags"] == 0]
         self.assertEqual({row["pass"] for row in rows}, {0.0, 1.0})
         stops = {}
-        for row in rows:
-            if row["pass"] == 1:
+        for before, row, after in zip(rows, rows[1:], rows[2:]):
+            if all(before[name] == row[name] == after[name] for name in ("pass", "x_mm", "y_mm", "z_mm")) and row["pass"]:
                 place = tuple(min((17.5, 42.5), key=lambda at: abs(at - row[name])) for name in ("x_mm", "y_mm", "z_mm"))
                 self.assertLess(max(abs(at - row[name]) for at, name in zip(place, ("x_mm", "y_mm", "z_mm"))), 1e-3)
                 stops.setdefault(place, []).append(row["pivot_2_rad"])

@@ -44,6 +44,16 @@ class FuseTest(ProgramCase):
             self.assertEqual(np.ravel(error["value"]).shape, np.ravel(error["u"]).shape, name)
             self.assertGreater(np.max(error["u"]), 0.0, name)
 
+    def test_recordings_of_two_balls_are_refused(self):
+        runs = []
+        for number in "12":
+            runs.append(self.rig_record(f"cube_{number}.csv", "--course", "cube", "--size", "40,40,40", "--points",
+                                        "2,2,2", "--dwell", 0.05, "--feed", 6000))
+            text = runs[-1].read_text()
+            runs[-1].write_text(text.replace('kind = "linkage"', f'kind = "linkage"\n# mounting = {{ ball = "{number}" }}', 1))
+        self.refuse(*runs, "--machine", MACHINE, "-o", self.path / "map.toml",
+                    saying=["cube_2.csv", 'mounting.ball is "2", and "1" in', "one ball at a time"])
+
     def test_a_campaign_becomes_a_map(self):
         runs = self.record()
         map_file = self.path / "map.toml"

@@ -14,7 +14,7 @@
 #include "apps/machine_file.h"
 
 namespace abbe::apps {
-namespace {
+namespace machine_file_page_test {
 
 std::string GeneralName(const std::string& path) {
   std::string name = std::regex_replace(path, std::regex("\\b(axis|sweep)\\.[XYZ]\\b"), "$1.AXIS");
@@ -122,5 +122,5 @@ TEST(MachineFilePage, HasEveryKeyWithUnitAndDefault) {
   for (const auto& [name, row] : rows) EXPECT_TRUE(asked.contains(name)) << name << " is no key";
 }
 
-}  // namespace
+}  // namespace machine_file_page_test
 }  // namespace abbe::apps

@@ -27,7 +27,12 @@ def pose(R, p):
 
 
 class MapMachine:
-    def __init__(self, seed, chain="[w X Y b Z t]", tool=(0.010, -0.020, -0.080), degree=5, size=1.0):
+    """`positive`: how X, Y and Z count, as the map file says it: "carriage", "tool", or one word each.
+    An axis that carries the workpiece and counts as the tool goes has its carriage at minus its number;
+    its positioning error is counted along the number, its other errors along the machine."""
+
+    def __init__(self, seed, chain="[w X Y b Z t]", tool=(0.010, -0.020, -0.080), degree=5, size=1.0,
+                 positive="carriage"):
         draw = np.random.default_rng(seed)
         self.chain, self.tool, self.degree = chain, np.array(tool), degree
         self.series = {name: size * (2e-6 if name[1] in "XYZ" else 2e-5) * draw.normal(size=degree + 1)
@@ -35,7 +40,10 @@ class MapMachine:
         self.squareness = size * 3e-5 * draw.normal(size=3)  # A0Z B0Z C0Y
         work, tool_side = chain[2:-2].replace(" ", "").split("b")
         self.from_bed = {"work": work[::-1], "tool": tool_side}
-        self.signs = np.array([-1.0 if axis in work else 1.0 for axis in "XYZ"])
+        words = positive.split() * (3 if " " not in positive else 1)
+        self.positive = positive
+        self.sense = np.array([-1.0 if axis in work and word == "tool" else 1.0 for axis, word in zip("XYZ", words)])
+        self.signs = self.sense * np.array([-1.0 if axis in work else 1.0 for axis in "XYZ"])
 
     def motion(self, name, q):
         u = np.asarray(q) * 2 / TRAVEL - 1
@@ -55,7 +63,8 @@ class MapMachine:
             k = "XYZ".index(axis)
             errors = [self.motion(f"E{m}{axis}", q[k]) for m in "XYZABC"]
             line = rotation(turn[axis])[:, k]
-            X = X @ pose(rotation(errors[3:]), q[k] * line + errors[:3])
+            errors[k] *= self.sense[k]
+            X = X @ pose(rotation(errors[3:]), self.sense[k] * q[k] * line + errors[:3])
         return X
 
     def error(self, q, tool=None):
@@ -71,7 +80,8 @@ class MapMachine:
     def write(self, path, relative=0.1):
         def floats(values):
             return "[" + ", ".join(repr(float(v)) for v in values) + "]"
-        lines = ["format = 1", 'machine = "numpy-mill"', f'chain = "{self.chain}"', "reference = [0.0, 0.0, 0.0]",
+        lines = ["format = 1", 'machine = "numpy-mill"', f'chain = "{self.chain}"',
+                 f'positive = "{self.positive}"', "reference = [0.0, 0.0, 0.0]",
                  f"tool = {floats(self.tool)}", "temperature_c = 20.0", 'scale = "calibrated"',
                  f"squareness = {floats(self.squareness)}", 'squareness_from = ["linkage", "linkage", "linkage"]',
                  "[travel]"] + [f"{k} = {floats((0.0, TRAVEL))}" for k in "xyz"]

@@ -14,22 +14,29 @@ ARM, SIDE_HEIGHT = 10.0, 20.0  # mm: the layout of the demonstration machine
 COUNTS_PER_UM = 1 / 0.0030517578125
 
 
+TICK = 0.005  # s, of the machine's time: it goes on with each set that is read, 200 a second at most
+
+
 class Machine:
-    """Sweeps X over its stations, up and down, `passes` times, once it was started."""
+    """Sweeps X over its stations, up and down, `passes` times, once it was started.
+
+    Its time goes on as it is read, so that a busy computer makes the sweep longer and spoils nothing.
+    """
 
     def __init__(self, stations=(0.0, 10.0, 20.0, 30.0), passes=2, dwell_s=0.25, move_s=0.05):
         self.stations, self.dwell_s, self.move_s = list(stations), dwell_s, move_s
         below, above = self.stations[0] - 0.5, self.stations[-1] + 0.5  # where the axis turns
         self.path = [below, *self.stations, above, *self.stations[::-1]] * passes + [below]
+        self.ticks, self.controller_read = 0, False
         self.started = None
         self.frozen_at = None
         self.stop_after = None
 
     def start(self):
-        self.started = time.monotonic()
+        self.started = self.ticks
 
     def time(self):
-        now = 0.0 if self.started is None else time.monotonic() - self.started
+        now = 0.0 if self.started is None else TICK * (self.ticks - self.started)
         return now if self.stop_after is None else min(now, self.stop_after)
 
     def position(self):
@@ -60,17 +67,20 @@ class Machine:
             return e["EYX"] + 1000 * (-z * e["EAX"] - (d - x) * e["ECX"])
 
         deltas = [top(ARM, 0), top(0, ARM), top(0, -ARM), side(0, SIDE_HEIGHT), side(ARM, SIDE_HEIGHT)]
-        jitter = 0.01 * ((time.monotonic_ns() // 1000000) % 7 - 3)  # so that no register looks frozen
+        jitter = 0.01 * (self.ticks % 7 - 3)  # so that no register looks frozen
         return [100.0 - delta + jitter for delta in deltas]
 
     def words(self, unit, address, count):
         """The registers of a unit: 1 the head, 2 the controller. None: there are no such registers."""
         if unit == 1:
+            if self.controller_read:  # a set is the head and then the controller: this is the next
+                self.ticks, self.controller_read = self.ticks + 1, False
             if self.frozen_at is not None and self.time() > self.frozen_at:
                 image = [30000] * 5
             else:
                 image = [round(gap * COUNTS_PER_UM) for gap in self.gaps()]
         elif unit == 2:
+            self.controller_read = True
             image = []
             for position in (self.position(), 15.0, 40.0):
                 image += struct.unpack(">HH", struct.pack(">i", round(position * 100000)))
@@ -118,13 +128,15 @@ class RawServer:
     def serve_one(self, connection):
         transaction, _, length, unit = struct.unpack(">HHHB", self.receive(connection, 7))
         body = self.receive(connection, length - 1)
-        function, address, value = struct.unpack(">BHH", body[:5])
+        function, address, value = struct.unpack(">BHH", body[:5].ljust(5, b"\0"))
         self.requests += 1
         if self.fault == "silent":
             return True
         if function == 6:
             self.machine.start()
             reply = body
+        elif function not in (3, 4):
+            reply = struct.pack(">BB", function | 0x80, 1)
         else:
             words = self.machine.words(unit, address, value)
             if self.fault == "exception" or words is None:

@@ -43,5 +43,5 @@ class ProgramCase(unittest.TestCase):
     def rig_record(self, name, *arguments, machine=MACHINE, seed=7):
         """A recording of the virtual rig."""
         path = self.path / name
-        self.done("--machine", machine, "--seed", seed, "--out", path, *arguments, command="rig record")
+        self.done("--machine", machine, "--seed", seed, "--out", path, "--force", *arguments, command="rig record")
         return path

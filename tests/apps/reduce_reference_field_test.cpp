@@ -27,7 +27,7 @@
 #include "recording/target_table.h"
 
 namespace abbe::apps {
-namespace {
+namespace reduce_reference_field_test {
 
 struct Computed {
   const char* file;
@@ -77,5 +77,5 @@ INSTANTIATE_TEST_SUITE_P(
                  5.644},
         Computed{"slit11360_axis1", "X", 21.969, 14.336, 12.940, 9.242, 4.485, -0.367}));
 
-}  // namespace
+}  // namespace reduce_reference_field_test
 }  // namespace abbe::apps

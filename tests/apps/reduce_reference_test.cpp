@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace abbe::apps {
-namespace {
+namespace reduce_reference_test {
 
 using recording::Recording;
 
@@ -126,5 +126,5 @@ TEST(ReduceReference, RefusesWhatIsNoPositioningTest) {
   EXPECT_NE(Refusal(without).find("ref_x_mm"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace reduce_reference_test
 }  // namespace abbe::apps

@@ -9,7 +9,7 @@
 #include "tests/probes/synthetic_sweep.h"
 
 namespace abbe::apps {
-namespace {
+namespace reduce_sweep_test {
 
 using nlohmann::ordered_json;
 
@@ -95,5 +95,5 @@ TEST(ReduceSweep, TheTableNamesEverythingInPlainWords) {
   }
 }
 
-}  // namespace
+}  // namespace reduce_sweep_test
 }  // namespace abbe::apps

@@ -94,6 +94,36 @@ class Reduce(unittest.TestCase):
         self.refuse(recording, recording, "--machine", MACHINE, "--json", self.path / "a.json",
                     saying=["--json"])
 
+    def test_slips_of_positions_and_gaps_are_refused(self):
+        def changed(name, column, change):
+            lines = [line.split(",") for line in rows()]
+            for fields in lines:
+                for at in column:
+                    fields[at] = change(fields[at])
+            return self.write(name, [",".join(fields) for fields in lines])
+
+        gaps = range(7, 12)
+        self.refuse(changed("far.csv", [1], lambda x: str(float(x) + 6e7)), "--machine", MACHINE,
+                    saying=["far.csv: row 1", "x_mm", "far outside the travel of 0 to 60 mm"])
+        self.refuse(changed("order.csv", [3], lambda z: "-20363"), "--machine", MACHINE,
+                    saying=["z_mm is -20363", "word order"])
+        self.refuse(changed("still.csv", gaps, lambda gap: "100"), "--machine", MACHINE,
+                    saying=["still.csv", "probe_a_um shows 100 um in every dwell"])
+        self.refuse(changed("zero.csv", gaps, lambda gap: "0.0"), "--machine", MACHINE,
+                    saying=["zero.csv", "touch the target"])
+
+    def test_needs_no_devices(self):
+        text = pathlib.Path(MACHINE).read_text()
+        machine = self.path / "bare.toml"
+        machine.write_text(text[:text.index("[devices]")])
+        recording = self.write("sweep_X.csv", rows())
+        done = self.run_program(recording, "--machine", machine, "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = subprocess.run([PROGRAM, "sweep", "--axis", "X", "--machine", machine, "--out", self.path / "out"],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("has no table [devices.NAME]", done.stderr)
+
     def test_squareness_needs_one_mounting(self):
         x = self.write("sweep_X.csv", rows())
         y_header = [*HEADER[:3], '# axis = "Y"']

@@ -20,7 +20,7 @@ class RigCourse(unittest.TestCase):
         self.out = self.path / "out.csv"
 
     def record(self, *arguments, machine=MACHINE):
-        return subprocess.run([ABBE, "rig", "record", "--machine", str(machine), "--out", str(self.out),
+        return subprocess.run([ABBE, "rig", "record", "--machine", str(machine), "--out", str(self.out), "--force",
                                *map(str, arguments)], capture_output=True, text=True, timeout=60)
 
     def rows(self, *arguments):

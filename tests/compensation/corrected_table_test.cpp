@@ -5,7 +5,7 @@
 #include "map_cases.h"
 
 namespace abbe::compensation {
-namespace {
+namespace corrected_table_test {
 
 using Eigen::Vector3d;
 
@@ -40,5 +40,5 @@ TEST(CorrectedTable, RefusesWithTheLine) {
   map::ExpectHas(refusal("# nothing\n"), "is empty");
 }
 
-}  // namespace
+}  // namespace corrected_table_test
 }  // namespace abbe::compensation

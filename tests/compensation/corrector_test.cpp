@@ -4,7 +4,7 @@
 #include "map_cases.h"
 
 namespace abbe::compensation {
-namespace {
+namespace corrector_test {
 
 using Eigen::Vector3d;
 using map::ErrorMap;
@@ -41,13 +41,15 @@ TEST(Corrector, ACorrectedCommandBringsTheToolWhereItShouldBeForAnyChain) {
 TEST(Corrector, IsBetterThanTheFirstStepAlone) {
   const ErrorMap map = map::RandomMap(3);
   const Corrector corrector(map, Vector3d::Zero());
-  double first_order = 0.0;
+  double first_order = 0.0, iterated = 0.0;
   for (int i = 0; i < 100; ++i) {
     const Vector3d wanted = Inside(map, 1, i);
     const Vector3d once = 2 * wanted - corrector.Made(wanted);
     first_order = std::max(first_order, (corrector.Made(once) - wanted).norm());
+    iterated = std::max(iterated, (corrector.Made(corrector.Command(wanted)) - wanted).norm());
   }
   EXPECT_GT(first_order, 1e-9);
+  EXPECT_LT(iterated, 1e-6 * first_order);
 }
 
 // The machine differs from its map as the map's covariance says; correcting by the map then leaves
@@ -81,24 +83,59 @@ TEST(Corrector, WhatIsLeftIsTheMapsOwnUncertainty) {
   EXPECT_GT(std::sqrt(before / left), 3.0);
 }
 
-TEST(Corrector, ACommandOutsideTheTravelsIsRefused) {
+// A place beyond the travel is refused; the command for a place at its end may lie a little beyond,
+// as far as the soft limits: the errors there are those at the end.
+TEST(Corrector, ACommandMayLieBeyondTheTravelButNotBeyondTheSoftLimits) {
   const ErrorMap map = map::RandomMap(3);
   const Corrector corrector(map, Vector3d::Zero());
-  EXPECT_THROW(corrector.Command({0.0601, 0.01, 0.01}), InputError);
-  int refused = 0;
+  const Corrector hard(map.model(), Vector3d::Zero(), map.model().travels());
+  map::ExpectHas(map::MessageOf<InputError>([&] {
+                   corrector.Command({0.0601, 0.01, 0.01});
+                 }),
+                 "outside its travel");
+  const Vector3d signs = map.model().chain().ToolSenses();
+  int beyond = 0;
   for (const double z : {0.0, 0.06}) {
     for (const double y : {0.0, 0.06}) {
       for (const double x : {0.0, 0.06}) {
-        try {
-          corrector.Command({x, y, z});
-        } catch (const InputError& failure) {
-          map::ExpectHas(failure.what(), "outside its travel");
-          ++refused;
+        const Vector3d corner(x, y, z);
+        const Vector3d command = corrector.Command(corner);
+        const Vector3d inside = command.cwiseMax(0.0).cwiseMin(0.06);
+        EXPECT_LT(
+            (command + signs.cwiseProduct(map.Error(inside, Vector3d::Zero())) - corner).norm(),
+            1e-12);
+        if (inside == command) {
+          EXPECT_EQ(hard.Command(corner), command);
+          continue;
         }
+        ++beyond;
+        const std::string refused = map::MessageOf<InputError>([&] { hard.Command(corner); });
+        map::ExpectHas(refused, "lies beyond the soft limits, 0 to 60 mm");
+        map::ExpectHas(refused, "limit_mm in [axis.");
       }
     }
   }
-  EXPECT_GT(refused, 0);  // at the corners half of all corrections point outside
+  EXPECT_GT(beyond, 0);  // at the corners half of all corrections point outside
+}
+
+// A zero that was touched off stands where the tool was: kept, nothing moves there, and a place
+// elsewhere has the same distance to it on the real machine as in the program.
+TEST(Corrector, AKeptZeroStaysAndAllElseIsRightAgainstIt) {
+  for (const char* const chain : {map::kColumn, map::kBridge}) {
+    const ErrorMap map = map::RandomMap(8, chain);
+    const Vector3d tool(0.05, -0.1, -0.4), zero(0.03, 0.02, 0.01), place(0.05, 0.04, 0.05);
+    Corrector corrector(map, tool);
+    EXPECT_GT((corrector.Command(zero) - zero).norm(), 3e-6);
+    corrector.KeepZero(zero);
+    EXPECT_EQ(corrector.Command(zero), zero);
+    EXPECT_EQ(corrector.Made(zero), zero);
+    const auto real = [&](const Vector3d& axes) -> Vector3d {
+      return machine::NominalToolInWork<double>(map.model().chain(), axes, tool) +
+             map.Error(axes, tool);
+    };
+    const Vector3d meant = map.model().chain().ToolSenses().cwiseProduct(place - zero);
+    EXPECT_LT((real(corrector.Command(place)) - real(zero) - meant).norm(), 1e-11);
+  }
 }
 
 TEST(Corrector, AMapWithoutInverseIsANumericalError) {
@@ -127,5 +164,5 @@ TEST(Corrector, LinesOfTheStatedLengthStayWithinTheTolerance) {
   EXPECT_GT(worst, 0.3 * kTolerance);
 }
 
-}  // namespace
+}  // namespace corrector_test
 }  // namespace abbe::compensation

@@ -17,7 +17,7 @@
 #include "tests/seeds.h"
 
 namespace abbe::compensation {
-namespace {
+namespace freeform_test {
 
 using Eigen::Vector3d;
 
@@ -108,5 +108,5 @@ TEST(Freeform, CorrectedByAFusedMapIsAsTrueAsTheMapSays) {
   EXPECT_GT(before.mean(), kMost * kMost * stated.mean());  // without it the path would not pass
 }
 
-}  // namespace
+}  // namespace freeform_test
 }  // namespace abbe::compensation

@@ -8,7 +8,7 @@
 #include "map_cases.h"
 
 namespace abbe::compensation {
-namespace {
+namespace nc_correction_test {
 
 using Eigen::Vector3d;
 
@@ -188,5 +188,5 @@ TEST(NcCorrection, ThePlaceOfTheMachineMustBeKnown) {
   EXPECT_EQ(Corrected("G0 X1 Y1 Z1\nG1 X2\n", Perfect(), options), "G0 X1 Y1 Z1\nG1 X2 Y1 Z1\n");
 }
 
-}  // namespace
+}  // namespace nc_correction_test
 }  // namespace abbe::compensation

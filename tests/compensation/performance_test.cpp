@@ -7,7 +7,7 @@
 #include "map_cases.h"
 
 namespace abbe::compensation {
-namespace {
+namespace performance_test {
 
 using Eigen::Vector3d;
 using map::ErrorMap;
@@ -136,5 +136,5 @@ TEST(Performance, RefusesWhatItCannotDo) {
                  "states no uncertainty");
 }
 
-}  // namespace
+}  // namespace performance_test
 }  // namespace abbe::compensation

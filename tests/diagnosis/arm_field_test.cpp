@@ -21,7 +21,7 @@
 #include "settings/document.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace arm_field_test {
 
 class RealArm : public testing::Test {
  protected:
@@ -165,5 +165,5 @@ TEST_F(RealArm, WholeWorkspaceIsNotExplainedByItsGeometry) {
                           [](const Leftover& left) { return left.variable == "time"; }));
 }
 
-}  // namespace
+}  // namespace arm_field_test
 }  // namespace abbe::diagnosis

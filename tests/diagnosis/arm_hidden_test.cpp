@@ -11,7 +11,7 @@
 #include "tests/seeds.h"
 
 namespace abbe {
-namespace {
+namespace arm_hidden_test {
 
 using diagnosis::Diagnosis;
 using diagnosis::Verdict;
@@ -93,5 +93,5 @@ TEST(ArmsHidden, PosesFarOffAreLeftOut) {
   EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
 }
 
-}  // namespace
+}  // namespace arm_hidden_test
 }  // namespace abbe

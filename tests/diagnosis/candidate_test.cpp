@@ -1,10 +1,15 @@
 // What is plausible on a coarser machine.
 #include "diagnosis/candidate.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
+#include "diagnosis/standing_pairs.h"
+
 namespace abbe::diagnosis {
-namespace {
+namespace candidate_test {
 
 double CoarsenessAt(double positioning) {
   machine::Population population{};
@@ -35,5 +40,76 @@ TEST(Coarseness, ScalesTheLengthsOfTheAxesOnly) {
   EXPECT_GT(lengths, 4);
 }
 
-}  // namespace
+// A run that moves some axes and leaves the others at 30 mm, with the jitter of a drive.
+simulation::Trace TraceThatMoves(const std::string& axes) {
+  simulation::Trace trace;
+  trace.axes = Eigen::Matrix3Xd::Constant(3, 50, 0.03);
+  for (Eigen::Index i = 0; i < trace.axes.cols(); ++i) {
+    for (const char axis : std::string("XYZ")) {
+      trace.axes(axis - 'X', i) +=
+          axes.find(axis) == std::string::npos ? 1e-8 * double(i % 2) : 1e-3 * double(i);
+    }
+  }
+  return trace;
+}
+
+std::set<std::string> ObjectsOf(const std::string& cause, const simulation::Scene& scene) {
+  std::set<std::string> objects;
+  for (const Candidate& each : AllCandidates(scene)) {
+    if (each.cause->id == cause) objects.insert(each.object);
+  }
+  return objects;
+}
+
+// Of X and an axis that never moves, the lag of X is all that shows: under one name.
+TEST(AllCandidates, HasPairsOnlyOfAxesThatMove) {
+  const auto plane = TraceThatMoves("XZ");
+  const simulation::Scene scene{{&plane}, Eigen::Vector3d::Constant(0.06)};
+  for (const char* cause : {"servo-lag-mismatch", "squareness", "load-coupling"}) {
+    EXPECT_THAT(ObjectsOf(cause, scene), testing::ElementsAre("XZ")) << cause;
+  }
+  EXPECT_THAT(ObjectsOf("servo-lag", scene), testing::ElementsAre("X", "Y", "Z"));
+  EXPECT_THAT(StandingPairs(scene),
+              testing::UnorderedElementsAre("servo-lag-mismatch:XY", "servo-lag-mismatch:YZ",
+                                            "squareness:XY", "squareness:YZ", "load-coupling:XY",
+                                            "load-coupling:YZ"));
+}
+
+// One axis after the other: together they moved all three.
+TEST(AllCandidates, CountsTheMotionOfAllRuns) {
+  const auto x = TraceThatMoves("X"), y = TraceThatMoves("Y"), z = TraceThatMoves("Z");
+  const simulation::Scene scene{{&x, &y, &z}, Eigen::Vector3d::Constant(0.06)};
+  EXPECT_THAT(ObjectsOf("squareness", scene), testing::ElementsAre("XY", "XZ", "YZ"));
+  EXPECT_THAT(StandingPairs(scene), testing::IsEmpty());
+}
+
+TEST(AllCandidates, KnowsNoAxisThatTheMachineLacks) {
+  auto x = TraceThatMoves("X");
+  x.axes.bottomRows<2>().setZero();
+  const simulation::Scene scene{{&x}, {0.06, 0.0, 0.0}};
+  for (const Candidate& each : AllCandidates(scene)) {
+    const std::string axes = each.object.substr(0, each.object.find_first_not_of("XYZ"));
+    EXPECT_EQ(axes.find_first_of("YZ"), std::string::npos) << each.Name();
+  }
+  EXPECT_THAT(ObjectsOf("backlash", scene), testing::ElementsAre("X"));
+  EXPECT_THAT(StandingPairs(scene), testing::IsEmpty());
+}
+
+// A cause that stood in the list twice could be its own rival.
+TEST(AllCandidates, NamesEachCauseOnce) {
+  auto sweep = TraceThatMoves("XYZ"), other = sweep;
+  sweep.gap = Eigen::MatrixXd::Ones(5, 50);
+  sweep.sensors = other.sensors = {"temp_table_c", "temp_air_c"};
+  const simulation::Scene scene{{&sweep, &other}, Eigen::Vector3d::Constant(0.06)};
+  std::set<std::string> names;
+  std::string last;
+  for (const Candidate& each : AllCandidates(scene)) {
+    if (each.Name() == last) continue;  // another shape of it
+    last = each.Name();
+    EXPECT_TRUE(names.insert(last).second) << last;
+  }
+  EXPECT_GT(names.size(), 50U);
+}
+
+}  // namespace candidate_test
 }  // namespace abbe::diagnosis

@@ -11,7 +11,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace data_integrity_test {
 
 using recording::Recording;
 using testing::ElementsAreArray;
@@ -114,5 +114,5 @@ TEST(DataIntegrity, FindsAChannelThatRepeatsOneValue) {
   EXPECT_EQ(Flagged(run).front(), 31u);  // the first of them was a reading
 }
 
-}  // namespace
+}  // namespace data_integrity_test
 }  // namespace abbe::diagnosis

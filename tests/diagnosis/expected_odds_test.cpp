@@ -10,7 +10,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace expected_odds_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -136,5 +136,5 @@ TEST_F(TwoRivals, AreToldApartByColumnsOfTheirOwn) {
   EXPECT_GT(ExpectedProbability(Information(), more, Rivals()), 0.999);
 }
 
-}  // namespace
+}  // namespace expected_odds_test
 }  // namespace abbe::diagnosis

@@ -9,7 +9,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace measured_noise_test {
 
 using recording::Recording;
 
@@ -63,5 +63,5 @@ TEST(MeasuredNoise, ReplacesWhatTheMachineFileStatesWhereThatIsWrong) {
   EXPECT_THAT(setup.notes, testing::ElementsAre(testing::HasSubstr("where nothing moves (2400")));
 }
 
-}  // namespace
+}  // namespace measured_noise_test
 }  // namespace abbe::diagnosis

@@ -15,7 +15,7 @@
 #include "tests/hidden_effects/hidden_world.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace next_run_test {
 
 constexpr const char* kCircle = "circle_XY_20mm_600";
 
@@ -147,5 +147,5 @@ TEST(PlannedPaths, ACircleKeepsItsRadiusAndItsFeed) {
   }
 }
 
-}  // namespace
+}  // namespace next_run_test
 }  // namespace abbe::diagnosis

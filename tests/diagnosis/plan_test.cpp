@@ -17,7 +17,7 @@
 #include "tests/hidden_effects/hidden_world.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace plan_test {
 
 using Eigen::MatrixXd;
 
@@ -181,5 +181,5 @@ TEST(Plan, WantsALinkageInTheMachineFile) {
   EXPECT_THROW(Planned(CircleAt(600.0), setup), InputError);
 }
 
-}  // namespace
+}  // namespace plan_test
 }  // namespace abbe::diagnosis

@@ -11,7 +11,7 @@
 #include "settings/document.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace plate_hidden_test {
 
 constexpr double kHoleEvery = 20.0, kTimeConstant = 300.0;  // s
 constexpr std::uint64_t kSeeds = 5;
@@ -76,5 +76,5 @@ TEST(Plates, TellThatAnAxisCreeps) {
   }
 }
 
-}  // namespace
+}  // namespace plate_hidden_test
 }  // namespace abbe::diagnosis

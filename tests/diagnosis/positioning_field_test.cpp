@@ -13,7 +13,7 @@
 #include "settings/document.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace positioning_field_test {
 
 // A stage without guide to its quality: positioning errors of some ten um that change from target
 // to target.
@@ -22,8 +22,10 @@ name = "target-stage"
 chain = "[w X Y b Z t]"
 [axis.X]
 travel_mm = [-25.0, 25.0]
+positive = "carriage"
 [axis.Y]
 travel_mm = [-25.0, 25.0]
+positive = "carriage"
 [axis.Z]
 travel_mm = [-25.0, 25.0]
 [population]
@@ -88,5 +90,5 @@ TEST_F(RealAxis, WarmsUpWithItsMotor) {
   EXPECT_NEAR(values[0] * cycles, 90e-6, 25e-6);
 }
 
-}  // namespace
+}  // namespace positioning_field_test
 }  // namespace abbe::diagnosis

@@ -12,7 +12,7 @@
 #include "tests/seeds.h"
 
 namespace abbe {
-namespace {
+namespace positioning_hidden_test {
 
 Diagnosis DiagnosisOf(const PositioningWorlds& worlds, std::uint64_t seed,
                       const rig::Campaign& world) {
@@ -100,5 +100,5 @@ INSTANTIATE_TEST_SUITE_P(
                     Shown{"warm-up-drift:object=X:amplitude_um=4:time_constant_s=100",
                           {{"amplitude_um", 4.0}, {"time_constant_s", 100.0}}}));
 
-}  // namespace
+}  // namespace positioning_hidden_test
 }  // namespace abbe

@@ -10,7 +10,7 @@
 #include "tests/diagnosis/planned_circles.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace repeated_run_test {
 
 using testing::ElementsAre;
 
@@ -70,5 +70,5 @@ TEST(PlannedRun, RowsWithoutAPlaceDoNotCount) {
   EXPECT_NE(planned.At("pivot_1_rad")[4], 0.0);
 }
 
-}  // namespace
+}  // namespace repeated_run_test
 }  // namespace abbe::diagnosis

@@ -9,7 +9,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace scan_test {
 
 using Eigen::Index;
 using Eigen::RowVectorXd;
@@ -67,5 +67,5 @@ TEST(Scan, FindsNothingAtOnePlace) {
   EXPECT_TRUE(StrongestIntervals(scan)[0].IsEmpty());
 }
 
-}  // namespace
+}  // namespace scan_test
 }  // namespace abbe::diagnosis

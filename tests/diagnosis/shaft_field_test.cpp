@@ -15,7 +15,7 @@
 #include "tests/diagnosis/shaft_world.h"
 
 namespace abbe::diagnosis {
-namespace {
+namespace shaft_field_test {
 
 class RealWheel : public testing::Test {
  protected:
@@ -79,5 +79,5 @@ TEST_F(RealWheel, HasAnAngleThatComesLate) {
   ExpectKey("clock-skew:shaft", -9.5 / 119.0, kBySensor);
 }
 
-}  // namespace
+}  // namespace shaft_field_test
 }  // namespace abbe::diagnosis

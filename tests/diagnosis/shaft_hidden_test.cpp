@@ -12,7 +12,7 @@
 #include "tests/seeds.h"
 
 namespace abbe {
-namespace {
+namespace shaft_hidden_test {
 
 constexpr double kNormal = 3.9;  // 99.99 % of normal errors
 constexpr double kLarge = 5.0;   // m: a rim so large that its curvature is none of a sensor
@@ -132,5 +132,5 @@ TEST(TurningWheels, TellALateClockByASecondSpeed) {
   ExpectKey(both, "clock-skew:shaft", 0, 20e-3);
 }
 
-}  // namespace
+}  // namespace shaft_hidden_test
 }  // namespace abbe

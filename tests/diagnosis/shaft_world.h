@@ -115,7 +115,10 @@ inline diagnosis::Setup SetupOfWheel() {
   constexpr const char* kWheel = R"(
 name = "wheel"
 chain = "[w X Y b Z t]"
-axis = {X.travel_mm = [0, 1], Y.travel_mm = [0, 1], Z.travel_mm = [0, 1]}
+[axis]
+X = {travel_mm = [0, 1], positive = "carriage"}
+Y = {travel_mm = [0, 1], positive = "carriage"}
+Z = {travel_mm = [0, 1]}
 )";
   return {machine::ReadMachine(settings::Document::Parse(kWheel, "wheel.toml").Root()),
           std::nullopt,

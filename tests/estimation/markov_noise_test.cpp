@@ -12,7 +12,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::estimation {
-namespace {
+namespace markov_noise_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -198,5 +198,5 @@ TEST(MarkovNoise, RefusesWhatItCannotUse) {
   refuses({{0, 1}, {0, 0}, {1}, 1}, 1.0, 1.0, "1 variances");
 }
 
-}  // namespace
+}  // namespace markov_noise_test
 }  // namespace abbe::estimation

@@ -11,7 +11,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::estimation {
-namespace {
+namespace monte_carlo_test {
 
 using random::CounterRandom;
 
@@ -136,5 +136,5 @@ TEST(MonteCarlo, PassesOnWhatTheModelThrows) {
                std::domain_error);
 }
 
-}  // namespace
+}  // namespace monte_carlo_test
 }  // namespace abbe::estimation

@@ -12,7 +12,7 @@
 #include "estimation/problem.h"
 
 namespace abbe::estimation {
-namespace {
+namespace nist_test {
 
 // Certified values have 11 digits.
 constexpr double kCertified = 1e-10;
@@ -137,5 +137,5 @@ TYPED_TEST(Nist, GivesTheCertifiedValuesFromBothStarts) {
   }
 }
 
-}  // namespace
+}  // namespace nist_test
 }  // namespace abbe::estimation

@@ -10,7 +10,7 @@
 #include "linear_case.h"
 
 namespace abbe::estimation {
-namespace {
+namespace passes_test {
 
 using Eigen::VectorXd;
 
@@ -111,5 +111,5 @@ TEST(Passes, VisitedRowsAddUpToTheSums) {
   EXPECT_NEAR(chi, at.sources[0].chi_square + at.sources[1].chi_square, 1e-12 * chi);
 }
 
-}  // namespace
+}  // namespace passes_test
 }  // namespace abbe::estimation

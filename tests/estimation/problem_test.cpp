@@ -15,7 +15,7 @@
 #include "linear_case.h"
 
 namespace abbe::estimation {
-namespace {
+namespace problem_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -360,5 +360,5 @@ TEST(Problem, RefusesAWrongSetUp) {
   EXPECT_THAT(Words<InputError>([&] { problem.Block(p)["z"]; }), HasSubstr("it has x, y"));
 }
 
-}  // namespace
+}  // namespace problem_test
 }  // namespace abbe::estimation

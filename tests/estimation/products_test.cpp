@@ -8,7 +8,7 @@
 #include "linear_case.h"
 
 namespace abbe::estimation {
-namespace {
+namespace products_test {
 
 constexpr int kRounds = 2000;
 
@@ -53,5 +53,5 @@ TEST(Products, OfSeveralThreadsAreThoseOfOneToTheLastBit) {
   }
 }
 
-}  // namespace
+}  // namespace products_test
 }  // namespace abbe::estimation

@@ -14,7 +14,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::estimation {
-namespace {
+namespace robust_mean_test {
 
 using random::CounterRandom;
 
@@ -178,5 +178,5 @@ TEST(RobustLoss, WeightIsTheSlopeOfRho) {
   }
 }
 
-}  // namespace
+}  // namespace robust_mean_test
 }  // namespace abbe::estimation

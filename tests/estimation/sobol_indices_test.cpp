@@ -10,7 +10,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::estimation {
-namespace {
+namespace sobol_indices_test {
 
 using random::CounterRandom;
 constexpr double kPi = std::numbers::pi;
@@ -121,5 +121,5 @@ TEST(SobolIndices, RefuseWhatHasNoVariance) {
   EXPECT_THROW(SobolIndices(3, 1, NormalDraws(1), Ishigami::Run, {.draws = 1}), NumericalError);
 }
 
-}  // namespace
+}  // namespace sobol_indices_test
 }  // namespace abbe::estimation

@@ -9,7 +9,7 @@
 #include "linear_case.h"
 
 namespace abbe::estimation {
-namespace {
+namespace statistics_test {
 
 using random::CounterRandom;
 
@@ -104,5 +104,5 @@ TEST(Statistics, AWrongNoiseStatementShowsInThePulls) {
   EXPECT_GT(square, 255.3);
 }
 
-}  // namespace
+}  // namespace statistics_test
 }  // namespace abbe::estimation

@@ -10,7 +10,7 @@
 #include "linear_case.h"
 
 namespace abbe::estimation {
-namespace {
+namespace weak_directions_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -158,5 +158,5 @@ TEST(WeakDirections, WordsHoldTheLargestOnly) {
   EXPECT_EQ(InWords(c, {"a", "b", "c", "d", "e"}), "-0.80 b + 0.59 d and 2 smaller");
 }
 
-}  // namespace
+}  // namespace weak_directions_test
 }  // namespace abbe::estimation

@@ -8,7 +8,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::fusion {
-namespace {
+namespace bearing_harmonics_test {
 
 constexpr double kMean = 3e-4, kSine = 20e-6, kCosine = -7e-6, kSecond = 2e-6;
 constexpr double kNoise = 0.5e-6;
@@ -65,5 +65,5 @@ TEST(BearingHarmonics, RefuseWhatTheyCannotTellApart) {
   EXPECT_THROW(FitBearing(standing, values, {1}), NumericalError);
 }
 
-}  // namespace
+}  // namespace bearing_harmonics_test
 }  // namespace abbe::fusion

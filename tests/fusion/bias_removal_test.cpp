@@ -16,7 +16,7 @@
 #include "tests/seeds.h"
 
 namespace abbe::fusion {
-namespace {
+namespace bias_removal_test {
 
 using Eigen::Index;
 using Eigen::Matrix3Xd;
@@ -221,5 +221,5 @@ TEST(BiasRemoval, TakesTheInstrumentTheOtherOneAndALength) {
   EXPECT_LT(all.map.mean(), 0.25 * both.map.mean());
 }
 
-}  // namespace
+}  // namespace bias_removal_test
 }  // namespace abbe::fusion

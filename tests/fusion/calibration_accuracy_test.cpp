@@ -16,7 +16,7 @@
 #include "tests/seeds.h"
 
 namespace abbe::fusion {
-namespace {
+namespace calibration_accuracy_test {
 
 using Eigen::Index;
 using Eigen::Matrix3d;
@@ -228,5 +228,5 @@ TEST(CalibrationAccuracy, OfThePublishedModelInThePublishedCube) {
   Check(ErrorModel::kPublishedWithBearing, GridPositions(cube, {5, 5, 8}), cube);
 }
 
-}  // namespace
+}  // namespace calibration_accuracy_test
 }  // namespace abbe::fusion

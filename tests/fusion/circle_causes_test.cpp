@@ -10,7 +10,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::fusion {
-namespace {
+namespace circle_causes_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadius = 0.01;
@@ -277,5 +277,5 @@ TEST(CircleCauses, RefusesCirclesThatAreNotOne) {
   EXPECT_THROW(FitCircleCauses({&other}), InputError);
 }
 
-}  // namespace
+}  // namespace circle_causes_test
 }  // namespace abbe::fusion

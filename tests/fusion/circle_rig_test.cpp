@@ -13,7 +13,7 @@
 #include "settings/document.h"
 
 namespace abbe::fusion {
-namespace {
+namespace circle_rig_test {
 
 constexpr int kWorlds = 100;
 constexpr double kRadius = 0.020, kMiddle = 0.030;  // m
@@ -138,5 +138,5 @@ TEST(CircleOnTheRig, SmoothHarmonicsHaveThePopulationsSize) {
   }
 }
 
-}  // namespace
+}  // namespace circle_rig_test
 }  // namespace abbe::fusion

@@ -9,7 +9,7 @@
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::fusion {
-namespace {
+namespace fuse_robust_test {
 
 using Eigen::Vector3d;
 using simulation::SimulatedRun;
@@ -222,5 +222,5 @@ TEST(FuseOfAnotherChain, IsRefused) {
               ThrowsMessage<InputError>(HasSubstr("go different ways")));
 }
 
-}  // namespace
+}  // namespace fuse_robust_test
 }  // namespace abbe::fusion

@@ -10,7 +10,7 @@
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::fusion {
-namespace {
+namespace fuse_test {
 
 using Eigen::Vector3d;
 using simulation::SimulatedRun;
@@ -81,14 +81,15 @@ TEST_F(FuseOfRig, FindsTheMapOfTheMachine) {
 
 TEST_F(FuseOfRig, ChoosesTheSmoothnessOfThePopulation) {
   EXPECT_NEAR(All().chosen_smoothness, 0.015, 1e-9);
-  const settings::Document wrong =
-      CampaignMachine({{"smoothness_mm = 15.0", "smoothness_mm = 7.5"}});
-  Campaign mistaken = World();
-  mistaken.machine = machine::ReadMachine(wrong.Root());
-  mistaken.model = UnknownMachine(mistaken.machine);
-  const FuseReport report =
-      Fuse(mistaken.machine, {mistaken.Sweep('X'), mistaken.Sweep('Y'), mistaken.Sweep('Z')}, {});
-  EXPECT_NEAR(report.chosen_smoothness, 0.015, 1e-9);
+  for (const char* stated : {"smoothness_mm = 7.5", "smoothness_mm = 30.0"}) {
+    const settings::Document wrong = CampaignMachine({{"smoothness_mm = 15.0", stated}});
+    Campaign mistaken = World();
+    mistaken.machine = machine::ReadMachine(wrong.Root());
+    mistaken.model = UnknownMachine(mistaken.machine);
+    const FuseReport report =
+        Fuse(mistaken.machine, {mistaken.Sweep('X'), mistaken.Sweep('Y'), mistaken.Sweep('Z')}, {});
+    EXPECT_NEAR(report.chosen_smoothness, 0.015, 1e-9) << stated;
+  }
 }
 
 TEST_F(FuseOfRig, TellsWhatDeterminedEachError) {
@@ -147,6 +148,7 @@ TEST_F(FuseOfRig, ShowsThatALinkageAloneSwallowsTheMachine) {
   errors.colwise() -= errors.rowwise().mean();
   const double machine = errors.colwise().norm().norm() / std::sqrt(run.poses());
   EXPECT_LT(alone.after.rms, 0.7 * machine);
+  EXPECT_GT(alone.after.rms, 0.3e-6);  // the noise of its encoders, 3 urad at 120 mm, stays
 }
 
 TEST_F(FuseOfRig, RefusesNoRunsAndPlacesOutside) {
@@ -162,5 +164,5 @@ TEST_F(FuseOfRig, RefusesNoRunsAndPlacesOutside) {
               ThrowsMessage<InputError>(HasSubstr("length Y: row 4: y = 80.0000 mm lies outside")));
 }
 
-}  // namespace
+}  // namespace fuse_test
 }  // namespace abbe::fusion

@@ -15,7 +15,7 @@
 #include "tests/seeds.h"
 
 namespace abbe::fusion {
-namespace {
+namespace map_accuracy_test {
 
 using Eigen::Vector3d;
 using simulation::SimulatedRun;
@@ -113,5 +113,5 @@ TEST(MapAccuracy, StatesTrueUncertaintiesAndGainsFromTheOtherInstrument) {
   EXPECT_GT(std::sqrt(best_alone / sets[3].variance.mean()), 3.0);
 }
 
-}  // namespace
+}  // namespace map_accuracy_test
 }  // namespace abbe::fusion

@@ -11,7 +11,7 @@
 #include "linkage_world.h"
 
 namespace abbe::fusion {
-namespace {
+namespace mapping_test {
 
 using Eigen::Index;
 using Eigen::Matrix3Xd;
@@ -112,5 +112,5 @@ TEST(Mapping, RefusesPosesThatAreNoGrid) {
   EXPECT_THROW(MapParameters(simulation, run, simulation.Values()), InputError);
 }
 
-}  // namespace
+}  // namespace mapping_test
 }  // namespace abbe::fusion

@@ -11,7 +11,7 @@
 #include "linkage_world.h"
 
 namespace abbe::fusion {
-namespace {
+namespace pose_choice_test {
 
 using Eigen::Index;
 using Eigen::Matrix3d;
@@ -138,5 +138,5 @@ TEST(PoseChoice, RefusesMorePosesThanThereAre) {
   EXPECT_THROW(ChoosePoses(candidates, 0), InputError);
 }
 
-}  // namespace
+}  // namespace pose_choice_test
 }  // namespace abbe::fusion

@@ -15,7 +15,7 @@
 #include "tests/seeds.h"
 
 namespace abbe::fusion {
-namespace {
+namespace progression_test {
 
 using Eigen::Vector3d;
 
@@ -77,5 +77,5 @@ TEST(Progression, OfBoelensInKind) {
   EXPECT_LT(median["complete"], median["complete, mapped"]);
 }
 
-}  // namespace
+}  // namespace progression_test
 }  // namespace abbe::fusion

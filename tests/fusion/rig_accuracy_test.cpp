@@ -19,7 +19,7 @@
 #include "tests/seeds.h"
 
 namespace abbe::fusion {
-namespace {
+namespace rig_accuracy_test {
 
 using Eigen::Index;
 using Eigen::Matrix3Xd;
@@ -201,5 +201,5 @@ TEST(RigAccuracy, OfTheCompleteModelOverTheTravel) {
   EXPECT_GT(to_bound.mean(), 1.0 - 4.0 * to_bound.error());
 }
 
-}  // namespace
+}  // namespace rig_accuracy_test
 }  // namespace abbe::fusion

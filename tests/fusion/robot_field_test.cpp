@@ -13,7 +13,7 @@
 #include "settings/document.h"
 
 namespace abbe::fusion {
-namespace {
+namespace robot_field_test {
 
 using Eigen::Index;
 using Eigen::Matrix3Xd;
@@ -160,5 +160,5 @@ INSTANTIATE_TEST_SUITE_P(BothArms, RobotArm,
                          ::testing::Values(Arm{"right", "", 7}, Arm{"left", "-", 13}),
                          [](const auto& arm) { return std::string(arm.param.name); });
 
-}  // namespace
+}  // namespace robot_field_test
 }  // namespace abbe::fusion

@@ -13,7 +13,7 @@
 #include "relm/shaft_readings.h"
 
 namespace abbe::fusion {
-namespace {
+namespace shaft_field_test {
 
 struct Probe {
   const char* channel;
@@ -49,5 +49,5 @@ TEST(ShaftField, TwoHarmonicsTakeTheEccentricityOut) {
   }
 }
 
-}  // namespace
+}  // namespace shaft_field_test
 }  // namespace abbe::fusion

@@ -11,7 +11,7 @@
 #include "linkage_world.h"
 
 namespace abbe::fusion {
-namespace {
+namespace volume_study_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -69,5 +69,5 @@ TEST(VolumeStudy, LargerVolumesKnowTheTravelBetter) {
   EXPECT_GT(compared, 0);
 }
 
-}  // namespace
+}  // namespace volume_study_test
 }  // namespace abbe::fusion

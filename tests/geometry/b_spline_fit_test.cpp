@@ -10,7 +10,7 @@
 #include "failure/failure.h"
 
 namespace abbe::geometry {
-namespace {
+namespace b_spline_fit_test {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
@@ -219,5 +219,5 @@ TEST(BSplineFit, InterpolationWithoutWeightsTellsNoUncertainty) {
   EXPECT_NEAR(weighted.StandardUncertainty(points.x[3]), 0.5, 1e-12);  // it goes through the point
 }
 
-}  // namespace
+}  // namespace b_spline_fit_test
 }  // namespace abbe::geometry

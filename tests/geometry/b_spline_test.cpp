@@ -8,7 +8,7 @@
 #include "failure/failure.h"
 
 namespace abbe::geometry {
-namespace {
+namespace b_spline_test {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
@@ -118,5 +118,5 @@ TEST(BSpline, RefusesBadBases) {
   EXPECT_THROW(BSplineBasis::Uniform(0, 0, 1, 2).LineCoefficients(), InputError);
 }
 
-}  // namespace
+}  // namespace b_spline_test
 }  // namespace abbe::geometry

@@ -10,7 +10,7 @@
 #include "geometry/transform.h"
 
 namespace abbe::geometry {
-namespace {
+namespace geometry_property_test {
 
 using Eigen::Vector3d;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -85,5 +85,5 @@ RC_GTEST_PROP(GeometryProperty, DerivativesAgreeWithFiniteDifferences, ()) {
   }
 }
 
-}  // namespace
+}  // namespace geometry_property_test
 }  // namespace abbe::geometry

@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace abbe::geometry {
-namespace {
+namespace rotation_test {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -147,5 +147,5 @@ TEST(Rotation, TheLeftJacobianIsThatOfDualNumbers) {
   }
 }
 
-}  // namespace
+}  // namespace rotation_test
 }  // namespace abbe::geometry

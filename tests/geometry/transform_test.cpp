@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace abbe::geometry {
-namespace {
+namespace transform_test {
 
 using Eigen::Vector3d;
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
@@ -54,5 +54,5 @@ TEST(Transform, CastKeepsThePose) {
   EXPECT_EQ(single.R, kX_AB.R.cast<float>());
 }
 
-}  // namespace
+}  // namespace transform_test
 }  // namespace abbe::geometry

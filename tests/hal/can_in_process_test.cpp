@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace abbe::hal {
-namespace {
+namespace can_in_process_test {
 
 CanFrame Frame(std::uint32_t id, std::uint8_t first) {
   CanFrame frame{.id = id, .size = 2};
@@ -123,5 +123,5 @@ TEST(CanInProcess, ParticipantsMayLiveInTheirOwnThreads) {
   sender.join();
 }
 
-}  // namespace
+}  // namespace can_in_process_test
 }  // namespace abbe::hal

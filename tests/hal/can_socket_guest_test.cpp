@@ -4,13 +4,14 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <ctime>
 #include <thread>
 #include <vector>
 
 #include "can_guest.h"
 
 namespace abbe::hal {
-namespace {
+namespace can_socket_guest_test {
 
 class CanSocketGuest : public CanGuest {};
 
@@ -206,5 +207,28 @@ TEST_F(CanSocketGuest, FollowsAControllerThroughBusOffAndBack) {
   EXPECT_TRUE(Reaches(bus, CanState::kGone));
 }
 
-}  // namespace
+// The kernel's stamps are of the calendar, which somebody may set: an hour on, and back.
+TEST_F(CanSocketGuest, StampsStayWithinWhatIsPossibleWhenTheCalendarIsSet) {
+  CanSocket bus("vcan0", clock_);
+  double last = 0.0;
+  for (const double step_s : {3600.0, -3600.0, -7200.0, 7200.0}) {
+    const double before = clock_.Now();
+    Run("cansend vcan0 181#00");
+    timespec now{};
+    clock_gettime(CLOCK_REALTIME, &now);
+    now.tv_sec += static_cast<time_t>(step_s);
+    ASSERT_EQ(clock_settime(CLOCK_REALTIME, &now), 0);
+    EXPECT_LT(clock_.Now() - before, 60.0);  // the clock of the measurement does not heed it
+    const auto pdo = Await(bus, 0x181);
+    ASSERT_TRUE(pdo.has_value());
+    EXPECT_GE(pdo->time_s, last);
+    EXPECT_LE(pdo->time_s, clock_.Now());
+    last = pdo->time_s;
+    // Nor do deadlines.
+    EXPECT_FALSE(bus.Receive(clock_.Now() + 0.2).has_value());
+    EXPECT_LT(clock_.Now() - before, 60.0);
+  }
+}
+
+}  // namespace can_socket_guest_test
 }  // namespace abbe::hal

@@ -14,7 +14,7 @@
 #include "hal/candump_recording.h"
 
 namespace abbe::hal {
-namespace {
+namespace candump_test {
 
 class CandumpTest : public testing::Test {
  protected:
@@ -226,7 +226,8 @@ TEST_F(CandumpTest, TheSilenceOfALogThatWasSetForwardHasNoRows) {
     const auto recording = Record(
         "(1763716800.250103) can0 080#\n(1763716800.250203) can0 181#0100\n"
         "(1763716800.250204) can0 182#0100\n"
-        "(" + later + ") can0 080#\n(" + later + ") can0 181#0200\n(" + later + ") can0 182#0200\n");
+        "(" +
+        later + ") can0 080#\n(" + later + ") can0 181#0200\n(" + later + ") can0 182#0200\n");
     EXPECT_LE(recording.rows(), 5u);
     ASSERT_EQ(recording.warnings.size(), 1u);
     EXPECT_NE(recording.warnings[0].find("calendar was set"), std::string::npos);
@@ -235,5 +236,5 @@ TEST_F(CandumpTest, TheSilenceOfALogThatWasSetForwardHasNoRows) {
   }
 }
 
-}  // namespace
+}  // namespace candump_test
 }  // namespace abbe::hal

@@ -6,7 +6,7 @@
 #include "sample_source_contract.h"
 
 namespace abbe::hal {
-namespace {
+namespace canopen_contract_test {
 
 enum class CanFault { kLost, kLate, kShort, kCorrupt, kEmergency, kSilent, kBusOff, kOverflow };
 
@@ -113,5 +113,5 @@ std::vector<ContractCase> Cases() {
 
 INSTANTIATE_TEST_SUITE_P(Can, SampleSourceContract, testing::ValuesIn(Cases()), CaseName);
 
-}  // namespace
+}  // namespace canopen_contract_test
 }  // namespace abbe::hal

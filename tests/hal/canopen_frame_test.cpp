@@ -7,7 +7,7 @@
 #include <initializer_list>
 
 namespace abbe::hal {
-namespace {
+namespace canopen_frame_test {
 
 CanFrame Frame(std::uint32_t id, std::initializer_list<std::uint8_t> data) {
   CanFrame frame{.id = id, .size = static_cast<std::uint8_t>(data.size())};
@@ -81,5 +81,5 @@ RC_GTEST_PROP(CanopenFrame, WhatIsPutIsTaken, ()) {
     RC_ASSERT(TakeBits(whole, 0, at, false) == TakeBits(whole_before, 0, at, false));
 }
 
-}  // namespace
+}  // namespace canopen_frame_test
 }  // namespace abbe::hal

@@ -12,7 +12,7 @@
 #include "hal/modbus_server.h"
 
 namespace abbe::hal {
-namespace {
+namespace canopen_guest_test {
 
 constexpr int kPerTurn = 1 << 16;
 
@@ -289,5 +289,5 @@ TEST_F(CanopenGuest, ReadsProbesAndEncodersAsOneSet) {
               1e3 * skews.back());
 }
 
-}  // namespace
+}  // namespace canopen_guest_test
 }  // namespace abbe::hal

@@ -10,7 +10,7 @@
 #include "hal/device_settings.h"
 
 namespace abbe::hal {
-namespace {
+namespace canopen_settings_test {
 
 DevicesSettings Read(const std::string& text) {
   return ReadDevices(settings::Document::Parse(text, "m.toml").Root().Child("devices"));
@@ -120,5 +120,5 @@ RC_GTEST_PROP(CanopenSettings, TheCountOfAnAngleIsThatAngleModuloTheRange, ()) {
   RC_ASSERT(std::abs(std::remainder(back - angle, turn)) <= 0.5 * encoder.Step() + 1e-9);
 }
 
-}  // namespace
+}  // namespace canopen_settings_test
 }  // namespace abbe::hal

@@ -12,7 +12,7 @@
 #include "can_encoder_node.h"
 
 namespace abbe::hal {
-namespace {
+namespace canopen_source_test {
 
 constexpr double kStale = 1.0;
 
@@ -291,5 +291,35 @@ TEST_F(ThreeEncoders, AListenerTakesCyclicPdos) {
   }
 }
 
-}  // namespace
+TEST_F(ThreeEncoders, AnErrorPassiveBusIsAWarningAndItsReadingsAreGood) {
+  Open().Require();
+  log_.clear();
+  wire_.SetState(CanState::kPassive);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(Next().AllGood());
+  EXPECT_EQ(source_->Fault(), "");
+  ASSERT_EQ(log_.size(), 1u);
+  EXPECT_NE(log_[0].find("passive"), std::string::npos) << log_[0];
+  wire_.SetState(CanState::kActive);
+  EXPECT_TRUE(Next().AllGood());
+  ASSERT_EQ(log_.size(), 2u);
+  EXPECT_NE(log_[1].find("no more errors"), std::string::npos) << log_[1];
+}
+
+TEST_F(ThreeEncoders, FramesThatFoundNoRoomSpoilTheirSet) {
+  Open().Require();
+  const auto babbler = wire_.Join();
+  for (int i = 0; i < 5000; ++i) babbler->Send({.id = 0x300, .size = 1});  // 4096 may wait
+  const SampleSet set = Next();
+  EXPECT_GT(source_->bus().lost(), 0u);
+  for (const Sample& sample : set.samples) {
+    EXPECT_EQ(sample.cause, Cause::kNoReply);
+    EXPECT_TRUE(std::isnan(sample.value));
+  }
+  EXPECT_NE(source_->Fault().find("found no room to wait"), std::string::npos) << source_->Fault();
+  Next();
+  EXPECT_TRUE(Next().AllGood());
+  EXPECT_EQ(source_->Fault(), "");
+}
+
+}  // namespace canopen_source_test
 }  // namespace abbe::hal

@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace abbe::hal {
-namespace {
+namespace channel_judge_test {
 
 using Words = std::vector<std::uint16_t>;
 
@@ -80,5 +80,5 @@ TEST(ChannelJudge, DiscardsWhatIsNotNewer) {
   EXPECT_EQ(next.sequence, 2u);
 }
 
-}  // namespace
+}  // namespace channel_judge_test
 }  // namespace abbe::hal

@@ -6,7 +6,7 @@
 #include <string>
 
 namespace abbe::hal {
-namespace {
+namespace device_settings_test {
 
 DevicesSettings Read(const std::string& text) {
   return ReadDevices(settings::Document::Parse(text, "m.toml").Root().Child("devices"));
@@ -134,5 +134,5 @@ TEST(DeviceSettings, RefusesWithLineKeyAndRemedy) {
       "m.toml:2: devices.rate_hx: is not a known key; did you mean \"rate_hz\"?");
 }
 
-}  // namespace
+}  // namespace device_settings_test
 }  // namespace abbe::hal

@@ -14,7 +14,7 @@
 #include "hal/sweep_plan.h"
 
 namespace abbe::hal {
-namespace {
+namespace devices_page_test {
 
 std::string Page() {
   std::ifstream file(ABBE_SOURCE_DIR "/docs/devices.md");
@@ -126,5 +126,5 @@ step_mm = 1
   }
 }
 
-}  // namespace
+}  // namespace devices_page_test
 }  // namespace abbe::hal

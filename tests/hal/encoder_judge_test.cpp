@@ -7,7 +7,7 @@
 #include <cmath>
 
 namespace abbe::hal {
-namespace {
+namespace encoder_judge_test {
 
 EncoderSettings Encoder() {
   EncoderSettings encoder;
@@ -95,5 +95,5 @@ TEST(EncoderJudge, OutOfRangeStaleFrozenAndTwice) {
   EXPECT_TRUE(At(strict, 6, 1.2).good());
 }
 
-}  // namespace
+}  // namespace encoder_judge_test
 }  // namespace abbe::hal

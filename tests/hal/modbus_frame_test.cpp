@@ -4,11 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace abbe::hal {
-namespace {
+namespace modbus_frame_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -107,5 +109,44 @@ TEST(ModbusFrame, AWrittenWordMustComeBack) {
       "an echo that differs from what was written");
 }
 
-}  // namespace
+// The example of section 6.21: "Company identification", "Product code XX", "V2.11".
+TEST(ModbusFrame, AsksADeviceWhoItIs) {
+  constexpr ModbusRequest kWho{1, 43, 0, 0};
+  EXPECT_EQ(Encoded(kWho, ModbusFraming::kTcp, 7), (Bytes{0, 7, 0, 0, 0, 5, 1, 0x2B, 0x0E, 1, 0}));
+  Bytes body{1, 0x2B, 0x0E, 1, 1, 0, 0, 3};
+  const std::vector<std::string> said{"Company identification", "Product code XX", "V2.11"};
+  for (std::size_t id = 0; id < said.size(); ++id) {
+    body.push_back(static_cast<std::uint8_t>(id));
+    body.push_back(static_cast<std::uint8_t>(said[id].size()));
+    body.insert(body.end(), said[id].begin(), said[id].end());
+  }
+  const Bytes serial = WithCrc(body);
+  for (std::size_t n = 0; n < serial.size(); ++n) {
+    EXPECT_GT(ReplyLength(std::span(serial.data(), n), ModbusFraming::kRtu), n);
+  }
+  EXPECT_EQ(ReplyLength(serial, ModbusFraming::kRtu), serial.size());
+  const ModbusReply reply = CheckReply(kWho, ModbusFraming::kRtu, 0, serial);
+  EXPECT_EQ(reply.wrong, "");
+  EXPECT_EQ(IdentityText(reply.objects), "Company identification Product code XX V2.11");
+  // Whatever is cut off or left over is no identification.
+  for (std::size_t cut = 1; cut < body.size() - 2; ++cut) {
+    const Bytes part = WithCrc(Bytes(body.begin(), body.end() - static_cast<long>(cut)));
+    EXPECT_NE(CheckReply(kWho, ModbusFraming::kRtu, 0, part).wrong, "") << cut;
+  }
+  EXPECT_EQ(IdentityText(Bytes{0, 5, 'a', '\n', 0x1B, 0xFF, 'b'}), "ab");
+}
+
+TEST(ModbusFrame, EveryExceptionHasARemedyOfItsOwn) {
+  std::set<std::string> remedies;
+  for (const int exception : {1, 2, 3, 4, 5, 6}) {
+    const std::string remedy = ExceptionRemedy(exception);
+    EXPECT_TRUE(remedies.insert(remedy).second) << remedy;
+    EXPECT_EQ(remedy.find("check that it is on"), std::string::npos);
+  }
+  EXPECT_EQ(ExceptionRemedy(10), ExceptionRemedy(11));
+  EXPECT_NE(ExceptionRemedy(6).find("busy"), std::string::npos);
+  EXPECT_NE(ExceptionRemedy(77), "");
+}
+
+}  // namespace modbus_frame_test
 }  // namespace abbe::hal

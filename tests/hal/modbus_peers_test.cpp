@@ -12,7 +12,7 @@
 #include "hal/modbus_server.h"
 
 namespace abbe::hal {
-namespace {
+namespace modbus_peers_test {
 
 constexpr char kPython[] = "/usr/bin/python3";  // Debian's, which sees Debian's pymodbus
 
@@ -174,5 +174,5 @@ TEST_F(SocatTest, ReadsOverASerialLineAndSurvivesItsHangUp) {
   EXPECT_TRUE(ReadWell(*opened.source).AllGood()) << opened.source->Fault();
 }
 
-}  // namespace
+}  // namespace modbus_peers_test
 }  // namespace abbe::hal

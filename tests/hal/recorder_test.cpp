@@ -9,7 +9,7 @@
 #include "failure/failure.h"
 
 namespace abbe::hal {
-namespace {
+namespace recorder_test {
 
 class MemoryWriter : public recording::Writer {
  public:
@@ -161,5 +161,5 @@ TEST(Recorder, TheHeaderTellsTheSources) {
       "[sources]\n\"head\" = \"modbus: probe_a_um\"\n\"linkage\" = \"canopen: pivot_1_rad\"\n");
 }
 
-}  // namespace
+}  // namespace recorder_test
 }  // namespace abbe::hal

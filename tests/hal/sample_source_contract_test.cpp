@@ -8,7 +8,7 @@
 #include "hal/replay_source.h"
 
 namespace abbe::hal {
-namespace {
+namespace sample_source_contract_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -244,5 +244,5 @@ TEST(ReplaySource, AFlagSpoilsWhatItMayMean) {
   EXPECT_EQ(source.Read().samples[1].cause, Cause::kClockJump);
 }
 
-}  // namespace
+}  // namespace sample_source_contract_test
 }  // namespace abbe::hal

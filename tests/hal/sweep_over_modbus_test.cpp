@@ -13,7 +13,7 @@
 #include "swept_machine.h"
 
 namespace abbe::hal {
-namespace {
+namespace sweep_over_modbus_test {
 
 constexpr char kDevices[] = R"(
 [devices.head]
@@ -124,5 +124,5 @@ TEST(SweepOverModbus, GoesOnWhenTheServerVanishesAndReturns) {
   EXPECT_GT(good_after, 50u);
 }
 
-}  // namespace
+}  // namespace sweep_over_modbus_test
 }  // namespace abbe::hal

@@ -5,7 +5,7 @@
 #include <string>
 
 namespace abbe::hal {
-namespace {
+namespace sweep_plan_test {
 
 SweepPlan Plan(const std::string& text, char axis = 'X') {
   return ReadSweepPlan(settings::Document::Parse(text, "m.toml").Root().Child("sweep"), axis);
@@ -73,5 +73,5 @@ TEST(SweepPlan, RefusesWithLineKeyAndRemedy) {
             "m.toml: sweep.X.first_mm: is missing; it must be a number");
 }
 
-}  // namespace
+}  // namespace sweep_plan_test
 }  // namespace abbe::hal

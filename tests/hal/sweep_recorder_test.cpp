@@ -14,7 +14,7 @@
 #include "swept_machine.h"
 
 namespace abbe::hal {
-namespace {
+namespace sweep_recorder_test {
 
 enum Column { kTime, kX, kY, kZ, kPass, kDirection, kFeed, kProbe, kFlags };
 
@@ -265,10 +265,76 @@ TEST_F(SweepRecorderTest, WithoutAPositionTheOperatorIsAsked) {
 
 TEST_F(SweepRecorderTest, TheOperatorMayEndIt) {
   int asked = 0;
-  const SweepOutcome outcome = Record({.prompt = [&](const Visit&) { return ++asked < 3; }});
+  FakeSource probe_only({SweepChannels()[0]}, Truth(), 1.0, clock_);
+  const SweepOutcome outcome = RecordSweep(probe_only, plan_, clock_, writer_,
+                                           {.prompt = [&](const Visit&) { return ++asked < 3; }});
   EXPECT_EQ(outcome.end, SweepEnd::kStopped);
   EXPECT_EQ(outcome.lacking.size(), 10u);
   EXPECT_TRUE(writer_.closed);
+}
+
+TEST_F(SweepRecorderTest, AnOperatorWhoStandsElsewhereIsAskedAgain) {
+  double x_mm = 0.0;
+  FakeSource source(
+      SweepChannels(),
+      [&](const std::string& channel, double time_s) {
+        return channel == "x_mm" ? x_mm : Truth()(channel, time_s);
+      },
+      1.0, clock_);
+  std::size_t asked = 0;
+  std::vector<std::string> why;
+  const SweepOutcome outcome =
+      RecordSweep(source, plan_, clock_, writer_,
+                  {.prompt =
+                       [&](const Visit& visit) {
+                         clock_.Advance(3.0);
+                         x_mm = 1e3 * plan_.stations[visit.station] + (asked == 4 ? 12.0 : 0.0);
+                         return ++asked < 100;
+                       },
+                   .refused = [&](const std::string& text) { why.push_back(text); }});
+  EXPECT_EQ(outcome.end, SweepEnd::kComplete);
+  EXPECT_TRUE(outcome.lacking.empty());
+  EXPECT_EQ(asked, plan_.Visits().size() + 1);
+  ASSERT_EQ(why.size(), 1u);
+  EXPECT_EQ(why[0].substr(0, 11), "X stands at");
+  for (const auto& row : writer_.rows) EXPECT_LT(row[kX], 1e3 * plan_.last() + 1.0);
+}
+
+// SIGSTOP, a laptop's lid: SleepUntil returns 0.8 s late, three times.
+class SuspendedClock : public HandClock {
+ public:
+  void SleepUntil(double time_s) override {
+    HandClock::SleepUntil(time_s);
+    if (Now() < next_ || ++suspensions_ > 3) return;
+    Advance(0.8);
+    next_ = Now() + 1.0;
+  }
+  double next_ = 1.0;
+  int suspensions_ = 0;
+};
+
+TEST(SweepRecorder, FlagsTheRowBeforeWhichItWasSuspended) {
+  const SweepPlan plan = SmallPlan();
+  const SweptMachine machine(plan, 0.002, 1.0);
+  SuspendedClock clock;
+  FakeSource source(
+      SweepChannels(),
+      [&](const std::string& channel, double time_s) {
+        return channel == "x_mm" ? 1e3 * machine.PositionAt(time_s)
+                                 : 100.0 + std::sin(37.0 * time_s);
+      },
+      1.0, clock);
+  MemoryWriter writer;
+  const SweepOutcome outcome = RecordSweep(source, plan, clock, writer, {});
+  EXPECT_EQ(outcome.end, SweepEnd::kComplete);
+  std::size_t jumps = 0;
+  for (std::size_t i = 1; i < writer.rows.size(); ++i) {
+    const double gap = writer.rows[i][kTime] - writer.rows[i - 1][kTime];
+    EXPECT_EQ(writer.rows[i][kFlags], gap > 0.1 ? 16.0 : 0.0) << i;
+    EXPECT_FALSE(std::isnan(writer.rows[i][kProbe]));  // the reading itself is whole
+    jumps += gap > 0.1 ? 1 : 0;
+  }
+  EXPECT_GE(jumps, 2u);  // one may lie before the first pass
 }
 
 TEST_F(SweepRecorderTest, AReplayedSweepIsRecordedAgainAsItWas) {
@@ -430,5 +496,5 @@ TEST(SweepFollower, PassingThroughAStationIsNoVisit) {
   EXPECT_EQ(feed.follower.Lacking().size(), 12u);
 }
 
-}  // namespace
+}  // namespace sweep_recorder_test
 }  // namespace abbe::hal

@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace abbe::hal {
-namespace {
+namespace word_codec_test {
 
 using enum WordOrder;
 using enum WordType;
@@ -113,5 +113,5 @@ TEST(WordCodec, KeepsFloatsThatAreNotNumbers) {
             -std::numeric_limits<double>::infinity());
 }
 
-}  // namespace
+}  // namespace word_codec_test
 }  // namespace abbe::hal

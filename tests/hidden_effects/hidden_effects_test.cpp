@@ -12,7 +12,7 @@
 #include "tests/seeds.h"
 
 namespace abbe {
-namespace {
+namespace hidden_effects_test {
 
 TEST(HiddenEffects, AreNotSeenWhereThereAreNone) {
   const HiddenWorlds worlds(rig::CampaignKind::kStandard);
@@ -122,5 +122,5 @@ TEST(WhereItShows, IsOverTheWayThatTheAxisGoes) {
   EXPECT_LT(rms(curve.after), 0.5 * rms(curve.before));
 }
 
-}  // namespace
+}  // namespace hidden_effects_test
 }  // namespace abbe

@@ -15,7 +15,7 @@
 #include "tests/seeds.h"
 
 namespace abbe {
-namespace {
+namespace hidden_rates_test {
 
 constexpr auto kCampaign = rig::CampaignKind::kStandard;
 
@@ -153,5 +153,5 @@ TEST(HiddenRates, OfUnknownEffects) {
   EXPECT_LE(wrong.Low(), 0.02) << wrong.Text();
 }
 
-}  // namespace
+}  // namespace hidden_rates_test
 }  // namespace abbe

@@ -12,7 +12,7 @@
 #include "tests/hidden_effects/hidden_world.h"
 
 namespace abbe {
-namespace {
+namespace line_search_test {
 
 constexpr std::uint64_t kSeed = 5;
 
@@ -53,5 +53,5 @@ INSTANTIATE_TEST_SUITE_P(BetweenDriftAndMains, HiddenLines, testing::Values(4.7,
 
 TEST(LineSearch, FindsNothingInNoise) { EXPECT_LT(LineOf({}).LogEvidence(), 0.0); }
 
-}  // namespace
+}  // namespace line_search_test
 }  // namespace abbe

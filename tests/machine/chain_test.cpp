@@ -6,7 +6,7 @@
 #include "failure/failure.h"
 
 namespace abbe::machine {
-namespace {
+namespace chain_test {
 
 TEST(Chain, SaysWhichAxesMoveTheWorkpieceAndWhichTheTool) {
   const Chain column = Chain::Parse("[w X Y b Z t]");
@@ -39,7 +39,7 @@ TEST(Chain, RefusesWhatIsNoChainAndSaysWhy) {
       {"[w X Y Z t]", "no b"},
       {"[w X b Y b Z t]", "more than one b"},
       {"[w X Y b X t]", "X twice"},
-      {"[w X Y b t]", "lacks the axis Z"},
+      {"[w b (C) t]", "none of the axes"},
       {"[w C X Y b Z t]", "rotary axis C"},
       {"[w X Y b Z' t]", "prime on an axis that moves the tool"},
       {"[w ' X Y b Z t]", "follows no axis"},
@@ -64,9 +64,19 @@ TEST(Chain, SaysWhichAxesMoveACarriage) {
   EXPECT_EQ(Chain::Parse("[w b Y X Z t]").Movers('Z'), "YXZ");
 }
 
+// A table of one axis, a gantry of two: what is not there carries nothing and is moved by nothing.
+TEST(Chain, MayLackAxes) {
+  const Chain table = Chain::Parse("[w X b t]");
+  EXPECT_EQ(table.Text(), "[w X b t]");
+  EXPECT_TRUE(table.CarriesTarget('X'));
+  EXPECT_FALSE(table.CarriesTarget('Z'));
+  EXPECT_EQ(table.Movers('X'), "X");
+  EXPECT_EQ(Chain::Parse("[w b Y Z t]").Movers('Z'), "YZ");
+}
+
 TEST(Chain, RefusesAnAxisThatIsNotThere) {
   EXPECT_THROW(Chain::Parse("[w X Y b Z t]").CarriesTarget('A'), InputError);
 }
 
-}  // namespace
+}  // namespace chain_test
 }  // namespace abbe::machine

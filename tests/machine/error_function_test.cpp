@@ -14,7 +14,7 @@
 #include "volumetric_cases.h"
 
 namespace abbe::machine {
-namespace {
+namespace error_function_test {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr Travel kTravel{-0.02, 0.06};
@@ -200,5 +200,5 @@ TEST(ErrorFunction, RefusesWrongCoefficientsAndForms) {
       InputError);
 }
 
-}  // namespace
+}  // namespace error_function_test
 }  // namespace abbe::machine

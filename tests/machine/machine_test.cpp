@@ -6,7 +6,7 @@
 #include "failure/failure.h"
 
 namespace abbe::machine {
-namespace {
+namespace machine_test {
 
 constexpr char kSmall[] = R"(
 name = "small"
@@ -14,8 +14,10 @@ chain = "[w X Y b Z t]"
 reference_mm = [1.0, 2.0, 3.0]
 [axis.X]
 travel_mm = [0.0, 60.0]
+positive = "carriage"
 [axis.Y]
 travel_mm = [-30.0, 30.0]
+positive = "carriage"
 [axis.Z]
 travel_mm = [5.0, 45.0]
 [population]
@@ -65,7 +67,40 @@ TEST(Machine, RefusesBadValuesWithFileLineAndKey) {
   ExpectRefusal(Replaced(kSmall, "[0.0, 60.0]", "[60.0, 0.0]"), "small.toml:6: axis.X.travel_mm: ");
   ExpectRefusal(Replaced(kSmall, "roll_urad", "rol_urad"), "roll_urad");
   ExpectRefusal(Replaced(kSmall, "[axis.Z]", "[axis.W]"), "axis.Z");
-  ExpectRefusal(Replaced(kSmall, "12.0", "-12.0"), "small.toml:12: population.roll_urad: ");
+  ExpectRefusal(Replaced(kSmall, "positive = \"carriage\"", "positive = \"table\""),
+                "small.toml:7: axis.X.positive: \"table\" is not one of: tool, carriage");
+  ExpectRefusal(Replaced(kSmall, "\n[axis.Z]", "\nlimit_mm = [-20.0, 31.0]\n[axis.Z]"),
+                "small.toml:11: axis.Y.limit_mm: must be [first, last]");
+  ExpectRefusal(Replaced(kSmall, "12.0", "-12.0"), "small.toml:14: population.roll_urad: ");
+}
+
+// Nobody guesses which way a table counts: the line says what to write.
+TEST(Machine, AsksHowAnAxisCountsThatCarriesTheWorkpiece) {
+  const std::string without = Replaced(kSmall, "positive = \"carriage\"\n", "");
+  ExpectRefusal(without,
+                "small.toml:5: axis.X.positive: is missing: X carries the workpiece; write "
+                "positive = \"tool\"");
+  // An axis that carries the tool counts as the tool goes, and may say so.
+  const auto read = [](const std::string& text) {
+    return ReadMachine(settings::Document::Parse(text, "small.toml").Root()).chain;
+  };
+  const std::string bridge = Replaced(without, "[w X Y b Z t]", "[w Y b X Z t]");
+  EXPECT_EQ(read(bridge).PositiveText(), "tool carriage tool");
+  const std::string iso = Replaced(bridge, "\"carriage\"", "\"tool\"");
+  EXPECT_EQ(read(iso).PositiveText(), "tool tool tool");
+  EXPECT_EQ(read(iso).CarriageSense('Y'), -1.0);
+  EXPECT_EQ(read(iso).ToolSense('Y'), 1.0);
+  EXPECT_EQ(read(bridge).ToolSense('Y'), -1.0);
+}
+
+// Soft limits are the control's: those of the file, or a tenth of a millimetre beyond the travel.
+TEST(Machine, HasSoftLimitsAroundItsTravels) {
+  const std::string text = Replaced(kSmall, "\n[axis.Z]", "\nlimit_mm = [-31.0, 30.5]\n[axis.Z]");
+  const Machine machine = ReadMachine(settings::Document::Parse(text, "small.toml").Root());
+  EXPECT_DOUBLE_EQ(machine.limits[1].first, -0.031);
+  EXPECT_DOUBLE_EQ(machine.limits[1].last, 0.0305);
+  EXPECT_DOUBLE_EQ(machine.limits[0].first, -0.0001);
+  EXPECT_DOUBLE_EQ(machine.limits[0].last, 0.0601);
 }
 
 TEST(Machine, TheDemonstrationMachineIsRead) {
@@ -76,5 +111,5 @@ TEST(Machine, TheDemonstrationMachineIsRead) {
   EXPECT_FALSE(machine.chain.CarriesTarget('Z'));
 }
 
-}  // namespace
+}  // namespace machine_test
 }  // namespace abbe::machine

@@ -21,6 +21,17 @@ inline std::vector<Chain> AllChains() {
   return chains;
 }
 
+// The same chains, each counted by the carriages and as the tool goes.
+inline std::vector<Chain> AllCounts() {
+  std::vector<Chain> chains = AllChains();
+  for (Chain chain : AllChains()) {
+    if (chain.workpiece_axes().empty()) continue;
+    chain.SetPositive({Positive::kTool, Positive::kTool, Positive::kTool});
+    chains.push_back(chain);
+  }
+  return chains;
+}
+
 // Numbers in [-1, 1], one after the other.
 class Numbers {
  public:

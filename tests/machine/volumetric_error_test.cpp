@@ -15,7 +15,7 @@
 #include "volumetric_cases.h"
 
 namespace abbe::machine {
-namespace {
+namespace volumetric_error_test {
 
 using Eigen::Vector3d;
 
@@ -90,10 +90,13 @@ TEST(VolumetricError, APitchingRamSwingsTheStylusSidewaysWhichEquation19AsPrinte
 TEST(VolumetricError, IsWhatTheRigsPosesShow) {
   const auto document = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
   const Vector3d p_MQ(0.02, 0.03, 0.1), reference(0.01, -0.02, 0.05);
-  for (const Chain& chain : AllChains()) {
+  for (const Chain& chain : AllCounts()) {
     rig::RigSettings settings = rig::ReadRigSettings(document.Root());
     settings.workpiece_axes = chain.workpiece_axes();
     settings.tool_axes = chain.tool_axes();
+    for (int axis = 0; axis < kAxes; ++axis) {
+      settings.sense[axis] = chain.CarriageSense("XYZ"[axis]);
+    }
     settings.reference = reference;
     const rig::World world(settings, 7);
     for (std::uint64_t i = 0; i < 5; ++i) {
@@ -135,5 +138,5 @@ TEST(Configurations, AnUnknownNameIsToldTheNearestAndAll) {
   }
 }
 
-}  // namespace
+}  // namespace volumetric_error_test
 }  // namespace abbe::machine

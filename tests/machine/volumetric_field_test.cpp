@@ -11,7 +11,7 @@
 #include "volumetric_cases.h"
 
 namespace abbe::machine {
-namespace {
+namespace volumetric_field_test {
 
 using Eigen::Vector3d;
 
@@ -76,9 +76,9 @@ TEST(AxisMotions, AreTheFunctionsOfTheAxisAtKnotsEndsAndBetween) {
   }
 }
 
-TEST(VolumetricField, IsItsModelOnEveryConfiguration) {
-  for (const Configuration& configuration : kConfigurations) {
-    const VolumetricModel model = AnyMachine(Chain::Parse(configuration.chain));
+TEST(VolumetricField, IsItsModelOnEveryChainHoweverItCounts) {
+  for (const Chain& chain : AllCounts()) {
+    const VolumetricModel model = AnyMachine(chain);
     const VolumetricField field(model);
     Numbers numbers(5);
     Eigen::Matrix3Xd places(3, 50);
@@ -87,7 +87,7 @@ TEST(VolumetricField, IsItsModelOnEveryConfiguration) {
     const Eigen::Matrix3Xd errors = field.Errors(places, kTool);
     for (int i = 0; i < 50; ++i) {
       const Vector3d expected = model.Error(places.col(i), kTool);
-      EXPECT_LT((errors.col(i) - expected).norm(), 16 * kEps) << configuration.name;
+      EXPECT_LT((errors.col(i) - expected).norm(), 16 * kEps) << chain.Text();
       EXPECT_EQ(errors.col(i), field.Error(places.col(i), kTool));
     }
   }
@@ -109,5 +109,5 @@ TEST(VolumetricField, RefusesWhatLiesOutsideAndTakesARoundedEnd) {
   EXPECT_NO_THROW(field.Error({0.5 * (1 + 2 * kEps), 0.4, -0.3}, kTool));
 }
 
-}  // namespace
+}  // namespace volumetric_field_test
 }  // namespace abbe::machine

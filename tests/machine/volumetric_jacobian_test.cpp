@@ -8,7 +8,7 @@
 #include "volumetric_cases.h"
 
 namespace abbe::machine {
-namespace {
+namespace volumetric_jacobian_test {
 
 using Eigen::Vector3d;
 
@@ -40,7 +40,7 @@ Eigen::Matrix<double, 3, kInputs> ByJets(const Chain& chain, const Vector3d& pos
 // Angles from none over small (the series of the rotation) to a radian (its closed form).
 TEST(VolumetricJacobian, IsThatOfDualNumbersForEveryChain) {
   std::uint64_t seed = 0;
-  for (const Chain& chain : AllChains()) {
+  for (const Chain& chain : AllCounts()) {
     for (const double angle : {0.0, 1e-6, 1e-3, 1.0}) {
       Numbers numbers(++seed);
       const auto errors = numbers.Errors(0.1, angle);
@@ -62,7 +62,7 @@ TEST(VolumetricJacobian, IsThatOfFiniteDifferences) {
   const double h = 1e-5;  // third derivatives of size 10: h^2 / 6 * 10 and eps / h
   const double tolerance = h * h / 6 * 10 + 16 * kEps / h;
   std::uint64_t seed = 0;
-  for (const Chain& chain : AllChains()) {
+  for (const Chain& chain : AllCounts()) {
     Numbers numbers(++seed);
     const auto errors = numbers.Errors(0.1, 0.3);
     const Vector3d position = numbers.Vector(1.0), p_TQ = numbers.Vector(1.0);
@@ -84,5 +84,5 @@ TEST(VolumetricJacobian, IsThatOfFiniteDifferences) {
   }
 }
 
-}  // namespace
+}  // namespace volumetric_jacobian_test
 }  // namespace abbe::machine

@@ -12,7 +12,7 @@
 #include "volumetric_cases.h"
 
 namespace abbe::machine {
-namespace {
+namespace volumetric_model_test {
 
 using Eigen::Vector3d;
 
@@ -129,5 +129,5 @@ TEST(VolumetricModel, RefusesWhatDoesNotExist) {
   EXPECT_THROW(model.SetParameters(p), InputError);
 }
 
-}  // namespace
+}  // namespace volumetric_model_test
 }  // namespace abbe::machine

@@ -2,6 +2,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
 
@@ -9,7 +10,7 @@
 #include "volumetric_cases.h"
 
 namespace abbe::machine {
-namespace {
+namespace volumetric_property_test {
 
 using Eigen::Vector3d;
 
@@ -101,7 +102,7 @@ RC_GTEST_PROP(VolumetricError, OfAWorkpieceAxisIsThatOfAToolAxisMovedBack, ()) {
   turned.chain = Written(work.substr(0, work.size() - 1), work.back() + c.chain.tool_axes());
   turned.position[axis] = -c.position[axis];
   const Vector3d l = LineOf<double>(axis, c.errors.squareness);
-  const auto back = CarriagePose<double>(axis, c.position[axis], c.errors).Inverse();
+  const auto back = CarriagePose<double>(axis, 1.0, c.position[axis], c.errors).Inverse();
   turned.errors.axes[axis] << back.p + c.position[axis] * l, -c.errors.axes[axis].tail<3>();
   RC_ASSERT((ErrorOf(turned) - ErrorOf(c)).norm() < kRounding);
 }
@@ -113,6 +114,39 @@ RC_GTEST_PROP(VolumetricError, OfTheReversedChainUndoesIt, ()) {
   const Chain reversed = Written({tool.rbegin(), tool.rend()}, {work.rbegin(), work.rend()});
   const Vector3d p_WQ = ToolInWork<double>(c.chain, c.position, c.p_TQ, c.errors);
   RC_ASSERT((ToolInWork<double>(reversed, c.position, p_WQ, c.errors) - c.p_TQ).norm() < kRounding);
+}
+
+// A machine whose control counts the other way is the same machine: at the same places of its
+// carriages the same tool meets the same place of the workpiece.
+RC_GTEST_PROP(VolumetricError, IsTheSameWhicheverWayTheControlCounts, ()) {
+  const Case c = AnyCase();
+  Case counted = c;
+  std::array<Positive, 3> positive{};
+  for (std::size_t axis = 0; axis < positive.size(); ++axis) {
+    positive[axis] = *rc::gen::arbitrary<bool>() ? Positive::kTool : Positive::kCarriage;
+    if (positive[axis] != Positive::kTool || !c.chain.CarriesTarget("XYZ"[axis])) continue;
+    const auto at = static_cast<Eigen::Index>(axis);
+    counted.position[at] = -c.position[at];
+    counted.errors.axes[axis][at] = -c.errors.axes[axis][at];
+  }
+  counted.chain.SetPositive(positive);
+  RC_ASSERT((ErrorOf(counted) - ErrorOf(c)).norm() < kRounding);
+  RC_ASSERT((NominalToolInWork<double>(counted.chain, counted.position, c.p_TQ) -
+             NominalToolInWork<double>(c.chain, c.position, c.p_TQ))
+                .norm() < kRounding);
+}
+
+// Counted as the tool goes, a positioning error is that of ISO 230-2 whoever carries what: + is
+// further along the count, and the tool stands further towards + in the workpiece.
+RC_GTEST_PROP(VolumetricError, CountedAsTheToolGoesIsAlongTheCount, ()) {
+  Case c = AnyCase();
+  c.chain.SetPositive({Positive::kTool, Positive::kTool, Positive::kTool});
+  const int axis = *rc::gen::inRange(0, kAxes);
+  const double e = c.errors.axes[axis][axis];
+  c.errors = {};
+  c.errors.axes[axis][axis] = e;
+  RC_ASSERT((ErrorOf(c) - e * Vector3d::Unit(axis)).norm() < kRounding);
+  RC_ASSERT(c.chain.ToolSenses() == Vector3d::Ones());
 }
 
 // Without turns the error is the sum of the displacements, in whatever order the axes stand.
@@ -154,5 +188,5 @@ RC_GTEST_PROP(VolumetricError, OfOnePositioningErrorIsThatError, ()) {
   RC_ASSERT((ErrorOf(c) - side * e * Vector3d::Unit(axis)).norm() < kRounding);
 }
 
-}  // namespace
+}  // namespace volumetric_property_test
 }  // namespace abbe::machine

@@ -4,7 +4,7 @@
 #include "map_cases.h"
 
 namespace abbe::map {
-namespace {
+namespace error_map_test {
 
 using Eigen::Vector3d;
 
@@ -79,5 +79,5 @@ TEST(ErrorMap, AMapWithoutCovarianceSaysSo) {
             "states no uncertainty");
 }
 
-}  // namespace
+}  // namespace error_map_test
 }  // namespace abbe::map

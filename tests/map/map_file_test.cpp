@@ -5,7 +5,7 @@
 #include "map_cases.h"
 
 namespace abbe::map {
-namespace {
+namespace map_file_test {
 
 using Eigen::Vector3d;
 
@@ -35,6 +35,26 @@ TEST(MapFile, WrittenAndReadItIsTheSameBitForBit) {
     WriteMap(read, folder / "b.toml");
     EXPECT_EQ(ReadWhole(folder / "a/map.toml"), ReadWhole(folder / "b.toml"));
   }
+}
+
+// Which way its axes count, its soft limits, and tables that are taken as they stand.
+TEST(MapFile, KeepsTheCountTheLimitsAndTheGauge) {
+  const Folder folder;
+  machine::Chain chain = machine::Chain::Parse(kColumn);
+  chain.ReadPositive("tool carriage tool", "");
+  machine::VolumetricModel model(chain, {{{0, 0.1}, {0, 0.1}, {0, 0.1}}});
+  model.SetForm(0, 4, machine::MakeTableForm({0, 0.1}), machine::Gauge::kNone);
+  model.SetCoefficients(0, 4, Eigen::Vector2d(50e-6, 60e-6));
+  MapOrigin origin;
+  origin.limits = {{{-0.002, 0.101}, {0, 0.1}, {-0.001, 0.1}}};
+  WriteMap({origin, model, {}}, folder / "map.toml");
+  const ErrorMap read = ReadMap(folder / "map.toml");
+  ExpectSame({origin, model, {}}, read);
+  EXPECT_EQ(read.model().chain().PositiveText(), "tool carriage tool");
+  EXPECT_EQ(read.model().Function(0, 4).Evaluate(0.0), 50e-6);
+  EXPECT_EQ(read.Limits()[0].first, -0.002);
+  EXPECT_EQ(read.Limits()[2].last, 0.1);
+  EXPECT_EQ(RandomMap(1).Limits()[1].last, 0.06 + machine::kBeyondTravel);
 }
 
 TEST(MapFile, AMapWithoutUncertaintyStaysOne) {
@@ -77,6 +97,8 @@ TEST_F(BrokenMap, IsRefusedWithFileLineAndKey) {
   ExpectHas(With("scale = \"", "scale = \"not "), "scale");
   ExpectHas(With("x = [0.0, 0.06]", "x = [0.06, 0.06]"), "first below the last");
   ExpectHas(With("machine =", "colour = 3\nmachine ="), "colour");
+  ExpectHas(With("positive = \"carriage carriage tool\"\n", ""),
+            "positive: nothing says which way X counts");
   ExpectHas(With("\"EXX.c0\", ", ""), "covariance.names");
 }
 
@@ -110,5 +132,5 @@ TEST_F(BrokenMap, ATruncatedFileIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace map_file_test
 }  // namespace abbe::map

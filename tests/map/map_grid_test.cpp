@@ -4,7 +4,7 @@
 #include "map_cases.h"
 
 namespace abbe::map {
-namespace {
+namespace map_grid_test {
 
 using Eigen::Vector3d;
 
@@ -65,5 +65,5 @@ TEST(MapGrid, RefusesWhatLiesOutside) {
   EXPECT_THROW(SampleGrid(map, Vector3d::Zero(), {3, 1, 3}), InputError);
 }
 
-}  // namespace
+}  // namespace map_grid_test
 }  // namespace abbe::map

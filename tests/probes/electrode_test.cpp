@@ -8,7 +8,7 @@
 #include "failure/failure.h"
 
 namespace abbe::probes {
-namespace {
+namespace electrode_test {
 
 // The harmonic mean of the gap over a disc of radius a tilted by phi, by quadrature: with x = a sin
 // t a strip of the disc has the area 2 a^2 cos^2 t dt, and the trapezoid rule over the period
@@ -52,5 +52,5 @@ TEST(Electrode, RefusesTheImpossible) {
   EXPECT_THROW(ElectrodeGap(electrode, -1e-6, 0), InputError);
 }
 
-}  // namespace
+}  // namespace electrode_test
 }  // namespace abbe::probes

@@ -9,7 +9,7 @@
 #include "probes/installation.h"
 
 namespace abbe::probes {
-namespace {
+namespace head_inversion_test {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -144,5 +144,5 @@ TEST(HeadInversion, RefusesReadingsThatNoSmallMotionGives) {
   }
 }
 
-}  // namespace
+}  // namespace head_inversion_test
 }  // namespace abbe::probes

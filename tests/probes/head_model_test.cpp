@@ -13,7 +13,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::probes {
-namespace {
+namespace head_model_test {
 
 using Eigen::Vector3d;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -191,5 +191,5 @@ TEST(HeadModel, CarriesDerivatives) {
   }
 }
 
-}  // namespace
+}  // namespace head_model_test
 }  // namespace abbe::probes

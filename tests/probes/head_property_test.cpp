@@ -9,7 +9,7 @@
 #include "probes/installation.h"
 
 namespace abbe::probes {
-namespace {
+namespace head_property_test {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 // The rounding of an angle: of slopes, that is differences of readings over an arm of some 5 mm,
@@ -88,5 +88,5 @@ RC_GTEST_PROP(HeadProperty, TheElectrodeIsUndone, ()) {
   RC_ASSERT(std::abs(ElectrodeGap(electrode, reading, tilt) - gap) < 16 * kEps * gap);
 }
 
-}  // namespace
+}  // namespace head_property_test
 }  // namespace abbe::probes

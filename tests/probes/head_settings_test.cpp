@@ -9,7 +9,7 @@
 #include "failure/failure.h"
 
 namespace abbe::probes {
-namespace {
+namespace head_settings_test {
 
 HeadSettings Read(const std::string& text) {
   return ReadHeadSettings(settings::Document::Parse(text, "mill.toml").Root());
@@ -104,5 +104,5 @@ TEST(HeadSettings, RefuseWithLineAndKey) {
   names(Refusal("[head.tolerance]\ngain_ppm = -1.0"), "at least");
 }
 
-}  // namespace
+}  // namespace head_settings_test
 }  // namespace abbe::probes

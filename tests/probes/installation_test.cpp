@@ -10,7 +10,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::probes {
-namespace {
+namespace installation_test {
 
 using std::cos, std::sin;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -174,5 +174,5 @@ TEST(Installation, LinesAndLayoutAgreeToFirstOrder) {
   }
 }
 
-}  // namespace
+}  // namespace installation_test
 }  // namespace abbe::probes

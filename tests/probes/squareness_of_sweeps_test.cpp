@@ -8,14 +8,14 @@
 #include "tests/probes/synthetic_sweep.h"
 
 namespace abbe::probes {
-namespace {
+namespace squareness_of_sweeps_test {
 
 constexpr char kMounting[] = "[mounting]\nid = \"A17\"\n";  // as abbe sweep writes it
 
 // A straight motion whose direction leans by these slopes along s and n of the head frame, seen on
 // a target whose faces are turned with `tilt` (a rotation vector in M).
-SweepResult Lean(const SweepSetup& setup, char axis, double slope_s, double slope_n,
-                 const Eigen::Vector3d& tilt, const std::string& header = kMounting) {
+recording::Recording LeanSweep(const SweepSetup& setup, char axis, double slope_s, double slope_n,
+                               const Eigen::Vector3d& tilt, const std::string& header = kMounting) {
   SyntheticSweep sweep;
   sweep.axis = axis;
   sweep.moving = axis == 'Z' ? MovingBody::kHead : MovingBody::kTarget;
@@ -29,7 +29,23 @@ SweepResult Lean(const SweepSetup& setup, char axis, double slope_s, double slop
     e.ezx = slope_n * d;
     return e;
   };
-  return ReduceSweep(Record(sweep, setup), setup);
+  return Record(sweep, setup);
+}
+
+SweepResult Lean(const SweepSetup& setup, char axis, double slope_s, double slope_n,
+                 const Eigen::Vector3d& tilt, const std::string& header = kMounting) {
+  return ReduceSweep(LeanSweep(setup, axis, slope_s, slope_n, tilt, header), setup);
+}
+
+// What a control that counts X and Y the other way would have recorded.
+recording::Recording CountedTheOtherWay(recording::Recording sweep, bool swept) {
+  for (recording::Column& column : sweep.columns) {
+    const bool turned =
+        column.name == "x_mm" || column.name == "y_mm" || (swept && column.name == "direction");
+    if (!turned) continue;
+    for (double& value : column.values) value = -value;
+  }
+  return sweep;
 }
 
 // The directions of motion: X = (1, a, b), Y = (c, 1, d), Z = (e, f, 1).
@@ -45,6 +61,28 @@ SweepResult SweepOfY(const SweepSetup& setup, const Eigen::Vector3d& tilt) {
 }
 SweepResult SweepOfZ(const SweepSetup& setup, const Eigen::Vector3d& tilt) {
   return Lean(setup, 'Z', kF, -kE, tilt);
+}
+
+// Inclinations are those of the carriages in the machine, not of the numbers.
+TEST(SquarenessOfSweeps, IsTheSameWhicheverWayTheControlCounts) {
+  const SweepSetup setup = TestSetup();
+  SweepSetup counted = setup;
+  counted.machine.chain.ReadPositive("tool", "");
+  const Eigen::Vector3d tilt(150e-6, -80e-6, 200e-6);
+  const auto reduced = [&](char axis, double s, double n) {
+    return ReduceSweep(CountedTheOtherWay(LeanSweep(setup, axis, s, n, tilt), axis != 'Z'),
+                       counted);
+  };
+  const SweepResult x = reduced('X', kA, kB), y = reduced('Y', -kC, kD), z = reduced('Z', kF, -kE);
+  EXPECT_EQ(x.positive, "tool");
+  EXPECT_LT(x.stations.front(), 0.0);
+  EXPECT_NEAR(SquarenessOfSweeps(x, y, setup.target).value, -kA - kC, kRounding);
+  EXPECT_NEAR(SquarenessOfSweeps(x, z, setup.target).value,
+              SquarenessOfSweeps(SweepOfX(setup, tilt), SweepOfZ(setup, tilt), setup.target).value,
+              kRounding);
+  EXPECT_NEAR(SquarenessOfSweeps(y, z, setup.target).value,
+              SquarenessOfSweeps(SweepOfY(setup, tilt), SweepOfZ(setup, tilt), setup.target).value,
+              kRounding);
 }
 
 // By definition: the angle between the directions, less a right angle, and the tilt of the target
@@ -95,9 +133,9 @@ TEST(SquarenessOfSweeps, IsRefusedWhenAConditionFails) {
   const SweepResult x = SweepOfX(setup, level), y = SweepOfY(setup, level);
   EXPECT_EQ(RefusalOf(x, y, setup.target), "accepted");
   EXPECT_THAT(RefusalOf(x, x, setup.target), testing::HasSubstr("both sweep the X axis"));
-  const SweepResult bare = Lean(setup, 'Y', 0.0, 0.0, level, "");
+  const SweepResult bare = Lean(setup, 'Y', 1e-5, 1e-5, level, "");
   EXPECT_THAT(RefusalOf(x, bare, setup.target), testing::HasSubstr("does not say `mounting`"));
-  const SweepResult moved = Lean(setup, 'Y', 0.0, 0.0, level, "[mounting]\nid = \"A18\"\n");
+  const SweepResult moved = Lean(setup, 'Y', 1e-5, 1e-5, level, "[mounting]\nid = \"A18\"\n");
   EXPECT_THAT(RefusalOf(x, moved, setup.target), testing::HasSubstr("mounted anew"));
   TargetSettings target = setup.target;
   target.u_squareness = 0.0;
@@ -107,5 +145,5 @@ TEST(SquarenessOfSweeps, IsRefusedWhenAConditionFails) {
   EXPECT_THAT(RefusalOf(x, foreign, setup.target), testing::HasSubstr("two machines"));
 }
 
-}  // namespace
+}  // namespace squareness_of_sweeps_test
 }  // namespace abbe::probes

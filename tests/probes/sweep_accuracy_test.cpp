@@ -11,7 +11,7 @@
 #include "tests/seeds.h"
 
 namespace abbe::probes {
-namespace {
+namespace sweep_accuracy_test {
 
 constexpr double kRate = 100.0;  // readings in a second
 
@@ -136,5 +136,5 @@ TEST(SweepAccuracy, WhereTheHeadMoves) { Check(2, Head::kAsToleranced); }
 TEST(SweepAccuracy, OfNoiseAloneWhereTheTargetMoves) { Check(0, Head::kPerfect); }
 TEST(SweepAccuracy, OfNoiseAloneWhereTheHeadMoves) { Check(2, Head::kPerfect); }
 
-}  // namespace
+}  // namespace sweep_accuracy_test
 }  // namespace abbe::probes

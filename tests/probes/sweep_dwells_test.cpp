@@ -9,7 +9,7 @@
 #include "tests/probes/synthetic_sweep.h"
 
 namespace abbe::probes {
-namespace {
+namespace sweep_dwells_test {
 
 constexpr PerProbe<> kRanges = {200e-6, 200e-6, 200e-6, 200e-6, 200e-6};
 
@@ -143,5 +143,5 @@ TEST(SweepDwells, WhatIsNoSweepIsRefused) {
   EXPECT_THAT(RefusalOf(recording), testing::HasSubstr("probe_c_um"));
 }
 
-}  // namespace
+}  // namespace sweep_dwells_test
 }  // namespace abbe::probes

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace abbe::probes {
-namespace {
+namespace sweep_gauge_test {
 
 constexpr double kRounding = 1e-12;  // values of order 1, sums of 8
 
@@ -41,5 +41,5 @@ TEST(SweepGauge, TheCovarianceIsThatOfGaugedValues) {
   }
 }
 
-}  // namespace
+}  // namespace sweep_gauge_test
 }  // namespace abbe::probes

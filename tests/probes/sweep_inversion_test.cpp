@@ -5,7 +5,7 @@
 #include "tests/probes/synthetic_sweep.h"
 
 namespace abbe::probes {
-namespace {
+namespace sweep_inversion_test {
 
 constexpr HeadErrors<> kErrors{
     .eax = 11e-6, .ebx = -23e-6, .ecx = 37e-6, .eyx = 1.5e-6, .ezx = -2.5e-6};
@@ -127,5 +127,5 @@ TEST(SweepInversion, ItsJacobianIsThatOfTheFirstOrderModel) {
   EXPECT_LT((J.bottomRows<5>() - expected).cwiseAbs().maxCoeff(), 1e-7);
 }
 
-}  // namespace
+}  // namespace sweep_inversion_test
 }  // namespace abbe::probes

@@ -7,7 +7,7 @@
 #include "tests/probes/synthetic_sweep.h"
 
 namespace abbe::probes {
-namespace {
+namespace sweep_reduction_test {
 
 SweepSetup NoiseOnly() {
   SweepSetup setup = TestSetup();
@@ -83,6 +83,7 @@ TEST(SweepReduction, TheReversalIsForwardMinusBackward) {
     HeadErrors<> e;
     e.ecx = direction * 2e-6 + 1e-3 * d;
     e.eyx = direction * 0.1e-6;
+    e.ezx = 10e-6 * d;  // probes that never move are refused
     return e;
   };
   const SweepResult result = ReduceSweep(Record(sweep, NoiseOnly()), NoiseOnly());
@@ -170,5 +171,5 @@ TEST(SweepReduction, PullsHaveUnitVariance) {
               2.58 * std::sqrt(2.0 * dof) + 0.02 * dof);  // 2 %: see HuberMean's efficiency
 }
 
-}  // namespace
+}  // namespace sweep_reduction_test
 }  // namespace abbe::probes

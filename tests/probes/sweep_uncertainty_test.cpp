@@ -11,7 +11,7 @@
 #include "tests/probes/synthetic_sweep.h"
 
 namespace abbe::probes {
-namespace {
+namespace sweep_uncertainty_test {
 
 // A square root of a covariance that may be singular: V = L L^T.
 Eigen::MatrixXd RootOf(const Eigen::MatrixXd& V) {
@@ -160,5 +160,5 @@ TEST(SweepUncertainty, AgreesWithMonteCarloForAMovingHead) {
   CheckAgainstMonteCarlo('Z', MovingBody::kHead);
 }
 
-}  // namespace
+}  // namespace sweep_uncertainty_test
 }  // namespace abbe::probes

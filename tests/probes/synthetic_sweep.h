@@ -24,8 +24,10 @@ chain = "[w X Y b Z t]"
 reference_mm = [3.0, -4.0, 5.0]
 [axis.X]
 travel_mm = [0.0, 60.0]
+positive = "carriage"
 [axis.Y]
 travel_mm = [0.0, 60.0]
+positive = "carriage"
 [axis.Z]
 travel_mm = [0.0, 60.0]
 [head.axis_X]

@@ -7,7 +7,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::random {
-namespace {
+namespace counter_words_test {
 
 // CounterRandom takes its words from Random123; these are computed here.
 TEST(CounterWords, AreThoseOfRandom123) {
@@ -37,5 +37,5 @@ TEST(CounterWords, GiveThePublishedAnswers) {
   EXPECT_EQ(words[3], 0x6d5451fdu);
 }
 
-}  // namespace
+}  // namespace counter_words_test
 }  // namespace abbe::random

@@ -8,7 +8,7 @@
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace check_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -168,5 +168,5 @@ TEST(Check, RefusesColumnsOfTwoLengths) {
             "mood: has 2 rows, but time_s has 3");
 }
 
-}  // namespace
+}  // namespace check_test
 }  // namespace abbe::recording

@@ -17,7 +17,7 @@
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace crash_test {
 
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
@@ -252,5 +252,5 @@ INSTANTIATE_TEST_SUITE_P(Forms, Crash, testing::Values(".csv", ".h5"), [](const 
   return form.param == ".csv" ? std::string("Csv") : std::string("Hdf5");
 });
 
-}  // namespace
+}  // namespace crash_test
 }  // namespace abbe::recording

@@ -9,7 +9,7 @@
 #include <fstream>
 
 namespace abbe::recording {
-namespace {
+namespace csv_table_test {
 
 using testing::HasSubstr;
 
@@ -135,5 +135,5 @@ TEST_F(CsvTable, AColumnMayBeASumOfOthers) {
   EXPECT_THAT(refusal("1e999*a"), HasSubstr("has no column"));
 }
 
-}  // namespace
+}  // namespace csv_table_test
 }  // namespace abbe::recording

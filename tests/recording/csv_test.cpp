@@ -8,7 +8,7 @@
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace csv_test {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -185,5 +185,5 @@ TEST_F(Csv, WritesTheShortestTextThatReadsBackTheSame) {
             "0,0.1,0\n0.005,-0,0\n0.01,5e-324,0\n0.015,0.3333333333333333,0\n");
 }
 
-}  // namespace
+}  // namespace csv_test
 }  // namespace abbe::recording

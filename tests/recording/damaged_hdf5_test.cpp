@@ -3,6 +3,7 @@
 // that were found; each is refused in one line, in bounded memory and time.
 #include <sys/resource.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <string>
 #include <thread>
@@ -13,7 +14,7 @@
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace damaged_hdf5_test {
 
 const std::filesystem::path kDamaged =
     std::filesystem::path(ABBE_SOURCE_DIR) / "tests/recording/damaged";
@@ -102,7 +103,7 @@ TEST(Hdf5Child, ItsEndIsAFailureOfTheFile) {
   };
   ExpectHas(refusal([](const Hdf5Sender&) { std::abort(); }), "the HDF5 library crashes on it");
   ExpectHas(refusal([](const Hdf5Sender&) {
-              for (volatile int i = 0;; i = 1 - i) {
+              for (std::atomic<int> i = 0;; ++i) {
               }
             }),
             "reading it finds no end");
@@ -132,5 +133,5 @@ TEST(Hdf5Child, IsMadeWhileOthersUseTheLibrary) {
   }
 }
 
-}  // namespace
+}  // namespace damaged_hdf5_test
 }  // namespace abbe::recording

@@ -8,7 +8,7 @@
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace hdf5_test {
 
 class Hdf5 : public testing::Test {
  protected:
@@ -179,5 +179,5 @@ TEST_F(Hdf5ByH5py, NamesWhatIsNoRecording) {
          "header line 1");
 }
 
-}  // namespace
+}  // namespace hdf5_test
 }  // namespace abbe::recording

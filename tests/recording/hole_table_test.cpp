@@ -7,7 +7,7 @@
 #include <fstream>
 
 namespace abbe::recording {
-namespace {
+namespace hole_table_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -56,5 +56,5 @@ TEST_F(HoleTable, RefusesWhatIsNone) {
   Refuses(kNames + "1 2 3 4 5\n1 x 3 4 5\n", ".txt:3: \"x\" is no number");
 }
 
-}  // namespace
+}  // namespace hole_table_test
 }  // namespace abbe::recording

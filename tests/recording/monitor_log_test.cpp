@@ -10,7 +10,7 @@
 #include <fstream>
 
 namespace abbe::recording {
-namespace {
+namespace monitor_log_test {
 
 using ::testing::HasSubstr;
 
@@ -105,5 +105,5 @@ TEST_F(MonitorLog, NamesWithQuotesStayAHeader) {
   EXPECT_EQ(recording.HeaderText("sources.my gap_mm"), "a'\"b");
 }
 
-}  // namespace
+}  // namespace monitor_log_test
 }  // namespace abbe::recording

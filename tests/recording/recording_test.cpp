@@ -4,7 +4,7 @@
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace recording_test {
 
 Recording Example() {
   Recording recording = Dwell(3);
@@ -67,5 +67,5 @@ TEST(RecordingTest, SaysWhatIsWrongWithAHeader) {
             "runs/a.csv: header line 1: not valid TOML");
 }
 
-}  // namespace
+}  // namespace recording_test
 }  // namespace abbe::recording

@@ -12,7 +12,7 @@
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace round_trip_test {
 
 // Any double, each exponent as likely as another; every NaN is the plain one, as in the CSV form.
 rc::Gen<double> AnyDouble() {
@@ -135,5 +135,5 @@ RC_GTEST_PROP(Blocks, AreTheWhole, ()) {
   }
 }
 
-}  // namespace
+}  // namespace round_trip_test
 }  // namespace abbe::recording

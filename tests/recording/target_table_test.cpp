@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace abbe::recording {
-namespace {
+namespace target_table_test {
 
 class TargetTable : public testing::Test {
  protected:
@@ -154,5 +154,5 @@ TEST_F(TargetTable, RefusesWhatDoesNotFitTogether) {
   EXPECT_THROW(ReadTargetTable(testing::TempDir()), InputError);
 }
 
-}  // namespace
+}  // namespace target_table_test
 }  // namespace abbe::recording

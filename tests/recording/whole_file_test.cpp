@@ -14,7 +14,7 @@
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace whole_file_test {
 
 class WholeFileTest : public testing::Test {
  protected:
@@ -140,7 +140,8 @@ TEST_F(WholeFileTest, RefusesAFolderAndAPartInTheWay) {
   Put(scratch_ / "mine", "precious\n");
   const auto part = scratch_ / ("a.json." + std::to_string(getpid()) + ".part");
   std::filesystem::create_symlink("mine", part);
-  ExpectHas(MessageOf<InputError>([&] { Write("{}\n", scratch_ / "a.json"); }), "stands in the way");
+  ExpectHas(MessageOf<InputError>([&] { Write("{}\n", scratch_ / "a.json"); }),
+            "stands in the way");
   EXPECT_EQ(Bytes(scratch_ / "mine"), "precious\n");
   std::filesystem::remove(part);
 }
@@ -170,5 +171,5 @@ TEST_F(WholeFileTest, LeavesTheOldFileAndNothingElseOnAFullDisk) {
   ExpectNoPart();
 }
 
-}  // namespace
+}  // namespace whole_file_test
 }  // namespace abbe::recording

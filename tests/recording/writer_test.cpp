@@ -3,14 +3,18 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <condition_variable>
 #include <limits>
+#include <mutex>
 #include <thread>
 
+#include "recording/background_writer.h"
 #include "recording/recording_file.h"
+#include "recording/whole_file.h"
 #include "scratch.h"
 
 namespace abbe::recording {
-namespace {
+namespace writer_test {
 
 constexpr const char* kHeader = "kind = \"dwell\"\nmachine = \"m\"";
 const std::vector<std::string> kColumns{"time_s", "mood"};
@@ -85,11 +89,13 @@ TEST_P(EachForm, RefusesARowOfAnotherWidth) {
 
 TEST_P(EachForm, OverwritesAtOnceOrNotAtAll) {
   Write(Dwell(5), path_);
+  SetOverwriting({{}, true});
   Write(Dwell(3), path_);
   EXPECT_EQ(Read(path_).rows(), 3u);
   Recording bad = Dwell(3);
   bad.columns[0].values[1] = -1.0;
   MessageOf<InputError>([&] { Write(bad, path_); });
+  SetOverwriting({});
   EXPECT_EQ(Read(path_).rows(), 3u);
 }
 
@@ -126,5 +132,69 @@ TEST(WriterTest, SaysThatADeviceIsFull) {
   EXPECT_TRUE(std::filesystem::is_character_file(path));
 }
 
-}  // namespace
+// A disk that confirms nothing until it is allowed to.
+class SlowDisk : public RowFile {
+ public:
+  struct State {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::size_t values = 0;  // with the kernel
+    bool syncing = false, may_sync = false;
+
+    template <typename Is>
+    bool Await(Is is) {
+      std::unique_lock lock(mutex);
+      return changed.wait_for(lock, std::chrono::seconds(60), [&] { return is(*this); });
+    }
+    template <typename Do>
+    void Change(Do change) {
+      const std::lock_guard lock(mutex);
+      change(*this);
+      changed.notify_all();
+    }
+  };
+  explicit SlowDisk(State& state) : state_(state) {}
+  void Write(std::span<const double> rows) override {
+    state_.Change([&](State& s) { s.values += rows.size(); });
+  }
+  void Sync() override {
+    state_.Change([](State& s) { s.syncing = true; });
+    state_.Await([](State& s) { return s.may_sync; });
+  }
+  void Close() override {}
+
+ private:
+  State& state_;
+};
+
+TEST(BackgroundWriter, HandsRowsToTheKernelWhileTheDiskIsSlow) {
+  SlowDisk::State state;
+  BackgroundWriter writer("a.csv", std::make_unique<SlowDisk>(state), 1);
+  writer.Append(std::array{1.0});
+  ASSERT_TRUE(state.Await([](SlowDisk::State& s) { return s.syncing; }));
+  // What comes while the disk has not confirmed the first row waits for nothing but the next write.
+  writer.Append(std::array{2.0});
+  EXPECT_TRUE(state.Await([](SlowDisk::State& s) { return s.values == 2; }));
+  EXPECT_FALSE(state.may_sync);
+  state.Change([](SlowDisk::State& s) { s.may_sync = true; });
+  writer.Close();
+}
+
+// A disk that takes rows and never confirms them.
+class BrokenDisk : public RowFile {
+ public:
+  void Write(std::span<const double>) override {}
+  void Sync() override { throw DeviceError("a.csv: disk full"); }
+  void Close() override {}
+};
+
+TEST(BackgroundWriter, SaysThatTheDiskDidNotConfirm) {
+  BackgroundWriter writer("a.csv", std::make_unique<BrokenDisk>(), 1);
+  writer.Append(std::array{1.0});
+  MessageOf<DeviceError>([&] { writer.Flush(); });
+  MessageOf<DeviceError>([&] { writer.Append(std::array{2.0}); });
+  MessageOf<DeviceError>([&] { writer.Close(); });
+}
+
+}  // namespace writer_test
 }  // namespace abbe::recording

@@ -5,11 +5,15 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "failure/failure.h"
+#include "random/counter_random.h"
+#include "standards/student_coverage.h"
+#include "tests/pull_statistics.h"
 
 namespace abbe::relm {
-namespace {
+namespace cap_displacement_test {
 
 using ::testing::HasSubstr;
 
@@ -78,7 +82,7 @@ TEST(CapDisplacement, NoFrictionIsNone) {
   EXPECT_LT(found.at(0).scatter, 1e-18);
 }
 
-// Strokes of one sense agree to +-0.3 um in turn: the scatter is that, and a stroke counts as one.
+// Strokes of one sense agree to +-0.3 um in turn; one line of 8 leaves 6 degrees of freedom.
 TEST(CapDisplacement, UncertaintyComesFromTheStrokes) {
   int row = 0;
   const auto made = Strokes(0.0, 8, [&row](int sense) {
@@ -87,8 +91,76 @@ TEST(CapDisplacement, UncertaintyComesFromTheStrokes) {
   });
   const auto found = EvaluateCap(made, {{'X', 1.0, "probe_d_um"}});
   EXPECT_NEAR(found.at(0).scatter, 0.3e-6, 0.01e-6);
-  EXPECT_NEAR(found.at(0).u, 0.3e-6 / std::sqrt(8.0), 0.01e-6);
+  EXPECT_EQ(found.at(0).dof, 6.0);
+  EXPECT_NEAR(found.at(0).u, 0.3e-6 * std::sqrt(8.0 / 6.0) / std::sqrt(8.0), 0.01e-6);
 }
+
+TEST(CapDisplacement, TwoStrokesTellNoUncertainty) {
+  const auto made = Strokes(0.0, 2, [](int sense) { return std::pair{-sense * 1.0, 0.0}; });
+  const auto found = EvaluateCap(made, {{'X', 1.0, "probe_d_um"}});
+  EXPECT_NEAR(found.at(0).displacement, 1e-6, 0.01e-6);
+  EXPECT_EQ(found.at(0).dof, 0.0);
+  EXPECT_TRUE(std::isinf(found.at(0).u));
+}
+
+// Sides of a square, once counter-clockwise, once clockwise: each side is seen off by another
+// amount, the same both ways.
+TEST(CapDisplacement, WhatErrsAlikeToAndFroFallsOut) {
+  const double off_um[] = {3.0, -1.0, 0.5, 2.0};
+  auto made = Strokes(0.0, 8, [](int) { return std::pair{0.0, 0.0}; });
+  auto &x = made.columns[1], &y = made.columns[2], &d = made.columns[6], &e = made.columns[7];
+  const double corner[][2] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}};
+  for (std::size_t stroke = 0; stroke < 8; ++stroke) {
+    const bool back = stroke >= 4;
+    const std::size_t side = back ? 7 - stroke : stroke;
+    const double* from = corner[back ? (side + 1) % 4 : side];
+    const double* to = corner[back ? side : (side + 1) % 4];
+    for (std::size_t row = 0; row < 300; ++row) {
+      const std::size_t at = 300 * stroke + row;
+      x.values[at] = from[0] + (to[0] - from[0]) * static_cast<double>(row) / 300.0;
+      y.values[at] = from[1] + (to[1] - from[1]) * static_cast<double>(row) / 300.0;
+      d.values[at] = off_um[side] - 1.2 * (to[0] - from[0]) / 3.0;
+      e.values[at] = -off_um[side] - 1.2 * (to[1] - from[1]) / 3.0;
+    }
+  }
+  const auto found = EvaluateCap(made, {{'X', 1.0, "probe_d_um"}, {'Y', 1.0, "probe_e_um"}});
+  EXPECT_EQ(found.at(0).dof, 8.0 - 4.0 - 1.0);
+  EXPECT_NEAR(found.at(0).displacement, 1.2e-6, 0.02e-6);
+  EXPECT_LT(found.at(0).u, 0.02e-6);
+}
+
+// How often U95 holds the drag, and whether the variance stated is that of the errors, with rows
+// that scatter by 0.6 um over a form of 3 um, and strokes that differ by `of_strokes` besides.
+void ExpectCoverage(double of_strokes_um) {
+  constexpr int kRecordings = 400, kStrokes = 5;
+  constexpr double kDrag = 1.2, kRows = 0.6, kForm = 3.0;
+  Mean inside, stated, square;
+  for (std::uint64_t seed = 1; seed <= kRecordings; ++seed) {
+    const random::CounterRandom noise(seed, 0xCA9);
+    std::uint64_t row = 0;
+    const auto made = Strokes(0.0, kStrokes, [&](int sense) {
+      const std::uint64_t stroke = row / 300;
+      const double way = static_cast<double>(row % 300 + 1) / 300.0;
+      const double place = sense > 0 ? way : 1.0 - way;
+      ++row;
+      return std::pair{80.0 + kForm * std::cos(2.0 * std::numbers::pi * place) - sense * kDrag +
+                           kRows * noise.Normal(row) +
+                           of_strokes_um * noise.Normal(1'000'000 + stroke),
+                       0.0};
+    });
+    const CapDisplacement found = EvaluateCap(made, {{'X', 1.0, "probe_d_um"}}).at(0);
+    const double off = 1e6 * found.displacement - kDrag, u = 1e6 * found.u;
+    inside.Add(std::abs(off) < standards::StudentCoverage(found.dof) * u ? 1.0 : 0.0);
+    stated.Add(u * u);
+    square.Add(off * off);
+  }
+  EXPECT_NEAR(inside.mean(), 0.95, k99 * std::sqrt(0.95 * 0.05 / kRecordings));
+  EXPECT_NEAR(stated.mean() / square.mean(), 1.0,
+              k99 * std::hypot(stated.error() / stated.mean(), square.error() / square.mean()));
+}
+
+TEST(CapDisplacement, U95HoldsWhereRowsScatter) { ExpectCoverage(0.0); }
+TEST(CapDisplacement, U95HoldsWhereStrokesScatter) { ExpectCoverage(0.2); }
 
 TEST(CapDisplacement, RefusesOneDirectionAndNoMotion) {
   const auto refusal = [](const recording::Recording& made) -> std::string {
@@ -106,5 +178,5 @@ TEST(CapDisplacement, RefusesOneDirectionAndNoMotion) {
   EXPECT_THAT(refusal(standing), HasSubstr("stand still"));
 }
 
-}  // namespace
+}  // namespace cap_displacement_test
 }  // namespace abbe::relm

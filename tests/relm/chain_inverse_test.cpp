@@ -10,7 +10,7 @@
 #include "relm/pivot_linkage.h"
 
 namespace abbe::relm {
-namespace {
+namespace chain_inverse_test {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -95,5 +95,5 @@ TEST(ChainInverse, RefusesTheWrongNumberOfJoints) {
   EXPECT_THROW(ChainInverse(four).Branches(Vector3d(0.2, 0, 0)), InputError);
 }
 
-}  // namespace
+}  // namespace chain_inverse_test
 }  // namespace abbe::relm

@@ -13,7 +13,7 @@
 #include "tests/relm/hand_made_path.h"
 
 namespace abbe::relm {
-namespace {
+namespace circle_run_test {
 
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
@@ -96,5 +96,5 @@ TEST(CircleNoise, IsToldFromNeighbours) {
   EXPECT_NEAR(ReadingNoise(twice) / kNoise, 2.0, 0.12);
 }
 
-}  // namespace
+}  // namespace circle_run_test
 }  // namespace abbe::relm

@@ -14,7 +14,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::relm {
-namespace {
+namespace error_models_test {
 
 using Eigen::Index;
 using Eigen::Matrix3Xd;
@@ -390,5 +390,5 @@ TEST(ErrorModels, OfAFormTheChainDoesNotHaveAreRefusedWithAWayOut) {
   EXPECT_NO_THROW(MakeLinkageModel(settings, ErrorModel::kComplete));
 }
 
-}  // namespace
+}  // namespace error_models_test
 }  // namespace abbe::relm

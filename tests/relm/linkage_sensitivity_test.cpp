@@ -10,7 +10,7 @@
 #include "relm/nominal_angles.h"
 
 namespace abbe::relm {
-namespace {
+namespace linkage_sensitivity_test {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -132,5 +132,5 @@ TEST(LinkageSensitivity, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-}  // namespace
+}  // namespace linkage_sensitivity_test
 }  // namespace abbe::relm

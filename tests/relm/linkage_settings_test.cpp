@@ -7,7 +7,7 @@
 #include "linkage_by_matrices.h"
 
 namespace abbe::relm {
-namespace {
+namespace linkage_settings_test {
 
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
@@ -176,5 +176,5 @@ TEST(NominalTip, GoesAgainstTheAxesThatCarryTheWorkpiece) {
   EXPECT_EQ(NominalTip(machine::Chain::Parse("[w Y b X Z t]"), axes), Vector3d(0.01, -0.02, 0.03));
 }
 
-}  // namespace
+}  // namespace linkage_settings_test
 }  // namespace abbe::relm

@@ -10,7 +10,7 @@
 #include "tests/relm/hand_made_path.h"
 
 namespace abbe::relm {
-namespace {
+namespace path_deviation_test {
 
 using Eigen::Vector3d;
 
@@ -87,5 +87,5 @@ TEST(PathDeviation, OfANominalPathOfItsOwn) {
                InputError);
 }
 
-}  // namespace
+}  // namespace path_deviation_test
 }  // namespace abbe::relm

@@ -14,7 +14,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::relm {
-namespace {
+namespace pivot_linkage_test {
 
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
@@ -161,5 +161,5 @@ TEST(Unwrapped, GoesThroughTheHalfTurnWithoutAJump) {
   EXPECT_NEAR(found[2], 1 + 3 * turn, 1e-14);
 }
 
-}  // namespace
+}  // namespace pivot_linkage_test
 }  // namespace abbe::relm

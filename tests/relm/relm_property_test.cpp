@@ -15,7 +15,7 @@
 #include "relm/serial_chain.h"
 
 namespace abbe::relm {
-namespace {
+namespace relm_property_test {
 
 using Eigen::Index;
 using Eigen::Matrix4d;
@@ -251,5 +251,5 @@ RC_GTEST_PROP(ChainInverseProperty, JunkGivesAnglesOrAnErrorNeverNaN, ()) {
   }
 }
 
-}  // namespace
+}  // namespace relm_property_test
 }  // namespace abbe::relm

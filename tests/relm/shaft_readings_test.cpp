@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace abbe::relm {
-namespace {
+namespace shaft_readings_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegree = M_PI / 180.0;
@@ -40,5 +40,5 @@ TEST(ShaftReadings, RefuseWhatIsNoAngleOrNeverMeets) {
   EXPECT_THROW(ReadShaft(apart, "shaft_deg", "gap_mm"), InputError);
 }
 
-}  // namespace
+}  // namespace shaft_readings_test
 }  // namespace abbe::relm

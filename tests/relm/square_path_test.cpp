@@ -10,7 +10,7 @@
 #include "tests/relm/hand_made_path.h"
 
 namespace abbe::relm {
-namespace {
+namespace square_path_test {
 
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
@@ -101,5 +101,5 @@ TEST(SquarePath, RefusesWhatIsNoSquare) {
   EXPECT_THAT(refusal(line), HasSubstr("made.csv: the commanded path fills"));
 }
 
-}  // namespace
+}  // namespace square_path_test
 }  // namespace abbe::relm

@@ -6,7 +6,7 @@
 #include "tests/relm/hand_made_path.h"
 
 namespace abbe::relm {
-namespace {
+namespace stepping_stops_test {
 
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
@@ -89,5 +89,5 @@ TEST(SteppingTest, RefusesAPathThatNeverStops) {
   }
 }
 
-}  // namespace
+}  // namespace stepping_stops_test
 }  // namespace abbe::relm

@@ -11,7 +11,7 @@
 #include "relm/error_models.h"
 
 namespace abbe::relm {
-namespace {
+namespace tip_path_test {
 
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
@@ -108,5 +108,5 @@ TEST(InFrame, CarriesEveryColumn) {
   EXPECT_LT((InFrame(X_MB, p_BT) - p_MT).norm(), 1e-15);
 }
 
-}  // namespace
+}  // namespace tip_path_test
 }  // namespace abbe::relm

@@ -9,7 +9,7 @@
 #include "report/page_template.h"
 
 namespace abbe::report {
-namespace {
+namespace report_page_test {
 
 namespace fs = std::filesystem;
 
@@ -123,8 +123,8 @@ TEST_F(ReportPage, MissingFolderIsNamed) {
 TEST_F(ReportPage, LeavesOutWhatIsNestedWithoutEnd) {
   Put("a.json", R"({"command": "reduce"})");
   constexpr int kDepth = 200'000;
-  Put("deep.json", R"({"command": "reduce", "x": )" + std::string(kDepth, '[') +
-                       std::string(kDepth, ']') + "}");
+  Put("deep.json",
+      R"({"command": "reduce", "x": )" + std::string(kDepth, '[') + std::string(kDepth, ']') + "}");
   const Report report = Write();
   EXPECT_EQ(report.results, 1u);
   ASSERT_EQ(report.notes.size(), 1u);
@@ -139,5 +139,5 @@ TEST_F(ReportPage, ComposedTwiceIsTheSamePage) {
   EXPECT_EQ(Page(), first);
 }
 
-}  // namespace
+}  // namespace report_page_test
 }  // namespace abbe::report

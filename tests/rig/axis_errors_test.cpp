@@ -9,7 +9,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace axis_errors_test {
 
 constexpr int kSeeds = 1000;
 constexpr double kTail = 5e-4;  // two-sided 99.9 %
@@ -114,5 +114,5 @@ TEST(AxisErrors, NamesAreThoseOfIso230) {
   EXPECT_EQ(MotionName(2, 3), "EAZ");
 }
 
-}  // namespace
+}  // namespace axis_errors_test
 }  // namespace abbe::rig

@@ -8,7 +8,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace campaign_test {
 
 std::vector<hal::Channel> DemoChannels() {
   return ChannelsOf(hal::ReadDevices(DemoMill().Root().Child("devices")));
@@ -111,5 +111,5 @@ TEST(Campaign, RefusesWhatTheRigCannotDo) {
   EXPECT_THROW(RecordSweep(world, 'X', {{"force_n", "cap"}}), InputError);
 }
 
-}  // namespace
+}  // namespace campaign_test
 }  // namespace abbe::rig

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace abbe::rig {
-namespace {
+namespace course_test {
 
 using Eigen::Vector3d;
 
@@ -121,5 +121,5 @@ TEST(Course, SteppingVisitsEachStopOfEachAxisThereAndBack) {
   EXPECT_DOUBLE_EQ(places[10].x(), 0.01);
 }
 
-}  // namespace
+}  // namespace course_test
 }  // namespace abbe::rig

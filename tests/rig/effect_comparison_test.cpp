@@ -5,7 +5,7 @@
 #include "failure/failure.h"
 
 namespace abbe::rig {
-namespace {
+namespace effect_comparison_test {
 
 using nlohmann::ordered_json;
 
@@ -57,5 +57,5 @@ TEST(CompareFindings, RefusesWhatIsNoDiagnosis) {
   }
 }
 
-}  // namespace
+}  // namespace effect_comparison_test
 }  // namespace abbe::rig

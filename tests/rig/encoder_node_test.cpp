@@ -11,7 +11,7 @@
 #include "hal/canopen_frame.h"
 
 namespace abbe::rig {
-namespace {
+namespace encoder_node_test {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
@@ -174,5 +174,5 @@ TEST(EncoderNode, PutsTheCountWhereTheSettingsSay) {
   }
 }
 
-}  // namespace
+}  // namespace encoder_node_test
 }  // namespace abbe::rig

@@ -23,7 +23,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace encoder_server_test {
 
 // The demonstration machine with the errors of its axes, and a linkage without any.
 LinkageSettings PerfectLinkage() {
@@ -206,5 +206,5 @@ TEST_F(BeyondReach, OutOfReachIsAnEmergencyUntilTheMachineComesIntoReach) {
   EXPECT_TRUE(becomes([](const hal::SampleSet& set) { return set.AllGood(); })) << client->Fault();
 }
 
-}  // namespace
+}  // namespace encoder_server_test
 }  // namespace abbe::rig

@@ -7,7 +7,7 @@
 #include <numbers>
 
 namespace abbe::rig {
-namespace {
+namespace gaussian_field_test {
 
 constexpr double kLength = 0.015;
 constexpr double kSd = 2e-6;
@@ -101,5 +101,5 @@ TEST(GaussianField, SurfaceIsTheSameOutsideItsKeptRange) {
   for (const double a : {-0.1, 0.005, 0.15}) EXPECT_DOUBLE_EQ(narrow(a, 0.3 * a), wide(a, 0.3 * a));
 }
 
-}  // namespace
+}  // namespace gaussian_field_test
 }  // namespace abbe::rig

@@ -9,7 +9,7 @@
 #include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {
-namespace {
+namespace hidden_effect_test {
 
 std::string Refusal(const std::string& text) {
   try {
@@ -139,5 +139,5 @@ TEST(HiddenEffect, TruthSaysWhatIsHiddenInItsUnits) {
   EXPECT_EQ(truth[1]["variable"], "x_mm+z_mm");
 }
 
-}  // namespace
+}  // namespace hidden_effect_test
 }  // namespace abbe::rig

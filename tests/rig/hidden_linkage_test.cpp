@@ -10,7 +10,7 @@
 #include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {
-namespace {
+namespace hidden_linkage_test {
 
 using Eigen::Vector3d;
 
@@ -208,5 +208,5 @@ TEST(HiddenLinkage, AnEncoderCanJump) {
   EXPECT_EQ(jumps, 5);
 }
 
-}  // namespace
+}  // namespace hidden_linkage_test
 }  // namespace abbe::rig

@@ -10,7 +10,7 @@
 #include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {
-namespace {
+namespace hidden_motion_test {
 
 using Eigen::Vector3d;
 
@@ -196,5 +196,5 @@ TEST(HiddenMotion, FeedSquareAndDiagonalRippleAreNoCauses) {
   }
 }
 
-}  // namespace
+}  // namespace hidden_motion_test
 }  // namespace abbe::rig

@@ -12,7 +12,7 @@
 #include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {
-namespace {
+namespace hidden_probes_test {
 
 using Eigen::Vector3d;
 
@@ -313,5 +313,5 @@ TEST(HiddenProbes, LateProbesShowWhereTheAxisWas) {
   EXPECT_GT(cruising, 100);
 }
 
-}  // namespace
+}  // namespace hidden_probes_test
 }  // namespace abbe::rig

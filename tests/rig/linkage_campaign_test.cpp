@@ -13,7 +13,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace linkage_campaign_test {
 
 using Eigen::Vector3d;
 
@@ -147,6 +147,7 @@ TEST(LinkageRig, WritesRecordingsThatReadBack) {
   const LinkageRig rig = RigOf(DemoRig(), 3);
   for (const char* kind : {"linkage", "reference"}) {
     const auto made = rig.Record(Line(), {.kind = kind, .rate = 20.0});
+    std::filesystem::remove(path);
     recording::Write(made, path);
     const auto read = recording::Read(path);
     EXPECT_EQ(read.Kind(), kind);
@@ -166,5 +167,5 @@ TEST(LinkageRig, RefusesAnUnknownKindAndARateAboveTheSensors) {
   EXPECT_THROW(rig.Record(Line(), {.rate = 0.0}), InputError);
 }
 
-}  // namespace
+}  // namespace linkage_campaign_test
 }  // namespace abbe::rig

@@ -11,7 +11,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace linkage_test {
 
 using Eigen::Vector3d;
 using relm::MoveBy;
@@ -303,5 +303,5 @@ TEST(RigLinkage, RefusesALinkageThatItCannotBuild) {
   }
 }
 
-}  // namespace
+}  // namespace linkage_test
 }  // namespace abbe::rig

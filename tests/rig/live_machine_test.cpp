@@ -7,7 +7,7 @@
 #include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {
-namespace {
+namespace live_machine_test {
 
 const Eigen::Vector3d kCentre = Eigen::Vector3d::Constant(0.03);
 
@@ -137,5 +137,5 @@ TEST(LiveMachine, AProbeWarmsUpSinceTheRigIsOn) {
   }
 }
 
-}  // namespace
+}  // namespace live_machine_test
 }  // namespace abbe::rig

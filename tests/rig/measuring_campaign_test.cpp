@@ -12,7 +12,7 @@
 #include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {
-namespace {
+namespace measuring_campaign_test {
 
 CampaignMachine Demo() { return ReadCampaignMachine(DemoMill().Root()); }
 
@@ -217,6 +217,7 @@ TEST(MeasuringCampaign, ItsRecordingsReadBack) {
   const auto path = std::filesystem::path(::testing::TempDir()) / "rig_campaign.csv";
   for (const recording::Recording& made : Record(CampaignKind::kFull).recordings) {
     if (made.Kind() == "sweep" && !made.name.ends_with("sweep_X")) continue;
+    std::filesystem::remove(path);
     recording::Write(made, path);
     const recording::Recording read = recording::Read(path);
     EXPECT_TRUE(read.warnings.empty()) << made.name;
@@ -225,5 +226,5 @@ TEST(MeasuringCampaign, ItsRecordingsReadBack) {
   std::filesystem::remove(path);
 }
 
-}  // namespace
+}  // namespace measuring_campaign_test
 }  // namespace abbe::rig

@@ -1,6 +1,7 @@
 #include "rig/motion.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <cmath>
 
@@ -8,7 +9,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace motion_test {
 
 constexpr Dynamics kDynamics{0.2, 0.015};
 
@@ -126,6 +127,27 @@ TEST(SlowDrift, IsAFunctionOfTheTime) {
   EXPECT_NE(early, late);
 }
 
+// A grid that is kept in part says what one that is drawn anew from the beginning says.
+TEST(SlowDrift, IsTheSameHoweverLongItRan) {
+  SlowDrift steady({1, 3}, 30e-9, 600.0);
+  std::vector<double> said;
+  for (int i = 0; i < 40; ++i) said.push_back(steady.At(97.0 * i));  // 38 000 points, 4096 kept
+  for (int i = 39; i >= 0; i -= 13) {
+    SlowDrift once({1, 3}, 30e-9, 600.0);
+    EXPECT_EQ(once.At(97.0 * i), said[static_cast<std::size_t>(i)]);
+    EXPECT_EQ(steady.At(97.0 * i), said[static_cast<std::size_t>(i)]);
+  }
+}
+
+TEST(SlowDrift, KeepsABoundedPartOfItsGrid) {
+  const auto in_use = [] { return mallinfo2().uordblks; };
+  SlowDrift drift({1, 3}, 30e-9, 600.0);
+  drift.At(2000.0);
+  const std::size_t before = in_use();
+  drift.At(200'000.0);  // 2 million points, 16 MB
+  EXPECT_LT(in_use(), before + 1'000'000);
+}
+
 TEST(SensorNoise, IsWhiteFromUpdateToUpdate) {
   RigSettings settings = DemoRig();
   settings.drift = 0.0;
@@ -146,5 +168,5 @@ TEST(SensorNoise, IsWhiteFromUpdateToUpdate) {
   }
 }
 
-}  // namespace
+}  // namespace motion_test
 }  // namespace abbe::rig

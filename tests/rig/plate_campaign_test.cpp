@@ -7,7 +7,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace plate_campaign_test {
 
 using Eigen::Vector3d;
 
@@ -68,5 +68,5 @@ TEST(PlateCampaign, TheFormIsTheSameInEverySetUpAndRun) {
   EXPECT_NE(one.At("x_mm")[0], other.At("x_mm")[0]);  // put down anew
 }
 
-}  // namespace
+}  // namespace plate_campaign_test
 }  // namespace abbe::rig

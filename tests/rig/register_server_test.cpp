@@ -12,7 +12,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace register_server_test {
 
 using hal::ModbusClient;
 using hal::RegisterTable;
@@ -33,6 +33,8 @@ class Served {
   hal::DeviceSettings At(std::size_t device) {
     hal::DeviceSettings settings = devices.devices[device];
     settings.port = server.port();
+    settings.times.response = 5.0;  // as long as a busy computer needs
+    settings.times.deadline = 10.0;
     return settings;
   }
 
@@ -189,5 +191,10 @@ TEST(RegisterServer, IsReadByMbpoll) {
   EXPECT_EQ(words, rig.Read(rig.head, RegisterTable::kInput, 0, 5));
 }
 
-}  // namespace
+TEST(RegisterServer, SaysThatItIsSimulated) {
+  Served rig(DemoRig());
+  EXPECT_EQ(rig.head.Identity(rig.head.Deadline()), "abbe virtual rig (simulated)");
+}
+
+}  // namespace register_server_test
 }  // namespace abbe::rig

@@ -3,6 +3,7 @@
 import json
 import math
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -53,6 +54,20 @@ class RigProgram(unittest.TestCase):
         self.assertIn("listening on 127.0.0.1 port", said)
         self.assertIn("unit 1 input registers 0 to 4 (head)", said)
         self.assertEqual(json.loads(truth.read_text())["seed"], 5)
+
+    def test_what_is_recorded_from_it_says_so(self):
+        _, client = self.serve("--seed", 5)
+        machine = self.path / "mill.toml"
+        port = client.params.port
+        machine.write_text(re.sub(r"(?m)^port = .*", f"port = {port}", pathlib.Path(MACHINE).read_text()))
+        out = self.path / "live.csv"
+        done = subprocess.run([ABBE, "record", machine, "--devices", "head,machine", "--seconds", "0.5", "--out", out],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        header = [line for line in out.read_text().splitlines() if line.startswith("#")]
+        self.assertIn("# simulated = true", header)
+        self.assertTrue(any(line.startswith('# "head" = "modbus, abbe virtual rig (simulated): probe_a_um')
+                            for line in header), header)
 
     def test_records_directly(self):
         out = self.path / "x.csv"

@@ -8,7 +8,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace truth_test {
 
 using nlohmann::ordered_json;
 
@@ -88,5 +88,5 @@ TEST(Truth, RefusesWhatIsNoResult) {
   EXPECT_THROW(Compare(truth, ragged, "r.json"), InputError);
 }
 
-}  // namespace
+}  // namespace truth_test
 }  // namespace abbe::rig

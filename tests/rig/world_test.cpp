@@ -8,7 +8,7 @@
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
-namespace {
+namespace world_test {
 
 constexpr double kNanometre = 1e-9;
 
@@ -210,6 +210,26 @@ TEST(World, ComposesTheChainOfAColumnMachine) {
   EXPECT_GT(expected.norm(), 500.0 * kSecondOrder);
 }
 
+// The same machine, counted the other way, stands where it stood; what its probes see begins at the
+// other end, but the carriages go the same ways.
+TEST(World, IsTheSameMachineWhicheverWayItCounts) {
+  const RigSettings by_carriage = DemoRig();
+  RigSettings as_tool = by_carriage;
+  for (const int axis : {0, 1}) {
+    as_tool.sense[axis] = -1.0;
+    as_tool.travels[axis] = {-by_carriage.travels[axis].last, -by_carriage.travels[axis].first};
+  }
+  const World one(by_carriage, 3), other(as_tool, 3);
+  const Eigen::Vector3d place(0.05, 0.02, 0.04), number(-0.05, -0.02, 0.04);
+  const Displacement target = one.PoseOfTarget(place), same = other.PoseOfTarget(number);
+  EXPECT_EQ((target.rotation - same.rotation).norm(), 0.0);
+  EXPECT_EQ((target.translation - same.translation).norm(), 0.0);
+  EXPECT_GT((target.translation - Eigen::Vector3d(0.05, 0.02, 0.0)).norm(), 1e-7);
+  // EXX along the count, the others in the machine: a scale that is too long is so either way.
+  EXPECT_EQ(other.ErrorsOf(0, -0.05)[0], -one.ErrorsOf(0, 0.05)[0]);
+  EXPECT_EQ(other.ErrorsOf(0, -0.05).tail<5>(), one.ErrorsOf(0, 0.05).tail<5>());
+}
+
 // A bridge that carries everything: the tool passes Z, X and Y in turn.
 TEST(World, ComposesTheChainOfABridge) {
   RigSettings settings = PerfectRig();
@@ -260,22 +280,28 @@ TEST(RigSettings, RefusesWhatItCannotServe) {
     return ReadRigSettings(settings::Document::Parse(text, "m.toml").Root());
   };
   const std::string travels =
-      "[axis]\nX.travel_mm=[0,60]\nY.travel_mm=[0,60]\nZ.travel_mm=[0,60]\n";
+      "[axis]\nX={travel_mm=[0,60],positive=\"carriage\"}\n"
+      "Y={travel_mm=[0,60],positive=\"carriage\"}\nZ.travel_mm=[0,60]\n";
   const std::string head = "name=\"m\"\nchain=\"[w X Y b Z t]\"\n";
   EXPECT_NO_THROW(read(head + travels));
   EXPECT_THROW(read("name=\"m\"\nchain=\"[w X X b Z t]\"\n" + travels), InputError);
   EXPECT_THROW(read("name=\"m\"\nchain=\"[w X Y Z t]\"\n" + travels), InputError);
   EXPECT_THROW(read(head + travels + "[rig]\nlag=3\n"), InputError);
+  EXPECT_THROW(read(head + "[axis]\nX.travel_mm=[0,60]\nY.travel_mm=[0,60]\nZ.travel_mm=[0,60]\n"),
+               InputError);
   EXPECT_THROW(read(head + travels + "[head.axis_Y]\nrotation=[\"y\",\"x\",\"z\"]\n"), InputError);
 }
 
 TEST(RigSettings, ReadsAnyChainOfThreeAxes) {
   const auto read = [](const std::string& chain) {
-    return ReadRigSettings(settings::Document::Parse("name=\"m\"\nchain=\"" + chain +
-                                                         "\"\n[axis]\nX.travel_mm=[0,60]\n"
-                                                         "Y.travel_mm=[0,60]\nZ.travel_mm=[0,60]\n",
-                                                     "m.toml")
-                               .Root());
+    return ReadRigSettings(
+        settings::Document::Parse("name=\"m\"\nchain=\"" + chain +
+                                      "\"\n[axis]\n"
+                                      "X={travel_mm=[0,60],positive=\"carriage\"}\n"
+                                      "Y={travel_mm=[0,60],positive=\"tool\"}\n"
+                                      "Z={travel_mm=[0,60],positive=\"tool\"}\n",
+                                  "m.toml")
+            .Root());
   };
   EXPECT_EQ(read("[w X' Y' b Z (C) t]").workpiece_axes, "XY");
   EXPECT_EQ(read("[w X' Y' b Z (C) t]").tool_axes, "Z");
@@ -284,7 +310,9 @@ TEST(RigSettings, ReadsAnyChainOfThreeAxes) {
   EXPECT_FALSE(read("[w Y b X Z t]").CarriesTarget(0));
   EXPECT_EQ(read("moving-horizontal-arm").tool_axes, "XZY");
   EXPECT_THROW(read("moving-arm"), InputError);
+  EXPECT_EQ(read("column").sense, (std::array{1.0, -1.0, 1.0}));
+  EXPECT_EQ(read("moving-bridge").sense, (std::array{1.0, 1.0, 1.0}));
 }
 
-}  // namespace
+}  // namespace world_test
 }  // namespace abbe::rig

@@ -9,7 +9,7 @@
 #include <fstream>
 
 namespace abbe::settings {
-namespace {
+namespace document_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -277,5 +277,5 @@ TEST(DocumentTest, WritesTheErrorOfItsReader) {
   EXPECT_STREQ(root.Error("", "is odd").what(), "m.toml:1: is odd");
 }
 
-}  // namespace
+}  // namespace document_test
 }  // namespace abbe::settings

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace abbe::settings {
-namespace {
+namespace nearest_word_test {
 
 TEST(NearestWord, TakesTheFewestEdits) {
   const std::vector<std::string> known{"range_um", "position_mm", "unit", "rotation"};
@@ -27,5 +27,5 @@ TEST(NearestWord, KnowsNothingFromNothing) {
   EXPECT_EQ(NearestWord("", {"long", "a"}), "a");
 }
 
-}  // namespace
+}  // namespace nearest_word_test
 }  // namespace abbe::settings

@@ -5,7 +5,7 @@
 #include <numbers>
 
 namespace abbe::settings {
-namespace {
+namespace unit_test {
 
 void ExpectUnit(std::string_view key, std::string_view name, double si) {
   EXPECT_EQ(UnitOf(key).name, name) << key;
@@ -48,5 +48,5 @@ TEST(UnitTest, LetsAPlainNumberBe) {
   ExpectUnit("xmm", "", 1.0);
 }
 
-}  // namespace
+}  // namespace unit_test
 }  // namespace abbe::settings

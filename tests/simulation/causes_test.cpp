@@ -10,7 +10,7 @@
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
-namespace {
+namespace causes_test {
 
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
@@ -209,5 +209,5 @@ TEST(Heading, IgnoresTrembleAndFollowsTurns) {
   EXPECT_EQ(heading, RowVectorXd((RowVectorXd(9) << 1, 1, 1, 1, 1, 1, 1, -1, -1).finished()));
 }
 
-}  // namespace
+}  // namespace causes_test
 }  // namespace abbe::simulation

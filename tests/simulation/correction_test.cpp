@@ -18,7 +18,7 @@
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::simulation {
-namespace {
+namespace correction_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -218,5 +218,5 @@ INSTANTIATE_TEST_SUITE_P(
                          false, true, kRowToRow},
                     Case{"clock-skew:object=linkage:delay_ms=4", "delay_ms = 4.0", false, true}));
 
-}  // namespace
+}  // namespace correction_test
 }  // namespace abbe::simulation

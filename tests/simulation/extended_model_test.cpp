@@ -14,7 +14,7 @@
 #include "simulation/instant.h"
 
 namespace abbe::simulation {
-namespace {
+namespace extended_model_test {
 
 using Eigen::VectorXd;
 
@@ -165,5 +165,5 @@ TEST(Instant, IsWrittenAsItIsRead) {
   EXPECT_FALSE(SecondsOf("yesterday"));
 }
 
-}  // namespace
+}  // namespace extended_model_test
 }  // namespace abbe::simulation

@@ -9,7 +9,7 @@
 #include "simulation/target_spots.h"
 
 namespace abbe::simulation {
-namespace {
+namespace line_and_form_causes_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -137,5 +137,5 @@ TEST(ProbeTilt, MakesTheGapSmallerAsOfAWideElectrode) {
               kRadius, 1e-15);
 }
 
-}  // namespace
+}  // namespace line_and_form_causes_test
 }  // namespace abbe::simulation

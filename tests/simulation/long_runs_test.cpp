@@ -11,7 +11,7 @@
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::simulation {
-namespace {
+namespace long_runs_test {
 
 using fusion::Campaign;
 using fusion::CampaignMachine;
@@ -126,5 +126,5 @@ TEST(SweepInBlocks, IsTheSweep) {
   }
 }
 
-}  // namespace
+}  // namespace long_runs_test
 }  // namespace abbe::simulation

@@ -5,7 +5,7 @@
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
-namespace {
+namespace path_displacement_test {
 
 using Eigen::Matrix3Xd;
 using Eigen::VectorXd;
@@ -54,5 +54,5 @@ TEST(PathDisplacement, InstrumentsTheMapAndDriftDoNothing) {
   EXPECT_EQ(beside.norm(), 0.0);
 }
 
-}  // namespace
+}  // namespace path_displacement_test
 }  // namespace abbe::simulation

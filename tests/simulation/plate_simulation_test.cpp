@@ -16,7 +16,7 @@
 #include "tests/machine/published_volumetric_errors.h"
 
 namespace abbe::simulation {
-namespace {
+namespace plate_simulation_test {
 
 using Eigen::Index;
 using Eigen::Vector2d;
@@ -163,5 +163,5 @@ TEST_F(BadPlate, WithoutUncertainty) {
   Refuses("header: state u_probing_um");
 }
 
-}  // namespace
+}  // namespace plate_simulation_test
 }  // namespace abbe::simulation

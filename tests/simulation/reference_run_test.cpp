@@ -14,7 +14,7 @@
 #include "simulation/reference_trace.h"
 
 namespace abbe::simulation {
-namespace {
+namespace reference_run_test {
 
 constexpr int kTargets = 9, kCycles = 5;
 constexpr double kMicro = 1e-6;
@@ -166,5 +166,5 @@ TEST(ReferenceTrace, BeginsItsOwnClockWhereItDoesNotSayWhen) {
   EXPECT_EQ(traces[2].clock[3], 3.0);
 }
 
-}  // namespace
+}  // namespace reference_run_test
 }  // namespace abbe::simulation

@@ -15,7 +15,7 @@
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::simulation {
-namespace {
+namespace response_test {
 
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -226,5 +226,5 @@ TEST_F(Response, OfALinkageIsThatOfItsParameters) {
   ExpectAdjoint(*run.response->At(x), dragged, run.residual->Rows());
 }
 
-}  // namespace
+}  // namespace response_test
 }  // namespace abbe::simulation

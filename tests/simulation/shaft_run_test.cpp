@@ -16,7 +16,7 @@
 #include "simulation/shaft_noise.h"
 
 namespace abbe::simulation {
-namespace {
+namespace shaft_run_test {
 
 using recording::Recording;
 using testing::HasSubstr;
@@ -127,5 +127,5 @@ TEST(ShaftRun, RefusesWhatItCannotRead) {
   ExpectRefused(other, "shaft_deg or shaft_rad");
 }
 
-}  // namespace
+}  // namespace shaft_run_test
 }  // namespace abbe::simulation

@@ -12,7 +12,7 @@
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::simulation {
-namespace {
+namespace simulated_runs_test {
 
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -153,5 +153,5 @@ TEST(SimulatedRuns, GapStepsFollowTheirWay) {
   }
 }
 
-}  // namespace
+}  // namespace simulated_runs_test
 }  // namespace abbe::simulation

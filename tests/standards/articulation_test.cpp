@@ -7,7 +7,7 @@
 #include "failure/failure.h"
 
 namespace abbe::standards {
-namespace {
+namespace articulation_test {
 
 constexpr double kRounding = 1e-14;
 
@@ -60,5 +60,5 @@ TEST(Articulation, NeedsTwoPosesOfFiniteNumbers) {
   EXPECT_THROW(EvaluateArticulation(p), InputError);
 }
 
-}  // namespace
+}  // namespace articulation_test
 }  // namespace abbe::standards

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace abbe::standards {
-namespace {
+namespace circle_signatures_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadius = 0.05, kFeed = 0.02;
@@ -153,5 +153,5 @@ TEST(CircleSignatures, UnequalBacklashLooksLikeServoMismatch) {
   EXPECT_NEAR(projection, 4 / (3 * kPi), 1e-5);  // midpoint rule with steps: O(1 / n^2)
 }
 
-}  // namespace
+}  // namespace circle_signatures_test
 }  // namespace abbe::standards

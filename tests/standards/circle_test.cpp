@@ -10,7 +10,7 @@
 #include "failure/failure.h"
 
 namespace abbe::standards {
-namespace {
+namespace circle_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadius = 0.01;
@@ -134,5 +134,5 @@ TEST(Circle, RefusesWhatIsNoCircle) {
   }
 }
 
-}  // namespace
+}  // namespace circle_test
 }  // namespace abbe::standards

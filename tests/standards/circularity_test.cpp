@@ -9,7 +9,7 @@
 #include "failure/failure.h"
 
 namespace abbe::standards {
-namespace {
+namespace circularity_test {
 
 constexpr double kRadius = 0.05;
 constexpr double kRounding = 1e-15;
@@ -76,5 +76,5 @@ TEST(Circularity, RefusesWhatCannotBeJudged) {
   }
 }
 
-}  // namespace
+}  // namespace circularity_test
 }  // namespace abbe::standards

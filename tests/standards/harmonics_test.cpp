@@ -10,7 +10,7 @@
 #include "standards/closed_profile_filter.h"
 
 namespace abbe::standards {
-namespace {
+namespace harmonics_test {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kRounding = 1e-13;
@@ -96,5 +96,5 @@ TEST(ClosedProfileFilter, RefusesNonsense) {
   EXPECT_THROW(FilterClosedProfile(std::vector{0.}, std::vector{std::nan("")}, 5.0), InputError);
 }
 
-}  // namespace
+}  // namespace harmonics_test
 }  // namespace abbe::standards

@@ -9,7 +9,7 @@
 #include "failure/failure.h"
 
 namespace abbe::standards {
-namespace {
+namespace positioning_test {
 
 // Worked by hand, in whole numbers. Target 0: up 2 +- 1, down -2 +- 2. Target 100: up 5 +- 0, down
 // 6 +- 3.
@@ -61,5 +61,5 @@ TEST(Positioning, RefusesWhatIsNoTest) {
   EXPECT_THROW(EvaluatePositioning({{nan, {1, 2}, {1, 2}}}), InputError);
 }
 
-}  // namespace
+}  // namespace positioning_test
 }  // namespace abbe::standards

@@ -13,7 +13,7 @@
 #include "standards/circle.h"
 
 namespace abbe::standards {
-namespace {
+namespace roundness_property_test {
 
 constexpr double kRadius = 10.0;
 using Point = Eigen::Vector2d;
@@ -132,5 +132,5 @@ RC_GTEST_PROP(ArticulationProperty, TheSphereIsTheSmallest, ()) {
   }
 }
 
-}  // namespace
+}  // namespace roundness_property_test
 }  // namespace abbe::standards

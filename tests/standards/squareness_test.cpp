@@ -9,7 +9,7 @@
 #include "geometry/rotation.h"
 
 namespace abbe::standards {
-namespace {
+namespace squareness_test {
 
 using Eigen::Vector3d;
 
@@ -56,5 +56,5 @@ TEST(Squareness, IsBlindToATurnOfTheWholeFrame) {
   EXPECT_NEAR(SquarenessA0Z(line(y.z(), y.y()), line(z.y(), z.z())), 0, 1e-7);
 }
 
-}  // namespace
+}  // namespace squareness_test
 }  // namespace abbe::standards

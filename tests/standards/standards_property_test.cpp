@@ -11,7 +11,7 @@
 #include "standards/straightness.h"
 
 namespace abbe::standards {
-namespace {
+namespace standards_property_test {
 
 // Whole numbers: sums and differences are exact, only slopes round.
 std::vector<double> Numbers(std::size_t n, int size) {
@@ -130,5 +130,5 @@ RC_GTEST_PROP(PositioningProperty, SwappingTheDirectionsTurnsTheSignOfTheReversa
   RC_ASSERT(after.mean_range == before.mean_range);
 }
 
-}  // namespace
+}  // namespace standards_property_test
 }  // namespace abbe::standards

@@ -8,7 +8,7 @@
 #include "failure/failure.h"
 
 namespace abbe::standards {
-namespace {
+namespace straightness_test {
 
 using Values = std::vector<double>;
 constexpr LineKind kKinds[] = {LineKind::kEndPoints, LineKind::kLeastSquares,
@@ -77,5 +77,5 @@ TEST(Straightness, RefusesWhatMakesNoLine) {
   }
 }
 
-}  // namespace
+}  // namespace straightness_test
 }  // namespace abbe::standards

@@ -9,7 +9,7 @@
 #include "standards/diagonals.h"
 
 namespace abbe::standards {
-namespace {
+namespace volume_figures_test {
 
 TEST(Diagonals, TheFiguresOfAWorkedExample) {
   const std::vector<DiagonalRuns> runs = {{{0, 2e-6, 5e-6}, {1e-6, 0, 6e-6}},
@@ -55,5 +55,5 @@ TEST(Cylindricity, FindsTheCylinderThatWasMade) {
   EXPECT_THROW(EvaluateCylindricity(flat), InputError);
 }
 
-}  // namespace
+}  // namespace volume_figures_test
 }  // namespace abbe::standards

@@ -1,0 +1,35 @@
+#include "apps/plausible_channels.h"
+
+#include <fmt/format.h>
+
+#include "machine/plausible_position.h"
+#include "settings/unit.h"
+
+namespace abbe::apps {
+
+std::vector<hal::PlausibleChannel> PlausibleChannels(const MachineFile& file) {
+  using settings::kMicrometre;
+  using settings::kMillimetre;
+  std::vector<hal::PlausibleChannel> channels;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const machine::Travel& travel = file.sweep_setup.machine.travels[axis];
+    const machine::Travel span = machine::PlausiblePositions(travel);
+    const hal::Interval possible{span.first / kMillimetre, span.last / kMillimetre};
+    channels.push_back({fmt::format("{}_mm", "xyz"[axis]), possible, possible,
+                        fmt::format("the travel is {:.6g} to {:.6g} mm", travel.first / kMillimetre,
+                                    travel.last / kMillimetre)});
+  }
+  for (std::size_t probe = 0; probe < probes::kProbes; ++probe) {
+    constexpr double kNextToNothing = 1 / 500.0;
+    const double range = file.sweep_setup.head.probes[probe].range / kMicrometre;
+    channels.push_back({fmt::format("probe_{:c}_um", 'a' + probe),
+                        {0.0, range},
+                        {-range, 2.0 * range},
+                        fmt::format("the probe's range is 0 to {:.6g} um", range),
+                        kNextToNothing * range,
+                        file.sweep_setup.noise.probe / kMicrometre});
+  }
+  return channels;
+}
+
+}  // namespace abbe::apps

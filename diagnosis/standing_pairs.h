@@ -1,0 +1,20 @@
+// Pairs of axes, of which one never moves in the runs at hand.
+//
+// Of a cause at such a pair the other axis alone is what shows: a mismatch of its lag with none is
+// its lag, twice named. It is no candidate, and the runs cannot show it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulation/causes/cause.h"
+
+namespace abbe::diagnosis {
+
+// `object` as causes name it: "X", "XY", "X temp_table_c", "probe_a".
+bool IsStandingPair(const simulation::Scene& scene, const std::string& object);
+
+// Names of causes at pairs of axes that the machine has: "servo-lag-mismatch:XZ".
+std::vector<std::string> StandingPairs(const simulation::Scene& scene);
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,53 @@
+// The steady pace of a recorder, and whether it was kept.
+//
+// A recorder that is suspended (SIGSTOP, a laptop's lid) or gets no processor takes its next
+// reading late. The reading is none the worse, but time has gone on by more than it should: its row
+// is flagged (Cause::kClockJump). What a suspension does to a reading that is under way is the
+// source's matter.
+//
+//   while (...) {
+//     const bool kept = pace.Await();
+//     const SampleSet set = source.Read();
+//     pace.Done();
+//   }
+#pragma once
+
+#include <algorithm>
+
+#include "hal/clock.h"
+
+namespace abbe::hal {
+
+class Pace {
+ public:
+  static constexpr double kLate = 0.1;  // s of real time
+
+  // `rate`: Hz of the clock, which must outlive the pace.
+  Pace(Clock& clock, double rate) : clock_(clock), period_s_(1.0 / rate) { Begin(); }
+
+  // The next reading is due now.
+  void Begin() { next_s_ = free_s_ = clock_.Now(); }
+
+  // Returns when the next reading is due: false when that was more than kLate ago although nothing
+  // was under way.
+  bool Await() {
+    const double due_s = std::max(next_s_, free_s_);
+    clock_.SleepUntil(due_s);
+    now_s_ = clock_.Now();
+    next_s_ = std::max(next_s_ + period_s_, now_s_);
+    return now_s_ - due_s <= kLate * clock_.speed();
+  }
+
+  // The reading is over.
+  void Done() { free_s_ = clock_.Now(); }
+
+  double now_s() const { return now_s_; }    // when Await() returned
+  double next_s() const { return next_s_; }  // when the reading after that is due
+
+ private:
+  Clock& clock_;
+  double period_s_;
+  double next_s_ = 0.0, free_s_ = 0.0, now_s_ = 0.0;
+};
+
+}  // namespace abbe::hal

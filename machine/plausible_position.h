@@ -1,0 +1,15 @@
+// Where an axis may be said to stand at all: its travel and a tenth of it, and 10 mm, beyond either
+// end. A position farther out is no position but a slip: the wrong order of words, a wrong scale or
+// unit, another axis. Units: m.
+#pragma once
+
+#include "machine/machine.h"
+
+namespace abbe::machine {
+
+inline Travel PlausiblePositions(const Travel& travel) {
+  const double beyond = 0.1 * (travel.last - travel.first) + 10e-3;
+  return {travel.first - beyond, travel.last + beyond};
+}
+
+}  // namespace abbe::machine
