@@ -17,7 +17,12 @@
 #endif
 #endif
 #ifdef ABBE_COUNTS_ALLOCATIONS
-#include <sanitizer/allocator_interface.h>
+// Of the sanitizers' runtime; their header does not come with every compiler.
+extern "C" {
+int __sanitizer_install_malloc_and_free_hooks(void (*taken)(const volatile void*, std::size_t),
+                                              void (*given)(const volatile void*));
+std::size_t __sanitizer_get_allocated_size(const volatile void* memory);
+}
 #endif
 
 namespace abbe::fuzz {
@@ -52,8 +57,7 @@ void CountTaken(const volatile void*, std::size_t size) {
 
 void CountGiven(const volatile void* memory) {
   if (memory == nullptr) return;
-  held -=
-      static_cast<std::int64_t>(__sanitizer_get_allocated_size(const_cast<const void*>(memory)));
+  held -= static_cast<std::int64_t>(__sanitizer_get_allocated_size(memory));
 }
 
 class MemoryBound {
