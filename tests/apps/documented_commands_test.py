@@ -219,7 +219,7 @@ class DocumentedCommands(unittest.TestCase):
             with self.subTest(f"{page}:{number}"):
                 run = subprocess.run(["bash", "-c", line.replace("abbe ", "build/release/apps/abbe ", 1)
                                       if line.startswith("abbe ") else line],
-                                     cwd=folder, capture_output=True, text=True, timeout=250)
+                                     cwd=folder, capture_output=True, text=True)
                 self.assertEqual(run.returncode, 0, f"{page}:{number}: {line}\n{run.stdout[-500:]}{run.stderr}")
         for key in [*NOT_HERE, *SMALLER]:
             self.assertGreater(left[key], 0, f"{key}: no line of the manual is so; take it out")
