@@ -209,13 +209,14 @@ function circleAxes(circle, colours) {
   };
 }
 
-// An arrow from where a sense starts, the way that it goes; both stand beside the circle.
+// An arrow from where a sense starts, the way that it goes; both stand within the circle, one above the
+// other where they start at one place.
 function senseArrows(circle, run, senses, colours) {
   const turn = 18 * Math.PI / 180;
-  return senses.flatMap(([sense, name, colour], index) => {
+  return senses.flatMap(([sense, , colour], index) => {
     const start = run.start_deg?.[sense];
     if (!isNumber(start)) return [];
-    const r = (1.1 + 0.08 * index) * circle.radius_mm;
+    const r = (0.68 - 0.1 * index) * circle.radius_mm;
     const from = start * Math.PI / 180, to = from + (sense === 'ccw' ? turn : -turn);
     const place = (angle) => [r * Math.cos(angle), r * Math.sin(angle)];
     const [x, y] = place(to), [ax, ay] = place(from);
@@ -228,13 +229,14 @@ function senseArrows(circle, run, senses, colours) {
       yref: 'y',
       axref: 'x',
       ayref: 'y',
-      text: `${name} from ${fixed(start, 0)}\u00b0`,
+      text: `${sense} from ${fixed(start, 0)}\u00b0`,
       showarrow: true,
       arrowhead: 2,
       arrowwidth: 1.8,
       arrowcolor: colours[colour],
       font: {size: 11, color: colours[colour]},
-      xanchor: Math.cos(from) > 0 ? 'left' : 'right',
+      xanchor: Math.cos(from) > 0 ? 'right' : 'left',
+      yshift: index ? -9 : 9,
     };
     return [arrow];
   });

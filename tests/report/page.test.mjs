@@ -215,7 +215,7 @@ test(
       const named = (text) => notes.find((note) => note.text.startsWith(text));
       assert.ok(named('+X').x > 10 && Math.abs(named('+X').y) < 1e-9);
       assert.ok(named('+Y').y > 10 && Math.abs(named('+Y').x) < 1e-9);
-      for (const [name, way, angle] of [['counter-clockwise', 1, 0.5], ['clockwise', -1, 179.5]]) {
+      for (const [name, way, angle] of [['ccw', 1, 0.5], ['cw', -1, 179.5]]) {
         const {x, y, ax, ay} = named(`${name} from`);
         // From the start on, the way that the sense turns.
         assert.ok(Math.abs(Math.atan2(ay, ax) * 180 / Math.PI - angle) < 1e-9, name);
