@@ -197,6 +197,8 @@ Trace Recorded(bool of_shaft) {
   trace.kind = kArm;
   trace.axis = 'X';
   trace.temperature = trace.warming;
+  trace.pass.assign(static_cast<std::size_t>(rows), 1);
+  trace.direction.assign(static_cast<std::size_t>(rows), 1);
   if (of_shaft) {
     trace.rim.sensors = 2;
     for (int row = 0; row < rows; ++row) trace.rim.sensor.push_back(row % 2);
@@ -240,11 +242,11 @@ TEST(Causes, FollowsWhatTheySayThatTheyFollow) {
     warmer.warming.array() += 3.0;
     const Scene scene{{&trace}, Eigen::Vector3d::Constant(0.06)};
     for (const Cause& cause : Causes()) {
-      if (!cause.columns) continue;
-      VectorXd shape = cause.follows_size ? cause.plausible : VectorXd();
-      if (cause.shapes) shape = cause.shapes(scene).back();
+      const auto objects = cause.objects(scene);
+      if (!cause.columns || objects.empty()) continue;
+      const VectorXd shape = cause.shapes ? cause.shapes(scene).back() : VectorXd();
       bool is_seen = false, by_time = false, by_warmth = false;
-      for (const std::string& object : cause.objects(scene)) {
+      for (const std::string& object : objects) {
         const auto columns = cause.columns(trace, object, shape);
         if (columns.empty()) continue;
         is_seen = true;
