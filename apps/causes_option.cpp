@@ -109,7 +109,8 @@ PathCauses::PathCauses(const std::filesystem::path& path, const std::string& mac
   if (path.empty()) return;
   name_ = path.filename().string();
   for (auto& cause : simulation::ReadExtendedModel(path, {machine, true, kAnyLinkage}).causes) {
-    if (cause.cause->SeatAt(cause.object) == Seat::kMotion) causes_.push_back(std::move(cause));
+    if (cause.cause->SeatAt(cause.object) != Seat::kMotion) continue;
+    (simulation::ActsOnPath(cause) ? causes_ : left_).push_back(std::move(cause));
   }
 }
 
@@ -120,8 +121,14 @@ Eigen::Matrix3Xd PathCauses::Beside(const Eigen::Matrix3Xd& path) const {
 std::vector<std::string> PathCauses::Names() const { return NamesOf(causes_); }
 
 std::string PathCauses::Line() const {
-  return fmt::format("beside the map, from {}: {}", name_,
-                     causes_.empty() ? "nothing" : fmt::format("{}", fmt::join(Names(), ", ")));
+  std::string line =
+      fmt::format("beside the map, from {}: {}", name_,
+                  causes_.empty() ? "nothing" : fmt::format("{}", fmt::join(Names(), ", ")));
+  if (!left_.empty()) {
+    line += fmt::format("; left out, for a path has no time and no temperature: {}",
+                        fmt::join(NamesOf(left_), ", "));
+  }
+  return line;
 }
 
 void AddPathCauses(CLI::App& command, std::filesystem::path& path, double& feed_mm_min) {

@@ -69,8 +69,8 @@ class PathCauses {
 
  private:
   std::string name_;
-  double feed_ = 0.0;  // m/s
-  std::vector<simulation::ModelledCause> causes_;
+  double feed_ = 0.0;                                     // m/s
+  std::vector<simulation::ModelledCause> causes_, left_;  // left: follow time or a temperature
 };
 
 void AddPathCauses(CLI::App& command, std::filesystem::path& path, double& feed_mm_min);

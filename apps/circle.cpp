@@ -108,19 +108,35 @@ std::vector<Circle> Circles(const MeasuredPaths& paths, const CircleCommand& com
   return circles;
 }
 
+// Those of the paths, and why figures are missing.
+std::vector<std::string> NotesOf(const MeasuredPaths& paths, const std::vector<Circle>& circles) {
+  std::vector<std::string> notes = paths.notes;
+  for (const Circle& circle : circles) {
+    const relm::CircleRun& run = circle.runs.front();
+    if (run.is_programmed) continue;
+    notes.push_back(fmt::format(
+        "{}: does not say the programmed radius, so there are no F max, F min and D of ISO 230-4: "
+        "the circle of its x_mm, y_mm, z_mm ({:.6g} mm) may be that of scales, which lag makes "
+        "smaller; write radius_mm into its header, or give --radius",
+        run.recordings.front(), run.radius / settings::kMillimetre));
+  }
+  return notes;
+}
+
 // The figures of the first run stand at the top too, for scripts.
-nlohmann::ordered_json Result(const MeasuredPaths& paths, const std::vector<Circle>& circles) {
+nlohmann::ordered_json Result(const MeasuredPaths& paths, const std::vector<Circle>& circles,
+                              const std::vector<std::string>& notes) {
   nlohmann::ordered_json result = ResultHead("circle", paths);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Circle& circle : circles) list.push_back(CircleJson(circle));
   const nlohmann::ordered_json& first = list.front();
-  for (const char* key : {"plane", "radius_mm"}) result[key] = first[key];
+  for (const char* key : {"plane", "radius_mm", "radius_is"}) result[key] = first[key];
   for (const auto& [key, value] : first["runs"].front().items()) {
     if (value.is_number_float() || key == "u" || key == "partial") result[key] = value;
   }
   if (first.contains("causes")) result["causes"] = first["causes"];
   result["circles"] = std::move(list);
-  result["notes"] = paths.notes;
+  result["notes"] = notes;
   return result;
 }
 
@@ -137,11 +153,12 @@ bool BeyondLimit(const std::vector<Circle>& circles, double limit) {
 int RunCircle(const CircleCommand& command) {
   const MeasuredPaths paths = ReadMeasuredPaths(command.sources);
   const std::vector<Circle> circles = Circles(paths, command);
+  const std::vector<std::string> notes = NotesOf(paths, circles);
   if (!command.quiet) {
     fmt::print("{}", CircleTable(circles));
-    for (const std::string& note : paths.notes) fmt::print("note: {}\n", note);
+    for (const std::string& note : notes) fmt::print("note: {}\n", note);
   }
-  const nlohmann::ordered_json result = Result(paths, circles);
+  const nlohmann::ordered_json result = Result(paths, circles, notes);
   if (!command.json.empty()) WriteResult(result, command.json);
   if (!command.out.empty()) {
     const std::string stem = command.sources.recordings.front().stem().string();
@@ -167,7 +184,7 @@ void AddCircle(CLI::App& program, int& exit_code) {
                       "the commanded path lies)");
   command
       ->add_option("--radius", options->radius_mm,
-                   "Nominal radius, mm (default: that of the commanded path)")
+                   "Programmed radius, mm (default: radius_mm of the header)")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--filter", options->filter,

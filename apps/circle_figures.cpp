@@ -15,9 +15,18 @@ namespace {
 constexpr std::uint64_t kCopies = 12;    // of the noise: what it does is known to 20 %
 const double kDoubles = std::sqrt(3.0);  // noise of this size added to 1 makes 2
 
+// Figures of the standard need the programmed radius; without it there are others of their own
+// names, about the circle of the recorded positions.
+Figure Programmed(const CircleFigures& figures, const Figure& value) {
+  return figures.is_programmed ? value : Figure();
+}
+Figure Recorded(const CircleFigures& figures, const Figure& value) {
+  return figures.is_programmed ? Figure() : value;
+}
+
 }  // namespace
 
-const std::array<CircleFigure, 14> kCircleFigures{{
+const std::array<CircleFigure, 17> kCircleFigures{{
     {"G_ccw_um", "G(ccw) circular deviation",
      [](const CircleFigures& f) { return f.iso.ccw ? Figure(f.iso.ccw->G) : Figure(); }},
     {"G_cw_um", "G(cw) circular deviation",
@@ -31,15 +40,21 @@ const std::array<CircleFigure, 14> kCircleFigures{{
     {"G_b_ls_um", "G(b) about the least-squares centre",
      [](const CircleFigures& f) { return f.iso.both ? Figure(f.iso.both->G_ls) : Figure(); }},
     {"F_max_um", "F max, set-up centre",
-     [](const CircleFigures& f) { return Figure(f.iso.F_max); }},
+     [](const CircleFigures& f) { return Programmed(f, f.iso.F_max); }},
     {"F_min_um", "F min, set-up centre",
-     [](const CircleFigures& f) { return Figure(f.iso.F_min); }},
+     [](const CircleFigures& f) { return Programmed(f, f.iso.F_min); }},
     {"F_max_ls_um", "F max, least-squares centre",
-     [](const CircleFigures& f) { return Figure(f.iso.F_max_ls); }},
+     [](const CircleFigures& f) { return Programmed(f, f.iso.F_max_ls); }},
     {"F_min_ls_um", "F min, least-squares centre",
-     [](const CircleFigures& f) { return Figure(f.iso.F_min_ls); }},
+     [](const CircleFigures& f) { return Programmed(f, f.iso.F_min_ls); }},
     {"D_um", "D mean bidirectional radial deviation",
-     [](const CircleFigures& f) { return f.iso.D; }},
+     [](const CircleFigures& f) { return Programmed(f, f.iso.D); }},
+    {"largest_beyond_recorded_um", "largest radius less the recorded one",
+     [](const CircleFigures& f) { return Recorded(f, f.iso.F_max); }},
+    {"smallest_beyond_recorded_um", "smallest radius less the recorded one",
+     [](const CircleFigures& f) { return Recorded(f, f.iso.F_min); }},
+    {"mean_beyond_recorded_um", "mean radius less the recorded one",
+     [](const CircleFigures& f) { return Recorded(f, f.iso.D); }},
     {"rms_ccw_um", "harmonics left out (ccw), rms",
      [](const CircleFigures& f) { return f.ccw ? Figure(f.ccw->rms) : Figure(); }},
     {"rms_cw_um", "harmonics left out (cw), rms",

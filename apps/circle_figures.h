@@ -26,14 +26,14 @@ struct CircleFigure {
   Figure (*of)(const relm::CircleFigures&);
 };
 
-extern const std::array<CircleFigure, 14> kCircleFigures;
+extern const std::array<CircleFigure, 17> kCircleFigures;
 
 struct FigureUncertainty {
   double calibration = 0.0, noise = 0.0;
   double Total() const;
 };
 
-using FigureUncertainties = std::array<FigureUncertainty, 14>;  // as kCircleFigures
+using FigureUncertainties = std::array<FigureUncertainty, 17>;  // as kCircleFigures
 
 FigureUncertainties UncertaintiesOf(const relm::CircleRun& run,
                                     const std::vector<const relm::CircleRun*>& shifted,

@@ -102,6 +102,10 @@ ordered_json RunData(const CircleRun& run, const CircleFigures& figures,
   data["partial"] = run.Partial();
   const standards::Circle centre = Centre(figures);
   data["setup_offset_um"] = {Um(centre.x), Um(centre.y)};
+  for (const auto& [name, sense] : {std::pair{"ccw", 1}, std::pair{"cw", -1}}) {
+    const auto first = std::ranges::find(run.points, sense, &CirclePoint::sense);
+    if (first != run.points.end()) data["start_deg"][name] = Degrees(first->angle);
+  }
   data["covered_deg"] = {{"cw", Degrees(run.Covered(-1))}, {"ccw", Degrees(run.Covered(1))}};
   data["harmonics"] = {{"cw", HarmonicData(figures.cw)}, {"ccw", HarmonicData(figures.ccw)}};
   for (const auto& [name, sense] : {std::pair{"ccw", 1}, std::pair{"cw", -1}}) {
@@ -161,6 +165,7 @@ ordered_json CircleJson(const Circle& circle) {
       {"instrument", first.instrument},
       {"plane", first.plane.name},
       {"radius_mm", Mm(first.radius)},
+      {"radius_is", first.is_programmed ? "programmed" : "recorded"},
       {"centre_mm", {Mm(first.centre.x()), Mm(first.centre.y()), Mm(first.centre.z())}},
       {"filter_undulations", circle.cutoff}};
   if (first.plane.Inclined()) {

@@ -1,9 +1,16 @@
 // abbe correct: measured coordinates, or an NC program, corrected by an error map.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <cerrno>
+#include <cstring>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "apps/causes_option.h"
 #include "apps/command.h"
@@ -33,6 +40,7 @@ struct CorrectCommand {
 // How far a line of commands may stray from the corrected line where its length is not given.
 constexpr double kLineTolerance = 0.1e-6;
 constexpr std::size_t kBuffer = 1 << 20;
+constexpr std::size_t kLongestLine = 1 << 16;
 
 std::filesystem::path OutOf(const CorrectCommand& options) {
   if (!options.out.empty()) return options.out;
@@ -75,24 +83,89 @@ void CorrectCsv(const CorrectCommand& options, const map::ErrorMap& map,
   if (causes.Active()) fmt::print("{}\n", causes.Line());
 }
 
+// The lines of a program, one after the other. InputError for what cannot be read to its end and
+// for what is empty: what is left of a program is no program.
+class ProgramLines {
+ public:
+  explicit ProgramLines(const std::filesystem::path& path)
+      : name_(path.string()), in_(path, std::ios::binary), buffer_(kLongestLine) {
+    if (!in_) throw InputError(name_ + ": cannot be read; check the path");
+  }
+
+  bool Next(std::string_view& line) {
+    errno = 0;
+    in_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    if (in_.bad()) {
+      throw InputError(fmt::format("{}: cannot be read beyond line {}: {}; nothing was written",
+                                   name_, lines_, std::strerror(errno == 0 ? EIO : errno)));
+    }
+    const auto taken = static_cast<std::size_t>(in_.gcount());
+    if (in_.fail() && taken > 0) {
+      throw InputError(fmt::format("{}: line {}: longer than {} characters; is it an NC program?",
+                                   name_, lines_ + 1, kLongestLine - 2));
+    }
+    if (in_.fail()) {
+      if (lines_ == 0) throw InputError(name_ + ": is empty; name an NC program");
+      return false;
+    }
+    ++lines_;
+    line = {buffer_.data(), taken - (in_.eof() ? 0 : 1)};
+    return true;
+  }
+
+ private:
+  std::string name_;
+  std::ifstream in_;
+  std::vector<char> buffer_;
+  std::size_t lines_ = 0;
+};
+
+// `step` of the correction, with the file in its failures.
+template <typename Step>
+void InFile(const CorrectCommand& options, Step step) {
+  try {
+    step();
+  } catch (const InputError& failure) {
+    throw InputError(fmt::format("{}: {}", options.from.string(), failure.what()));
+  }
+}
+
 // Line by line, so that a program may be larger than the memory.
 void StreamProgram(const CorrectCommand& options, compensation::NcCorrection& correction) {
-  std::ifstream in(options.from, std::ios::binary);
-  if (!in) throw InputError(options.from.string() + ": cannot be read; check the path");
+  ProgramLines lines(options.from);
   recording::WholeFile out(OutOf(options));
-  std::string line, text;
+  std::string text;
   try {
-    while (std::getline(in, line)) {
-      correction.Take(line, text);
+    for (std::string_view line; lines.Next(line);) {
+      InFile(options, [&] { correction.Take(line, text); });
       if (text.size() < kBuffer) continue;
       out.Append(text);
       text.clear();
     }
-  } catch (const InputError& failure) {
-    throw InputError(fmt::format("{}: {}", options.from.string(), failure.what()));
+    InFile(options, [&] { correction.Finish(); });
   }
   out.Append(text);
   out.Finish();
+}
+
+std::vector<std::string> AssumedIn(const compensation::NcCounts& counts) {
+  std::vector<std::string> assumed;
+  for (const compensation::NcAssumption& one : counts.assumed) {
+    assumed.push_back(fmt::format("{} from line {} on", one.what, one.line));
+  }
+  return assumed;
+}
+
+// A control may be set otherwise than assumed when it starts the program.
+void Warn(const CorrectCommand& options, const compensation::NcCounts& counts) {
+  if (!counts.assumed.empty()) {
+    fmt::print(stderr, "abbe: {}: assumed, for it does not say: {}; write it into the program\n",
+               options.from.string(), fmt::join(AssumedIn(counts), ", "));
+  }
+  if (!counts.has_end) {
+    fmt::print(stderr, "abbe: {}: ends with neither M2, M30 nor %; is it whole?\n",
+               options.from.string());
+  }
 }
 
 void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
@@ -106,11 +179,13 @@ void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
   compensation::NcCorrection correction(corrector, nc);
   StreamProgram(options, correction);
   const auto& counts = correction.counts();
+  Warn(options, counts);
   if (!options.json.empty()) {
     auto result = ResultOf(options, map, "program", counts.largest);
     result.update({{"lines", counts.lines},
                    {"moves", counts.moves},
                    {"corrected", counts.corrected},
+                   {"assumed", AssumedIn(counts)},
                    {"line_mm", nc.limits.length * 1e3},
                    {"chord_um", options.chord_um}});
     WriteResult(result, options.json);

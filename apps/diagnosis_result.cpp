@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "diagnosis/found_model.h"
 #include "diagnosis/variables.h"
+#include "settings/unit.h"
 
 namespace abbe::apps {
 namespace {
@@ -28,7 +28,7 @@ using nlohmann::ordered_json;
 constexpr std::size_t kEvidenceShown = 8;
 
 struct Told {
-  std::string name, unit;
+  std::string name;
   double value, u95;
 };
 
@@ -39,8 +39,7 @@ std::vector<Told> ParametersOf(const Score& score) {
   for (std::size_t i = 0; i < found.cause->keys.size(); ++i) {
     const auto& key = found.cause->keys[i];
     const auto at = static_cast<Index>(i);
-    told.push_back(
-        {key.name, UnitOf(key.name), found.values[at] / key.unit, found.u95[at] / key.unit});
+    told.push_back({key.name, found.values[at] / key.unit, found.u95[at] / key.unit});
   }
   return told;
 }
@@ -65,8 +64,9 @@ ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const He
                     {"probability", finding.probability},
                     {"log_evidence", finding.score.log_evidence}};
   for (const Told& each : ParametersOf(finding.score)) {
-    json["parameters"].push_back(
-        {{"name", each.name}, {"value", each.value}, {"unit", each.unit}, {"u95", each.u95}});
+    ordered_json parameter = KeyJson(each.name);
+    parameter.update({{"value", each.value}, {"u95", each.u95}});
+    json["parameters"].push_back(parameter);
   }
   const auto& words = finding.score.candidate.cause->words;
   json["words"] = {{"what", words.what},
@@ -172,16 +172,10 @@ std::string NameOf(const Candidate& candidate) {
   return candidate.cause->id + ":" + object + (sensor.empty() ? "" : " (" + sensor + ")");
 }
 
-std::string UnitOf(const std::string& key) {
-  constexpr std::array<std::string_view, 2> kWithout{"delta", "coefficient"};
-  if (std::find(kWithout.begin(), kWithout.end(), key) != kWithout.end()) return "";
-  const std::size_t line = key.find('_');
-  if (line == std::string::npos) return "";
-  const std::string unit = key.substr(line + 1);
-  constexpr std::string_view kPer = "_per_";
-  const auto per = unit.find(kPer);
-  if (per == std::string::npos) return unit;
-  return fmt::format("{}/{}", unit.substr(0, per), unit.substr(per + kPer.size()));
+ordered_json KeyJson(const std::string& name) {
+  std::string quantity(settings::StemOf(name));
+  std::replace(quantity.begin(), quantity.end(), '_', ' ');
+  return {{"name", name}, {"quantity", quantity}, {"unit", settings::UnitOf(name).name}};
 }
 
 ordered_json DiagnosisJson(const Diagnosis& diagnosis, const HeldOutGain& gain) {

@@ -11,8 +11,9 @@ namespace abbe::apps {
 
 // "thermal-growth:X (temp_table_c)".
 std::string NameOf(const diagnosis::Candidate& candidate);
-// The unit that the name of a key ends in: "width_um" -> "um", "..._nm_per_mm2" -> "nm/mm2".
-std::string UnitOf(const std::string& key);
+// Of a cause's key: its name, the quantity and the unit that it says: "time_constant_s", "time
+// constant", "s".
+nlohmann::ordered_json KeyJson(const std::string& name);
 
 nlohmann::ordered_json DiagnosisJson(const diagnosis::Diagnosis& diagnosis,
                                      const diagnosis::HeldOutGain& gain);

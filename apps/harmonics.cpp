@@ -30,7 +30,24 @@ struct HarmonicsArguments {
   bool quiet = false;
 };
 
-double Micrometres(double metres) { return metres / settings::kMicrometre; }
+// How the readings of a column are printed, and how keys of the result end that hold them: lengths
+// in um, angles in urad, all else as the column has it (a voltage in V, "_v").
+struct Printed {
+  std::string unit, ending;
+  double si;
+};
+
+Printed PrintedOf(const std::string& column) {
+  const settings::Unit unit = settings::UnitOf(column);
+  for (const char* const ending : {"_mm", "_um", "_nm", "_m"}) {
+    if (unit.name == settings::UnitOf(ending).name) return {"um", "_um", settings::kMicrometre};
+  }
+  for (const char* const ending : {"_deg", "_rad", "_mrad", "_urad"}) {
+    if (unit.name == settings::UnitOf(ending).name)
+      return {"urad", "_urad", settings::kMicroradian};
+  }
+  return {std::string(unit.name), column.substr(settings::StemOf(column).size()), unit.si};
+}
 
 // What a fit without any harmonic, and one with all, leave of readings in later time.
 struct HeldOut {
@@ -49,6 +66,9 @@ HeldOut SecondHalf(const relm::ShaftReadings& shaft, const std::vector<int>& ord
 
 ordered_json ChannelJson(const std::string& column, const relm::ShaftReadings& shaft,
                          const std::vector<int>& orders) {
+  const Printed printed = PrintedOf(column);
+  const auto key = [&](const char* what) { return what + printed.ending; };
+  const auto value = [&](double si) { return si / printed.si; };
   const BearingHarmonics fit = fusion::FitBearing(shaft.angle, shaft.value, orders);
   const HeldOut held_out = SecondHalf(shaft, orders);
   ordered_json harmonics = ordered_json::array();
@@ -57,34 +77,41 @@ ordered_json ChannelJson(const std::string& column, const relm::ShaftReadings& s
       return fmt::format("bearing.shaft_{}_{}", wave, order);
     };
     harmonics.push_back({{"order", order},
-                         {"sin_um", Micrometres(fit.result.Value(entry("sin")))},
-                         {"cos_um", Micrometres(fit.result.Value(entry("cos")))},
-                         {"amplitude_um", Micrometres(fit.Amplitude(order))},
-                         {"u_um", Micrometres(fit.result.Uncertainty(entry("sin")))}});
+                         {key("sin"), value(fit.result.Value(entry("sin")))},
+                         {key("cos"), value(fit.result.Value(entry("cos")))},
+                         {key("amplitude"), value(fit.Amplitude(order))},
+                         {key("u"), value(fit.result.Uncertainty(entry("sin")))}});
   }
   return {{"column", column},
+          {"unit", printed.unit},
           {"readings", shaft.value.size()},
-          {"mean_um", Micrometres(fit.result.Value("mean.gap"))},
+          {key("mean"), value(fit.result.Value("mean.gap"))},
           {"harmonics", harmonics},
-          {"rms_um", Micrometres(fit.rms)},
-          {"held_out_rms_um", Micrometres(held_out.with)},
-          {"held_out_rms_without_um", Micrometres(held_out.without)}};
+          {key("rms"), value(fit.rms)},
+          {key("held_out_rms"), value(held_out.with)},
+          {key("held_out_rms_without"), value(held_out.without)}};
 }
 
 std::string ChannelTable(const ordered_json& channel) {
+  const std::string unit = channel["unit"].get<std::string>();
+  const std::string ending = PrintedOf(channel["column"].get<std::string>()).ending;
+  const auto number = [&](const ordered_json& of, const char* what) {
+    return of[what + ending].get<double>();
+  };
   std::string text = fmt::format(
-      "\n{}: {} readings\n{:>8}{:>12}{:>12}{:>14}{:>10}\n", channel["column"].get<std::string>(),
-      channel["readings"].get<std::size_t>(), "order", "sin um", "cos um", "amplitude um", "u um");
+      "\n{}: {} readings, {}\n{:>8}{:>12}{:>12}{:>14}{:>10}\n",
+      channel["column"].get<std::string>(), channel["readings"].get<std::size_t>(),
+      unit.empty() ? "as they are" : "in " + unit, "order", "sin", "cos", "amplitude", "u");
   for (const ordered_json& one : channel["harmonics"]) {
     text += fmt::format("{:>8}{:>12.3f}{:>12.3f}{:>14.3f}{:>10.3f}\n", one["order"].get<int>(),
-                        one["sin_um"].get<double>(), one["cos_um"].get<double>(),
-                        one["amplitude_um"].get<double>(), one["u_um"].get<double>());
+                        number(one, "sin"), number(one, "cos"), number(one, "amplitude"),
+                        number(one, "u"));
   }
   text += fmt::format(
-      "residuals {:.2f} um rms; the second half by a fit of the first: {:.2f} um, without "
-      "harmonics {:.2f} um\n",
-      channel["rms_um"].get<double>(), channel["held_out_rms_um"].get<double>(),
-      channel["held_out_rms_without_um"].get<double>());
+      "residuals {:.2f} {} rms; the second half by a fit of the first: {:.2f} {}, without "
+      "harmonics {:.2f} {}\n",
+      number(channel, "rms"), unit, number(channel, "held_out_rms"), unit,
+      number(channel, "held_out_rms_without"), unit);
   return text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/protocol.h"
 #include "rig/rig_settings.h"
 
 namespace abbe::apps {
@@ -48,6 +49,7 @@ MachineFile ReadMachineFile(const std::filesystem::path& path) {
   }
   if (root.Has("linkage")) file.linkage = relm::ReadLinkageSettings(root);
   rig::ReadRigSettings(root);
+  ReadProtocol(root);
   root.RefuseUnknown();
   return file;
 }
@@ -56,6 +58,7 @@ machine::Machine ReadMachineOf(const std::filesystem::path& path) {
   const settings::Document document = settings::Document::Read(path);
   if (document.Root().Has("devices")) return ReadMachineFile(path).sweep_setup.machine;
   machine::Machine machine = machine::ReadMachine(document.Root());
+  ReadProtocol(document.Root());
   document.Root().RefuseUnknown();
   return machine;
 }
@@ -65,6 +68,7 @@ MachineAlone ReadMachineAlone(const settings::Document& document) {
   const bool bare = !root.Has("chain") && !root.Has("axis");
   MachineAlone alone{bare ? machine::ReadMachineWithoutAxes(root) : machine::ReadMachine(root), {}};
   if (root.Has("linkage")) alone.linkage = relm::ReadLinkageSettings(root);
+  ReadProtocol(root);
   root.RefuseUnknown();
   return alone;
 }

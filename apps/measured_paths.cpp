@@ -5,6 +5,7 @@
 #include "apps/causes_option.h"
 #include "apps/linkage_reader.h"
 #include "apps/machine_recording.h"
+#include "apps/protocol.h"
 #include "recording/made_on.h"
 
 namespace abbe::apps {
@@ -56,6 +57,7 @@ void Add(const Recording& recording, Machine& machine, MeasuredPaths& paths) {
     const auto text = recording.HeaderText(key);
     if (text && !paths.head.contains(key)) paths.head[key] = *text;
   }
+  AddProtocol(recording, paths.head);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using nlohmann::ordered_json;
 
 // A key that follows the size of the cause, in its own unit.
 struct Size {
-  std::string name, unit;
+  std::string name;
   double plausible, seen;
 };
 
@@ -33,7 +33,7 @@ std::vector<Size> SizesOf(const PlannedCause& planned) {
     const auto& key = planned.candidate.cause->keys;
     if (i >= static_cast<Index>(key.size()) || std::isnan(plausible[i])) continue;
     const auto& [name, unit, least, most] = key[static_cast<std::size_t>(i)];
-    sizes.push_back({name, UnitOf(name), std::abs(plausible[i] / unit), std::abs(seen[i] / unit)});
+    sizes.push_back({name, std::abs(plausible[i] / unit), std::abs(seen[i] / unit)});
   }
   return sizes;
 }
@@ -94,10 +94,9 @@ ordered_json PlanJson(const Plan& plan) {
                        {"seen", planned.seen()},
                        {"sizes", ordered_json::array()}};
     for (const Size& size : SizesOf(planned)) {
-      cause["sizes"].push_back({{"name", size.name},
-                                {"unit", size.unit},
-                                {"seen_from", size.seen},
-                                {"plausible", size.plausible}});
+      ordered_json key = KeyJson(size.name);
+      key.update({{"seen_from", size.seen}, {"plausible", size.plausible}});
+      cause["sizes"].push_back(std::move(key));
     }
     json["causes"].push_back(std::move(cause));
     if (!planned.seen()) json["cannot_show"].push_back(planned.candidate.Name());

@@ -17,6 +17,7 @@
 #include "apps/machine_file.h"
 #include "apps/plausible_channels.h"
 #include "apps/progress.h"
+#include "apps/protocol.h"
 #include "hal/combined_source.h"
 #include "hal/recorder.h"
 #include "hal/sweep_recorder.h"
@@ -25,7 +26,7 @@ namespace abbe::apps {
 namespace {
 
 struct RecordCommand {
-  std::string machine;
+  std::string machine, operator_name;
   std::filesystem::path out;
   double seconds = std::numeric_limits<double>::infinity();
   double clock_speed = 1.0;
@@ -82,7 +83,8 @@ hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile
   const auto writer = recording::Writer::Create(
       options.out,
       hal::RecordHeader({file.sweep_setup.machine.name, hal::UtcNow(), devices.transport},
-                        channels),
+                        channels) +
+          ProtocolText(file.document, options.operator_name),
       hal::RecordColumns(channels));
   const bool endless = std::isinf(options.seconds);
   Progress progress("record", options.quiet || endless);
@@ -132,6 +134,8 @@ void AddRecord(CLI::App& program, int& exit_code) {
       "record", "Record all devices of a machine file: probes, encoders, positions, temperatures");
   command->add_option("machine", options->machine, "the machine file")->required();
   command->add_option("-o,--out", options->out, "the new recording (.csv, .h5, .hdf5)")->required();
+  command->add_option("--operator", options->operator_name,
+                      "who measures (default: [protocol] of the machine file)");
   command->add_option("--seconds", options->seconds, "for so long (default: until Ctrl-C)")
       ->check(CLI::PositiveNumber);
   command

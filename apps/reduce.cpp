@@ -12,6 +12,7 @@
 #include "apps/commands.h"
 #include "apps/machine_file.h"
 #include "apps/machine_recording.h"
+#include "apps/protocol.h"
 #include "apps/reduce_reference.h"
 #include "apps/reduce_sweep.h"
 #include "apps/result_file.h"
@@ -56,9 +57,11 @@ class Reduction {
       Show(SweepTable(sweeps_.back()));
       auto json = SweepJson(sweeps_.back());
       if (causes_->Active()) json["causes_taken_out"] = causes_->Data();
+      AddProtocol(recording, json);
       Keep(json, path.stem().string());
     } else if (kind == "reference") {
-      const nlohmann::ordered_json result = ReduceReference(recording);
+      nlohmann::ordered_json result = ReduceReference(recording);
+      AddProtocol(recording, result);
       Show(ReferenceTable(result));
       Keep(result, path.stem().string());
     } else {

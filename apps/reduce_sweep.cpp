@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/rounded.h"
 #include "standards/coverage.h"
 
 namespace abbe::apps {
@@ -120,8 +121,8 @@ ordered_json NoiseData(const probes::NoiseFigures& noise) {
 std::string Cell(const std::optional<probes::Reversal>& reversal, double coverage) {
   if (!reversal) return "-";
   const double expanded = coverage * reversal->mean.u;
-  return fmt::format("{:.3f} +- {:.3f}{}", reversal->mean.value * kToMicro, expanded * kToMicro,
-                     reversal->seen ? '*' : ' ');
+  return PlusMinus(reversal->mean.value * kToMicro, expanded * kToMicro) +
+         (reversal->seen ? '*' : ' ');
 }
 
 std::string AngleTable(const SweepResult& result) {
@@ -129,9 +130,10 @@ std::string AngleTable(const SweepResult& result) {
       fmt::format("{:<22}{:>10}{:>10}{:>22}\n", "angle, urad", "range", "U95", "mean reversal");
   for (const ComponentResult& c : result.components) {
     if (!c.range) continue;
-    text += fmt::format("  {} {:<16}{:>10.3f}{:>10.3f}{:>22}\n", c.component.name, c.component.kind,
-                        c.range->value * kToMicro, c.coverage * c.range->u * kToMicro,
-                        Cell(c.reversal, c.coverage));
+    const double U = c.coverage * c.range->u * kToMicro;
+    const Decimals shown(U);
+    text += fmt::format("  {} {:<16}{:>10}{:>10}{:>22}\n", c.component.name, c.component.kind,
+                        shown(c.range->value * kToMicro), shown(U), Cell(c.reversal, c.coverage));
   }
   return text;
 }
@@ -143,10 +145,12 @@ std::string StraightnessTable(const SweepResult& result) {
   for (const ComponentResult& c : result.components) {
     if (!c.straightness) continue;
     const probes::StraightnessFigures& s = *c.straightness;
-    text += fmt::format(
-        "  {:<20}{:>10.4f}{:>10.4f}{:>22}{:>12.4f}{:>14.4f}{:>14.2f}\n", c.component.name,
-        s.least_squares.error * kToMicro, c.coverage * s.u * kToMicro, Cell(c.reversal, c.coverage),
-        s.end_points.error * kToMicro, s.minimum_zone.error * kToMicro, s.slope.value * kToMicro);
+    const double U = c.coverage * s.u * kToMicro;
+    const Decimals shown(U), of_slope(c.coverage * s.slope.u * kToMicro);
+    text += fmt::format("  {:<20}{:>10}{:>10}{:>22}{:>12}{:>14}{:>14}\n", c.component.name,
+                        shown(s.least_squares.error * kToMicro), shown(U),
+                        Cell(c.reversal, c.coverage), shown(s.end_points.error * kToMicro),
+                        shown(s.minimum_zone.error * kToMicro), of_slope(s.slope.value * kToMicro));
   }
   return text;
 }
@@ -221,10 +225,10 @@ ordered_json SquarenessJson(const probes::SquarenessResult& result) {
 }
 
 std::string SquarenessLine(const probes::SquarenessResult& result) {
-  return fmt::format(
-      "squareness {}: {:.2f} +- {:.2f} urad (least-squares lines; U95, of it the target {:.2f})\n",
-      result.name, result.value * kToMicro, standards::kCoverage * result.u * kToMicro,
-      standards::kCoverage * result.u_target * kToMicro);
+  const double U = standards::kCoverage * result.u * kToMicro;
+  return fmt::format("squareness {}: {} urad (least-squares lines; U95, of it the target {})\n",
+                     result.name, PlusMinus(result.value * kToMicro, U),
+                     Decimals(U)(standards::kCoverage * result.u_target * kToMicro));
 }
 
 }  // namespace abbe::apps

@@ -65,6 +65,14 @@ rig::Course FromFile(const CourseRequest& request, double feed) {
   return rig::LineCourse(points, feed, 0.0, 1);
 }
 
+double RadiusOf(const CourseRequest& request) { return 0.5 * SizeOf(request, {40.0}).front(); }
+
+// Keys of the recording that a course adds.
+std::string KeysOf(const CourseRequest& request) {
+  if (request.course != "circle") return "";
+  return fmt::format("radius_mm = {:.9g}\n", RadiusOf(request) / settings::kMillimetre);
+}
+
 rig::Course Planned(const CourseRequest& request, const rig::RigSettings& machine) {
   const Vector3d centre = CentreOf(request, machine);
   const double feed = request.feed_mm_min * kMillimetreAMinute;
@@ -81,8 +89,7 @@ rig::Course Planned(const CourseRequest& request, const rig::RigSettings& machin
         feed, request.dwell_s, 1);
   }
   if (request.course == "circle") {
-    const double radius = 0.5 * SizeOf(request, {40.0}).front();
-    return rig::CircleCourse({normal, centre, radius, feed, request.passes});
+    return rig::CircleCourse({normal, centre, RadiusOf(request), feed, request.passes});
   }
   if (request.course == "stepping") {
     const double length = SizeOf(request, {25.0}).front();
@@ -173,9 +180,13 @@ void AddRecordingOptions(CLI::App& command, CourseRequest& request) {
 
 recording::Recording RecordCourse(const rig::LinkageRig& rig, const CourseRequest& request,
                                   double rate, const std::string& started) {
-  return rig.Record(
-      CourseOf(request, rig.world().settings()),
-      {request.kind, request.reference, rate, request.cap_force_n, request.run, started});
+  return rig.Record(CourseOf(request, rig.world().settings()), {.kind = request.kind,
+                                                                .reference = request.reference,
+                                                                .rate = rate,
+                                                                .cap_force = request.cap_force_n,
+                                                                .run = request.run,
+                                                                .started = started,
+                                                                .keys = KeysOf(request)});
 }
 
 }  // namespace abbe::apps

@@ -15,6 +15,7 @@
 #include "apps/machine_file.h"
 #include "apps/plausible_channels.h"
 #include "apps/progress.h"
+#include "apps/protocol.h"
 #include "apps/reduce_sweep.h"
 #include "apps/result_file.h"
 #include "hal/combined_source.h"
@@ -31,7 +32,7 @@ struct SweepCommand {
   std::filesystem::path causes;
   std::filesystem::path out = "out";
   std::string json;
-  std::string mounting;
+  std::string mounting, operator_name;
   double clock_speed = 1.0;
   bool hdf5 = false;
   bool prompt = false;
@@ -90,7 +91,7 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
                               hal::UtcNow(),
                               "modbus",
                               options.mounting,
-                              "",
+                              ProtocolText(file.document, options.operator_name),
                               devices.transport};
   const auto& channels = source.channels();
   const auto writer = recording::Writer::Create(path, hal::SweepHeader(plan, about, channels),
@@ -153,9 +154,10 @@ int Sweep(const SweepCommand& options) {
   RefuseUnfinished(outcome, path);
   WarnOfLackingVisits(outcome, plan);
 
-  const probes::SweepResult result =
-      probes::ReduceSweep(causes.Take(recording::Read(path)), file.sweep_setup);
+  const recording::Recording recording = causes.Take(recording::Read(path));
+  const probes::SweepResult result = probes::ReduceSweep(recording, file.sweep_setup);
   auto json = SweepJson(result);
+  AddProtocol(recording, json);
   if (causes.Active()) json["causes_taken_out"] = causes.Data();
   auto beside = path;
   WriteResult(json, options.json.empty() ? beside.replace_extension(".json")
@@ -187,6 +189,8 @@ void AddSweep(CLI::App& program, int& exit_code) {
       "--mounting", options->mounting,
       "name of this set-up of head and target; sweeps that share it can give squareness");
   command->add_flag("--hdf5", options->hdf5, "record as HDF5 instead of CSV");
+  command->add_option("--operator", options->operator_name,
+                      "who measures (default: [protocol] of the machine file)");
   command->add_flag("--prompt", options->prompt, "ask the operator to move to each station");
   command
       ->add_option("--clock-speed", options->clock_speed,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 
 #include "failure/failure.h"
 
@@ -17,6 +18,14 @@ char Upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + '
 
 void RefuseLine(std::size_t line_number, const std::string& what) {
   throw InputError(fmt::format("line {}: {}", line_number, what));
+}
+
+int CodeTimes10(const NcWord& word) {
+  constexpr double kLargest = 1000.0, kRounding = 1e-6;
+  if (!(word.value >= 0.0 && word.value < kLargest)) return -1;
+  const double exact = 10 * word.value;
+  if (std::abs(exact - std::round(exact)) > kRounding) return -1;
+  return static_cast<int>(std::lround(exact));
 }
 
 void ReadBlock(std::string_view line, std::size_t line_number, std::vector<NcWord>& words) {
@@ -49,7 +58,7 @@ void ReadBlock(std::string_view line, std::size_t line_number, std::vector<NcWor
     double value = 0.0;
     const auto [end, error] = std::from_chars(line.data() + begin + sign, line.data() + line.size(),
                                               value, std::chars_format::fixed);
-    if (error != std::errc()) {
+    if (error != std::errc() || !std::isfinite(value)) {  // "Xnan" and "Xinf" are numbers to it
       RefuseLine(line_number,
                  fmt::format("\"{}\" is no letter with a number", line.substr(at, 10)));
     }

@@ -2,8 +2,8 @@
 //
 //   N20 G1 X10.5 F100 (down)    ->  N 20, G 1, X 10.5, F 100, comment "(down)"
 //
-// Numbers are as written, in the program's units. Failure: InputError with the line for what is no
-// word: parameters, expressions, O words, the block-delete slash, a comment without end.
+// Numbers are as written, in the program's units, and finite. Failure: InputError with the line for
+// what is no word: parameters, expressions, O words, the block-delete slash, a comment without end.
 // Validity: blocks of letter-number words; nothing here knows what a word means.
 #pragma once
 
@@ -21,6 +21,10 @@ struct NcWord {
 
 // Fills `words`, which keeps its memory from line to line. "%" alone is a block without words.
 void ReadBlock(std::string_view line, std::size_t line_number, std::vector<NcWord>& words);
+
+// Ten times the code of a G or M word, which has one decimal at most: 901 of G90.1; -1 for what is
+// no such code.
+int CodeTimes10(const NcWord& word);
 
 // "line 12: what; advice" as a failure.
 [[noreturn]] void RefuseLine(std::size_t line_number, const std::string& what);

@@ -15,17 +15,26 @@ using Eigen::Vector3d;
 
 constexpr double kMillimetre = 1e-3, kInch = 25.4e-3;
 
-int Times10(double value) { return static_cast<int>(std::lround(value * 10)); }
-
 bool IsStop(const NcWord& word) {
-  const int code = Times10(word.value);
-  return word.letter == 'M' &&
-         (code == 0 || code == 10 || code == 20 || code == 300 || code == 600);
+  if (word.letter != 'M') return false;
+  const int code = CodeTimes10(word);
+  return code == 0 || code == 10 || code == 20 || code == 300 || code == 600;
+}
+
+bool IsProgramEnd(const NcWord& word) {
+  return word.letter == 'M' && (word.value == 2.0 || word.value == 30.0);
 }
 
 bool IsMotionWord(const NcWord& word) {
-  return word.letter == 'G' && word.value >= 0.0 && Times10(word.value) <= 30 &&
-         Times10(word.value) % 10 == 0;
+  if (word.letter != 'G') return false;
+  const int code = CodeTimes10(word);
+  return code == 0 || code == 10 || code == 20 || code == 30;
+}
+
+bool IsKnownM(int code_times_10) {
+  return code_times_10 >= 0 && code_times_10 % 10 == 0 &&
+         (code_times_10 <= 90 || code_times_10 == 300 || code_times_10 == 480 ||
+          code_times_10 == 490 || code_times_10 == 600);
 }
 
 // Words that a corrected move is written without: its own.
@@ -90,11 +99,17 @@ NcCorrection::NcCorrection(const Corrector& corrector, const NcOptions& options)
     throw InputError("the chord tolerance and the length of a line must be above 0");
   }
   if (!options_.start) return;
+  try {
+    MustReach(*options_.start);
+  } catch (const InputError& failure) {
+    throw InputError(fmt::format("--start: {}", failure.what()));
+  }
   place_ = out_ = *options_.start;
   is_known_.fill(true);
 }
 
-void NcCorrection::TakeG(int code, Asked& asked) {
+void NcCorrection::TakeG(const NcWord& word, Asked& asked) {
+  const int code = CodeTimes10(word);
   switch (code) {
     case 0:
     case 10:
@@ -112,14 +127,17 @@ void NcCorrection::TakeG(int code, Asked& asked) {
     case 180:
     case 190:
       plane_ = code / 10;
+      says_.plane = true;
       return;
     case 200:
     case 210:
       is_inch_ = code == 200;
+      says_.units = true;
       return;
     case 900:
     case 910:
       is_relative_ = code == 910;
+      says_.distances = true;
       return;
     case 901:
     case 911:
@@ -134,8 +152,7 @@ void NcCorrection::TakeG(int code, Asked& asked) {
     case 970:
       return;
     default:
-      RefuseLine(counts_.lines,
-                 fmt::format("G{:g} is not supported: {}", code / 10.0, WhyNot(code)));
+      RefuseLine(counts_.lines, fmt::format("{} is not supported: {}", word.text, WhyNot(code)));
   }
 }
 
@@ -143,7 +160,6 @@ NcCorrection::Asked NcCorrection::Understand() {
   Asked asked;
   bool has_tolerance = false;
   for (const NcWord& word : words_) {
-    const double exact = word.value * 10;
     switch (word.letter) {
       case 'X':
       case 'Y':
@@ -169,24 +185,17 @@ NcCorrection::Asked NcCorrection::Understand() {
       case 'T':
         break;
       case 'G':
-        if (std::abs(exact - std::round(exact)) > 1e-6) {
-          RefuseLine(counts_.lines, fmt::format("{} is not supported", word.text));
-        }
-        has_tolerance = has_tolerance || Times10(word.value) == 640;
-        TakeG(Times10(word.value), asked);
+        has_tolerance = has_tolerance || CodeTimes10(word) == 640;
+        TakeG(word, asked);
         break;
-      case 'M': {
-        const int code = static_cast<int>(word.value);
-        const bool is_plain = code == word.value;
-        if (!is_plain ||
-            !((code >= 0 && code <= 9) || code == 30 || code == 48 || code == 49 || code == 60)) {
+      case 'M':
+        if (!IsKnownM(CodeTimes10(word))) {
           RefuseLine(counts_.lines,
                      fmt::format("{} is not supported: what it does to the machine is "
                                  "not known; take it out",
                                  word.text));
         }
         break;
-      }
       default:
         RefuseLine(counts_.lines,
                    fmt::format("{} is not supported: it cannot be corrected; take it "
@@ -253,6 +262,36 @@ Arc NcCorrection::ArcOf(const Asked& asked) const {
   return arc;
 }
 
+void NcCorrection::MustReach(const Vector3d& wanted) const {
+  static_cast<void>(corrector_.Command(wanted + options_.work_offset));
+}
+
+// Ends and extremes are looked at before a path is divided: a slip of a unit would be a thousand
+// times as many points.
+void NcCorrection::Divide(const Asked& asked, const Vector3d& target) {
+  points_.clear();
+  if (motion_ == 0) {
+    points_.push_back(target);
+  } else if (motion_ == 1) {
+    if (!((target - place_).norm() <= options_.limits.length)) MustReach(target);
+    AddLine(place_, target, options_.limits, counts_.lines, points_);
+  } else {
+    const Arc arc = ArcOf(asked);
+    for (const Vector3d& point : Extremes(place_, target, arc, counts_.lines)) MustReach(point);
+    AddArc(place_, target, arc, options_.limits, counts_.lines, points_);
+  }
+}
+
+void NcCorrection::Assume() {
+  const auto assume = [this](bool& is_said, const char* what) {
+    if (!is_said) counts_.assumed.push_back({what, counts_.lines});
+    is_said = true;
+  };
+  assume(says_.units, "millimetres (G21)");
+  assume(says_.distances, "absolute positions (G90)");
+  if (motion_ >= 2) assume(says_.plane, "arcs in XY (G17)");
+}
+
 void NcCorrection::WritePoint(const Vector3d& wanted, std::string& out) {
   const Vector3d position = wanted + options_.work_offset;
   const Vector3d command = corrector_.Command(position);
@@ -281,14 +320,8 @@ void NcCorrection::Move(const Asked& asked, std::string& out) {
                "moves while it is not known where the machine stands; begin with G0 to "
                "X, Y and Z in G90, or give the start with --start x,y,z");
   }
-  points_.clear();
-  if (motion_ == 0) {
-    points_.push_back(target);
-  } else if (motion_ == 1) {
-    AddLine(place_, target, options_.limits, points_);
-  } else {
-    AddArc(place_, target, ArcOf(asked), options_.limits, counts_.lines, points_);
-  }
+  Assume();
+  Divide(asked, target);
   place_ = target;
   for (const NcWord& word : words_) {
     if (IsOfMove(word) || IsStop(word) || word.text.starts_with(';')) continue;
@@ -312,15 +345,28 @@ void NcCorrection::Move(const Asked& asked, std::string& out) {
   ++counts_.moves;
 }
 
+void NcCorrection::Finish() const {
+  if (is_open_ && !counts_.has_end) {
+    RefuseLine(
+        counts_.lines,
+        "the program begins with % and ends with neither %, M2 nor M30: it was cut; fetch it "
+        "whole");
+  }
+}
+
 void NcCorrection::Take(std::string_view line, std::string& out) {
   ++counts_.lines;
   if (line.ends_with('\r')) line.remove_suffix(1);
   ReadBlock(line, counts_.lines, words_);
+  const bool is_percent = words_.empty() && line.ends_with('%');
+  if (is_percent && counts_.lines == 1) is_open_ = true;
+  const bool is_last = std::any_of(words_.begin(), words_.end(), IsProgramEnd);
+  counts_.has_end = counts_.has_end || is_last || (is_percent && counts_.lines > 1);
   const Asked asked = Understand();
   if (!asked.is_move) {
     for (const NcWord& word : words_) {
-      if (IsMotionWord(word)) motion_out_ = Times10(word.value) / 10;
-      if (word.letter == 'G' && Times10(word.value) == 800) motion_out_ = -1;
+      if (IsMotionWord(word)) motion_out_ = CodeTimes10(word) / 10;
+      if (word.letter == 'G' && CodeTimes10(word) == 800) motion_out_ = -1;
     }
     out.append(line) += '\n';
     return;

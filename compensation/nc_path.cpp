@@ -17,6 +17,9 @@ using Eigen::Vector3d;
 // By how much the two ends of an arc may differ in radius: as LinuxCNC allows for millimetres.
 constexpr double kRadiusAbsolute = 0.5e-6, kRadiusRelative = 1e-3;
 
+// m: an arc of this radius leaves its chord by 1 um over 3 m.
+constexpr double kLargestRadius = 1e6;
+
 Vector2d CentreOfRadius(const Vector2d& a, const Vector2d& b, double radius, bool is_clockwise,
                         std::size_t line_number) {
   const Vector2d chord = b - a;
@@ -36,27 +39,34 @@ Vector2d CentreOfRadius(const Vector2d& a, const Vector2d& b, double radius, boo
   return a + chord / 2 + (is_left ? 1 : -1) * std::sqrt(height_square) / (2 * half) * left;
 }
 
-int Count(double pieces) { return std::max(1, static_cast<int>(std::ceil(pieces - 1e-9))); }
-
-}  // namespace
-
-std::array<int, 3> AxesOfPlane(int plane) {
-  if (plane == 18) return {2, 0, 1};
-  if (plane == 19) return {1, 2, 0};
-  return {0, 1, 2};
-}
-
-void AddLine(const Vector3d& from, const Vector3d& to, const PathLimits& limits,
-             std::vector<Vector3d>& points) {
-  const int count = Count((to - from).norm() / limits.length);
-  for (int i = 1; i < count; ++i) {
-    points.push_back(from + (to - from) * (static_cast<double>(i) / count));
+int Count(double pieces, std::size_t line_number) {
+  if (!(pieces < kMostLines)) {
+    RefuseLine(
+        line_number,
+        fmt::format("the move would become {:.3g} lines; allow longer ones, or larger chords",
+                    pieces));
   }
-  points.push_back(to);
+  return std::max(1, static_cast<int>(std::ceil(pieces - 1e-9)));
 }
 
-void AddArc(const Vector3d& from, const Vector3d& to, const Arc& arc, const PathLimits& limits,
-            std::size_t line_number, std::vector<Vector3d>& points) {
+// An arc, or the spiral between ends that differ a little in radius, with its rise.
+struct Course {
+  int u, v, w;
+  Vector2d centre;
+  double start, sweep;  // rad
+  double r_a, r_b, z, rise;
+
+  Vector3d At(double part) const {
+    const double angle = start + part * sweep, radius = r_a + part * (r_b - r_a);
+    Vector3d point;
+    point[u] = centre.x() + radius * std::cos(angle);
+    point[v] = centre.y() + radius * std::sin(angle);
+    point[w] = z + part * rise;
+    return point;
+  }
+};
+
+Course CourseOf(const Vector3d& from, const Vector3d& to, const Arc& arc, std::size_t line_number) {
   const auto [u, v, w] = AxesOfPlane(arc.plane);
   const Vector2d a(from[u], from[v]), b(to[u], to[v]);
   const Vector2d centre = arc.radius
@@ -64,6 +74,12 @@ void AddArc(const Vector3d& from, const Vector3d& to, const Arc& arc, const Path
                               : Vector2d(arc.centre[u], arc.centre[v]);
   const double r_a = (a - centre).norm(), r_b = (b - centre).norm();
   if (r_a == 0.0) RefuseLine(line_number, "an arc around its own start");
+  if (!(std::max(r_a, r_b) < kLargestRadius)) {
+    RefuseLine(line_number,
+               fmt::format("an arc of radius {:.6g} mm; write a line (G1), or check I, "
+                           "J, K and R",
+                           1e3 * std::max(r_a, r_b)));
+  }
   if (std::abs(r_a - r_b) > kRadiusAbsolute + kRadiusRelative * std::max(r_a, r_b)) {
     RefuseLine(line_number,
                fmt::format("the arc starts {:.6g} mm from its centre and ends {:.6g} mm "
@@ -75,20 +91,51 @@ void AddArc(const Vector3d& from, const Vector3d& to, const Arc& arc, const Path
   constexpr double kTurn = 2 * std::numbers::pi;
   if (arc.is_clockwise && (sweep >= 0.0 || a == b)) sweep -= kTurn;
   if (!arc.is_clockwise && (sweep <= 0.0 || a == b)) sweep += kTurn;
-  const double rise = to[w] - from[w];
-  const double step = 2 * std::acos(std::clamp(1 - limits.chord / std::max(r_a, r_b), 0.0, 1.0));
-  const int count =
-      Count(std::max(std::abs(sweep) / step, std::hypot(sweep * r_a, rise) / limits.length));
+  return {u, v, w, centre, start, sweep, r_a, r_b, from[w], to[w] - from[w]};
+}
+
+}  // namespace
+
+std::array<int, 3> AxesOfPlane(int plane) {
+  if (plane == 18) return {2, 0, 1};
+  if (plane == 19) return {1, 2, 0};
+  return {0, 1, 2};
+}
+
+void AddLine(const Vector3d& from, const Vector3d& to, const PathLimits& limits,
+             std::size_t line_number, std::vector<Vector3d>& points) {
+  const int count = Count((to - from).norm() / limits.length, line_number);
   for (int i = 1; i < count; ++i) {
-    const double part = static_cast<double>(i) / count;
-    const double angle = start + part * sweep, radius = r_a + part * (r_b - r_a);
-    Vector3d point;
-    point[u] = centre.x() + radius * std::cos(angle);
-    point[v] = centre.y() + radius * std::sin(angle);
-    point[w] = from[w] + part * rise;
-    points.push_back(point);
+    points.push_back(from + (to - from) * (static_cast<double>(i) / count));
   }
   points.push_back(to);
+}
+
+void AddArc(const Vector3d& from, const Vector3d& to, const Arc& arc, const PathLimits& limits,
+            std::size_t line_number, std::vector<Vector3d>& points) {
+  const Course course = CourseOf(from, to, arc, line_number);
+  // 1 - cos(step / 2) = chord / radius
+  const double chord = limits.chord / std::max(course.r_a, course.r_b);
+  const double step = 4 * std::asin(std::sqrt(std::min(chord, 1.0) / 2));
+  const int count =
+      Count(std::max(std::abs(course.sweep) / step,
+                     std::hypot(course.sweep * course.r_a, course.rise) / limits.length),
+            line_number);
+  for (int i = 1; i < count; ++i) points.push_back(course.At(static_cast<double>(i) / count));
+  points.push_back(to);
+}
+
+std::vector<Vector3d> Extremes(const Vector3d& from, const Vector3d& to, const Arc& arc,
+                               std::size_t line_number) {
+  constexpr double kQuarter = std::numbers::pi / 2;
+  const Course course = CourseOf(from, to, arc, line_number);
+  std::vector<Vector3d> points{to};
+  const double end = course.start + course.sweep;
+  const double first = std::min(course.start, end), last = std::max(course.start, end);
+  for (double angle = kQuarter * std::ceil(first / kQuarter); angle < last; angle += kQuarter) {
+    points.push_back(course.At((angle - course.start) / course.sweep));
+  }
+  return points;
 }
 
 }  // namespace abbe::compensation

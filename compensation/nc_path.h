@@ -2,7 +2,8 @@
 //
 // Frames: positions in the program's coordinates, m. Planes: G17 XY, G18 ZX, G19 YZ; from the
 // positive third axis the first turns towards the second counter-clockwise (G3).
-// Failure: InputError with the line for an arc that cannot be.
+// Failure: InputError with the line for an arc that cannot be, and for what would be divided into
+// more than kMostLines.
 // Source: RS 274/NGC (NIST IR 6556), 3.5.3, arcs in centre and in radius form.
 #pragma once
 
@@ -19,9 +20,11 @@ struct PathLimits {
   double length = 0.0;  // of one line, m
 };
 
+inline constexpr double kMostLines = 1e6;  // of one move: 1 m in lines of 1 um
+
 // Appends the points after `from` up to and with `to`.
 void AddLine(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const PathLimits& limits,
-             std::vector<Eigen::Vector3d>& points);
+             std::size_t line_number, std::vector<Eigen::Vector3d>& points);
 
 struct Arc {
   int plane = 17;
@@ -35,6 +38,11 @@ struct Arc {
 void AddArc(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Arc& arc,
             const PathLimits& limits, std::size_t line_number,
             std::vector<Eigen::Vector3d>& points);
+
+// The end of an arc and its points furthest along the axes of its plane: what holds for a box
+// around these holds for the arc.
+std::vector<Eigen::Vector3d> Extremes(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                      const Arc& arc, std::size_t line_number);
 
 // The first, second and third axis of a plane: G18 has Z, X, Y.
 std::array<int, 3> AxesOfPlane(int plane);

@@ -167,10 +167,23 @@ std::vector<int> Senses(const MeasuredPath& on, const CirclePlane& plane,
 
 bool SameRun(const CircleRun& a, const CircleRun& b) {
   return a.instrument == b.instrument && a.plane.name == b.plane.name &&
-         std::abs(a.radius - b.radius) < kSameCircle &&
+         a.is_programmed == b.is_programmed && std::abs(a.radius - b.radius) < kSameCircle &&
          (a.centre - b.centre).norm() < kSameCircle &&
          (a.plane.third - b.plane.third).norm() < kOffPlane &&
          std::abs(a.feed - b.feed) <= kSameFeed * std::max(a.feed, b.feed);
+}
+
+// The programmed radius, m; 0 where neither the options nor the header say it.
+double ProgrammedRadius(const MeasuredPath& path, const CircleOptions& options, double commanded) {
+  const double radius = options.radius > 0.0 ? options.radius : path.radius;
+  if (radius > 0.0 && std::abs(radius - commanded) > kLikeCommanded * radius) {
+    throw InputError(fmt::format(
+        "{}: {} says a radius of {:.6g} mm, but x_mm, y_mm, z_mm go round one of {:.6g} mm; "
+        "correct it",
+        path.recording, options.radius > 0.0 ? "--radius" : "radius_mm of the header", 1e3 * radius,
+        1e3 * commanded));
+  }
+  return radius;
 }
 
 // Without angles, which need the whole run.
@@ -188,7 +201,9 @@ std::vector<CircleRun> RunsOf(const MeasuredPath& path, const CircleOptions& opt
   proto.recordings = {path.recording};
   proto.instrument = path.instrument;
   proto.plane = plane;
-  proto.radius = options.radius > 0.0 ? options.radius : nominal.circle.radius;
+  const double programmed = ProgrammedRadius(path, options, nominal.circle.radius);
+  proto.is_programmed = programmed > 0.0;
+  proto.radius = proto.is_programmed ? programmed : nominal.circle.radius;
   proto.centre = plane.first * nominal.circle.x + plane.second * nominal.circle.y +
                  plane.third * plane.third.dot(Eigen::Vector3d(on.commanded.rowwise().mean()));
   proto.third_seen = path.seen[0] && path.seen[1] && path.seen[2];
@@ -346,6 +361,7 @@ CircleFigures EvaluateCircle(const CircleRun& run, const FigureOptions& options)
   const CircleRun smooth = Filtered(run, options.cutoff);
   const InPlane cw = Coordinates(smooth, -1), ccw = Coordinates(smooth, 1);
   CircleFigures figures;
+  figures.is_programmed = run.is_programmed;
   try {
     figures.iso = standards::EvaluateCircularity(
         {run.radius, {cw.first, cw.second}, {ccw.first, ccw.second}});

@@ -12,9 +12,12 @@
 // of the plane and its normal. Units: m, rad, m/s. Shapes: one entry a point.
 // Failure: InputError with the recording for a path that is no circle, a sense with less than a
 // quarter of it, a plane that is not two axes, or coordinates that the instrument lacks. Source:
-// ISO 230-4. Validity: the nominal radius is that of the commanded positions (least squares),
-// unless the options name one. Of a part of the circle (Partial) the figures are those of the arc;
-// D, which is a mean of whole turns, and harmonics are left out.
+// ISO 230-4. The nominal radius is the programmed one, of the options or else of the header
+// (MeasuredPath::radius). Where neither says it, it is that of the positions in the recording
+// (least squares): these may be scales, which a lagging servo leaves inside the programmed circle,
+// so D, F_max and F_min are then no figures of the standard (is_programmed). Validity: a programmed
+// radius within kLikeCommanded of the positions'; of a part of the circle (Partial) the figures are
+// those of the arc, and D, which is a mean of whole turns, and harmonics are left out.
 #pragma once
 
 #include <Eigen/Core>
@@ -49,6 +52,7 @@ struct CircleRun {
   Eigen::Vector3d centre;  // m, axis coordinates
   double feed = 0.0;       // m/s
   bool third_seen = false;
+  bool is_programmed = false;  // the nominal radius; false: it is that of the recorded positions
   std::vector<CirclePoint> points;  // in the order of time, recording after recording
   std::size_t left_out = 0;         // rows off the circle, at rest, or with a flag
   // m: where the measured circle has its centre, from the commanded one: least squares, for a part
@@ -68,10 +72,15 @@ struct CircleOptions {
 std::vector<CircleRun> CircleRuns(const std::vector<MeasuredPath>& paths,
                                   const CircleOptions& options = {});
 
+// Of the radius: a programmed one that is further off from the recorded positions is another
+// circle's. A lag of 30 ms at 5 m/min makes 20 mm smaller by 0.8 %.
+inline constexpr double kLikeCommanded = 0.1;
+
 struct CircleFigures {
-  standards::Circularity iso;
+  standards::Circularity iso;                     // D and F of the standard only if is_programmed
   std::optional<standards::HarmonicFit> cw, ccw;  // of the radius about the centre of each sense
   double out_of_plane = 0.0;                      // m: range of the third coordinate
+  bool is_programmed = false;                     // as of the run
 };
 
 struct FigureOptions {

@@ -45,11 +45,22 @@ Eigen::VectorXd Values(const Recording& recording, const Rows& rows, const std::
   return values;
 }
 
+double ProgrammedRadius(const Recording& recording) {
+  const std::optional<double> radius = recording.HeaderNumber("radius_mm");
+  if (radius && !(*radius > 0.0)) {
+    throw InputError(fmt::format(
+        "{}: radius_mm = {} in the header: write the programmed radius of the circle, above 0",
+        recording.name, *radius));
+  }
+  return settings::kMillimetre * radius.value_or(0.0);
+}
+
 // Everything but what the instrument measured.
 MeasuredPath Commanded(const Recording& recording, const Rows& rows) {
   MeasuredPath path;
   path.recording = recording.name;
   path.plane = recording.HeaderText("axis").value_or("");
+  path.radius = ProgrammedRadius(recording);
   path.rows = rows;
   path.flagged = recording.rows() - rows.size();
   path.commanded.resize(3, static_cast<Eigen::Index>(rows.size()));

@@ -26,6 +26,7 @@ struct MeasuredPath {
   std::string recording;
   std::string instrument;         // "linkage", "reference"
   std::string plane;              // of the header, may be empty
+  double radius = 0.0;            // m: the programmed radius of a circle by the header; 0: not said
   std::vector<std::size_t> rows;  // of the recording
   std::size_t flagged = 0;        // rows left out
   std::array<bool, 3> seen{};     // the coordinates that the instrument has; others are commanded

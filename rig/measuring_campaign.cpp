@@ -213,7 +213,7 @@ class CampaignMaker {
               fmt::format("circle_{}_{:.0f}mm_{:.0f}", plane, 1e3 * radius,
                           feed / settings::UnitOf("feed_mm_min").si),
               CircleCourse({.normal = normal, .centre = Middle(), .radius = radius, .feed = feed}),
-              rate, place, fmt::format("axis = \"{}\"\n", plane));
+              rate, place, fmt::format("axis = \"{}\"\nradius_mm = {:.9g}\n", plane, 1e3 * radius));
   }
 
   void AddCube(const Place& place) {

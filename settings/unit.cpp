@@ -38,13 +38,24 @@ constexpr std::array<std::pair<std::string_view, Unit>, 25> kEndings{{
     {"_n", {"N", 1.0}},
 }};
 
+const std::pair<std::string_view, Unit>* EndingOf(std::string_view name) {
+  for (const auto& ending : kEndings) {
+    if (name.ends_with(ending.first)) return &ending;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 Unit UnitOf(std::string_view name) {
-  for (const auto& [ending, unit] : kEndings) {
-    if (name.ends_with(ending)) return unit;
-  }
-  return {"", 1.0};
+  const auto* const ending = EndingOf(name);
+  return ending == nullptr ? Unit{"", 1.0} : ending->second;
+}
+
+std::string_view StemOf(std::string_view name) {
+  const auto* const ending = EndingOf(name);
+  if (ending != nullptr) name.remove_suffix(ending->first.size());
+  return name;
 }
 
 }  // namespace abbe::settings

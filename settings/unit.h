@@ -22,4 +22,8 @@ struct Unit {
 // is a plain number. The longest ending wins ("feed_mm_min" is mm/min, not minutes).
 Unit UnitOf(std::string_view name);
 
+// What stands before that end: "time_constant_s" -> "time_constant"; a plain number is its own
+// stem.
+std::string_view StemOf(std::string_view name);
+
 }  // namespace abbe::settings

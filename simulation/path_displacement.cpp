@@ -27,14 +27,17 @@ Trace TraceOf(const Eigen::Matrix3Xd& path, double feed) {
 
 }  // namespace
 
+bool ActsOnPath(const ModelledCause& cause) {
+  return cause.cause->SeatAt(cause.object) == Seat::kMotion &&
+         cause.cause->follows == Follows::kPath;
+}
+
 Eigen::Matrix3Xd PathDisplacement(const Eigen::Matrix3Xd& path, double feed,
                                   const std::vector<ModelledCause>& causes) {
   Trace trace = TraceOf(path, feed);
   std::vector<ModelledCause> acting;
   for (const ModelledCause& each : causes) {
-    if (each.cause->SeatAt(each.object) == Seat::kMotion && each.cause->id != "warm-up-drift") {
-      acting.push_back(each);
-    }
+    if (ActsOnPath(each)) acting.push_back(each);
   }
   const Sums sums = SumsOf(trace, acting, {});
   Eigen::Matrix3Xd displaced(3, path.cols());

@@ -5,8 +5,8 @@
 //
 // Frames, units: axis positions [x y z], m; `feed` in m/s, 0: the axes stand at each point, so that
 // nothing lags. Points that the feed takes more than half a second for are stops too. Only causes
-// of the seat kMotion act; one that follows time or a temperature does not, for a path knows
-// neither. Validity: the axis comes to the first point as it goes on from there.
+// of the seat kMotion that follow the path act: a path knows neither time nor temperature.
+// Validity: the axis comes to the first point as it goes on from there.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,6 +16,9 @@
 
 namespace abbe::simulation {
 
+bool ActsOnPath(const ModelledCause& cause);
+
+// Causes that do not act on a path add nothing.
 Eigen::Matrix3Xd PathDisplacement(const Eigen::Matrix3Xd& path, double feed,
                                   const std::vector<ModelledCause>& causes);
 

@@ -8,9 +8,18 @@ const CIRCLE_FIGURES = [
   ],
   ['G_cw_um', 'G(cw)', 'Circular deviation, clockwise'],
   ['G_b_um', 'G(b)', 'The ring around both senses together'],
-  ['F_max_um', 'F max', 'Largest radius less the nominal one, about the set-up centre'],
-  ['F_min_um', 'F min', 'Smallest radius less the nominal one, about the set-up centre'],
-  ['D_um', 'D', 'Mean radius of both senses less the nominal one'],
+  ['F_max_um', 'F max', 'Largest radius less the programmed one, about the set-up centre'],
+  ['F_min_um', 'F min', 'Smallest radius less the programmed one, about the set-up centre'],
+  ['D_um', 'D', 'Mean radius of both senses less the programmed one'],
+];
+// Where nobody said the programmed radius; no figures of the standard.
+const RECORDED_FIGURES = [
+  [
+    'largest_beyond_recorded_um', 'Largest radius',
+    'Less that of the circle of the recorded positions, about the set-up centre'
+  ],
+  ['smallest_beyond_recorded_um', 'Smallest radius', 'Less that of the recorded positions'],
+  ['mean_beyond_recorded_um', 'Mean radius', 'Of both senses, less that of the recorded positions'],
 ];
 const SENSES = [['ccw', 'counter-clockwise', 'forward'], ['cw', 'clockwise', 'backward']];
 const SIGNATURE_NAMES = {
@@ -65,10 +74,12 @@ const isFound = ({seen, value, u}) => seen && Math.abs(value) > COVERAGE * u;
 const circleFigure = (run, key) =>
     isNumber(run[key]) ? quantity(run[key], COVERAGE * (run.u?.[key] ?? 0)) : null;
 
-function circleFigureTable(result) {
+function circleFigureTable(result, caption, figures) {
   const runs = runsOf(result);
+  const known = figures.filter(([key]) => runs.some(({run}) => isNumber(run[key])));
+  if (!known.length) return null;
   return table({
-    caption: 'Figures of ISO\u00a0230-4',
+    caption,
     columns: [
       {head: 'Figure'},
       ...runs.map(
@@ -76,9 +87,8 @@ function circleFigureTable(result) {
       {head: 'Meaning'}
     ],
     rows:
-        CIRCLE_FIGURES.filter(([key]) => runs.some(({run}) => isNumber(run[key])))
-            .map(([key, symbol,
-                   meaning]) => [symbol, ...runs.map(({run}) => circleFigure(run, key)), meaning]),
+        known.map(([key, symbol,
+                    meaning]) => [symbol, ...runs.map(({run}) => circleFigure(run, key)), meaning]),
   });
 }
 
@@ -178,6 +188,60 @@ function circleRings(radius, amount, colours) {
   });
 }
 
+// The names of the axes at the positive ends of the cross through the centre.
+function circleAxes(circle, colours) {
+  const [first, second] = circle.plane.length === 2 ? circle.plane : ['1', '2'];
+  const at = 1.36 * circle.radius_mm;
+  const line = (x, y) =>
+      ({type: 'line', x0: -x, x1: x, y0: -y, y1: y, line: {color: colours.line, width: 1}});
+  const name = (axis, x, y) => ({
+    x,
+    y,
+    text: `+${axis}`,
+    showarrow: false,
+    font: {size: 13, color: colours.ink},
+    bgcolor: colours.surface,
+  });
+  const reach = 1.28 * circle.radius_mm;
+  return {
+    shapes: [line(reach, 0), line(0, reach)],
+    names: [name(first, at, 0), name(second, 0, at)],
+  };
+}
+
+// An arrow from where a sense starts, the way that it goes; both stand within the circle, one above the
+// other where they start at one place.
+function senseArrows(circle, run, senses, colours) {
+  const turn = 18 * Math.PI / 180;
+  return senses.flatMap(([sense, , colour], index) => {
+    const start = run.start_deg?.[sense];
+    if (!isNumber(start)) return [];
+    const r = (0.68 - 0.1 * index) * circle.radius_mm;
+    const from = start * Math.PI / 180, to = from + (sense === 'ccw' ? turn : -turn);
+    const place = (angle) => [r * Math.cos(angle), r * Math.sin(angle)];
+    const [x, y] = place(to), [ax, ay] = place(from);
+    const arrow = {
+      x,
+      y,
+      ax,
+      ay,
+      xref: 'x',
+      yref: 'y',
+      axref: 'x',
+      ayref: 'y',
+      text: `${sense} from ${fixed(start, 0)}\u00b0`,
+      showarrow: true,
+      arrowhead: 2,
+      arrowwidth: 1.8,
+      arrowcolor: colours[colour],
+      font: {size: 11, color: colours[colour]},
+      xanchor: Math.cos(from) > 0 ? 'right' : 'left',
+      yshift: index ? -9 : 9,
+    };
+    return [arrow];
+  });
+}
+
 const squareLayout = (colours, span, extra) => figureLayout(colours, {
   hovermode: 'closest',
   ...extra,
@@ -196,6 +260,7 @@ function polarPanel(circle, run) {
         'around the nominal circle; the values follow as a table.',
     draw: (colours, shown, amount) => {
       const rings = circleRings(radius, amount, colours);
+      const axes = circleAxes(circle, colours);
       const senses = SENSES.filter(([sense]) => shown.has(sense) && run.profile?.[sense]);
       return {
         data: [
@@ -210,8 +275,13 @@ function polarPanel(circle, run) {
                       {...run.profile[sense], radial: run.profile[sense].explained}, amount,
                       {color: colours[colour], width: 1.2, dash: 'dot'})),
         ],
-        layout: squareLayout(
-            colours, CIRCLE_SPAN * radius, {annotations: rings.map(({label}) => label)}),
+        layout: squareLayout(colours, CIRCLE_SPAN * radius, {
+          shapes: axes.shapes,
+          annotations: [
+            ...axes.names, ...rings.map(({label}) => label),
+            ...senseArrows(circle, run, senses, colours)
+          ],
+        }),
       };
     },
     values: () => profileValues(run),
@@ -242,7 +312,8 @@ function polarGroup(result) {
     title: 'The circle, its deviation magnified',
     intro:
         'About the least-squares centre of both senses: what the set-up put off centre is gone. ' +
-        'Dotted: what the causes of the joint fit explain.',
+        'Angles count from the first axis towards the second; an arrow stands where a sense starts ' +
+        'and points the way it goes. Dotted: what the causes of the joint fit explain.',
     items: [
       {key: 'ccw', label: 'Counter-clockwise', swatch: 'forward'},
       {key: 'cw', label: 'Clockwise', swatch: 'backward'},
@@ -364,7 +435,8 @@ registerSection({
       [
         'Radius',
         isNumber(result.radius_mm) ?
-            `${positionText(Number(result.radius_mm.toFixed(2)))}\u00a0mm` :
+            `${positionText(Number(result.radius_mm.toFixed(3)))}\u00a0mm, ${
+                result.radius_is ?? 'nominal'}` :
             null
       ],
       [
@@ -375,7 +447,11 @@ registerSection({
       ],
       ['Linkage read with', linkageText(result.linkage)], ['Covered', coveredText(result)],
       ['Recordings', [...new Set(runsOf(result).flatMap(({run}) => run.recordings))].join(', ')]],
-  body: (result) => [circleFigureTable(result), polarGroup(result), circleSpaceGroup(result),
+  body: (result) => [circleFigureTable(result, 'Figures of ISO\u00a0230-4', CIRCLE_FIGURES),
+                     circleFigureTable(
+                         result, 'Beside the standard: the programmed radius is not known',
+                         RECORDED_FIGURES),
+                     polarGroup(result), circleSpaceGroup(result),
                      harmonicGroup(result), ...(result.circles ?? []).map(signatureTable),
                      notesBlock('Notes', result.notes)]
                         .filter(Boolean),

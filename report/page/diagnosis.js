@@ -35,10 +35,8 @@ function diagnosisSummary(result) {
   return found.length ? `${verdict} Found: ${found.join('; ')}.` : verdict;
 }
 
-// "delta" without a unit, "width_um" and "coefficient_nm_per_mm2" with it: the unit has a column of
-// its own.
-const parameterName = ({name, unit}) =>
-    capital((unit ? name.replace(`_${unit.replace('/', '_per_')}`, '') : name).replaceAll('_', ' '));
+// "Width" of width_um: the unit has a column of its own.
+const parameterName = ({name, quantity}) => capital(quantity ?? name);
 
 function findingParameters({parameters}) {
   const told = (parameters ?? []).filter(({value}) => isNumber(value));
@@ -53,8 +51,22 @@ function findingParameters({parameters}) {
 const rootMeanSquare = (values) =>
     Math.sqrt(values.reduce((sum, value) => sum + value * value, 0) / values.length);
 
+const HARDLY = 0.02;  // of the rms of all rows: less looks like nothing beside a probability
+
+// What rows that took no part say in all: a mean over them hides a cause that acts in a few.
+function heldOutSum(before, after, rows) {
+  if (!isNumber(rows)) return null;
+  const gain = rows * (before ** 2 - after ** 2);
+  const sum = `chi-square over these ${grouped(rows)} rows falls by ${significant(gain)}`;
+  if (gain <= 0) return `in these ${grouped(rows)} rows it is no gain: do not build on it yet`;
+  return before - after > HARDLY * before ?
+      sum :
+      `${sum}: an rms is a mean over all rows, most of which this cause hardly touches, and hides ` +
+          'what the probability weighs, their sum';
+}
+
 // Where the cause lives in its own unit, then in all rows, fitted and held out.
-function findingWorth({curve, rms_before: before, rms_after: after, ...heldOut}) {
+function findingWorth({curve, rms_before: before, rms_after: after, ...heldOut}, held) {
   const {heldout_rms_before: heldBefore, heldout_rms_after: heldAfter} = heldOut;
   const pair = (one, other) => `${one} without it, ${other} with it`;
   const where = curve?.x?.length ?
@@ -66,15 +78,19 @@ function findingWorth({curve, rms_before: before, rms_after: after, ...heldOut})
           `no part ${pair(fixed(heldBefore, 3), fixed(heldAfter, 3))}` :
       null;
   const told = [where, rows].filter(Boolean);
-  return told.length ? capital(`${told.join('; ')} (rms of measured less simulated)`) : null;
+  if (!told.length) return null;
+  const sum = rows ? heldOutSum(heldBefore, heldAfter, held?.rows) : null;
+  return [`${capital(told.join('; '))} (rms of measured less simulated)`, sum && capital(sum)]
+      .filter(Boolean)
+      .join('. ');
 }
 
-function findingWords(finding) {
+function findingWords(finding, held) {
   const {probability, words = {}, parameters} = finding;
   const sensor = (parameters ?? []).find(({name}) => name === 'sensor')?.value;
   return factList([
     ['Probability', percent(probability)], ['Follows the sensor', sensor],
-    ['What it is worth', findingWorth(finding), true],
+    ['What it is worth', findingWorth(finding, held), true],
     ['What it is', words.what && capital(words.what), true],
     ['How it shows', words.shows && capital(words.shows), true],
     ['What to check', words.check && capital(words.check), true],
@@ -121,8 +137,9 @@ function findingCurve(finding) {
   });
 }
 
-const findingGroup = (finding) => element(
-    'section', {class: 'group'}, element('h3', {}, findingName(finding)), findingWords(finding),
+const findingGroup = (finding, held) => element(
+    'section', {class: 'group'}, element('h3', {}, findingName(finding)),
+    findingWords(finding, held),
     findingParameters(finding), findingCurve(finding));
 
 function rivalsTable(result) {
@@ -223,7 +240,7 @@ registerSection({
       ['Recordings', (result.recordings ?? []).join(', '), true], ['Extended model', result.model],
       ['The error map changes by up to', result.map_change_um > 0 && result.findings?.length ?
          `${significant(result.map_change_um)}\u00a0\u00b5m` : null]],
-  body: (result) => [leftoverBlock(result), ...(result.findings ?? []).map(findingGroup),
+  body: (result) => [leftoverBlock(result), ...(result.findings ?? []).map((one) => findingGroup(one, result.heldout)),
                      rivalsTable(result), gainTable(result), evidenceTable(result),
                      cannotShowBlock(result)]
                         .flat()

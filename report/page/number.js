@@ -15,8 +15,9 @@ const NANOMETRE = {
   scale: 1e9
 };
 
-// A unit of a result as it is written: um, urad, hz.
-const unitText = (unit) => unit?.replace(/^u(?=m$|rad$)/, '\u00b5').replace(/^hz$/, 'Hz');
+// A unit of a result (um, ppm/degC, nm/mm^2) with the signs that files leave out.
+const unitText = (unit) =>
+    unit?.replace(/^u(?=m|rad)/, '\u00b5').replace('degC', '\u00b0C').replace('^2', '\u00b2');
 
 const shownUnit = (si) => SHOWN_UNITS[si] ?? {name: si ?? '', scale: 1};
 

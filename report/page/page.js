@@ -59,6 +59,26 @@ function followScrolling(contents) {
   links.forEach((link, id) => watcher.observe(document.getElementById(id)));
 }
 
+const texts = (list) => [...new Set(list.filter((one) => typeof one === 'string' && one))];
+
+// "Measured 21 Nov 2026 to 23 Nov 2026 . Operator A. Smith . Serial numbers mill 4711"
+function protocolText(sections) {
+  const days = texts(sections.map(({result}) => result.started))
+                   .map((started) => new Date(started))
+                   .filter((date) => date.getTime() > 0)
+                   .sort((one, other) => one - other)
+                   .map((date) => date.toLocaleDateString(
+                            'en-GB',
+                            {timeZone: 'UTC', day: 'numeric', month: 'short', year: 'numeric'}));
+  const stated = (key) => texts(sections.map(({result}) => result.protocol?.[key])).join('; ');
+  const [operator, serial] = [stated('operator'), stated('serial')];
+  return [
+    days.length ? `Measured ${texts([days[0], days.at(-1)]).join(' to ')}` : null,
+    operator ? `Operator ${operator}` : null,
+    serial ? `Serial numbers ${serial}` : null,
+  ].filter(Boolean).join(' \u00b7 ');
+}
+
 function writeTitle(folder, sections) {
   const machines = [...new Set(sections.map(({result}) => result.machine).filter(Boolean))];
   const title = machines.length ? `Geometric errors of ${joinWords(machines)}` : 'Geometric errors';
@@ -66,6 +86,9 @@ function writeTitle(folder, sections) {
   const version = sections.map(({result}) => result.abbe).find((abbe) => typeof abbe === 'string');
   document.title = title;
   document.getElementById('title').textContent = title;
+  const protocol = document.getElementById('protocol');
+  protocol.textContent = protocolText(sections);
+  protocol.hidden = !protocol.textContent;
   document.getElementById('subtitle').textContent = [
     `Folder ${folder}`, count, version ? `abbe ${version}` : null
   ].filter(Boolean).join(' \u00b7 ');

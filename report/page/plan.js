@@ -3,9 +3,9 @@
 const planSizes = ({sizes}) => element(
     'ul', {class: 'plain'},
     sizes.map(
-        ({name, unit, seen_from: seen, plausible}) => element(
+        ({name, quantity, unit, seen_from: seen, plausible}) => element(
             'li', {},
-            [parameterName({name, unit}), 'from', significant(seen), unit && unitText(unit),
+            [parameterName({name, quantity}), 'from', significant(seen), unit && unitText(unit),
              `(usual: ${significant(plausible)})`]
                 .filter(Boolean)
                 .join(' '))));
@@ -43,11 +43,13 @@ registerSection({
     return `Of ${all} causes, ${seen} would be seen at their usual size on a machine like this one.`;
   },
   facts: (result) => [['Runs', (result.runs ?? []).join(', '), true]],
-  body: (result) =>
-      [confusedBlock(result), plannedTable('Would be seen', seenCauses(result)),
-       plannedTable(
-           'Would not be seen at their usual size', (result.causes ?? []).filter(({seen}) => !seen))]
-          .filter(Boolean),
+  body: (result) => [element(
+      'details', {class: 'fold group'},
+      element('summary', {}, 'Each cause, and what these runs could not tell apart'),
+      confusedBlock(result), plannedTable('Would be seen', seenCauses(result)),
+      plannedTable(
+          'Would not be seen at their usual size',
+          (result.causes ?? []).filter(({seen}) => !seen)))],
   overview: {
     title: 'Plan',
     columns: [{head: 'Runs'}, {head: 'Causes seen', numeric: true}, {head: 'Of', numeric: true}],

@@ -67,6 +67,11 @@ struct Recalled {
 // map can hold stays there, to be compensated.
 enum class Seat { kInstrument, kMotion, kMap };
 
+// What a cause is a function of besides the readings themselves: positions, speeds and senses of
+// axes and pivots, which a path of commands has; the time on a clock, whose zero is of no meaning
+// to another path (a warm-up, the phase of a vibration); a recorded temperature.
+enum class Follows : unsigned char { kPath, kTime, kTemperature };
+
 struct Cause {
   using Objects = std::function<std::vector<std::string>(const Scene&)>;
   using Columns = std::function<std::vector<Disturbance>(const Trace&, const std::string& object,
@@ -101,6 +106,7 @@ struct Cause {
   // that is estimated, they are not what it is known by. Up to shape[1] it is as stated.
   bool drawn = false;
   bool in_map = false;  // one of the 21 errors, a function of position
+  Follows follows = Follows::kPath;
   // The stage in which it is a line in time: its shape is a frequency, looked for among all that
   // the runs resolve; `shapes` only tells whether it would be seen.
   LineIn line_in = {};

@@ -69,6 +69,7 @@ Cause EncoderCountSlip() {
       .recall = [](const Eigen::VectorXd& values) -> Recalled {
         return {values.tail(1), values.head(1)};
       },
+      .follows = Follows::kTime,
   };
 }
 

@@ -25,6 +25,7 @@ Cause LinkThermalGrowth() {
       .widens = [](const std::string& object) -> std::vector<std::string> {
         return {object == "link_1" ? "expansion.after_pivot_2" : "expansion.after_pivot_3"};
       },
+      .follows = Follows::kTemperature,
   };
 }
 

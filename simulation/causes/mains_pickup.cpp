@@ -32,6 +32,7 @@ Cause MainsPickup() {
       .recall = [](const Eigen::VectorXd& values) -> Recalled {
         return {SineAndCosine(values[1], values[2]), values.head(1)};
       },
+      .follows = Follows::kTime,
   };
 }
 

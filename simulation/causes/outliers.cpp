@@ -14,6 +14,7 @@ Cause Outliers() {
       .plausible = Eigen::VectorXd::Constant(1, 1.0),
       .objects = [](const Scene&) { return std::vector<std::string>{}; },
       .one_event = true,
+      .follows = Follows::kTime,
   };
 }
 

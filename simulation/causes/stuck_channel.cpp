@@ -14,6 +14,7 @@ Cause StuckChannel() {
       .plausible = Eigen::VectorXd::Constant(2, 1.0),
       .objects = [](const Scene&) { return std::vector<std::string>{}; },
       .one_event = true,
+      .follows = Follows::kTime,
   };
 }
 

@@ -36,6 +36,7 @@ Cause ThermalGrowth() {
         return {InStage(trace, Positioning(axis),
                         trace.warming.row(row).cwiseProduct(trace.axes.row(axis)))};
       },
+      .follows = Follows::kTemperature,
   };
 }
 

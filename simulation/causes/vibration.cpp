@@ -34,6 +34,7 @@ Cause Vibration() {
       .recall = [](const Eigen::VectorXd& values) -> Recalled {
         return {SineAndCosine(values[1], values[2]), values.head(1)};
       },
+      .follows = Follows::kTime,
       .line_in = [](const std::string& object) { return Positioning(AxisOf(object[0])); },
   };
 }

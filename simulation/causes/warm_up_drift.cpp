@@ -33,6 +33,7 @@ Cause WarmUpDrift() {
         return {InStage(trace, kReadingStage + ProbeOf(object), warm)};
       },
       .shapes = [](const Scene&) { return GeometricShapes(20.0, 20000.0, 1.7); },
+      .follows = Follows::kTime,
   };
 }
 

@@ -7,6 +7,7 @@ import linkage_runs
 from program_case import MACHINE, ProgramCase
 
 CENTRE = (30.0, 30.0, 30.0)
+OF_10_MM = ["# radius_mm = 10"]
 
 
 def circle(machine, senses=(1, -1), radius=10.0, feed=100.0, plane="XY", points=720, run_in=False):
@@ -50,15 +51,15 @@ class Circle(ProgramCase):
 
     def test_perfect_circle_in_every_plane(self):
         for plane in ("XY", "YZ", "ZX"):
-            recording = linkage_runs.write(self.path / f"{plane}.csv", circle(perfect, plane=plane))
+            recording = linkage_runs.write(self.path / f"{plane}.csv", circle(perfect, plane=plane), header=OF_10_MM)
             result = self.result(recording, "--machine", MACHINE)
             self.assertEqual(result["plane"], plane)
-            self.assertAlmostEqual(result["radius_mm"], 10.0, places=9)
+            self.assertEqual((result["radius_mm"], result["radius_is"]), (10.0, "programmed"))
             for key in ("G_cw_um", "G_ccw_um", "G_b_um", "F_max_um", "F_min_um", "D_um"):
                 self.assertLess(abs(result[key]), 1e-6, (plane, key))
 
     def test_linkage_and_reference_side_by_side(self):
-        recording = linkage_runs.write(self.path / "both.csv", circle(worn), reference=True)
+        recording = linkage_runs.write(self.path / "both.csv", circle(worn), reference=True, header=OF_10_MM)
         done = self.run_program(recording, "--machine", MACHINE)
         self.assertIn("linkage XY", done.stdout)
         self.assertIn("reference XY", done.stdout)
@@ -82,9 +83,9 @@ class Circle(ProgramCase):
         def grown(by):
             return lambda x, y, vx, vy: (x * (1 + by / 10) + 0.005, y * (1 + by / 10))
         ccw = linkage_runs.write(self.path / "ccw.csv", circle(grown(0.002), (1,), run_in=True),
-                                 reference=True, linkage=False)
+                                 reference=True, linkage=False, header=OF_10_MM)
         cw = linkage_runs.write(self.path / "cw.csv", circle(grown(-0.001), (-1,), run_in=True),
-                                reference=True, linkage=False)
+                                reference=True, linkage=False, header=OF_10_MM)
         result = self.result(ccw, cw)
         self.assertAlmostEqual(result["G_b_um"], 3.0, delta=1e-3)
         self.assertAlmostEqual(result["G_cw_um"], 0.0, delta=1e-3)
@@ -95,6 +96,52 @@ class Circle(ProgramCase):
         self.assertAlmostEqual(run["setup_offset_um"][0], 5.0, delta=1e-3)
         self.assertEqual(run["recordings"], ["ccw.csv", "cw.csv"])
         self.assertGreaterEqual(run["left_out_rows"], 98 - 2)
+
+    def test_the_lag_of_the_servo_is_against_the_programmed_radius(self):
+        """Axes that lag by a first order of 15 ms go round a circle of R / sqrt(1 + (v T / R)^2), and their
+        scales say so: only the programmed radius shows it."""
+        radius, feed, lag = 20.0, 2000.0, 0.015
+        smaller = radius / math.sqrt(1 + (feed / 60 * lag / radius) ** 2)
+        true = 1e3 * (smaller - radius)
+        self.assertLess(true, -6.0)
+        rows = circle(perfect, radius=smaller, feed=feed)
+        plain = linkage_runs.write(self.path / "plain.csv", rows, reference=True, linkage=False)
+        said = linkage_runs.write(self.path / "said.csv", rows, reference=True, linkage=False,
+                                  header=["# radius_mm = 20.0"])
+        for result in (self.result(said), self.result(plain, "--radius", 20)):
+            self.assertEqual(result["radius_is"], "programmed")
+            for key in ("D_um", "F_max_um", "F_min_um", "F_max_ls_um", "F_min_ls_um"):
+                self.assertAlmostEqual(result[key], true, delta=1e-6, msg=key)
+            self.assertEqual(result["notes"], [])
+        result, text = self.result(plain), self.done(plain)
+        self.assertEqual(result["radius_is"], "recorded")
+        for key in ("D_um", "F_max_um", "F_min_um", "F_max_ls_um", "F_min_ls_um"):
+            self.assertNotIn(key, result)
+            self.assertNotIn(key, result["circles"][0]["runs"][0]["u"])
+        self.assertAlmostEqual(result["mean_beyond_recorded_um"], 0.0, delta=1e-6)
+        self.assertAlmostEqual(result["radius_mm"], smaller, places=9)
+        self.assertIn("no F max, F min and D of ISO 230-4", text)
+        self.assertIn("write radius_mm into its header, or give --radius", text)
+        self.assertNotIn("F max, set-up centre", text)
+
+    def test_a_radius_of_another_circle_is_refused(self):
+        plain = linkage_runs.write(self.path / "plain.csv", circle(perfect), reference=True, linkage=False)
+        self.refuse(plain, "--radius", 20, saying=["plain.csv", "--radius says a radius of 20 mm", "10 mm"])
+        for said, saying in (("5", "radius_mm of the header says a radius of 5 mm"), ("-5", "radius_mm = -5"),
+                             ('"ten"', "radius_mm")):
+            wrong = linkage_runs.write(self.path / "wrong.csv", circle(perfect), reference=True, linkage=False,
+                                       header=[f"# radius_mm = {said}"])
+            self.refuse(wrong, saying=["wrong.csv", saying])
+
+    def test_the_rig_says_its_radius_and_where_it_starts(self):
+        run = self.rig_record("run.csv", "--course", "circle", "--size", 30, "--feed", 1200, "--kind", "reference")
+        self.assertIn("# radius_mm = 15\n", run.read_text())
+        result = self.result(run)
+        self.assertEqual((result["radius_mm"], result["radius_is"]), (15.0, "programmed"))
+        starts = result["circles"][0]["runs"][0]["start_deg"]
+        self.assertEqual(set(starts), {"ccw", "cw"})
+        for start in starts.values():  # on the first axis
+            self.assertLess(abs((start + 180) % 360 - 180), 5.0)
 
     def test_inclined_plane(self):
         tilt = math.radians(30)
@@ -112,12 +159,13 @@ class Circle(ProgramCase):
         """Half a turn in each sense: its figures, stated as partial, and what one arc cannot tell."""
         rows = circle(worn)
         half = linkage_runs.write(self.path / "half.csv", rows[:360] + rows[1080:], reference=True,
-                                  linkage=False)
+                                  linkage=False, header=OF_10_MM)
         self.assertIn("PART OF THE CIRCLE, degrees ccw, cw", self.done(half))
         result = self.result(half)
         self.assertTrue(result["partial"])
         self.assertNotIn("D_um", result)
-        whole = self.result(linkage_runs.write(self.path / "whole.csv", rows, reference=True, linkage=False))
+        whole = self.result(linkage_runs.write(self.path / "whole.csv", rows, reference=True, linkage=False,
+                                               header=OF_10_MM))
         self.assertFalse(whole["partial"])
         self.assertLess(result["G_ccw_um"], whole["G_ccw_um"])
         # About the set-up centre the arc is what it is: 0 to 180 degrees hold the largest radius of

@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import subprocess
 import tempfile
@@ -136,6 +137,82 @@ class CorrectTest(unittest.TestCase):
             self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
             self.assertIn(words, done.stderr)
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["map.toml", "part.ngc"])
+
+    def refused(self, machine, name, *words):
+        """One line that says all of `words`, in small memory and little time; no file is left."""
+        program = [ABBE, "correct", machine.write(self.folder / "map.toml"), self.folder / name,
+                   "--out", self.folder / "out.ngc", "--start", "30,30,30"]
+        limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (10, 10))
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+        done = subprocess.run(program, capture_output=True, text=True, preexec_fn=limit, errors="replace")
+        self.assertEqual(done.returncode, 2, (name, done.stdout, done.stderr))
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+        self.assertLess(max(before, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss), 300e3)  # kB
+        self.assertEqual([p.name for p in self.folder.iterdir() if p.name.startswith("out.ngc")], [])
+
+    def test_a_program_that_would_take_the_memory_is_refused_at_once(self):
+        machine = MapMachine(5)
+        for text, *words in (("G1 X1000000000\n", "line 1: X = ", "outside its travel"),
+                             ("G2 X30 Y30 I1000000000 J0\n", "line 1: ", "an arc of radius 1e+09 mm"),
+                             ("G2 X30 Y30 I1000000 J0\n", "line 1: X = ", "outside its travel"),
+                             ("G2 X30 Y30 Z1000000000 I5 J0\n", "line 1: Z = ", "outside its travel"),
+                             ("GnanX10 Y10 Z10\n", 'line 1: "GnanX10', "no letter with a number"),
+                             ("G99999999999999999999 X10\n", "line 1: G99999999999999999999 is not supported"),
+                             ("G429496730.6 X10\n", "line 1: G429496730.6 is not supported"),
+                             ("Minf\n", 'line 1: "Minf"', "no letter with a number"),
+                             ("G1 Xinf\n", 'line 1: "Xinf"'), ("G1 X nan\n", 'line 1: "X nan"'),
+                             ("G0 X1\n" + 100000 * "(" + "\n", "line 2: longer than 65534 characters"),
+                             ("", "part.ngc: is empty"),
+                             ("%\nG0 X30\n", "line 2: ", "it was cut")):
+            (self.folder / "part.ngc").write_text(text)
+            self.refused(machine, "part.ngc", "part.ngc: ", *words)
+
+    def test_what_cannot_be_read_is_no_end_of_a_program(self):
+        machine = MapMachine(5)
+        (self.folder / "folder.ngc").mkdir()
+        self.refused(machine, "folder.ngc", "folder.ngc: cannot be read beyond line 0: Is a directory")
+        self.refused(machine, "/proc/self/mem", "/proc/self/mem: cannot be read beyond line 0")
+        self.refused(machine, "/dev/zero", "/dev/zero: line 1: longer than")
+        self.refused(machine, "missing.ngc", "missing.ngc: cannot be read")
+        # What was there stays.
+        (self.folder / "kept.ngc").write_text("kept\n")
+        done = self.correct(machine, "folder.ngc", "--out", self.folder / "kept.ngc")
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual((self.folder / "kept.ngc").read_text(), "kept\n")
+
+    def test_it_tells_what_it_assumes(self):
+        machine = MapMachine(5)
+        (self.folder / "a.ngc").write_text("G0 X10 Y20 Z30\nG2 X14 I2 F100\n")
+        done = self.correct(machine, "a.ngc", "--json", self.folder / "a.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for words in ("millimetres (G21) from line 1 on", "absolute positions (G90) from line 1 on",
+                      "arcs in XY (G17) from line 2 on", "ends with neither M2, M30 nor %"):
+            self.assertIn(words, done.stderr)
+        self.assertEqual(len(json.loads((self.folder / "a.json").read_text())["assumed"]), 3)
+        (self.folder / "b.ngc").write_text("G21 G90 G17\nG0 X10 Y20 Z30\nG2 X14 I2 F100\nM30\n")
+        done = self.correct(machine, "b.ngc")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_a_cause_that_follows_time_does_not_act_on_coordinates(self):
+        machine = MapMachine(3)
+        points = np.linspace(1, 59, 30)
+        (self.folder / "cmm.csv").write_text(
+            "x_mm,y_mm,z_mm\n" + "".join(f"{x},{x / 2},{30}\n" for x in points))
+        plain = self.correct(machine, "cmm.csv", "--out", self.folder / "plain.csv")
+        self.assertEqual(plain.returncode, 0, plain.stderr)
+        name = re.search(r'machine = "(.*)"', (self.folder / "map.toml").read_text())[1]
+        (self.folder / "causes.toml").write_text(
+            f'extended_model = 1\nmachine = "{name}"\n'
+            '[[cause]]\nid = "vibration"\nobject = "X"\nfrequency_hz = 7.3\namplitude_um = 5.0\nphase_rad = 0.4\n'
+            '[[cause]]\nid = "warm-up-drift"\nobject = "Y"\namplitude_um = 9.0\ntime_constant_s = 40.0\n')
+        done = self.correct(machine, "cmm.csv", "--out", self.folder / "causes.csv", "--feed-mm-min", "600",
+                            "--causes", self.folder / "causes.toml")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("beside the map, from causes.toml: nothing; left out, for a path has no time and no "
+                      "temperature: vibration:X, warm-up-drift:Y", done.stdout)
+        self.assertEqual((self.folder / "causes.csv").read_text(), (self.folder / "plain.csv").read_text())
 
 
 if __name__ == "__main__":

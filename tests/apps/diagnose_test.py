@@ -10,6 +10,22 @@ import unittest
 
 from program_case import MACHINE, ProgramCase
 
+# What the keys of causes are called and measured in, written down by hand.
+UNITS = {
+    "amplitude_um": ("amplitude", "um"), "amplitude_urad": ("amplitude", "urad"), "angle_urad": ("angle", "urad"),
+    "coefficient": ("coefficient", ""), "coefficient_nm_per_mm2": ("coefficient", "nm/mm^2"),
+    "coefficient_ppm_per_c": ("coefficient", "ppm/degC"), "compliance_urad": ("compliance", "urad"),
+    "cos_urad": ("cos", "urad"), "sin_urad": ("sin", "urad"), "decay_mm": ("decay", "mm"), "delay_ms": ("delay", "ms"),
+    "delta": ("delta", ""), "displacement_um": ("displacement", "um"), "du_mm": ("du", "mm"), "dv_mm": ("dv", "mm"),
+    "electrode_radius_mm": ("electrode radius", "mm"), "feed_mm_min": ("feed", "mm/min"),
+    "frequency_hz": ("frequency", "Hz"), "gain_ppm": ("gain", "ppm"), "height_um": ("height", "um"),
+    "order": ("order", ""), "phase_rad": ("phase", "rad"), "pitch_mm": ("pitch", "mm"), "pitch_urad": ("pitch", "urad"),
+    "quadratic_per_mm": ("quadratic", "1/mm"), "rms_um": ("rms", "um"), "roll_urad": ("roll", "urad"),
+    "time_constant_s": ("time constant", "s"), "time_s": ("time", "s"), "width_um": ("width", "um"),
+    "width_urad": ("width", "urad"), "yaw_urad": ("yaw", "urad"),
+    **{f"{wave}{order}_um": (f"{wave}{order}", "um") for wave in ("sin", "cos") for order in (2, 3, 4)},
+}
+
 
 def circle(feed_mm_min):
     """A circle in XY of 20 mm about the middle of the travels, as a path; its angles are none."""
@@ -59,7 +75,11 @@ class PlanTest(ProgramCase):
             self.assertIn("fixture-misalignment:head", plan["cannot_show"])
         play = next(one for one in minimal["causes"] if one["cause"] == "backlash")
         size = play["sizes"][0]
-        self.assertEqual((size["name"], size["unit"]), ("width_um", "um"))
+        self.assertEqual((size["name"], size["quantity"], size["unit"]), ("width_um", "width", "um"))
+        sizes = {size["name"]: (size["quantity"], size["unit"]) for one in minimal["causes"] for size in one["sizes"]}
+        self.assertGreater(len(sizes), 8)
+        for name, (quantity, unit) in sizes.items():
+            self.assertEqual((quantity, unit), UNITS[name], name)
         self.assertAlmostEqual(size["seen_from"], 5 * size["plausible"] / play["visible_sd"])
         self.assertIn("backlash:X", text)
 

@@ -70,7 +70,8 @@ class EncodersTest(unittest.TestCase):
 
     def circle(self, recording):
         result = self.folder / "circle.json"
-        self.run_abbe("circle", recording, "--machine", self.machine, "--json", result, "--quiet")
+        self.run_abbe("circle", recording, "--machine", self.machine, "--radius", 10, "--json", result,
+                      "--quiet")
         return json.loads(result.read_text())["circles"][0]
 
     def test_a_circle_is_recorded_and_evaluated_as_the_rig_ran_it(self):

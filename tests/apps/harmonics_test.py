@@ -59,6 +59,27 @@ class Harmonics(unittest.TestCase):
         self.assertGreater(channel["held_out_rms_without_um"], 20)
         self.assertIn("the second half by a fit of the first", run.stdout)
 
+    def test_each_column_keeps_its_kind_of_unit(self):
+        # The same wave as a length, an angle, a voltage and a plain number.
+        rows = ["time_s,shaft_deg,flag,gap_mm,tilt_deg,tilt_mrad,supply_v,counts"]
+        for i in range(400):
+            angle = 0.05 * i
+            wave = 0.030 * math.cos(angle)
+            rows.append(f"{i / 10},{math.degrees(angle) % 360!r},0,{wave!r},{wave!r},{wave!r},{wave!r},{wave!r}")
+        path = self.path / "units.csv"
+        path.write_text("# abbe-recording = 1\n# kind = \"dwell\"\n" + "\n".join(rows) + "\n")
+        run = self.run_program("harmonics", path, "--angle", "shaft_deg", "--of",
+                               "gap_mm,tilt_deg,tilt_mrad,supply_v,counts", "--json", self.path / "out.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        channels = json.loads((self.path / "out.json").read_text())["channels"]
+        self.assertEqual([channel["unit"] for channel in channels], ["um", "urad", "urad", "V", ""])
+        cosines = [channel["harmonics"][0][key] for channel, key in
+                   zip(channels, ("cos_um", "cos_urad", "cos_urad", "cos_v", "cos"))]
+        for found, true in zip(cosines, (30.0, 1e6 * math.radians(0.030), 30.0, 0.030, 0.030)):
+            self.assertAlmostEqual(found, true, delta=1e-9 * true)
+        self.assertIn("tilt_deg: 400 readings, in urad", run.stdout)
+        self.assertIn("residuals 0.00 V rms", run.stdout)
+
     def test_refuses_in_one_line(self):
         log = self.path / "turn.log"
         self.assertIn("name them as columns", self.refusal("convert", log, self.path / "a.csv"))

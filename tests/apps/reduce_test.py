@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -66,6 +67,31 @@ class Reduce(unittest.TestCase):
         for name in ("EAX", "EBX", "ECX", "EYX", "EZX"):
             for value in result["errors"][name]["value"]:
                 self.assertLess(abs(value), 1e-9)
+
+    def test_numbers_have_the_decimals_of_their_uncertainty(self):
+        done = self.run_program(self.write("sweep_X.csv", rows()), "--machine", MACHINE)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        number = r"-?\d+(?:\.(\d+))?"
+        lines = re.findall(rf"(?m)^  E[ABC]X \w+ +{number} +({number}) ", done.stdout)
+        self.assertEqual(len(lines), 3, done.stdout)
+        lines += re.findall(rf"(?m)^  E[YZ]X +{number} +({number}) ", done.stdout)
+        self.assertEqual(len(lines), 5, done.stdout)
+        uncertain = [line for line in lines if float(line[1]) > 0]  # a range of 0 has no uncertainty here
+        self.assertGreater(len(uncertain), 1, done.stdout)
+        for decimals, U, of_U in uncertain:
+            self.assertEqual(len(decimals), len(of_U))
+            digits = U.replace(".", "").lstrip("0")
+            self.assertTrue(len(digits) == 2 or (of_U == "" and len(digits) > 2), U)
+
+    def test_the_protocol_goes_into_the_result(self):
+        header = [*HEADER[:-1], "# [protocol]", '# operator = "A. Smith"', '# serial = "mill 4711, head P-12"']
+        recording = self.write("sweep_X.csv", rows(), header)
+        self.assertEqual(self.run_program(recording, "--machine", MACHINE, "--json", self.path / "a.json").returncode, 0)
+        result = json.loads((self.path / "a.json").read_text())
+        self.assertEqual(result["protocol"], {"operator": "A. Smith", "serial": "mill 4711, head P-12"})
+        plain = self.write("plain.csv", rows())
+        self.assertEqual(self.run_program(plain, "--machine", MACHINE, "--json", self.path / "b.json").returncode, 0)
+        self.assertNotIn("protocol", json.loads((self.path / "b.json").read_text()))
 
     def test_bad_rows(self):
         good = rows()

@@ -102,9 +102,10 @@ class SweepTest(unittest.TestCase):
     def test_reads_an_independent_server(self):
         machine, port = Machine(), 15602
         serve_with_pymodbus(machine, port)
-        code, _, err = self.finish(self.start(port))
+        code, _, err = self.finish(self.start(port, "--operator", "A. Smith"))
         self.assertEqual(code, 0, err)
         self.assert_truth()
+        self.assertEqual(self.result()["protocol"], {"operator": "A. Smith"})
 
     def test_a_server_that_vanishes_and_returns_costs_only_flagged_rows(self):
         server = RawServer(Machine())

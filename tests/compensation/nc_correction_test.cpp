@@ -180,6 +180,91 @@ TEST(NcCorrection, WhatItCannotCorrectIsRefusedWithItsLine) {
   map::ExpectHas(Refusal("G0 X101\n"), "line 1: X = 101 mm lies outside its travel");
 }
 
+TEST(NcCorrection, WhatIsNoNumberAndNoCodeIsRefused) {
+  for (const char* const word :
+       {"Xnan", "Yinf", "Z-inf", "GnanX1", "Minf", "Fnan", "Ginfinity", "Xnan(char)"}) {
+    map::ExpectHas(Refusal(std::string("G0 X1\n") + word + "\n"), "is no letter with a number");
+  }
+  // 429496730.6 and 6553.6 are 1 and 0 in a word of 32 or 16 bits.
+  for (const char* const word :
+       {"G99999999999999999999", "G429496730.6", "G6553.6", "G1000", "G-1", "G0.05", "G1.00001",
+        "M99999999999999999999", "M4294967298", "M-0.5", "M2.1"}) {
+    map::ExpectHas(Refusal(std::string("G0 X1\n") + word + " X2\n"), "line 2: ");
+    map::ExpectHas(Refusal(std::string("G0 X1\n") + word + " X2\n"), " is not supported");
+  }
+}
+
+// Nothing of what is refused may be divided first: each of these would be 10^7 points and more, and
+// the last ones more than any integer holds.
+TEST(NcCorrection, TheTravelIsLookedAtBeforeAMoveIsDivided) {
+  const NcOptions fine{{1e-9, 1e-7}, Vector3d::Zero(), Vector3d(0, 0, 0)};
+  for (const char* const move :
+       {"G1 X1000000000", "G91 G1 Y-1000000000", "G2 I1000000000", "G3 X0 Y10 I1000000 J5",
+        "G2 X1 Y0 Z1000000000 I5 J0", "G18 G2 X30 Z30 R-100000", "G1 X1000000000000000000000000000",
+        "G2 I1000000000000000000000000000000 J0", "G20 G1 X1000"}) {
+    SCOPED_TRACE(move);
+    const std::string refusal = Refusal(std::string(move) + "\n", fine);
+    map::ExpectHas(refusal, "line 1: ");
+    EXPECT_TRUE(refusal.find("lies outside its travel") != std::string::npos ||
+                refusal.find("an arc of radius") != std::string::npos ||
+                refusal.find("from its centre") != std::string::npos)
+        << refusal;
+  }
+  // Its ends lie within, its far side beyond X = 100 mm.
+  map::ExpectHas(Refusal("G0 X90 Y-30\nG3 Y30 J30\n"), "line 2: X = 120 mm lies outside");
+  EXPECT_NO_THROW(Corrected("G0 X60 Y-30\nG3 Y30 J30\n"));
+  // The shorter way round stays within.
+  EXPECT_NO_THROW(Corrected("G0 X90 Y-30\nG2 Y30 J30\n"));
+  NcOptions far = kCoarse;
+  far.start = Vector3d(1e9, 0, 0);
+  map::ExpectHas(Refusal("G1 X1\n", far), "--start: X = 1e+12 mm lies outside");
+}
+
+TEST(NcCorrection, AMoveIsNotDividedWithoutBounds) {
+  map::ExpectHas(Refusal("G1 X50\n", {{1e-6, 1e-9}, Vector3d::Zero(), Vector3d(0, 0, 0)}),
+                 "line 1: the move would become 5e+07 lines");
+  map::ExpectHas(Refusal("G2 I10\n", {{1e-300, 0.5}, Vector3d::Zero(), Vector3d(0, 0, 0)}),
+                 "line 1: the move would become ");
+}
+
+std::vector<std::string> Assumed(std::string_view program) {
+  NcCorrection correction(Perfect(), kCoarse);
+  std::string out;
+  map::Lines lines(program, "");
+  for (std::string_view line; lines.Next(line);) correction.Take(line, out);
+  std::vector<std::string> assumed;
+  for (const NcAssumption& one : correction.counts().assumed) {
+    assumed.push_back(one.what + " " + std::to_string(one.line));
+  }
+  return assumed;
+}
+
+TEST(NcCorrection, TellsWhatAProgramLeavesToItsControl) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(Assumed("M3\nG0 X1\nX2\nG2 X4 I1\n"),
+            (Names{"millimetres (G21) 2", "absolute positions (G90) 2", "arcs in XY (G17) 4"}));
+  EXPECT_EQ(Assumed("G20\nG0 X1 G91\n"), Names());
+  EXPECT_EQ(Assumed("G0 X1 G21\nG90\n"), Names{"absolute positions (G90) 1"});
+  EXPECT_EQ(Assumed("G17 G21 G90\nG0 X1\nG2 X4 I1.5\n"), Names());
+  EXPECT_EQ(Assumed("M3\nM30\n"), Names());
+}
+
+// RS 274/NGC, 2.1: a file that begins with % ends with %.
+TEST(NcCorrection, AProgramThatWasCutHasNoEnd) {
+  const auto finish = [](std::string_view program) {
+    NcCorrection correction(Perfect(), kCoarse);
+    std::string out;
+    map::Lines lines(program, "");
+    for (std::string_view line; lines.Next(line);) correction.Take(line, out);
+    correction.Finish();
+  };
+  map::ExpectHas(map::MessageOf<InputError>([&] { finish("%\nG0 X1\nX2\n"); }),
+                 "line 3: the program begins with %");
+  EXPECT_NO_THROW(finish("%\nG0 X1\n%\n"));
+  EXPECT_NO_THROW(finish("%\nG0 X1\nM30\n"));
+  EXPECT_NO_THROW(finish("G0 X1\n"));
+}
+
 TEST(NcCorrection, ThePlaceOfTheMachineMustBeKnown) {
   NcOptions options = kCoarse;
   options.start.reset();

@@ -59,7 +59,7 @@ test('lengths below a micrometre are in nanometres', () => {
 
 test('units are written as standards write them', () => {
   assert.deepEqual(
-      ['um', 'urad', 'hz', 'rad', 'mm', 'ms'].map(unitText),
-      ['\u00b5m', '\u00b5rad', 'Hz', 'rad', 'mm', 'ms']);
+      ['um', 'urad', 'Hz', 'rad', 'mm', 'ms', 'mm/min', 'ppm/degC', 'nm/mm^2'].map(unitText),
+      ['\u00b5m', '\u00b5rad', 'Hz', 'rad', 'mm', 'ms', 'mm/min', 'ppm/\u00b0C', 'nm/mm\u00b2']);
   assert.equal(unitText(undefined), undefined);
 });

@@ -90,6 +90,14 @@ test(
     }));
 
 test(
+    'the title says when, who and with what',
+    () => withPage({}, async (page) => {
+      assert.match(
+          await page.locator('#protocol').textContent(),
+          /^Measured 2\d Nov 2026.* \u00b7 Operator A\. Smith \u00b7 Serial numbers mill 4711, head P-12$/);
+    }));
+
+test(
     'text in a result stays text',
     () => withPage({}, async (page) => {
       assert.equal(await page.evaluate(() => window.escaped), undefined);
@@ -199,6 +207,23 @@ test(
     }));
 
 test(
+    'the plot of a circle names its axes, and where and which way each sense goes',
+    () => withPage({}, async (page) => {
+      const group = page.locator('section.group', {hasText: 'The circle, its deviation'});
+      const notes = await group.locator('.plot').first().evaluate(
+          (div) => div.layout.annotations.map(({text, x, y, ax, ay}) => ({text, x, y, ax, ay})));
+      const named = (text) => notes.find((note) => note.text.startsWith(text));
+      assert.ok(named('+X').x > 10 && Math.abs(named('+X').y) < 1e-9);
+      assert.ok(named('+Y').y > 10 && Math.abs(named('+Y').x) < 1e-9);
+      for (const [name, way, angle] of [['ccw', 1, 0.5], ['cw', -1, 179.5]]) {
+        const {x, y, ax, ay} = named(`${name} from`);
+        // From the start on, the way that the sense turns.
+        assert.ok(Math.abs(Math.atan2(ay, ax) * 180 / Math.PI - angle) < 1e-9, name);
+        assert.ok(way * (ax * y - ay * x) > 0, name);
+      }
+    }));
+
+test(
     'a path in space keeps its handedness',
     () => withPage({}, async (page) => {
       const group = page.locator('section.group', {hasText: 'The path in space'}).last();
@@ -247,6 +272,11 @@ test(
       const [left, hidden] = await section.locator('[role=note]').allTextContents();
       assert.match(left, /Probe d stands apart where time is 481\.1 to 500\.8.s, by 0\.224/);
       assert.match(hidden, /Squareness, axes X and Z/);
+      // Little by its rms, and why that is no contradiction of 62 %.
+      const small = section.locator('section.group', {hasText: 'Probe gain'}).first();
+      assert.match(
+          await small.locator('dl').textContent(),
+          /no part 0\.971 without it, 0\.970 with it.*these 1.240 rows falls by 2\.41: an rms is a mean over all rows/);
       const gain = section.locator('tr', {hasText: 'rows that took no part'});
       assert.match(await gain.textContent(), /1.240.*1\.880.*1\.030/);
     }));
@@ -255,6 +285,9 @@ test(
     'a plan tells what runs would show and what they would confuse',
     () => withPage({}, async (page) => {
       const section = page.locator('section.result', {hasText: 'what these runs would show'});
+      const folded = section.locator('details.fold');
+      assert.equal(await folded.getAttribute('open'), null);
+      assert.equal(await folded.locator('table').count(), 2);
       assert.match(await section.locator('.summary').textContent(), /Of 4 causes, 3 would/);
       const lag = section.locator('tr', {hasText: 'Servo lag, axis X'});
       assert.match(await lag.textContent(), /Delay from 0\.0750 ms \(usual: 0\.500\)40/);
@@ -477,9 +510,21 @@ test(
 test(
     'prints on light paper, figures within the page',
     () => withPage({colorScheme: 'dark'}, async (page) => {
-      const pdf = await page.pdf({path: join(screenshots, 'print.pdf'), preferCSSPageSize: true});
-      const pages = pdf.toString('latin1').match(/\/Type\s*\/Page\b/g).length;
+      const pdf = await page.pdf({
+        path: join(screenshots, 'print.pdf'),
+        preferCSSPageSize: true,
+        tagged: true,
+        outline: true
+      });
+      const text = pdf.toString('latin1');
+      const pages = text.match(/\/Type\s*\/Page\b/g).length;
       assert.ok(pages >= sample_names.length, `${pages} pages`);
+      // The outline tells where each heading stands, from the lower end of its page, in points. A heading with the first
+      // lines of what follows takes more than 30 mm.
+      const heights = [...text.matchAll(/\/XYZ [-\d.]+ ([-\d.]+)/g)].map(([, y]) => Number(y));
+      assert.ok(heights.length > sample_names.length, `${heights.length} headings`);
+      const lowest = (14 + 30) / 25.4 * 72;
+      assert.deepEqual(heights.filter((y) => y < lowest), []);
 
       await page.emulateMedia({media: 'print'});
       await page.setViewportSize(

@@ -128,6 +128,7 @@ export function sweepResult(axis, moves, seed) {
     axis,
     moves,
     started: '2026-11-21T09:00:00Z',
+    protocol: {operator: 'A. Smith', serial: 'mill 4711, head P-12'},
     conditions: {
       temp_column_c: {min: 20.08, max: 20.41, mean: 20.22},
       temp_table_c: {min: 20.31, max: 20.35, mean: 20.33},
@@ -265,6 +266,7 @@ export function circleResult() {
     D_um: 0.02,
     u: {G_ccw_um: 0.1, G_cw_um: 0.1, G_b_um: 0.1, F_max_um: 0.05, F_min_um: 0.05, D_um: 0.01},
     partial: false,
+    start_deg: {ccw: 0.5, cw: 179.5},
     harmonics: {cw: harmonics, ccw: harmonics},
     profile: {ccw: profile(1), cw: profile(-1)},
   };
@@ -297,6 +299,7 @@ export function circleResult() {
     started: '2026-11-21T09:00:00Z',
     plane: 'XY',
     radius_mm: 10,
+    radius_is: 'programmed',
     linkage: {
       parameters: 'calibrated',
       file: 'linkage.toml',
@@ -531,7 +534,7 @@ export function diagnosisResult() {
           check: 'play of nut, bearing and coupling',
           remedy: 'preload or replace the nut'
         },
-        parameters: [{name: 'width_um', value: 6.02, unit: 'um', u95: 0.08}],
+        parameters: [{name: 'width_um', quantity: 'width', value: 6.02, unit: 'um', u95: 0.08}],
         rms_before: 1.9,
         rms_after: 1.01,
         heldout_rms_before: 1.88,
@@ -550,7 +553,11 @@ export function diagnosisResult() {
         object: 'probe_b',
         probability: 0.62,
         log_evidence: 31.2,
-        parameters: [{name: 'delta', value: 0.0312, unit: '', u95: 0.004}]
+        parameters: [{name: 'delta', quantity: 'delta', value: 0.0312, unit: '', u95: 0.004}],
+        rms_before: 0.975,
+        rms_after: 0.974,
+        heldout_rms_before: 0.971,
+        heldout_rms_after: 0.97
       }
     ],
     rivals: [{
@@ -593,10 +600,10 @@ export function planResult() {
     machine: 'demo-mill',
     runs: ['01_sweep_X.h5', '04_circle_XY.h5'],
     causes: [
-      cause('servo-lag', 'X', 40.2, [{name: 'delay_ms', unit: 'ms', seen_from: 0.075, plausible: 0.5}]),
-      cause('clock-skew', 'linkage', 38, [{name: 'delay_ms', unit: 'ms', seen_from: 0.08, plausible: 0.5}]),
+      cause('servo-lag', 'X', 40.2, [{name: 'delay_ms', quantity: 'delay', unit: 'ms', seen_from: 0.075, plausible: 0.5}]),
+      cause('clock-skew', 'linkage', 38, [{name: 'delay_ms', quantity: 'delay', unit: 'ms', seen_from: 0.08, plausible: 0.5}]),
       cause('channel-sign', 'probe_a', 900, []),
-      cause('probe-gain', 'probe_b', 1.25, [{name: 'delta', unit: '', seen_from: 0.048, plausible: 0.01}])
+      cause('probe-gain', 'probe_b', 1.25, [{name: 'delta', quantity: 'delta', unit: '', seen_from: 0.048, plausible: 0.01}])
     ],
     cannot_show: ['probe-gain:probe_b'],
     confused: [{causes: ['servo-lag:X', 'clock-skew:linkage'], cosine: 0.9712}]

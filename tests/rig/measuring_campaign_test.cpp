@@ -71,6 +71,7 @@ TEST(MeasuringCampaign, HeadersSayWhatWasMounted) {
   EXPECT_EQ(text("gap_steps_Z", "mounting.id"), "first");
   EXPECT_EQ(text("circle_XY_20mm_600", "elbow"), "up");
   EXPECT_EQ(text("circle_XY_20mm_600", "axis"), "XY");
+  EXPECT_EQ(Find(full, "circle_XY_20mm_600").HeaderNumber("radius_mm"), 20.0);
   EXPECT_EQ(text("circle_XY_20mm_600_other_elbow", "elbow"), "down");
   EXPECT_EQ(text("circle_XY_20mm_600_second_base", "mounting.base"), "second");
   EXPECT_EQ(text("cube", "mounting.base"), "first");

@@ -48,5 +48,14 @@ TEST(UnitTest, LetsAPlainNumberBe) {
   ExpectUnit("xmm", "", 1.0);
 }
 
+TEST(UnitTest, TheStemIsWhatIsLeft) {
+  EXPECT_EQ(StemOf("time_constant_s"), "time_constant");
+  EXPECT_EQ(StemOf("electrode_radius_mm"), "electrode_radius");
+  EXPECT_EQ(StemOf("feed_mm_min"), "feed");
+  EXPECT_EQ(StemOf("coefficient_ppm_per_c"), "coefficient");
+  EXPECT_EQ(StemOf("delta"), "delta");
+  EXPECT_EQ(StemOf("probe_gain"), "probe_gain");
+}
+
 }  // namespace unit_test
 }  // namespace abbe::settings

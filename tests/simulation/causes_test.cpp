@@ -7,6 +7,7 @@
 #include <set>
 
 #include "failure/failure.h"
+#include "settings/unit.h"
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
@@ -187,6 +188,106 @@ TEST(Causes, WhoDealsWithACauseIsToldByItsObject) {
   EXPECT_EQ(WarmUpDrift().SeatAt("probe_a"), Seat::kInstrument);
   EXPECT_EQ(ClockSkew().SeatAt("linkage"), Seat::kInstrument);
   EXPECT_EQ(LeadscrewCyclic().SeatAt("Y"), Seat::kMap);
+}
+
+// A recording of everything at once: sweep, pivots and temperatures, or a turning shaft.
+Trace Recorded(bool of_shaft) {
+  Trace trace = ToAndFro();
+  const Eigen::Index rows = trace.rows();
+  trace.kind = kArm;
+  trace.axis = 'X';
+  trace.temperature = trace.warming;
+  trace.pass.assign(static_cast<std::size_t>(rows), 1);
+  trace.direction.assign(static_cast<std::size_t>(rows), 1);
+  if (of_shaft) {
+    trace.rim.sensors = 2;
+    for (int row = 0; row < rows; ++row) trace.rim.sensor.push_back(row % 2);
+    trace.rim.shaft = RowVectorXd::LinSpaced(rows, 0.0, 5.0);
+    trace.rim.place = RowVectorXd::Constant(rows, 0.4);
+    trace.rim.seen = trace.rim.by_angle = trace.rim.by_angle_twice = trace.rim.shaft.array().sin();
+    trace.rim.slope = RowVectorXd::Ones(rows);
+    return trace;
+  }
+  trace.acceleration = 1e-3 * trace.axes;
+  trace.gap = Eigen::MatrixXd::Random(5, rows);
+  trace.zero.setOnes();
+  trace.tilt = Eigen::MatrixXd::Random(5, rows);
+  trace.spots = 0.01 * Eigen::MatrixXd::Random(10, rows);
+  return trace;
+}
+
+bool Same(const std::vector<Disturbance>& one, const std::vector<Disturbance>& other) {
+  constexpr double kRounding = 1e-9;
+  EXPECT_EQ(one.size(), other.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    const auto &a = one[i].stages(), &b = other[i].stages();
+    EXPECT_EQ(a.size(), b.size());
+    for (const auto& [stage, values] : a) {
+      if (!(values - b.at(stage)).isZero(kRounding * (1.0 + values.norm()))) return false;
+    }
+  }
+  return true;
+}
+
+// The same way an hour later is the same to a cause unless it follows time, and in another warmth
+// unless it follows a temperature: in all columns of all causes on all that they can be of.
+TEST(Causes, FollowsWhatTheySayThatTheyFollow) {
+  std::set<const Cause*> seen;
+  for (const bool of_shaft : {false, true}) {
+    const Trace trace = Recorded(of_shaft);
+    Trace later = trace, warmer = trace;
+    later.time.array() += 3600.123;
+    later.clock.array() += 3600.123;
+    warmer.temperature.array() += 3.0;
+    warmer.warming.array() += 3.0;
+    const Scene scene{{&trace}, Eigen::Vector3d::Constant(0.06)};
+    for (const Cause& cause : Causes()) {
+      const auto objects = cause.objects(scene);
+      if (!cause.columns || objects.empty()) continue;
+      const VectorXd shape = cause.shapes ? cause.shapes(scene).back() : VectorXd();
+      bool is_seen = false, by_time = false, by_warmth = false;
+      for (const std::string& object : objects) {
+        const auto columns = cause.columns(trace, object, shape);
+        if (columns.empty()) continue;
+        is_seen = true;
+        by_time = by_time || !Same(columns, cause.columns(later, object, shape));
+        by_warmth = by_warmth || !Same(columns, cause.columns(warmer, object, shape));
+      }
+      if (!is_seen) continue;
+      seen.insert(&cause);
+      EXPECT_EQ(by_time, cause.follows == Follows::kTime) << cause.id;
+      EXPECT_EQ(by_warmth, cause.follows == Follows::kTemperature) << cause.id;
+    }
+  }
+  Trace linkage = Recorded(false);
+  linkage.angles = linkage.angles.replicate(3, 1).eval();
+  const Scene carried{{&linkage}, Eigen::Vector3d::Constant(0.06)};
+  for (const Cause& cause : Causes()) {
+    if (cause.columns) {
+      EXPECT_TRUE(seen.contains(&cause)) << cause.id << " has no columns here";
+    } else if (cause.widens) {  // told by the parameter that it sets free
+      const auto objects = cause.objects(carried);
+      ASSERT_FALSE(objects.empty()) << cause.id;
+      const auto widened = cause.widens(objects.front());
+      const bool is_warm = !widened.empty() && widened.front().starts_with("expansion.");
+      EXPECT_EQ(cause.follows == Follows::kTemperature, is_warm) << cause.id;
+    } else {  // rows that are no readings
+      EXPECT_EQ(cause.follows, Follows::kTime) << cause.id;
+    }
+  }
+}
+
+// A file, a result and the page take the unit from the end of the name (settings/unit.h), the fit
+// from CauseKey::unit.
+TEST(Causes, TheNameOfEachKeySaysItsUnit) {
+  const std::set<std::string_view> plain{"delta", "coefficient", "order", "count"};
+  for (const Cause& cause : Causes()) {
+    for (const CauseKey& key : cause.keys) {
+      const settings::Unit unit = settings::UnitOf(key.name);
+      EXPECT_DOUBLE_EQ(unit.si, key.unit) << cause.id << " " << key.name;
+      EXPECT_EQ(unit.name.empty(), plain.contains(key.name)) << cause.id << " " << key.name;
+    }
+  }
 }
 
 TEST(Causes, EachCauseExplainsItselfAndHasAName) {

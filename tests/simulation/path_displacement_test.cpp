@@ -44,12 +44,46 @@ TEST(PathDisplacement, LoadCouplingIsAFunctionOfTwoAxes) {
   for (int i = 0; i < 11; ++i) EXPECT_NEAR(beside(2, i), -3e-3 * path(0, i) * path(1, i), 1e-18);
 }
 
+// All known causes on all that they can be of, at a usual size: those of the machine that follow
+// its path act, and no other.
+TEST(PathDisplacement, OfAllCausesThoseActThatFollowThePath) {
+  Matrix3Xd path(3, 21);
+  for (int i = 0; i < 21; ++i) {
+    const double x = 1e-3 * (i <= 10 ? i : 20 - i);
+    path.col(i) << x, 20e-3 + 0.5 * x, 30e-3 - 0.7 * x;
+  }
+  Trace trace;
+  trace.time = trace.clock = VectorXd::LinSpaced(21, 0.0, 20.0);
+  trace.pass.assign(21, 1);
+  trace.direction.assign(21, 1);
+  trace.SetAxes(path);
+  trace.gap = Eigen::MatrixXd::Constant(5, 21, 100e-6);
+  trace.angles = path.topRows<1>();
+  trace.sensors = {"temp_table_c"};
+  const Scene scene{{&trace}, Eigen::Vector3d::Constant(0.06)};
+  int acting = 0;
+  for (const Cause& cause : Causes()) {
+    const VectorXd shape = cause.shapes ? cause.shapes(scene).front() : VectorXd();
+    const VectorXd values = cause.ValuesOf(cause.plausible, shape);
+    for (const std::string& object : cause.objects(scene)) {
+      const ModelledCause modelled{&cause, object, values, {}, {}};
+      const bool acts = cause.SeatAt(object) == Seat::kMotion && cause.follows == Follows::kPath;
+      EXPECT_EQ(ActsOnPath(modelled), acts) << modelled.Name();
+      const Matrix3Xd beside = PathDisplacement(path, 10e-3, {modelled});
+      EXPECT_EQ(beside.norm() > 0.0, acts) << modelled.Name();
+      acting += acts;
+    }
+  }
+  EXPECT_EQ(acting, 15);  // play, spike and lag of three axes, mismatch and load of three pairs
+}
+
 TEST(PathDisplacement, InstrumentsTheMapAndDriftDoNothing) {
   const Matrix3Xd beside =
       PathDisplacement(ToAndFro(), 10e-3,
                        {Of("scale-error", "X", VectorXd::Constant(1, 1e-4)),
                         Of("probe-gain", "probe_a", VectorXd::Constant(1, 0.1)),
                         Of("warm-up-drift", "X", Eigen::Vector2d(1e-5, 10.0)),
+                        Of("vibration", "X", Eigen::Vector3d(7.3, 5e-6, 0.4)),
                         Of("thermal-growth", "X temp_table_c", VectorXd::Constant(1, 1e-5))});
   EXPECT_EQ(beside.norm(), 0.0);
 }

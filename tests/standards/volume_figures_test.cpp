@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "failure/failure.h"
 #include "standards/cylindricity.h"
@@ -53,6 +54,44 @@ TEST(Cylindricity, FindsTheCylinderThatWasMade) {
   EXPECT_THROW(EvaluateCylindricity(Points(0.02, 0, 0, 0).leftCols(5)), InputError);
   Eigen::Matrix3Xd flat = Points(0.02, 0, 0, 0).leftCols(36);
   EXPECT_THROW(EvaluateCylindricity(flat), InputError);
+}
+
+// How far along one parameter the sum of squares of the distances has its vertex from the fit.
+// Distances by a product with the axis, in long double: nothing of the fit's own arithmetic.
+double OffTheLeast(const Eigen::Matrix3Xd& points, const Cylindricity& fit, int which) {
+  using Real = long double;
+  using Vector = Eigen::Matrix<Real, 3, 1>;
+  const Real height = points.row(2).cast<Real>().mean();
+  const auto squares = [&](Real by) {
+    Real p[5] = {fit.centre.x(), fit.centre.y(), fit.tilt.x(), fit.tilt.y(), fit.radius};
+    p[which] += by;
+    const Vector axis = Vector(p[2], p[3], 1).normalized(), foot(p[0], p[1], height);
+    Real sum = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const Real off = axis.cross(points.col(i).cast<Real>() - foot).norm() - p[4];
+      sum += off * off;
+    }
+    return sum;
+  };
+  const Real step = 1e-7L, less = squares(-step), here = squares(0), more = squares(step);
+  return static_cast<double>(step / 2 * (less - more) / (less - 2 * here + more));
+}
+
+TEST(Cylindricity, IsThatOfTheLeastSquares) {
+  for (const auto& [a, b] : {std::pair{0.0, 0.0}, std::pair{0.03, -0.02}, std::pair{-0.2, 0.15}}) {
+    for (const double lobes : {3e-6, 200e-6}) {
+      Eigen::Matrix3Xd points = Points(0.02, a, b, lobes);
+      // And what no lobe does: a cone that is bent, so that no parameter is left at its start.
+      for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const double k = static_cast<double>(i);
+        points.col(i) += lobes * Eigen::Vector3d(std::sin(0.37 * k * k), std::cos(1.1 * k), 0.3);
+      }
+      const Cylindricity fit = EvaluateCylindricity(points);
+      for (int which = 0; which < 5; ++which) {
+        EXPECT_LT(std::abs(OffTheLeast(points, fit, which)), 1e-13) << a << " " << which;
+      }
+    }
+  }
 }
 
 }  // namespace volume_figures_test
