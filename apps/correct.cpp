@@ -135,15 +135,13 @@ void StreamProgram(const CorrectCommand& options, compensation::NcCorrection& co
   ProgramLines lines(options.from);
   recording::WholeFile out(OutOf(options));
   std::string text;
-  try {
-    for (std::string_view line; lines.Next(line);) {
-      InFile(options, [&] { correction.Take(line, text); });
-      if (text.size() < kBuffer) continue;
-      out.Append(text);
-      text.clear();
-    }
-    InFile(options, [&] { correction.Finish(); });
+  for (std::string_view line; lines.Next(line);) {
+    InFile(options, [&] { correction.Take(line, text); });
+    if (text.size() < kBuffer) continue;
+    out.Append(text);
+    text.clear();
   }
+  InFile(options, [&] { correction.Finish(); });
   out.Append(text);
   out.Finish();
 }

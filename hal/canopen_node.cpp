@@ -97,8 +97,9 @@ void CanopenNode::Compare() {
       answers_[kPerTurn] && (answers_[kOperating].value_or(kScalingOn) & kScalingOn);
   const auto per_turn = answers_[scaled ? kPerTurn : kPhysicalPerTurn];
   // The product of two words of 32 bits needs all 64.
-  std::optional<std::uint64_t> range = answers_[kRange];
-  if (!scaled && per_turn) range = std::uint64_t{*per_turn} * answers_[kTurns].value_or(1);
+  const std::uint64_t range = !scaled && per_turn
+                                  ? std::uint64_t{*per_turn} * answers_[kTurns].value_or(1)
+                                  : std::uint64_t{answers_[kRange].value_or(0)};
   const auto serial = answers_[kSerial];
   mismatch_.clear();
   if (encoder_.serial && serial && serial != encoder_.serial) {
@@ -107,8 +108,8 @@ void CanopenNode::Compare() {
   } else if (per_turn && *per_turn != encoder_.counts_per_turn) {
     mismatch_ = fmt::format("counts {} a turn, the machine file says {}", *per_turn,
                             encoder_.counts_per_turn);
-  } else if (range && *range != 0 && *range != static_cast<std::uint64_t>(encoder_.range)) {
-    mismatch_ = fmt::format("begins again after {} counts, the machine file says {}", *range,
+  } else if (range != 0 && range != static_cast<std::uint64_t>(encoder_.range)) {
+    mismatch_ = fmt::format("begins again after {} counts, the machine file says {}", range,
                             encoder_.range);
   }
 }

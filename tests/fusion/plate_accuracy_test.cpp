@@ -166,10 +166,13 @@ double OfRigidPlates(const std::vector<PlateSetUp>& setups) {
     Eigen::Matrix2Xd seen(2, setups[i].points.count());
     seen.row(0) = (u == 2 ? 1.0 : -1.0) * setups[i].points.axes.row(u);
     seen.row(1) = (v == 2 ? 1.0 : -1.0) * setups[i].points.axes.row(v);
-    const Eigen::Matrix3d X = Eigen::umeyama(setups[i].certificate, seen, false);
-    squares += (seen - ((X.topLeftCorner<2, 2>() * setups[i].certificate).colwise() +
-                        Eigen::Vector2d(X.topRightCorner<2, 1>())))
-                   .squaredNorm();
+    const Eigen::Matrix2Xd stated = setups[i].certificate;
+    const Eigen::Matrix2Xd from = stated.colwise() - stated.rowwise().mean();
+    const Eigen::Matrix2Xd to = seen.colwise() - seen.rowwise().mean();
+    const double along = from.cwiseProduct(to).sum();
+    const double across = from.row(0).dot(to.row(1)) - from.row(1).dot(to.row(0));
+    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(std::atan2(across, along)).matrix();
+    squares += (to - turn * from).squaredNorm();
     holes += static_cast<double>(seen.cols());
   }
   return std::sqrt(squares / holes);

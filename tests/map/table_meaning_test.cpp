@@ -185,11 +185,11 @@ TEST(TableMeaning, ReadingAndWritingLeavesTheVolumetricErrorAsItWas) {
       travels[axis] = {1e-3 * first, 1e-3 * (first + length)};
       text += "XYZ"[axis];
       for (int motion = 0; motion < 6; ++motion)
-        text += " " + machine::MotionName(static_cast<int>(axis), motion);
+        text.append(" ").append(machine::MotionName(static_cast<int>(axis), motion));
       for (int i = 0; i <= 8; ++i) {
-        text += "\n" + std::to_string(first + length * i / 8);
+        text.append("\n").append(std::to_string(first + length * i / 8));
         for (int motion = 0; motion < 6; ++motion) {
-          text += " " + std::to_string(motion < 3 ? next(0.2) : next(5e-4));
+          text.append(" ").append(std::to_string(motion < 3 ? next(0.2) : next(5e-4)));
         }
       }
       text += "\n#\n";
