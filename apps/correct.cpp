@@ -198,7 +198,8 @@ void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
 
 int Correct(const CorrectCommand& options) {
   const map::ErrorMap map = options.map.Read();
-  const compensation::Corrector corrector(map, options.map.Tool(map));
+  compensation::Corrector corrector(map, options.map.Tool(map));
+  if (!options.zero_mm.empty()) corrector.KeepZero(VectorOf(options.zero_mm));
   if (options.from.extension() == ".csv") {
     CorrectCsv(options, map, corrector);
   } else if (!options.causes.empty()) {

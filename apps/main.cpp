@@ -49,8 +49,13 @@ Given CommandOf(const CLI::App& program) {
 // The first word that looks like an option and is none of this command, with the nearest that is.
 std::string UnknownOption(const Given& given, int argc, char** argv) {
   std::vector<std::string> known{"help"};
-  for (const CLI::Option* option : given.command->get_options()) {
-    for (const std::string& name : option->get_lnames()) known.push_back(name);
+  std::vector<const CLI::App*> groups = given.command->get_subcommands(
+      [](const CLI::App* group) { return group->get_name().empty(); });
+  groups.push_back(given.command);
+  for (const CLI::App* group : groups) {
+    for (const CLI::Option* option : group->get_options()) {
+      for (const std::string& name : option->get_lnames()) known.push_back(name);
+    }
   }
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];

@@ -7,16 +7,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "settings/unit.h"
-
 namespace abbe::diagnosis {
 namespace {
 
 using Eigen::Vector3d;
 using recording::Recording;
 
-using settings::kMillimetre;
-using settings::kMillimetrePerMinute;
+constexpr double kMillimetre = 1e-3;
+constexpr double kMillimetrePerMinute = kMillimetre / 60.0;
 
 struct Row {
   double time;

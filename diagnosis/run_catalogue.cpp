@@ -13,7 +13,6 @@
 #include "diagnosis/repeated_run.h"
 #include "failure/failure.h"
 #include "recording/good_rows.h"
-#include "settings/unit.h"
 #include "simulation/arm_run.h"
 
 namespace abbe::diagnosis {
@@ -22,11 +21,11 @@ namespace {
 using Eigen::Vector3d;
 using recording::Recording;
 
-constexpr double kPauseBetweenRuns = 60.0;      // s, before the next run
-constexpr double kHour = 3600.0;     // s
-constexpr double kWarmer = 3.0;      // K
-constexpr double kOtherFeed = 5.0;   // times
-constexpr double kShift = 10e-3;     // m, of the target
+constexpr double kPauseBetweenRuns = 60.0;  // s, before the next run
+constexpr double kHour = 3600.0;            // s
+constexpr double kWarmer = 3.0;             // K
+constexpr double kOtherFeed = 5.0;          // times
+constexpr double kShift = 10e-3;            // m, of the target
 
 constexpr const char* kAnew = "planned anew";
 
@@ -167,7 +166,7 @@ class Catalogue {
     const auto add = [&](const char* plane, double radius) {
       Add(fmt::format("record a circle in {} of radius {:.3g} mm at {:.0f} mm/min, in both senses",
                       plane, 1e3 * radius, kOften),
-          CirclePath({plane, Middle(), radius, kOften * settings::kMillimetrePerMinute}, about_));
+          CirclePath({plane, Middle(), radius, kOften * 1e-3 / 60.0}, about_));
     };
     for (const char* plane : {"XY", "YZ", "ZX"}) add(plane, smallest / 3.0);
     add("XY", smallest / 6.0);

@@ -6,8 +6,8 @@
 //
 // Between `w` and `b` stand the axes that move the workpiece (ISO marks them with a prime, which
 // may be left out), between `b` and `t` those that move the tool. An axis in parentheses is not
-// numerically controlled and is no part of the geometry here. Exactly X, Y and Z must stand in the
-// chain.
+// numerically controlled and is no part of the geometry here. An axis X, Y or Z that does not stand
+// in the chain is none of this machine's: [w X b t] is a table. At least one must.
 //
 // The chain also knows which way the control counts. Every position in abbe, of a recording, a
 // program, a travel, a table, is the number that the control shows; only here and in

@@ -125,7 +125,16 @@ Machine ReadMachine(const settings::Table& root) {
   std::array<Positive, 3> positive{};
   for (std::size_t i = 0; i < machine.travels.size(); ++i) {
     const char letter = "XYZ"[i];
-    const settings::Table axis = axes.Child(std::string_view(&letter, 1));
+    const std::string name(1, letter);
+    if (machine.chain.Text().find(letter) == std::string::npos) {
+      if (axes.Has(name)) {
+        throw axes.Error(name, fmt::format("is no axis of the chain {}; add it there, or remove "
+                                           "the table",
+                                           machine.chain.Text()));
+      }
+      continue;
+    }
+    const settings::Table axis = axes.Child(name);
     machine.travels[i] = ReadTravel(axis);
     machine.limits[i] = ReadLimit(axis, machine.travels[i]);
     positive[i] = ReadPositive(axis, letter, machine.chain);

@@ -2,6 +2,7 @@
 #include <hdf5.h>
 
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <map>
 #include <span>
@@ -13,6 +14,7 @@
 #include "failure/failure.h"
 #include "map/export_grid.h"
 #include "recording/hdf5_child.h"
+#include "recording/output_file.h"
 #include "recording/whole_file.h"
 
 namespace abbe::map {
@@ -44,7 +46,9 @@ void PutNumbers(hid_t file, const char* name, const std::vector<hsize_t>& shape,
   const Handle data(
       H5Dcreate2(file, name, H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
       H5Dclose);
-  Need(H5Dwrite(data.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, path);
+  errno = 0;
+  if (H5Dwrite(data.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0) return;
+  recording::ThrowWriteFailure(path.string(), "nothing was written");
 }
 
 // What a file holds, by name.

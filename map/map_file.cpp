@@ -53,6 +53,7 @@ std::string HeadText(const ErrorMap& map) {
   text += "\n[limit]\n";
   for (std::size_t axis = 0; axis < kTravelKeys.size(); ++axis) {
     const machine::Travel& limit = (*origin.limits)[axis];
+    if (!(limit.last > limit.first)) continue;
     text +=
         fmt::format("{} = {}\n", kTravelKeys[axis], Floats(std::array{limit.first, limit.last}));
   }
@@ -118,9 +119,11 @@ auto Located(const Table& table, const char* key, const Make& make) {
   }
 }
 
-std::array<machine::Travel, machine::kAxes> ReadTravels(const Table& table) {
-  std::array<machine::Travel, machine::kAxes> travels;
+std::array<machine::Travel, machine::kAxes> ReadTravels(const Table& table,
+                                                        const machine::Chain& chain) {
+  std::array<machine::Travel, machine::kAxes> travels{};
   for (std::size_t axis = 0; axis < kTravelKeys.size(); ++axis) {
+    if (chain.Text().find("XYZ"[axis]) == std::string::npos) continue;
     const auto ends = table.Quantities(kTravelKeys[axis], 2);
     if (!(ends[0] < ends[1])) {
       throw table.Error(kTravelKeys[axis], "must be [first, last] with the first below the last");
@@ -138,7 +141,7 @@ machine::VolumetricModel ReadFrame(const Table& root) {
     chain.ReadPositive(root.Text("positive", ""), "write positive = \"...\" of X, Y and Z");
     return 0;
   });
-  return {chain, ReadTravels(root.Child("travel"))};
+  return {chain, ReadTravels(root.Child("travel"), chain)};
 }
 
 void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin& origin,
@@ -160,7 +163,8 @@ void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin
   const auto made = Located(table, "form", [&] { return machine::FormOf(form, shape); });
   // Before there is memory for as many as the shape says.
   const auto c = table.Quantities("coefficients", static_cast<std::size_t>(made->size()));
-  Located(table, "form", [&] { return model.SetForm(axis, motion, made); });
+  const bool bare = table.Choice("gauge", {"zero at start", "none"}) == "none";
+  model.SetForm(axis, motion, made, bare ? machine::Gauge::kNone : machine::Gauge::kZeroAtStart);
   model.SetCoefficients(axis, motion,
                         Eigen::Map<const Eigen::VectorXd>(c.data(), static_cast<Index>(c.size())));
   table.RefuseUnknown();
@@ -204,7 +208,7 @@ ErrorMap ReadMap(const std::filesystem::path& path) {
   }
   MapOrigin origin = ReadOrigin(root);
   machine::VolumetricModel model = ReadFrame(root);
-  if (root.Has("limit")) origin.limits = ReadTravels(root.Child("limit"));
+  if (root.Has("limit")) origin.limits = ReadTravels(root.Child("limit"), model.chain());
   model.SetSquareness(Vector(root, "squareness"));
   std::array<bool, kErrors> seen{};
   for (const Table& table : root.Children("error")) ReadFunction(table, model, origin, seen);

@@ -52,7 +52,7 @@ AxisErrors::AxisErrors(const RigSettings& settings, int axis, std::uint64_t seed
                             DeviationOf(settings.population, axis, motion), smoothness_, low_,
                             high_);
     offsets_[motion] = functions_[motion](low_);
-    if (IsStraightness(axis, motion)) {
+    if (IsStraightness(axis, motion) && high_ > low_) {
       slopes_[motion] = Slope(functions_[motion], low_, high_, smoothness_);
     }
     if (motion == axis) slopes_[motion] = -scale_;

@@ -74,7 +74,7 @@ class ConvertTest(unittest.TestCase):
     def test_bad_input_is_one_line(self):
         self.put("a.csv", RECORDING + "0,1\n")
         self.assert_refused(self.convert("a.csv", "b.h5"), "a.csv:5: ", "2 fields")
-        self.assert_refused(self.convert("none.csv", "b.h5"), "no such file")
+        self.assert_refused(self.convert("none.csv", "b.h5"), "No such file")
         self.put("c.csv", RECORDING + ROWS)
         self.assert_refused(self.convert("c.csv", "b.txt"), "b.txt", ".csv, .h5 or .hdf5")
         self.assert_refused(self.convert("c.csv", "none/b.csv"), "cannot be created")

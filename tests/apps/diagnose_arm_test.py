@@ -79,7 +79,7 @@ class DiagnoseArm(ProgramCase):
     def test_three_balls_under_one_name_are_refused(self):
         runs = []
         for number, ball in enumerate(((0, 0, 0), (20, -30, 10), (-25, 5, 30)), 1):
-            table_file, recording = self.path / f"ball_{number}.txt", self.path / f"ball_{number}.csv"
+            table_file, recording = self.path / f"poses_{number}.csv", self.path / f"ball_{number}.csv"
             table_file.write_text(table(ball))
             self.done(table_file, recording, "--where=arm=1", *COLUMNS, command="convert")
             runs.append(recording)

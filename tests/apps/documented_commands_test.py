@@ -134,7 +134,8 @@ G0 Z5
 M30
 %
 """
-BARE = 'name = "{}"\nchain = "[w X Y b Z t]"\n' + "".join(f"axis.{a}.travel_mm = [-350.0, 350.0]\n" for a in "XYZ")
+BARE = 'name = "{}"\nchain = "[w X Y b Z t]"\n' + "".join(f"axis.{a}.travel_mm = [-350.0, 350.0]\n" for a in "XYZ") + (
+    'axis.X.positive = "carriage"\naxis.Y.positive = "carriage"\n')
 
 
 class DocumentedCommands(unittest.TestCase):

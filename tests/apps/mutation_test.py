@@ -172,7 +172,7 @@ class MutationTest(unittest.TestCase):
         record = lambda name, *words: cls.abbe("rig", "record", "--machine", "mill.toml", "--out", name, *words)
         record("sweep.csv", "--axis", "X", "--rate", 20, "--truth", "truth.json")
         cls.abbe("convert", "sweep.csv", "sweep.h5")
-        record("cube.csv", "--course", "cube", "--points", "2,3,2", "--dwell", 0.01, "--reference", "--feed", 6000)
+        record("cube.csv", "--course", "cube", "--points", "4,3,3", "--dwell", 0.01, "--reference", "--feed", 6000)
         record("linkage.csv", "--course", "circle", "--size", 10, "--rate", 20)
         record("circle.csv", "--course", "circle", "--size", 10, "--rate", 20, "--kind", "reference")
         record("holes.csv", "--plate")

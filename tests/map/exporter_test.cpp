@@ -124,7 +124,7 @@ TEST(Exporter, TheAxisFormatsCarryWhatTheySayAndNoMore) {
           model.SetCoefficients(axis, motion, function.coefficients());
         }
       }
-      return ExportMap({full.origin(), model, {}}, FormatNamed(name), options, folder / "a.x")
+      return ExportMap({full.origin(), model, {}}, FormatNamed(name), options, folder / name)
           .discrepancy.largest;
     };
     // Chords of 0.6 mm across functions of 2 um with knots each 12 mm, all three axes.
@@ -175,7 +175,7 @@ TEST(Exporter, EveryFormatStatesHowMuchItDrops) {
     SCOPED_TRACE(format.name);
     ExportOptions options;
     options.counts = {25, 25, 25};
-    const Export done = ExportMap(map, format, options, folder / "out.x");
+    const Export done = ExportMap(map, format, options, folder / format.name);
     const auto dropped = [&](const Vector3d& p) {
       return (map.Error(p, Vector3d::Zero()) - Carried(format.name, map, p)).norm();
     };
@@ -228,7 +228,7 @@ class BrokenExport : public testing::Test {
     ExportOptions options;
     options.counts = {3, 3, 3};
     return ReadWhole(
-        FormatNamed(format).write(Bare(RandomMap(1)), options, folder_ / "a.x").front());
+        FormatNamed(format).write(Bare(RandomMap(1)), options, folder_ / format).front());
   }
   Folder folder_;
 };

@@ -68,6 +68,10 @@ TEST(SquarenessOfSweeps, IsTheSameWhicheverWayTheControlCounts) {
   const SweepSetup setup = TestSetup();
   SweepSetup counted = setup;
   counted.machine.chain.ReadPositive("tool", "");
+  for (const int axis : {0, 1}) {  // the same places by the other numbers
+    machine::Travel& travel = counted.machine.travels[static_cast<std::size_t>(axis)];
+    travel = {-travel.last, -travel.first};
+  }
   const Eigen::Vector3d tilt(150e-6, -80e-6, 200e-6);
   const auto reduced = [&](char axis, double s, double n) {
     return ReduceSweep(CountedTheOtherWay(LeanSweep(setup, axis, s, n, tilt), axis != 'Z'),

@@ -199,6 +199,7 @@ Trace Recorded(bool of_shaft) {
   trace.temperature = trace.warming;
   trace.pass.assign(static_cast<std::size_t>(rows), 1);
   trace.direction.assign(static_cast<std::size_t>(rows), 1);
+  trace.acceleration = 1e-3 * trace.axes;
   if (of_shaft) {
     trace.rim.sensors = 2;
     for (int row = 0; row < rows; ++row) trace.rim.sensor.push_back(row % 2);
@@ -208,7 +209,6 @@ Trace Recorded(bool of_shaft) {
     trace.rim.slope = RowVectorXd::Ones(rows);
     return trace;
   }
-  trace.acceleration = 1e-3 * trace.axes;
   trace.gap = Eigen::MatrixXd::Random(5, rows);
   trace.zero.setOnes();
   trace.tilt = Eigen::MatrixXd::Random(5, rows);
