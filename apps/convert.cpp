@@ -53,8 +53,9 @@ const hal::CanopenSettings& EncodersOf(const MachineFile& file, const std::strin
 MachineFile MachineOf(const ConvertOptions& options) {
   if (!options.machine.empty()) return ReadMachineFile(options.machine);
   throw InputError(
-      "a log of CAN traffic does not say what its counts mean; give the machine file with "
-      "--machine");
+      options.from.string() +
+      ": a log of CAN traffic does not say what its counts mean; give the machine file "
+      "with --machine");
 }
 
 std::pair<std::string, std::string> SplitAt(const std::string& option, const std::string& text,

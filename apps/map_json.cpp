@@ -1,5 +1,6 @@
 #include "apps/map_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -76,7 +77,12 @@ ordered_json MapJson(const map::ErrorMap& map) {
   for (const double at : map.origin().tool) json["tool"].push_back(at);
   for (const double sign : map.model().chain().ToolSenses()) json["signs"].push_back(sign);
   json["temperature_c"] = map.origin().temperature;
-  json["grid"] = GridJson(map);
+  // A machine that lacks an axis has no volume.
+  const auto& travels = map.model().travels();
+  if (std::all_of(travels.begin(), travels.end(),
+                  [](const machine::Travel& travel) { return travel.last > travel.first; })) {
+    json["grid"] = GridJson(map);
+  }
   json["errors"] = ErrorsJson(map);
   return json;
 }

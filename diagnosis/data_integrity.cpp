@@ -15,12 +15,12 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-constexpr double kStays = 5e-3;    // mm: nearer rows are of one stay
-constexpr double kNeighbours = 0.5;     // s: rows farther apart are no neighbours
-constexpr std::size_t kStay = 5;   // rows that have a median worth the name
-constexpr std::size_t kAside = 7;  // rows of a stay to either side that say where it stands
-constexpr double kPeace = 4.0;     // times the usual scatter: noise alone
-constexpr double kFlag = 4.0;      // device error
+constexpr double kStays = 5e-3;      // mm: nearer rows are of one stay
+constexpr double kNeighbours = 0.5;  // s: rows farther apart are no neighbours
+constexpr std::size_t kStay = 5;     // rows that have a median worth the name
+constexpr std::size_t kAside = 7;    // rows of a stay to either side that say where it stands
+constexpr double kPeace = 4.0;       // times the usual scatter: noise alone
+constexpr double kFlag = 4.0;        // device error
 
 struct Channel {
   std::string object;
@@ -31,7 +31,7 @@ struct Channel {
 struct Table {
   std::vector<std::size_t> rows;
   Numbers time;
-  std::vector<Numbers> axes;                 // mm
+  std::vector<Numbers> axes;                // mm
   std::vector<std::size_t> stay_end, stay;  // of each row: the row after its stay, rows in it
   std::vector<int> motion;                  // number of the motion, or the stay, it belongs to
   std::vector<Channel> channels;
@@ -44,7 +44,7 @@ double MedianOf(Numbers values) {
 }
 
 Numbers At(const recording::Recording& recording, const std::string& column,
-          const std::vector<std::size_t>& rows) {
+           const std::vector<std::size_t>& rows) {
   const auto all = recording.Find(column);
   Numbers values;
   if (all) {

@@ -241,7 +241,8 @@ double Fit::LeftOut(const VectorXd& r, const std::vector<int>& columns, const Ma
   const Index poses = r.size() / 3;
   double sum = 0.0;
   for (Index block = 0; block < kPoseBlocks; ++block) {
-    const Index first = 3 * (block * poses / kPoseBlocks), last = 3 * ((block + 1) * poses / kPoseBlocks);
+    const Index first = 3 * (block * poses / kPoseBlocks),
+                last = 3 * ((block + 1) * poses / kPoseBlocks);
     if (last == first) continue;
     MatrixXd A = MatrixXd::Zero(scale_.size(), last - first);
     A(columns, Eigen::all) = J.middleRows(first, last - first).transpose();

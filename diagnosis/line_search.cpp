@@ -15,7 +15,7 @@ using Eigen::Index;
 constexpr double kLowest = 1.0, kHighest = 60.0;  // Hz: slower is a drift, faster is mains
 constexpr double kOfAWave = 0.4;                  // over the time, from one frequency to the next
 constexpr std::size_t kMostPeaks = 8;             // of a run
-constexpr Index kMostLineRows = 400;                  // of a run, its first: more take longer
+constexpr Index kMostLineRows = 400;              // of a run, its first: more take longer
 constexpr std::size_t kMostRuns = 4;              // looked through one by one
 constexpr std::size_t kMostScored = 3;
 

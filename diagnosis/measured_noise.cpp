@@ -12,8 +12,8 @@ namespace {
 
 using recording::Recording;
 
-constexpr double kTrembles = 5e-6;  // m
-constexpr double kPauseBetweenStays = 0.5;      // s: rows farther apart belong to two standstills
+constexpr double kTrembles = 5e-6;          // m
+constexpr double kPauseBetweenStays = 0.5;  // s: rows farther apart belong to two standstills
 constexpr double kBelieved = 0.05, kCertain = 4.0;
 
 // Rows whose axes stand where they stood in the row before, by the column's own rows.

@@ -13,7 +13,7 @@ using simulation::RimRepeats;
 using simulation::ShaftRun;
 
 constexpr Eigen::Index kMostShaftRows = 6000;  // of one run: more tell no more of causes
-constexpr double kRounding = 1e-12;       // m
+constexpr double kRounding = 1e-12;            // m
 
 void TellSense(const ShaftRun& run, std::vector<std::string>& notes) {
   notes.push_back(fmt::format(

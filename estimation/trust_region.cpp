@@ -116,7 +116,7 @@ class TermCost : public ceres::CostFunction {
   const Term& term_;
   RobustLoss loss_;
   std::exception_ptr& thrown_;
-  std::vector<int> blocks_;    // of the problem, in the order of the arguments
+  std::vector<int> blocks_;            // of the problem, in the order of the arguments
   std::vector<ArgumentPlace> inputs_;  // argument and entry of each input
 };
 

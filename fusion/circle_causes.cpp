@@ -122,7 +122,8 @@ CircleRun About(const Eigen::Vector2d& middle, const CircleRun& run) {
 }
 
 // Of run number `at`.
-Equations CentredEquations(const std::vector<const CircleRun*>& runs, std::size_t at, const CauseOptions& options) {
+Equations CentredEquations(const std::vector<const CircleRun*>& runs, std::size_t at,
+                           const CauseOptions& options) {
   const Eigen::Vector2d middle = runs[at]->middle;
   Equations equations = EquationsOf(About(middle, *runs[at]), options);
   for (std::size_t k = 0; k < options.shifted.size(); ++k) {
@@ -210,7 +211,8 @@ double Rms(const std::vector<Eigen::VectorXd>& residuals) {
 }
 
 // By how much the means of sectors scatter more than those of independent rows would: at least 1.
-double Correlated(const std::vector<const CircleRun*>& runs, const std::vector<Eigen::VectorXd>& residuals, double rms) {
+double Correlated(const std::vector<const CircleRun*>& runs,
+                  const std::vector<Eigen::VectorXd>& residuals, double rms) {
   double excess = 0.0, sectors = 0.0;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     std::array<std::array<double, kSectors>, 2> sums{}, counts{};
@@ -252,7 +254,8 @@ bool IsOfCauses(const estimation::Result& result, const estimation::WeakDirectio
 
 }  // namespace
 
-CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs, const CauseOptions& options) {
+CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs,
+                             const CauseOptions& options) {
   CheckCircles(runs);
   std::vector<Signature> table = SignaturesOf(*runs.front(), options);
   std::erase_if(table, IsCentre);

@@ -84,8 +84,8 @@ constexpr double kLeftOver = 5e-3;  // of the reach: a gap beyond it is no expla
 constexpr double kReversed = -2.0;  // gain of an encoder of the other sense
 
 std::optional<Assumption> FitAssuming(const LinkageSimulation& simulation, const Matrix3Xd& p_MT,
-                              const MatrixXd& angles, bool with_gains, double start_gain = 0.0,
-                              Index started = 0) {
+                                      const MatrixXd& angles, bool with_gains,
+                                      double start_gain = 0.0, Index started = 0) {
   const Index n = angles.rows();
   auto blocks = simulation::BaseBlocks(simulation.settings());
   blocks.push_back(PerEncoder("offset", n, kAnyAngle));

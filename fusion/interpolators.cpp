@@ -22,10 +22,10 @@ using machine::NetworkBias;
 using simulation::PlateSetUp;
 using simulation::SimulatedRun;
 
-constexpr double kNothing = 1e-12;     // m or rad
-constexpr double kSharpness = 0.1;     // of kLearned: how near a network should come
-constexpr double kWeights = 3.0;       // prior of the inputs of a neuron
-constexpr double kOutputs = 10.0;      // prior of its output, of the function's largest value
+constexpr double kNothing = 1e-12;         // m or rad
+constexpr double kSharpness = 0.1;         // of kLearned: how near a network should come
+constexpr double kWeights = 3.0;           // prior of the inputs of a neuron
+constexpr double kOutputs = 10.0;          // prior of its output, of the function's largest value
 constexpr std::size_t kMostStations = 40;  // of an axis, at most
 
 // x: the coefficients of one network.
@@ -174,8 +174,8 @@ VectorXd InputsOf(const SimulatedRun& run, const machine::VolumetricModel& model
 }
 
 double HeldOutRms(const machine::Machine& machine, const machine::VolumetricModel& model,
-               const std::vector<PlateSetUp>& setups, const Folds& folds, int fold,
-               const estimation::Result& fit) {
+                  const std::vector<PlateSetUp>& setups, const Folds& folds, int fold,
+                  const estimation::Result& fit) {
   double squares = 0.0, holes = 0.0;
   for (const PlateSetUp& setup : setups) {
     const SimulatedRun run = simulation::SimulatePlate(model, machine.reference, setup);

@@ -21,7 +21,7 @@ using simulation::LinkageRun;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNoCircle = 0.01;  // of the radius
 constexpr std::array kModelsCompared{ErrorModel::kPivots, ErrorModel::kPublished,
-                             ErrorModel::kPublishedWithBearing, ErrorModel::kComplete};
+                                     ErrorModel::kPublishedWithBearing, ErrorModel::kComplete};
 
 class Comparison {
  public:

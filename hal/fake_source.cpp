@@ -8,7 +8,6 @@
 namespace abbe::hal {
 namespace {
 
-
 // A value beyond every integer type, or beyond the maximum of a float.
 double Saturated(const ChannelSettings& channel) {
   if (channel.type != WordType::kFloat32) return std::copysign(1e12, channel.scale);

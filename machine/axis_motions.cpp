@@ -46,7 +46,10 @@ Eigen::MatrixXd CoefficientsOfValues(const Eigen::VectorXd& nodes) {
 
 AxisMotions::AxisMotions(int axis, const std::array<ErrorFunction, kMotions>& functions,
                          const Travel& travel)
-    : axis_(axis), travel_(travel), ends_{travel.first, travel.last} {
+    : axis_(axis),
+      // An axis that the machine lacks has no travel, and no errors on any.
+      travel_(travel.last > travel.first ? travel : Travel{travel.first, travel.first + 1.0}),
+      ends_{travel_.first, travel_.last} {
   std::vector<std::pair<int, const ErrorFunction*>> polynomials;
   for (int motion = 0; motion < kMotions; ++motion) {
     const ErrorFunction& function = functions[static_cast<std::size_t>(motion)];
@@ -58,7 +61,7 @@ AxisMotions::AxisMotions(int axis, const std::array<ErrorFunction, kMotions>& fu
     }
     polynomials.emplace_back(motion, &function);
     degree_ = std::max(degree_, degree);
-    const std::vector<double> pieces = function.form()->Pieces(travel.first, travel.last);
+    const std::vector<double> pieces = function.form()->Pieces(travel_.first, travel_.last);
     ends_.insert(ends_.end(), pieces.begin(), pieces.end());
   }
   std::sort(ends_.begin(), ends_.end());
@@ -81,9 +84,9 @@ AxisMotions::AxisMotions(int axis, const std::array<ErrorFunction, kMotions>& fu
   }
 
   const std::size_t cells = 2 * per_width_.size();
-  cells_per_m_ = static_cast<double>(cells) / (travel.last - travel.first);
+  cells_per_m_ = static_cast<double>(cells) / (travel_.last - travel_.first);
   for (std::size_t cell = 0; cell < cells; ++cell) {
-    const double begin = travel.first + static_cast<double>(cell) / cells_per_m_;
+    const double begin = travel_.first + static_cast<double>(cell) / cells_per_m_;
     const auto after = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, begin);
     first_piece_.push_back(static_cast<std::size_t>(after - ends_.begin()) - 1);
   }

@@ -53,8 +53,8 @@ struct ErrorStatistics {
 
 enum PublishedComponent : std::size_t { kEax, kEbx, kEcx, kEyx, kEzx };
 inline constexpr std::size_t kPublishedComponents = 5;
-inline constexpr std::array<const char*, kPublishedComponents> kComponentNames{"EAX", "EBX", "ECX", "EYX",
-                                                                      "EZX"};
+inline constexpr std::array<const char*, kPublishedComponents> kComponentNames{"EAX", "EBX", "ECX",
+                                                                               "EYX", "EZX"};
 using SimulationErrors = std::array<ErrorStatistics, kPublishedComponents>;
 
 // The largest errors that the source reports for the simplified inversion. For kOne it shows one

@@ -21,8 +21,8 @@ class LineReader {
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
 
-  // The next line without its "\n" or "\r\n", the first one without a byte-order mark; nothing at the end of the file. InputError when a
-  // line is longer than the block (1 MiB).
+  // The next line without its "\n" or "\r\n", the first one without a byte-order mark; nothing at
+  // the end of the file. InputError when a line is longer than the block (1 MiB).
   std::optional<std::string_view> Next();
   // Whether the line that Next() gave last ended in a line end, and its number, from 1.
   bool complete() const { return complete_; }

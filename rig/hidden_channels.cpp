@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-
 #include "rig/hidden_motion.h"
 #include "rig/noise.h"
 
@@ -15,7 +14,9 @@ using Probe = std::function<double(const MachineState&)>;
 using Pivot = std::function<double(const MachineState&, double)>;
 using Said = std::function<double(double, double)>;
 
-double WarmUpShare(double time, double time_constant) { return 1.0 - std::exp(-time / time_constant); }
+double WarmUpShare(double time, double time_constant) {
+  return 1.0 - std::exp(-time / time_constant);
+}
 
 Probe Hum(double frequency, double amplitude, double phase) {
   return [=](const MachineState& state) {
@@ -90,8 +91,10 @@ std::vector<ProbeAddition> ProbeAdditions(const HiddenEffects& hidden) {
         break;
       case Cause::kWarmUpDrift:
         if (e.entry->objects != kProbeObject) break;
-        add([amplitude = e.At("amplitude_um"), constant = e.At("time_constant_s")](
-                const MachineState& state) { return amplitude * WarmUpShare(state.time, constant); });
+        add([amplitude = e.At("amplitude_um"),
+             constant = e.At("time_constant_s")](const MachineState& state) {
+          return amplitude * WarmUpShare(state.time, constant);
+        });
         break;
       case Cause::kUnknownHum:
         add(Hum(1.0 / e.At("period_s"), e.At("amplitude_um"), e.At("phase_rad")));

@@ -122,8 +122,8 @@ std::vector<AxisShift> AxisShifts(const HiddenEffects& hidden) {
         add(axis, Spike(axis, e.At("height_um"), e.At("decay_mm")));
         break;
       case Cause::kVibration:
-        add(axis,
-            ShakenMotion(e.At("frequency_hz"), e.At("amplitude_um"), e.random.Uniform(kFreePhase, 0.0, kTurn)));
+        add(axis, ShakenMotion(e.At("frequency_hz"), e.At("amplitude_um"),
+                               e.random.Uniform(kFreePhase, 0.0, kTurn)));
         break;
       case Cause::kLoadCoupling:
         add(third(), Load(e.places, e.At("coefficient_nm_per_mm2")));

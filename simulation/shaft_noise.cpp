@@ -66,7 +66,7 @@ std::vector<Complex> WavesOf(const VectorXd& found) {
 
 // How much of the waves a rim that goes by in this sense could be.
 double Coherence(const std::vector<std::vector<Complex>>& waves, const std::vector<double>& places,
-                int sense) {
+                 int sense) {
   double power = 0.0;
   for (int n = 1; n <= kTellingOrders; ++n) {
     Complex sum = 0.0;

@@ -98,11 +98,14 @@ class OneAxisTest(ProgramCase):
         self.machine.write_text(good.replace("[w X b t]", "[w b t]"))
         self.refuse(recording, "--machine", self.machine, saying=["names none of the axes"])
         self.machine.write_text(good)
-        at_30 = recording.read_text().splitlines()
-        names = next(line for line in at_30 if line[0] != "#")
-        at_30 = [line if line[0] == "#" else line + (",y_mm" if line == names else ",30.0") for line in at_30]
-        recording.write_text("\n".join(at_30) + "\n")
-        self.refuse(recording, "--machine", self.machine, saying=["x.csv", "no axis Y"])
+        # A recording that says where Y stood.
+        lines = recording.read_text().splitlines()
+        names = next(line for line in lines if line[0] != "#").split(",")
+        moved = [line if line[0] == "#" or line.split(",") == names else
+                 ",".join("30.0" if name == "y_mm" else word for name, word in zip(names, line.split(",")))
+                 for line in lines]
+        recording.write_text("\n".join(moved) + "\n")
+        self.refuse(recording, "--machine", self.machine, saying=["x.csv", "y_mm is 30"])
 
 
 if __name__ == "__main__":

@@ -221,6 +221,7 @@ class BrokenExport : public testing::Test {
  protected:
   template <typename Read>
   std::string Refusal(const std::string& text, const Read& read) {
+    std::filesystem::remove(folder_ / "bad.txt");  // of another form, perhaps
     WriteWhole(text, folder_ / "bad.txt");
     return MessageOf<InputError>([&] { read(folder_ / "bad.txt"); });
   }
