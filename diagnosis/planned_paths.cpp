@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector3d;
 using recording::Recording;
 
-constexpr double kMillimetre = 1e-3;
-constexpr double kMillimetrePerMinute = kMillimetre / 60.0;
+constexpr double kLengthUnit = 1e-3;
+constexpr double kFeedUnit = kLengthUnit / 60.0;
 
 struct Row {
   double time;
@@ -41,10 +41,10 @@ class PathMaker {
     std::size_t column = 0;
     const auto put = [&](double value) { path_.columns[column++].values.push_back(value); };
     put(row.time);
-    for (const double each : row.axes) put(each / kMillimetre);
+    for (const double each : row.axes) put(each / kLengthUnit);
     put(row.pass);
     put(row.direction);
-    put(row.feed / kMillimetrePerMinute);
+    put(row.feed / kFeedUnit);
     for (const auto& [sensor, temperature] : about_.temperature) put(temperature);
   }
 
@@ -146,7 +146,7 @@ Recording LengthPath(char axis, const Vector3d& middle, const machine::Travel& t
     const double length = (travel.last - travel.first) * place / kPlaces;
     axes[axis - 'X'] = travel.first + length;
     maker.Add({kSeconds * place, axes, 1, 1});
-    lengths.push_back(length / kMillimetre);
+    lengths.push_back(length / kLengthUnit);
   }
   Recording path = maker.Take();
   path.columns.push_back({"u_length_um", std::vector<double>(lengths.size(), kU)});

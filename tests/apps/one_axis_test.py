@@ -105,7 +105,7 @@ class OneAxisTest(ProgramCase):
                  ",".join("30.0" if name == "y_mm" else word for name, word in zip(names, line.split(",")))
                  for line in lines]
         recording.write_text("\n".join(moved) + "\n")
-        self.refuse(recording, "--machine", self.machine, saying=["x.csv", "y_mm is 30"])
+        self.refuse(recording, "--machine", self.machine, saying=["x.csv", "y = 30", "lies outside the travel"])
 
 
 if __name__ == "__main__":
