@@ -51,7 +51,8 @@ TEST(DamagedHdf5, ABrokenHeapDoesNotEndTheProgram) {
 class LyingHdf5 : public testing::Test {
  protected:
   void SetUp() override {
-    if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) GTEST_SKIP() << "no h5py";
+    if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0)
+      GTEST_SKIP() << "no h5py";
   }
   std::string RefusalOf(const std::string& columns) {
     Put(scratch_ / "make.py",
@@ -59,7 +60,8 @@ class LyingHdf5 : public testing::Test {
         "f = h5py.File(sys.argv[1], 'w')\n"
         "f.attrs['abbe-recording'] = 1\nf.attrs['header'] = 'kind = \"dwell\"'\n" +
             columns);
-    const std::string command = "cd " + scratch_.folder().string() + " && /usr/bin/python3 make.py a.h5";
+    const std::string command =
+        "cd " + scratch_.folder().string() + " && /usr/bin/python3 make.py a.h5";
     EXPECT_EQ(std::system(command.c_str()), 0);
     return MessageOf<InputError>([&] { Read(scratch_ / "a.h5"); });
   }
