@@ -164,7 +164,8 @@ void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin
   // Before there is memory for as many as the shape says.
   const auto c = table.Quantities("coefficients", static_cast<std::size_t>(made->size()));
   const bool bare = table.Choice("gauge", {"zero at start", "none"}) == "none";
-  model.SetForm(axis, motion, made, bare ? machine::Gauge::kNone : machine::Gauge::kZeroAtStart);
+  const auto gauge = bare ? machine::Gauge::kNone : machine::Gauge::kZeroAtStart;
+  Located(table, "form", [&] { return model.SetForm(axis, motion, made, gauge); });
   model.SetCoefficients(axis, motion,
                         Eigen::Map<const Eigen::VectorXd>(c.data(), static_cast<Index>(c.size())));
   table.RefuseUnknown();

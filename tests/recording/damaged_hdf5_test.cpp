@@ -43,6 +43,10 @@ TEST(DamagedHdf5, NumbersOfOtherFilesAreNotRead) {
 }
 
 TEST(DamagedHdf5, ABrokenHeapDoesNotEndTheProgram) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP()
+      << "the sanitizer waits in the child that has crashed; the build without it runs this";
+#endif
   ExpectHas(RefusalOfDamaged("libhdf5_overlap.h5"), "libhdf5_overlap.h5: ");
   ExpectHas(RefusalOfDamaged("libhdf5_endless.h5"), "libhdf5_endless.h5: ");
 }
