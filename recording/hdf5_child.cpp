@@ -116,7 +116,12 @@ void Fork(Child& child) {
     auto& forked = *static_cast<Child*>(to);
     if (number != 0) return 0;
     forked.id = fork();
-    if (forked.id == 0) RunChild(forked);
+    if (forked.id == 0) {
+      // A crash ends the child at once, whatever the program does in its own.
+      for (const int fatal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT})
+        std::signal(fatal, SIG_DFL);
+      RunChild(forked);
+    }
     return 0;
   };
   H5Eclear2(H5E_DEFAULT);
