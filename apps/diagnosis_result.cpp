@@ -115,8 +115,7 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
   if (const auto without = WorthOf(which, diagnosis, gain)) {
     text += fmt::format(
         "  gain         rms {:.3f} of the stated noise without it, {:.3f} with it; in rows held "
-        "out "
-        "{:.3f} and {:.3f}\n",
+        "out {:.3f} and {:.3f}\n",
         without->seen, gain.seen, without->held, gain.after);
   }
   for (const auto& rival : finding.rivals) {

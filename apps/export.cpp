@@ -46,8 +46,7 @@ void Print(const map::Format& format, const map::Export& done) {
   fmt::print("{} drops: {}\n", format.name, format.drops);
   fmt::print(
       "read back, it differs from the map by up to {:.3g} um (at X {:.4g} Y {:.4g} Z {:.4g} mm), "
-      "rms "
-      "{:.3g} um; the map's largest error is {:.3g} um\n",
+      "rms {:.3g} um; the map's largest error is {:.3g} um\n",
       d.largest * 1e6, where.x(), where.y(), where.z(), d.rms * 1e6, d.error * 1e6);
 }
 

@@ -14,10 +14,12 @@ std::vector<hal::PlausibleChannel> PlausibleChannels(const MachineFile& file) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const machine::Travel& travel = file.sweep_setup.machine.travels[axis];
     const machine::Travel span = machine::PlausiblePositions(travel);
+    const bool exists = travel.last > travel.first;
     const hal::Interval possible{span.first / kMillimetre, span.last / kMillimetre};
     channels.push_back({fmt::format("{}_mm", "xyz"[axis]), possible, possible,
-                        fmt::format("the travel is {:.6g} to {:.6g} mm", travel.first / kMillimetre,
-                                    travel.last / kMillimetre)});
+                        exists ? fmt::format("the travel is {:.6g} to {:.6g} mm",
+                                             travel.first / kMillimetre, travel.last / kMillimetre)
+                               : fmt::format("the machine has no axis {:c}", "XYZ"[axis])});
   }
   for (std::size_t probe = 0; probe < probes::kProbes; ++probe) {
     constexpr double kNextToNothing = 1 / 500.0;

@@ -151,8 +151,7 @@ int main(int argc, char** argv) {
   const double own = (Seconds() - own_before) / static_cast<double>(solved);
   fmt::print(
       "{} candidates: {:.2f} ms each together, {:.2f} ms each alone: {:.1f} times; coefficients "
-      "the "
-      "same within {:.1g}\n",
+      "the same within {:.1g}\n",
       candidates.size(), 1e3 * shared, 1e3 * own, own / shared, worst);
   return 0;
 }

@@ -77,8 +77,8 @@ void RefuseOtherArm(const LinkageRun& run, const ArmBaseline& baseline) {
   if (gap < kLeastGap || gap < kShare * way) return;
   throw InputError(fmt::format(
       "{}: the arm of the machine file does not go where the instrument saw it, {:.1f} mm rms "
-      "apart "
-      "over {:.1f} mm rms of way; [linkage] is not that of the recording, or its pivots stand in "
+      "apart over {:.1f} mm rms of way; [linkage] is not that of the recording, or its pivots "
+      "stand in "
       "another order or sense",
       run.name, 1e3 * gap, 1e3 * way));
 }

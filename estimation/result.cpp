@@ -163,8 +163,7 @@ std::string Result::WhyNotUsable() const {
   if (status == Status::kConverged) return "";
   return fmt::format(
       "neither data nor priors determine {}; add measurements that move it, state a prior, or hold "
-      "a "
-      "parameter",
+      "a parameter",
       FirstUndetermined(*this));
 }
 

@@ -16,8 +16,6 @@
 namespace abbe::hal {
 namespace {
 
-using Kind = ModbusFault::Kind;
-
 // s: a wait that ends so much later than it should is that of a program that did not run.
 constexpr double kAway = 0.1;
 
@@ -142,7 +140,7 @@ ModbusClient::Fault ModbusClient::Exchange(const ModbusRequest& request, Time de
 
 ModbusClient::Fault ModbusClient::Connect(Time deadline) {
   const auto now = BootClock::now();
-  if (now < retry_at_) return ModbusFault{Kind::kNoLink, 0, last_fault_};
+  if (now < retry_at_) return ModbusFault{ModbusFault::Kind::kNoLink, 0, last_fault_};
   const double limit =
       std::clamp(std::min(device_.times.response, SecondsTo(deadline)), 1e-3, 60.0);
   const auto whole = static_cast<std::uint32_t>(limit);
@@ -181,13 +179,13 @@ ModbusClient::Fault ModbusClient::Receive(const ModbusRequest& request, Time dea
     const double over = -SecondsTo(limit), waited_ms = -1e3 * SecondsTo(start);
     if (over > kAway) {
       // What has come meanwhile came at a time that nobody knows.
-      return Drop(Kind::kSuspended,
+      return Drop(ModbusFault::Kind::kSuspended,
                   fmt::format("abbe did not run for {:.0f} ms (suspended, or the computer is too "
                               "busy) while it waited for the answer to: {}",
                               1e3 * over, request.Text()));
     }
     if (ready <= 0 || over > 0.0) {
-      return Drop(Kind::kTimeout,
+      return Drop(ModbusFault::Kind::kTimeout,
                   reply_size_ == 0
                       ? fmt::format("no answer within {:.0f} ms to: {}", waited_ms, request.Text())
                       : fmt::format("only {} of {} bytes within {:.0f} ms to: {}", reply_size_,

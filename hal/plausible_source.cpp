@@ -81,8 +81,7 @@ void PlausibleSource::RefuseNothing(const std::vector<First>& first) const {
   if (any == nullptr) return;
   throw InputError(fmt::format(
       "{} and the like read {:.3g} at most, next to nothing, and {}: an amplifier that is off, or "
-      "a "
-      "slip of units; check them and `scale` and `at` of these channels in the machine file",
+      "a slip of units; check them and `scale` and `at` of these channels in the machine file",
       any->channel->name, any->highest, any->channel->because));
 }
 

@@ -11,10 +11,11 @@
 // Units: m, rad. T: double, or dual numbers for derivatives.
 // Failure: none; a value that is not finite passes through.
 //
-//   carriage       X_ab = { R = exp([EA EB EC]),  p = s q l + [EX EY EZ] }    b on a, the first on
-//   the bed lines          l_X = x,  l_Y = exp(C0Y z) y,  l_Z = exp(A0Z x + B0Z y) z workpiece X_MW
-//   = product of the carriages from b to w tool body      X_MT = product of the carriages from b to
-//   t error          p_WQ - nominal = X_MW^-1 X_MT p_TQ - (p_TQ +- positions)
+//   carriage    X_ab = { R = exp([EA EB EC]),  p = s q l + [EX EY EZ] }   b on a, the first on the bed
+//   lines       l_X = x,  l_Y = exp(C0Y z) y,  l_Z = exp(A0Z x + B0Z y) z
+//   workpiece   X_MW = product of the carriages from b to w
+//   tool body   X_MT = product of the carriages from b to t
+//   error       p_WQ - nominal = X_MW^-1 X_MT p_TQ - (p_TQ +- positions)
 //
 // The X line is the primary and the XY plane the secondary: C0Y turns the Y line about +z, A0Z and
 // B0Z turn the Z line about +x and +y (signs of standards/squareness.h).

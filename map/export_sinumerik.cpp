@@ -20,8 +20,7 @@ const std::vector<std::string> kSignOfCec = {
     "a correction: the control adds it to the position of the output axis, in mm as it counts that "
     "axis",
     "it is minus the error: minus what the place of the tool in the workpiece is, in the numbers "
-    "of "
-    "the axis, less what was commanded"};
+    "of the axis, less what was commanded"};
 
 // One CEC table as its file says it, mm.
 struct CecTable {

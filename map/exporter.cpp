@@ -33,8 +33,7 @@ const std::vector<Format>& Formats() {
       {"etalon", ".etalon", kTableDrops, WriteEtalon, ReadBackEtalon, ReadEtalon},
       {"linuxcnc", ".comp",
        "straightness, angles, squareness and the uncertainty: it carries the position error of "
-       "each "
-       "axis along one line through the middle of the travels, no backlash",
+       "each axis along one line through the middle of the travels, no backlash",
        WriteLinuxcnc, ReadBackLinuxcnc, nullptr},
       {"sinumerik", ".ini",
        "all that depends on two axes at once (the angles times their arms) and the uncertainty: it "

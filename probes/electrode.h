@@ -36,8 +36,7 @@ T ElectrodeReading(const Electrode& electrode, const T& gap, double tilt) {
   if (!(gap > T(0)) || !(edge * edge < T(1))) {
     throw InputError(
         "electrode: the gap is not above the tilt times the electrode radius, so the electrode "
-        "would "
-        "touch the target; check the gap and [head] electrode_radius_mm");
+        "would touch the target; check the gap and [head] electrode_radius_mm");
   }
   const T tilted = gap * (T(1) + sqrt(T(1) - edge * edge)) / T(2);
   return tilted / (T(1) + electrode.stray * tilted);
@@ -50,8 +49,7 @@ inline double ElectrodeGap(const Electrode& electrode, double reading, double ti
   if (!(reading > 0) || !(electrode.stray * reading < 1) || !(tilted > std::abs(edge))) {
     throw InputError(
         "electrode: no gap gives this reading with these electrode constants; check the reading "
-        "and "
-        "[head] electrode_radius_mm and stray_per_mm");
+        "and [head] electrode_radius_mm and stray_per_mm");
   }
   return tilted + edge * edge / tilted;
 }

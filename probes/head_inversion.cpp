@@ -39,8 +39,7 @@ double SideSpan(const HeadLayout<>& layout) {
   if (!(std::abs(span) > kDegenerate * std::hypot(d.u, d.n))) {
     throw InputError(
         "probe head: the side probes D and E stand at the same place along the sweep, so yaw "
-        "cannot "
-        "be seen; check [head.probe_d] and [head.probe_e] position_mm");
+        "cannot be seen; check [head.probe_d] and [head.probe_e] position_mm");
   }
   return span;
 }

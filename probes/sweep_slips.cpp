@@ -32,6 +32,12 @@ void RefuseFarPositions(const std::string& name, const SweepDwells& sweep,
       const machine::Travel& travel = machine.travels[static_cast<std::size_t>(axis)];
       const machine::Travel span = machine::PlausiblePositions(travel);
       if (position >= span.first && position <= span.last) continue;
+      if (!(travel.last > travel.first)) {
+        throw InputError(fmt::format(
+            "{}: row {}: {:c}_mm is {:.6g}, but the machine has no axis {:c}: add it to the chain and "
+            "as [axis.{:c}], or leave the column out",
+            name, dwell.first_row + 1, 'x' + axis, position / kMillimetre, 'X' + axis, 'X' + axis));
+      }
       throw InputError(fmt::format(
           "{}: row {}: {:c}_mm is {:.6g}, far outside the travel of {:.6g} to {:.6g} mm: check the "
           "unit, the scale and the word order of that channel, or travel_mm of [axis.{:c}]",

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -25,6 +26,7 @@ constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
 constexpr std::size_t kMostBytes = kMebi;  // of a message
 constexpr char kFailed = 'e', kDone = 'd';
 constexpr rlim_t kChildSeconds = 3;
+constexpr int kSecondsOfClock = 20;  // for one of CPU, on a machine with much else to do
 constexpr std::uint64_t kBytesPerSecond = 2'000'000;
 constexpr std::uint64_t kLibrary = 256 * kMebi;  // what libhdf5 takes for itself
 
@@ -45,9 +47,14 @@ void WriteAll(int pipe, const void* from, std::size_t size) {
   }
 }
 
-bool ReadAll(int pipe, void* to, std::size_t size) {
+// False at the end of the pipe, and when the child has sent nothing for `patience` seconds.
+bool ReadAll(int pipe, void* to, std::size_t size, int patience) {
   char* at = static_cast<char*>(to);
   while (size > 0) {
+    pollfd waiting{pipe, POLLIN, 0};
+    const int ready = poll(&waiting, 1, 1000 * patience);
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready <= 0) return false;
     const ssize_t count = read(pipe, at, size);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return false;
@@ -86,7 +93,8 @@ struct Child {
 [[noreturn]] void RunChild(const Child& child) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGPIPE, SIG_IGN);
-  for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) {
+  // A crash ends the child at once, whatever the program does in its own.
+  for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGABRT, SIGBUS, SIGILL, SIGFPE}) {
     std::signal(signal, SIG_DFL);
   }
   close(child.pipe[0]);
@@ -116,12 +124,7 @@ void Fork(Child& child) {
     auto& forked = *static_cast<Child*>(to);
     if (number != 0) return 0;
     forked.id = fork();
-    if (forked.id == 0) {
-      // A crash ends the child at once, whatever the program does in its own.
-      for (const int fatal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT})
-        std::signal(fatal, SIG_DFL);
-      RunChild(forked);
-    }
+    if (forked.id == 0) RunChild(forked);
     return 0;
   };
   H5Eclear2(H5E_DEFAULT);
@@ -134,14 +137,15 @@ void Fork(Child& child) {
 class Ending {
  public:
   Ending(pid_t child, int pipe) : child_(child), pipe_(pipe) {}
-  ~Ending() { End(SIGKILL); }
+  ~Ending() { End(); }
   Ending(const Ending&) = delete;
   Ending& operator=(const Ending&) = delete;
 
-  int End(int signal) {
+  // Its status: its own when it has ended by itself.
+  int End() {
     if (child_ < 0) return 0;
     close(pipe_);
-    if (signal != 0) kill(child_, signal);
+    kill(child_, SIGKILL);
     int status = 0;
     while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
     }
@@ -225,17 +229,20 @@ void ReadInChild(const std::filesystem::path& path,
   close(child.pipe[1]);
   Ending ending(child.id, child.pipe[0]);
   if (child.id < 0) throw InputError(name + ": no process to read it in; close other programs");
+  const auto receive = [&, patience = kSecondsOfClock * static_cast<int>(child.seconds)](
+                           void* to, std::size_t count) {
+    if (!ReadAll(child.pipe[0], to, count, patience)) ThrowEnded(name, ending.End());
+  };
   std::string bytes;
   std::uint64_t received = 0;
   for (bool more = true; more;) {
     char kind = 0;
     std::uint64_t length = 0;
-    if (!ReadAll(child.pipe[0], &kind, 1) || !ReadAll(child.pipe[0], &length, sizeof(length)) ||
-        length > kMostBytes || (received += length) > 2 * most) {
-      ThrowEnded(name, ending.End(0));
-    }
+    receive(&kind, 1);
+    receive(&length, sizeof(length));
+    if (length > kMostBytes || (received += length) > 2 * most) ThrowEnded(name, ending.End());
     bytes.resize(length);
-    if (!ReadAll(child.pipe[0], bytes.data(), length)) ThrowEnded(name, ending.End(0));
+    receive(bytes.data(), length);
     if (kind == kFailed) throw InputError(bytes);
     more = kind != kDone && take(kind, bytes);
   }

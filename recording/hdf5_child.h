@@ -2,7 +2,8 @@
 //
 // libhdf5 trusts what a file says of itself: a damaged one makes it crash, run without end or take
 // all memory. So a child opens the file and hands over what it reads, and this process never does.
-// The child is limited in time (3 s of CPU, and 1 s for each 2 MB of the file) and in memory.
+// The child is limited in time (3 s of CPU, and 1 s for each 2 MB of the file; without a word for 20
+// times as long by the clock) and in memory.
 #pragma once
 
 #include <cstdint>

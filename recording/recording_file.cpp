@@ -29,12 +29,10 @@ constexpr std::size_t kWhole = std::numeric_limits<std::size_t>::max();  // rows
 
 constexpr std::string_view kSpreadsheet =
     "is the workbook of a spreadsheet; save its sheet as CSV there, and make a recording of that "
-    "by "
-    "abbe convert TABLE.csv RECORDING.csv --column NAME=COLUMN";
+    "by abbe convert TABLE.csv RECORDING.csv --column NAME=COLUMN";
 constexpr std::string_view kMatlab =
     "is a file of MATLAB; write its columns there as CSV (writetable), and make a recording of "
-    "that "
-    "by abbe convert TABLE.csv RECORDING.csv --column NAME=COLUMN";
+    "that by abbe convert TABLE.csv RECORDING.csv --column NAME=COLUMN";
 constexpr std::string_view kOtherProgram =
     "is a table of another program; write it there as CSV, and make a recording of that by abbe "
     "convert TABLE.csv RECORDING.csv --column NAME=COLUMN";

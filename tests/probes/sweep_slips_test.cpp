@@ -68,6 +68,19 @@ TEST(SweepSlips, APositionFarOutsideItsTravelIsRefused) {
   EXPECT_EQ(SlipRefusalOf(Record(sweep, TestSetup())), "");
 }
 
+TEST(SweepSlips, AnAxisThatTheMachineHasNotIsNamed) {
+  SweepSetup setup = TestSetup();
+  setup.machine.travels[2] = {};
+  recording::Recording recording = Record(Noisy(), setup);
+  for (double& z : recording.columns[3].values) z = 30.0;
+  try {
+    ReduceSweep(recording, setup);
+    FAIL() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("z_mm is 30, but the machine has no axis Z"));
+  }
+}
+
 TEST(SweepSlips, ProbesThatNeverMoveAreRefused) {
   EXPECT_THAT(SlipRefusalOf(Changed([](double, std::size_t) { return 100.0; })),
               HasSubstr("probe_a_um shows 100 um in every dwell"));
