@@ -16,7 +16,7 @@
 #include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "fusion/calibration_file.h"
-#include "simulation/one_ball.h"
+#include "simulation/linkage/one_ball.h"
 
 namespace abbe::apps {
 namespace {

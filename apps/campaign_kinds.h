@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "rig/measuring_campaign.h"
+#include "rig/campaign.h"
 
 namespace abbe::apps {
 

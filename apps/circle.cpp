@@ -46,14 +46,14 @@ fusion::CauseOptions CausesOf(const CircleCommand& command) {
   return options;
 }
 
-using Runs = std::vector<relm::CircleRun>;
+using Runs = std::vector<paths::CircleRun>;
 
 // Runs of one instrument, plane and radius together; the linkage first.
 std::vector<Runs> Grouped(Runs&& all) {
   std::vector<Runs> groups;
-  for (relm::CircleRun& run : all) {
+  for (paths::CircleRun& run : all) {
     const auto same = std::ranges::find_if(groups, [&run](const Runs& group) {
-      const relm::CircleRun& one = group.front();
+      const paths::CircleRun& one = group.front();
       return one.instrument == run.instrument && one.plane.name == run.plane.name &&
              std::abs(one.radius - run.radius) < kSameRadius * run.radius && !run.plane.Inclined();
     });
@@ -72,16 +72,16 @@ Circle Evaluate(Runs runs, const std::vector<const Runs*>& shifted, const Measur
   }
   for (const Runs* one : shifted) {
     options.shifted.emplace_back();
-    for (const relm::CircleRun& run : *one) options.shifted.back().push_back(&run);
+    for (const paths::CircleRun& run : *one) options.shifted.back().push_back(&run);
   }
-  std::vector<const relm::CircleRun*> all;
+  std::vector<const paths::CircleRun*> all;
   all.reserve(circle.runs.size());
   for (std::size_t i = 0; i < circle.runs.size(); ++i) {
-    const relm::CircleRun& run = circle.runs[i];
-    std::vector<const relm::CircleRun*> others;
+    const paths::CircleRun& run = circle.runs[i];
+    std::vector<const paths::CircleRun*> others;
     others.reserve(shifted.size());
     for (const Runs* one : shifted) others.push_back(&(*one)[i]);
-    circle.figures.push_back(relm::EvaluateCircle(run, {.cutoff = command.filter}));
+    circle.figures.push_back(paths::EvaluateCircle(run, {.cutoff = command.filter}));
     circle.uncertainties.push_back(
         UncertaintiesOf(run, others, circle.figures.back(), {.cutoff = command.filter}));
     all.push_back(&run);
@@ -91,13 +91,13 @@ Circle Evaluate(Runs runs, const std::vector<const Runs*>& shifted, const Measur
 }
 
 std::vector<Circle> Circles(const MeasuredPaths& paths, const CircleCommand& command) {
-  const relm::CircleOptions options{command.plane, command.radius_mm * settings::kMillimetre};
+  const paths::CircleOptions options{command.plane, command.radius_mm * settings::kMillimetre};
   std::vector<std::vector<Runs>> shifted;
   for (std::size_t error = 0; error < paths.errors.size(); ++error) {
-    shifted.push_back(Grouped(relm::CircleRuns(paths.WithError(error), options)));
+    shifted.push_back(Grouped(paths::CircleRuns(paths.WithError(error), options)));
   }
   std::vector<Circle> circles;
-  for (Runs& group : Grouped(relm::CircleRuns(paths.All(), options))) {
+  for (Runs& group : Grouped(paths::CircleRuns(paths.All(), options))) {
     std::vector<const Runs*> others;
     others.reserve(shifted.size());
     if (group.front().instrument == "linkage") {
@@ -112,7 +112,7 @@ std::vector<Circle> Circles(const MeasuredPaths& paths, const CircleCommand& com
 std::vector<std::string> NotesOf(const MeasuredPaths& paths, const std::vector<Circle>& circles) {
   std::vector<std::string> notes = paths.notes;
   for (const Circle& circle : circles) {
-    const relm::CircleRun& run = circle.runs.front();
+    const paths::CircleRun& run = circle.runs.front();
     if (run.is_programmed) continue;
     notes.push_back(fmt::format(
         "{}: does not say the programmed radius, so there are no F max, F min and D of ISO 230-4: "
@@ -143,7 +143,7 @@ nlohmann::ordered_json Result(const MeasuredPaths& paths, const std::vector<Circ
 // Whether a circle is worse than --limit: G(b), or G where one sense was measured.
 bool BeyondLimit(const std::vector<Circle>& circles, double limit) {
   return std::ranges::any_of(circles, [limit](const Circle& circle) {
-    return std::ranges::any_of(circle.figures, [limit](const relm::CircleFigures& figures) {
+    return std::ranges::any_of(circle.figures, [limit](const paths::CircleFigures& figures) {
       const auto& iso = figures.iso;
       return (iso.both ? iso.both->G : iso.ccw ? iso.ccw->G : iso.cw->G) > limit;
     });

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <string_view>
 
-#include "relm/circle_noise.h"
+#include "paths/circle_noise.h"
 
 namespace abbe::apps {
 
-using relm::CircleFigures;
-using relm::CircleRun;
+using paths::CircleFigures;
+using paths::CircleRun;
 
 namespace {
 
@@ -70,19 +70,19 @@ double FigureUncertainty::Total() const { return std::hypot(calibration, noise);
 FigureUncertainties UncertaintiesOf(const CircleRun& run,
                                     const std::vector<const CircleRun*>& shifted,
                                     const CircleFigures& figures,
-                                    const relm::FigureOptions& options) {
+                                    const paths::FigureOptions& options) {
   FigureUncertainties squares;
   const auto add = [&](const CircleRun& other, double weight, double FigureUncertainty::*part) {
-    const CircleFigures changed = relm::EvaluateCircle(other, options);
+    const CircleFigures changed = paths::EvaluateCircle(other, options);
     for (std::size_t i = 0; i < kCircleFigures.size(); ++i) {
       const Figure before = kCircleFigures[i].of(figures), after = kCircleFigures[i].of(changed);
       if (before && after) squares[i].*part += weight * (*after - *before) * (*after - *before);
     }
   };
   for (const CircleRun* one : shifted) add(*one, 1.0, &FigureUncertainty::calibration);
-  const double noise = relm::ReadingNoise(run);
+  const double noise = paths::ReadingNoise(run);
   for (std::uint64_t copy = 0; copy < kCopies && noise > 0.0; ++copy) {
-    add(relm::WithNoise(run, kDoubles * noise, copy), 1.0 / kCopies, &FigureUncertainty::noise);
+    add(paths::WithNoise(run, kDoubles * noise, copy), 1.0 / kCopies, &FigureUncertainty::noise);
   }
   FigureUncertainties u;
   for (std::size_t i = 0; i < u.size(); ++i) {

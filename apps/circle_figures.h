@@ -5,16 +5,16 @@
 //
 // `calibration` comes from what the calibration of the linkage leaves open: `shifted` holds the run
 // as it would be with each independent error of it, and the squares of what they change add up.
-// `noise` is what twice the reading noise would change (relm/circle_noise.h), so it holds the
+// `noise` is what twice the reading noise would change (paths/circle_noise.h), so it holds the
 // scatter of a figure and by how much noise makes it too large. Lack of fit of the linkage's model
-// is not in it. Units: m. Failure: that of relm::EvaluateCircle.
+// is not in it. Units: m. Failure: that of paths::EvaluateCircle.
 #pragma once
 
 #include <array>
 #include <optional>
 #include <vector>
 
-#include "relm/circle_run.h"
+#include "paths/circle_run.h"
 
 namespace abbe::apps {
 
@@ -23,7 +23,7 @@ using Figure = std::optional<double>;  // m
 struct CircleFigure {
   const char* key;  // in the data, in um
   const char* text;
-  Figure (*of)(const relm::CircleFigures&);
+  Figure (*of)(const paths::CircleFigures&);
 };
 
 extern const std::array<CircleFigure, 17> kCircleFigures;
@@ -35,9 +35,9 @@ struct FigureUncertainty {
 
 using FigureUncertainties = std::array<FigureUncertainty, 17>;  // as kCircleFigures
 
-FigureUncertainties UncertaintiesOf(const relm::CircleRun& run,
-                                    const std::vector<const relm::CircleRun*>& shifted,
-                                    const relm::CircleFigures& figures,
-                                    const relm::FigureOptions& options);
+FigureUncertainties UncertaintiesOf(const paths::CircleRun& run,
+                                    const std::vector<const paths::CircleRun*>& shifted,
+                                    const paths::CircleFigures& figures,
+                                    const paths::FigureOptions& options);
 
 }  // namespace abbe::apps

@@ -18,9 +18,9 @@ namespace abbe::apps {
 namespace {
 
 using nlohmann::ordered_json;
-using relm::CircleFigures;
-using relm::CirclePoint;
-using relm::CircleRun;
+using paths::CircleFigures;
+using paths::CirclePoint;
+using paths::CircleRun;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kProfilePoints = 360;  // of the profile in the result, one a degree

@@ -9,15 +9,15 @@
 
 #include "apps/circle_figures.h"
 #include "fusion/circle_causes.h"
-#include "relm/circle_run.h"
+#include "paths/circle_run.h"
 
 namespace abbe::apps {
 
 // All runs of one instrument, plane and radius: one feed each, and the causes of all together.
 struct Circle {
-  std::vector<relm::CircleRun> runs;
+  std::vector<paths::CircleRun> runs;
   // Of each run.
-  std::vector<relm::CircleFigures> figures;
+  std::vector<paths::CircleFigures> figures;
   std::vector<FigureUncertainties> uncertainties;
   std::optional<fusion::CircleCauses> causes;
   double cutoff = 0.0;  // of the filter of the figures; 0: none

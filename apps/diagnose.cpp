@@ -22,7 +22,7 @@
 #include "diagnosis/next_run.h"
 #include "failure/failure.h"
 #include "settings/toml_text.h"
-#include "simulation/one_ball.h"
+#include "simulation/linkage/one_ball.h"
 
 namespace abbe::apps {
 namespace {

@@ -21,13 +21,13 @@
 #include "apps/result_file.h"
 #include "map/map_file.h"
 #include "map/map_grid.h"
-#include "simulation/length_simulation.h"
-#include "simulation/linkage_on_machine.h"
-#include "simulation/linkage_parts.h"
-#include "simulation/one_ball.h"
-#include "simulation/plate_simulation.h"
-#include "simulation/reference_simulation.h"
-#include "simulation/sweep_simulation.h"
+#include "simulation/linkage/linkage_on_machine.h"
+#include "simulation/linkage/linkage_parts.h"
+#include "simulation/linkage/one_ball.h"
+#include "simulation/points/length_simulation.h"
+#include "simulation/points/plate_simulation.h"
+#include "simulation/points/reference_simulation.h"
+#include "simulation/sweep/sweep_simulation.h"
 
 namespace abbe::apps {
 namespace {

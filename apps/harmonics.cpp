@@ -13,7 +13,7 @@
 #include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "fusion/bearing_harmonics.h"
-#include "relm/shaft_readings.h"
+#include "paths/shaft_readings.h"
 #include "settings/unit.h"
 
 namespace abbe::apps {
@@ -54,7 +54,7 @@ struct HeldOut {
   double without, with;
 };
 
-HeldOut SecondHalf(const relm::ShaftReadings& shaft, const std::vector<int>& orders) {
+HeldOut SecondHalf(const paths::ShaftReadings& shaft, const std::vector<int>& orders) {
   const std::size_t half = shaft.value.size() / 2;
   const std::span angle(shaft.angle), value(shaft.value);
   const auto rms = [&](const std::vector<int>& of) {
@@ -64,7 +64,7 @@ HeldOut SecondHalf(const relm::ShaftReadings& shaft, const std::vector<int>& ord
   return {rms({}), rms(orders)};
 }
 
-ordered_json ChannelJson(const std::string& column, const relm::ShaftReadings& shaft,
+ordered_json ChannelJson(const std::string& column, const paths::ShaftReadings& shaft,
                          const std::vector<int>& orders) {
   const Printed printed = PrintedOf(column);
   const auto key = [&](const char* what) { return what + printed.ending; };
@@ -124,7 +124,7 @@ int Harmonics(const HarmonicsArguments& arguments) {
                       {"angle", arguments.angle},
                       {"channels", ordered_json::array()}};
   for (const std::string& column : arguments.columns) {
-    const auto shaft = relm::ReadShaft(recording, arguments.angle, column);
+    const auto shaft = paths::ReadShaft(recording, arguments.angle, column);
     result["channels"].push_back(ChannelJson(column, shaft, orders));
     if (!arguments.quiet) fmt::print("{}", ChannelTable(result["channels"].back()));
   }

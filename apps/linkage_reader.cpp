@@ -25,11 +25,11 @@ LinkageReader::LinkageReader(MachineFile file, const std::filesystem::path& cali
       calibration.string(), of, machine().name));
 }
 
-relm::MeasuredPath LinkageReader::Path(const recording::Recording& recording) {
+paths::MeasuredPath LinkageReader::Path(const recording::Recording& recording) {
   relm::GoodReadings good = relm::ReadAngles(recording, file_.Linkage());
   runs_.push_back({recording.name, recording.HeaderText("mounting.base").value_or(""),
                    std::move(good.readings)});
-  return relm::LinkagePath(recording, machine().chain, good.rows, Tips(runs_.back()));
+  return paths::LinkagePath(recording, machine().chain, good.rows, Tips(runs_.back()));
 }
 
 Eigen::Matrix3Xd LinkageReader::Tips(const Run& run) const {

@@ -2,10 +2,10 @@
 // parameters of the machine file.
 //
 //   LinkageReader reader(ReadMachineFile(machine), calibration);
-//   const relm::MeasuredPath path = reader.Path(recording);
+//   const paths::MeasuredPath path = reader.Path(recording);
 //   reader.IndependentErrors()     // [error][path]: 3 x poses, m, as large as its uncertainty
 //
-// Frames: axis coordinates, as in relm/measured_path.h. Failure: InputError for a machine file
+// Frames: axis coordinates, as in paths/measured_path.h. Failure: InputError for a machine file
 // without a linkage, or a calibration of another machine or linkage.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 #include "apps/machine_file.h"
 #include "fusion/calibration.h"
-#include "relm/measured_path.h"
+#include "paths/measured_path.h"
 
 namespace abbe::apps {
 
@@ -28,7 +28,7 @@ class LinkageReader {
 
   const machine::Machine& machine() const { return file_.sweep_setup.machine; }
 
-  relm::MeasuredPath Path(const recording::Recording& recording);
+  paths::MeasuredPath Path(const recording::Recording& recording);
   // Of all paths so far: what the uncertainty of the calibration does to them, one independent
   // error after the other, largest first. Empty without a calibration.
   std::vector<std::vector<Eigen::Matrix3Xd>> IndependentErrors() const;

@@ -42,7 +42,7 @@ struct Machine {
 
 void Add(const Recording& recording, Machine& machine, MeasuredPaths& paths) {
   const bool angles = recording.Find("pivot_1_rad").has_value();
-  const bool reference = relm::HasReference(recording);
+  const bool reference = paths::HasReference(recording);
   if (!angles && !reference) {
     throw InputError(
         fmt::format("{}: has neither encoder angles (pivot_1_rad ...) nor reference positions "
@@ -52,7 +52,7 @@ void Add(const Recording& recording, Machine& machine, MeasuredPaths& paths) {
   if (machine.file)
     recording::RefuseOtherMachine(recording, machine.file->sweep_setup.machine.name);
   if (angles) paths.linkage.push_back(machine.Reader(recording).Path(recording));
-  if (reference) paths.reference.push_back(relm::ReferencePath(recording));
+  if (reference) paths.reference.push_back(paths::ReferencePath(recording));
   for (const char* key : {"machine", "started"}) {
     const auto text = recording.HeaderText(key);
     if (text && !paths.head.contains(key)) paths.head[key] = *text;
@@ -73,14 +73,14 @@ void AddPathSources(CLI::App& command, PathSources& sources) {
   AddCausesOption(command, sources.causes);
 }
 
-std::vector<relm::MeasuredPath> MeasuredPaths::All() const {
-  std::vector<relm::MeasuredPath> all = linkage;
+std::vector<paths::MeasuredPath> MeasuredPaths::All() const {
+  std::vector<paths::MeasuredPath> all = linkage;
   all.insert(all.end(), reference.begin(), reference.end());
   return all;
 }
 
-std::vector<relm::MeasuredPath> MeasuredPaths::WithError(std::size_t error) const {
-  std::vector<relm::MeasuredPath> all = All();
+std::vector<paths::MeasuredPath> MeasuredPaths::WithError(std::size_t error) const {
+  std::vector<paths::MeasuredPath> all = All();
   for (std::size_t i = 0; i < linkage.size(); ++i) all[i].measured += errors[error][i];
   return all;
 }

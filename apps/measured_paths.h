@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "machine/machine.h"
-#include "relm/measured_path.h"
+#include "paths/measured_path.h"
 
 namespace abbe::apps {
 
@@ -23,7 +23,7 @@ struct PathSources {
 void AddPathSources(CLI::App& command, PathSources& sources);
 
 struct MeasuredPaths {
-  std::vector<relm::MeasuredPath> linkage, reference;
+  std::vector<paths::MeasuredPath> linkage, reference;
   // How each independent error of the calibration moves the paths of the linkage, as large as its
   // standard deviation: [error][path], 3 x poses, m.
   std::vector<std::vector<Eigen::Matrix3Xd>> errors;
@@ -33,9 +33,9 @@ struct MeasuredPaths {
   std::vector<std::string> notes;
 
   // Those of the linkage, then those of the reference.
-  std::vector<relm::MeasuredPath> All() const;
+  std::vector<paths::MeasuredPath> All() const;
   // The same as they would be with an error of the calibration.
-  std::vector<relm::MeasuredPath> WithError(std::size_t error) const;
+  std::vector<paths::MeasuredPath> WithError(std::size_t error) const;
 };
 
 // A recording with encoder angles gives a path of the linkage, one with reference positions a path

@@ -14,8 +14,8 @@
 #include "apps/path_result.h"
 #include "apps/path_uncertainty.h"
 #include "apps/result_file.h"
+#include "paths/nominal_path.h"
 #include "recording/recording_file.h"
-#include "relm/nominal_path.h"
 #include "settings/unit.h"
 
 namespace abbe::apps {
@@ -29,8 +29,8 @@ struct PathCommand {
   bool quiet = false;
 };
 
-std::vector<relm::CapGauge> Gauges(const PathCommand& command) {
-  std::vector<relm::CapGauge> gauges;
+std::vector<paths::CapGauge> Gauges(const PathCommand& command) {
+  std::vector<paths::CapGauge> gauges;
   for (const std::string& text : command.gauges) {
     if (text.size() < 3 || text[1] != '=' || text[0] < 'X' || text[0] > 'Z') {
       throw InputError(
@@ -46,7 +46,7 @@ std::vector<relm::CapGauge> Gauges(const PathCommand& command) {
 
 constexpr double kOneSeat = 1e-3;  // m
 
-void RefuseMotion(const relm::MeasuredPath& path) {
+void RefuseMotion(const paths::MeasuredPath& path) {
   const Eigen::Vector3d moved =
       path.commanded.rowwise().maxCoeff() - path.commanded.rowwise().minCoeff();
   if (moved.maxCoeff() < kOneSeat) return;
@@ -57,32 +57,32 @@ void RefuseMotion(const relm::MeasuredPath& path) {
 }
 
 // One pose each: the mean of the rows of a pass, or each row where all passes are one.
-Eigen::Matrix3Xd Poses(const relm::MeasuredPath& path) {
+Eigen::Matrix3Xd Poses(const paths::MeasuredPath& path) {
   std::map<int, std::vector<Eigen::Index>> passes;
   for (Eigen::Index i = 0; i < path.poses(); ++i) passes[path.pass[i]].push_back(i);
   if (passes.size() < 2) return path.measured;
   Eigen::Matrix3Xd poses(3, static_cast<Eigen::Index>(passes.size()));
   Eigen::Index pose = 0;
   for (const auto& [pass, rows] : passes) {
-    poses.col(pose++) = relm::Selection(path, rows).measured.rowwise().mean();
+    poses.col(pose++) = paths::Selection(path, rows).measured.rowwise().mean();
   }
   return poses;
 }
 
-TestResult Deviation(const relm::MeasuredPath& path, const Eigen::Matrix3Xd& nominal) {
-  return DeviationResult(relm::DeviationFrom(path, {nominal, false}),
-                         relm::DeviationFrom(path, {nominal, true}));
+TestResult Deviation(const paths::MeasuredPath& path, const Eigen::Matrix3Xd& nominal) {
+  return DeviationResult(paths::DeviationFrom(path, {nominal, false}),
+                         paths::DeviationFrom(path, {nominal, true}));
 }
 
 // The figures of a test with, for a path that is followed, its deviation in space.
-TestResult Evaluate(const PathCommand& command, const relm::MeasuredPath& path) {
+TestResult Evaluate(const PathCommand& command, const paths::MeasuredPath& path) {
   if (command.test == "articulation") {
     RefuseMotion(path);
     return ArticulationResult(standards::EvaluateArticulation(Poses(path)));
   }
-  if (command.test == "stepping") return SteppingResult(relm::EvaluateStepping(path));
-  if (command.test != "square") return Deviation(path, relm::ReadNominalPath(command.test));
-  TestResult square = SquareResult(relm::EvaluateSquare(path));
+  if (command.test == "stepping") return SteppingResult(paths::EvaluateStepping(path));
+  if (command.test != "square") return Deviation(path, paths::ReadNominalPath(command.test));
+  TestResult square = SquareResult(paths::EvaluateSquare(path));
   const TestResult deviation = Deviation(path, {});
   square.table += deviation.table;
   square.data.update(deviation.data);
@@ -107,10 +107,10 @@ class PathTests {
       if (!IsNamed(command_.test)) {
         result_["nominal"] = std::filesystem::path(command_.test).filename().string();
       }
-      const std::vector<relm::MeasuredPath> all = paths.All();
+      const std::vector<paths::MeasuredPath> all = paths.All();
       std::vector<std::vector<TestResult>> shifted(all.size());
       for (std::size_t error = 0; error < paths.errors.size(); ++error) {
-        const std::vector<relm::MeasuredPath> moved = paths.WithError(error);
+        const std::vector<paths::MeasuredPath> moved = paths.WithError(error);
         for (std::size_t i = 0; i < paths.linkage.size(); ++i) {
           shifted[i].push_back(Evaluate(command_, moved[i]));
         }
@@ -138,19 +138,20 @@ class PathTests {
     const MeasuredPaths paths = linkage ? ReadMeasuredPaths(command_.sources) : MeasuredPaths{};
     result_ = ResultHead("path", paths);
     result_["kind"] = "cap";
-    const std::vector<relm::CapGauge> gauges = Gauges(command_);
+    const std::vector<paths::CapGauge> gauges = Gauges(command_);
     for (const std::filesystem::path& file : command_.sources.recordings) {
       const recording::Recording recording = recording::Read(file);
       if (!result_.contains("machine")) {
         result_["machine"] = recording.HeaderText("machine").value_or("");
       }
       const auto ball =
-          std::ranges::find(paths.linkage, recording.name, &relm::MeasuredPath::recording);
+          std::ranges::find(paths.linkage, recording.name, &paths::MeasuredPath::recording);
       if (gauges.empty() && ball != paths.linkage.end()) {
-        Keep(recording.name, "linkage - reference", CapResult(relm::EvaluateCap(recording, *ball)));
+        Keep(recording.name, "linkage - reference",
+             CapResult(paths::EvaluateCap(recording, *ball)));
       } else {
         Keep(recording.name, gauges.empty() ? "reference" : "gauges",
-             CapResult(relm::EvaluateCap(recording, gauges)));
+             CapResult(paths::EvaluateCap(recording, gauges)));
       }
     }
     Note(paths.notes);

@@ -23,7 +23,7 @@ ordered_json Vector(const Eigen::Vector3d& v, double (*unit)(double)) {
   return {unit(v.x()), unit(v.y()), unit(v.z())};
 }
 
-std::string U95OfCap(const relm::CapDisplacement& one) {
+std::string U95OfCap(const paths::CapDisplacement& one) {
   return one.dof > 0.0 ? fmt::format("{:.3f}", Um(standards::StudentCoverage(one.dof) * one.u))
                        : "-";
 }
@@ -38,13 +38,13 @@ ordered_json Rows(const Eigen::Matrix3Xd& p, int row) {
 
 }  // namespace
 
-TestResult SteppingResult(const std::vector<relm::SteppingLine>& lines) {
+TestResult SteppingResult(const std::vector<paths::SteppingLine>& lines) {
   TestResult result;
-  for (const relm::SteppingLine& line : lines) {
+  for (const paths::SteppingLine& line : lines) {
     result.table += fmt::format("  {} axis\n  {:>12}{:>12}{:>12}{:>12}{:>10}{:>8}\n", line.axis,
                                 "stop, mm", "X, um", "Y, um", "Z, um", "U95, um", "visits");
     ordered_json stops = ordered_json::array();
-    for (const relm::SteppingStop& stop : line.stops) {
+    for (const paths::SteppingStop& stop : line.stops) {
       result.table +=
           fmt::format("  {:>12.4f}{:>12.2f}{:>12.2f}{:>12.2f}{:>10.2f}{:>8}\n", Mm(stop.commanded),
                       Um(stop.deviation.x()), Um(stop.deviation.y()), Um(stop.deviation.z()),
@@ -64,12 +64,12 @@ TestResult SteppingResult(const std::vector<relm::SteppingLine>& lines) {
   return result;
 }
 
-TestResult SquareResult(const relm::SquareFigures& figures) {
+TestResult SquareResult(const paths::SquareFigures& figures) {
   TestResult result;
   result.data["plane"] = figures.plane;
   result.table = fmt::format("  {:<10}{:>14}{:>14}{:>16}{:>16}\n", "side along", "nominal, mm",
                              "longer by, um", "straightness LS", "minimum zone");
-  for (const relm::SquareSide& side : figures.sides) {
+  for (const paths::SquareSide& side : figures.sides) {
     result.table += fmt::format("  {:<10}{:>14.4f}{:>14.2f}{:>16.2f}{:>16.2f}\n", side.axis,
                                 Mm(side.nominal), Um(side.length - side.nominal),
                                 Um(side.least_squares.error), Um(side.minimum_zone.error));
@@ -90,7 +90,7 @@ TestResult SquareResult(const relm::SquareFigures& figures) {
   return result;
 }
 
-TestResult DeviationResult(const relm::PathDeviation& raw, const relm::PathDeviation& aligned) {
+TestResult DeviationResult(const paths::PathDeviation& raw, const paths::PathDeviation& aligned) {
   TestResult result;
   result.table =
       fmt::format("  {:<26}{:>14}{:>12}\n  {:<26}{:>14.2f}{:>12.2f}\n  {:<26}{:>14.2f}{:>12.2f}\n",
@@ -109,11 +109,11 @@ TestResult DeviationResult(const relm::PathDeviation& raw, const relm::PathDevia
   return result;
 }
 
-TestResult CapResult(const std::vector<relm::CapDisplacement>& displacements) {
+TestResult CapResult(const std::vector<paths::CapDisplacement>& displacements) {
   TestResult result;
   result.table = fmt::format("  {:>10}{:>14}{:>26}{:>10}{:>13}{:>9}\n", "force, N", "feed, mm/min",
                              "against the motion, um", "U95, um", "scatter, um", "rows");
-  for (const relm::CapDisplacement& one : displacements) {
+  for (const paths::CapDisplacement& one : displacements) {
     result.table += fmt::format("  {:>10}{:>14.0f}{:>26.3f}{:>10}{:>13.3f}{:>9}\n",
                                 std::isfinite(one.force) ? fmt::format("{:.2f}", one.force) : "-",
                                 Mm(one.feed) * 60.0, Um(one.displacement), U95OfCap(one),

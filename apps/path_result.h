@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "relm/cap_displacement.h"
-#include "relm/measured_path.h"
-#include "relm/path_deviation.h"
-#include "relm/square_path.h"
-#include "relm/stepping_test.h"
+#include "paths/cap_displacement.h"
+#include "paths/measured_path.h"
+#include "paths/path_deviation.h"
+#include "paths/square_path.h"
+#include "paths/stepping.h"
 #include "standards/articulation.h"
 
 namespace abbe::apps {
@@ -22,11 +22,11 @@ struct TestResult {
   std::string table;  // ends in a newline
 };
 
-TestResult SteppingResult(const std::vector<relm::SteppingLine>& lines);
-TestResult SquareResult(const relm::SquareFigures& figures);
+TestResult SteppingResult(const std::vector<paths::SteppingLine>& lines);
+TestResult SquareResult(const paths::SquareFigures& figures);
 // Of the same path as it was measured, and aligned with the commanded one.
-TestResult DeviationResult(const relm::PathDeviation& raw, const relm::PathDeviation& aligned);
-TestResult CapResult(const std::vector<relm::CapDisplacement>& displacements);
+TestResult DeviationResult(const paths::PathDeviation& raw, const paths::PathDeviation& aligned);
+TestResult CapResult(const std::vector<paths::CapDisplacement>& displacements);
 TestResult ArticulationResult(const standards::Articulation& figures);
 
 }  // namespace abbe::apps

@@ -21,6 +21,7 @@
 #include "hal/combined_source.h"
 #include "hal/recorder.h"
 #include "hal/sweep_recorder.h"
+#include "recording/instant.h"
 
 namespace abbe::apps {
 namespace {
@@ -82,7 +83,7 @@ hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile
   RequireForOptions(options, devices);
   const auto writer = recording::Writer::Create(
       options.out,
-      hal::RecordHeader({file.sweep_setup.machine.name, hal::UtcNow(), devices.transport},
+      hal::RecordHeader({file.sweep_setup.machine.name, recording::UtcNow(), devices.transport},
                         channels) +
           ProtocolText(file.document, options.operator_name),
       hal::RecordColumns(channels));

@@ -20,13 +20,14 @@
 #include "hal/can_socket.h"
 #include "hal/device_settings.h"
 #include "hal/sweep_recorder.h"
+#include "recording/instant.h"
 #include "recording/recording_file.h"
 #include "rig/campaign.h"
 #include "rig/encoder_server.h"
-#include "rig/length_campaign.h"
-#include "rig/linkage_campaign.h"
-#include "rig/measuring_campaign.h"
-#include "rig/plate_campaign.h"
+#include "rig/record_course.h"
+#include "rig/record_lengths.h"
+#include "rig/record_plate.h"
+#include "rig/record_sweep.h"
 #include "rig/register_server.h"
 #include "rig/truth.h"
 
@@ -239,7 +240,7 @@ recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
   if (!options.axis.empty()) {
     return rig::RecordSweep(
         rig.world, options.axis.front(), rig::ChannelsOf(rig.devices),
-        {.rate = options.rate, .mounting = options.mounting, .started = hal::UtcNow()});
+        {.rate = options.rate, .mounting = options.mounting, .started = recording::UtcNow()});
   }
   if (options.plate) return rig::RecordPlate(rig.world, {.run = options.course.run});
   if (!rig.linkage) {
@@ -247,7 +248,7 @@ recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
         fmt::format("{} has no linkage to record with; add a table [linkage]", options.machine));
   }
   if (!options.length.empty()) return RecordLine(rig, options.length.front());
-  return RecordCourse(*rig.linkage, options.course, options.rate, hal::UtcNow());
+  return RecordCourse(*rig.linkage, options.course, options.rate, recording::UtcNow());
 }
 
 int RecordTheCampaign(const RigOptions& options) {

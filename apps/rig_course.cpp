@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "failure/failure.h"
-#include "relm/nominal_path.h"
+#include "paths/nominal_path.h"
 #include "settings/unit.h"
 
 namespace abbe::apps {
@@ -59,7 +59,7 @@ rig::Course FromFile(const CourseRequest& request, double feed) {
                     "stepping, square or a CSV file with x_mm,y_mm,z_mm",
                     request.course));
   }
-  const Eigen::Matrix3Xd path = relm::ReadNominalPath(request.course);
+  const Eigen::Matrix3Xd path = paths::ReadNominalPath(request.course);
   std::vector<Vector3d> points;
   for (Eigen::Index i = 0; i < path.cols(); ++i) points.emplace_back(path.col(i));
   return rig::LineCourse(points, feed, 0.0, 1);

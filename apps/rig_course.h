@@ -1,7 +1,7 @@
 // `abbe rig --course`, `abbe rig record --course`: which path the machine under the linkage runs,
 // from the command line.
 //
-// A course is the name of a standard one or a file that relm/nominal_path.h reads. Without a centre
+// A course is the name of a standard one or a file that paths/nominal_path.h reads. Without a centre
 // it lies in the middle of the travels. Failure: InputError in one line for an unknown course, a
 // size that does not fit it, a place beyond a travel or out of the linkage's reach.
 #pragma once
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "recording/recording.h"
-#include "rig/linkage_campaign.h"
+#include "rig/record_course.h"
 
 namespace abbe::apps {
 

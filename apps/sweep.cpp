@@ -20,6 +20,7 @@
 #include "apps/result_file.h"
 #include "hal/combined_source.h"
 #include "hal/sweep_recorder.h"
+#include "recording/instant.h"
 
 namespace abbe::apps {
 namespace {
@@ -88,7 +89,7 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
     fmt::print(stderr, "abbe: {}\n", warning);
   }
   const hal::SweepAbout about{file.sweep_setup.machine.name,
-                              hal::UtcNow(),
+                              recording::UtcNow(),
                               "modbus",
                               options.mounting,
                               ProtocolText(file.document, options.operator_name),

@@ -20,7 +20,7 @@
 #include "machine/machine.h"
 #include "probes/head_settings.h"
 #include "relm/linkage_settings.h"
-#include "rig/measuring_campaign.h"
+#include "rig/campaign.h"
 #include "settings/document.h"
 
 namespace {

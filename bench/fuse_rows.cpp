@@ -23,8 +23,8 @@
 #include "hal/device_settings.h"
 #include "random/counter_random.h"
 #include "recording/recording_file.h"
-#include "rig/campaign.h"
-#include "rig/linkage_campaign.h"
+#include "rig/record_course.h"
+#include "rig/record_sweep.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // How long the rig takes for a machine and for one sweep of 610 standstills with 60 rows each.
 #include <benchmark/benchmark.h>
 
-#include "rig/campaign.h"
+#include "rig/record_sweep.h"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include "diagnosis/scatter.h"
 #include "failure/failure.h"
 #include "fusion/linkage_problem.h"
-#include "simulation/arm_run.h"
-#include "simulation/linkage_gaps.h"
+#include "simulation/arm/arm_run.h"
+#include "simulation/linkage/linkage_gaps.h"
 
 namespace abbe::diagnosis {
 namespace {

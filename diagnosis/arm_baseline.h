@@ -26,13 +26,13 @@
 #include "diagnosis/campaign.h"
 #include "diagnosis/fit.h"
 #include "estimation/result.h"
-#include "simulation/linkage_run.h"
+#include "simulation/linkage/linkage_run.h"
 
 namespace abbe::diagnosis {
 
 inline constexpr double kLenient = 2e-3;  // rad
 
-// `placed`: simulation/arm_run.h, or as another run with the same base has it.
+// `placed`: simulation/arm/arm_run.h, or as another run with the same base has it.
 ArmBaseline FitArm(const simulation::LinkageRun& run, const relm::LinkageSettings& placed);
 
 std::vector<Eigen::Index> FarOff(const simulation::LinkageRun& run, const ArmBaseline& baseline);

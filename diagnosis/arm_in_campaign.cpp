@@ -9,7 +9,7 @@
 
 #include "diagnosis/arm_baseline.h"
 #include "failure/failure.h"
-#include "simulation/arm_run.h"
+#include "simulation/arm/arm_run.h"
 
 namespace abbe::diagnosis {
 namespace {

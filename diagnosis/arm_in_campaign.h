@@ -1,4 +1,4 @@
-// A recording of an arm before a reference instrument (simulation/arm_run.h) as a run of the
+// A recording of an arm before a reference instrument (simulation/arm/arm_run.h) as a run of the
 // diagnosis.
 //
 //   runs.push_back(MakeArmRun(recording, setup, notes, bad));

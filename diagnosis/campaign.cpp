@@ -11,13 +11,13 @@
 #include "diagnosis/shaft_in_campaign.h"
 #include "failure/failure.h"
 #include "recording/made_on.h"
-#include "simulation/arm_run.h"
-#include "simulation/length_simulation.h"
-#include "simulation/linkage_on_machine.h"
-#include "simulation/plate_simulation.h"
-#include "simulation/reference_trace.h"
-#include "simulation/sweep_simulation.h"
-#include "simulation/target_spots.h"
+#include "simulation/arm/arm_run.h"
+#include "simulation/linkage/linkage_on_machine.h"
+#include "simulation/points/length_simulation.h"
+#include "simulation/points/plate_simulation.h"
+#include "simulation/points/reference_trace.h"
+#include "simulation/sweep/sweep_simulation.h"
+#include "simulation/sweep/target_spots.h"
 
 namespace abbe::diagnosis {
 

@@ -26,14 +26,14 @@
 #include "recording/recording.h"
 #include "relm/linkage_settings.h"
 #include "simulation/causes/cause.h"
-#include "simulation/linkage_run.h"
-#include "simulation/shaft_noise.h"
+#include "simulation/linkage/linkage_run.h"
+#include "simulation/shaft/shaft_noise.h"
 #include "simulation/simulated_run.h"
 #include "simulation/trace.h"
 
 namespace abbe::diagnosis {
 
-// What the diagnosis knows of an arm (simulation/arm_run.h) from one of its runs: arm_baseline.h.
+// What the diagnosis knows of an arm (simulation/arm/arm_run.h) from one of its runs: arm_baseline.h.
 struct ArmBaseline {
   std::string mounting;            // of its base
   relm::LinkageSettings settings;  // its base where the instrument saw it

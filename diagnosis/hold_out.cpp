@@ -12,8 +12,8 @@
 #include "diagnosis/fit.h"
 #include "failure/failure.h"
 #include "fusion/machine_problem.h"
-#include "simulation/arm_run.h"
-#include "simulation/linkage_gaps.h"
+#include "simulation/arm/arm_run.h"
+#include "simulation/linkage/linkage_gaps.h"
 
 namespace abbe::diagnosis {
 namespace {

@@ -9,7 +9,7 @@
 // that one that picks something up does not make the others worse. What the machine file states is
 // believed to 5 %; where the recordings say otherwise with 4 standard uncertainties, `setup` gets
 // what they say, and a note tells it. The means of a sweep's stations have their scatter from the
-// sweep itself (simulation/sweep_run.h), so sweeps are not asked.
+// sweep itself (simulation/sweep/sweep_run.h), so sweeps are not asked.
 // Units: m, rad. Source: J. von Neumann et al., The mean square successive difference, Ann. Math.
 // Statist. 12 (1941); degrees of freedom (2/3) of the differences for many readings.
 #pragma once

@@ -8,9 +8,9 @@
 
 #include "failure/failure.h"
 #include "recording/good_rows.h"
-#include "simulation/arm_run.h"
-#include "simulation/linkage_run.h"
-#include "simulation/linkage_simulation.h"
+#include "simulation/arm/arm_run.h"
+#include "simulation/linkage/linkage_run.h"
+#include "simulation/linkage/linkage_simulation.h"
 
 namespace abbe::diagnosis {
 namespace {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "failure/failure.h"
-#include "simulation/reference_noise.h"
-#include "simulation/reference_simulation.h"
-#include "simulation/reference_trace.h"
+#include "simulation/points/reference_noise.h"
+#include "simulation/points/reference_simulation.h"
+#include "simulation/points/reference_trace.h"
 
 namespace abbe::diagnosis {
 namespace {

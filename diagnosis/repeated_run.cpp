@@ -7,7 +7,7 @@
 
 #include "diagnosis/planned_paths.h"
 #include "diagnosis/planned_run.h"
-#include "simulation/linkage_run.h"
+#include "simulation/linkage/linkage_run.h"
 
 namespace abbe::diagnosis {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "recording/recording.h"
-#include "simulation/sweep_run.h"
+#include "simulation/sweep/sweep_run.h"
 
 namespace abbe::diagnosis {
 

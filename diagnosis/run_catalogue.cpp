@@ -13,7 +13,7 @@
 #include "diagnosis/repeated_run.h"
 #include "failure/failure.h"
 #include "recording/good_rows.h"
-#include "simulation/arm_run.h"
+#include "simulation/arm/arm_run.h"
 
 namespace abbe::diagnosis {
 namespace {

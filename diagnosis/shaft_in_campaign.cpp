@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "failure/failure.h"
-#include "simulation/shaft_run.h"
-#include "simulation/shaft_simulation.h"
+#include "simulation/shaft/shaft_run.h"
+#include "simulation/shaft/shaft_simulation.h"
 
 namespace abbe::diagnosis {
 namespace {

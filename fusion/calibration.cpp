@@ -11,8 +11,8 @@
 #include "fusion/linkage_problem.h"
 #include "fusion/mapping.h"
 #include "relm/tip_path.h"
-#include "simulation/linkage_run.h"
-#include "simulation/linkage_simulation.h"
+#include "simulation/linkage/linkage_run.h"
+#include "simulation/linkage/linkage_simulation.h"
 
 namespace abbe::fusion {
 

@@ -15,7 +15,7 @@
 #include "recording/whole_file.h"
 #include "settings/document.h"
 #include "settings/toml_text.h"
-#include "simulation/linkage_simulation.h"
+#include "simulation/linkage/linkage_simulation.h"
 
 namespace abbe::fusion {
 namespace {

@@ -16,8 +16,8 @@ namespace abbe::fusion {
 namespace {
 
 using estimation::Problem;
-using relm::CirclePoint;
-using relm::CircleRun;
+using paths::CirclePoint;
+using paths::CircleRun;
 using standards::Signature;
 
 constexpr std::size_t kSectors = 36;  // whose means tell what neighbouring rows share

@@ -27,7 +27,7 @@
 #include <vector>
 
 #include "fusion/smooth_harmonics.h"
-#include "relm/circle_run.h"
+#include "paths/circle_run.h"
 
 namespace abbe::fusion {
 
@@ -37,7 +37,7 @@ struct CauseOptions {
   // m: sine and cosine of order kFirstHarmonic, ... each; fusion/smooth_harmonics.h. By default
   // nothing is known of the machine: orders 4 to 12 are as the data have them.
   std::vector<double> smooth = std::vector<double>(9, 20e-6);
-  std::vector<std::vector<const relm::CircleRun*>> shifted = {};  // of each error, all runs
+  std::vector<std::vector<const paths::CircleRun*>> shifted = {};  // of each error, all runs
 };
 
 struct CauseEstimate {
@@ -59,7 +59,7 @@ struct CircleCauses {
   std::vector<std::vector<double>> residuals;  // m, of each run's points: without the causes
 };
 
-CircleCauses FitCircleCauses(const std::vector<const relm::CircleRun*>& runs,
+CircleCauses FitCircleCauses(const std::vector<const paths::CircleRun*>& runs,
                              const CauseOptions& options = {});
 
 }  // namespace abbe::fusion

@@ -11,7 +11,7 @@
 // tolerances of the linkage could do.
 #pragma once
 
-#include "simulation/linkage_simulation.h"
+#include "simulation/linkage/linkage_simulation.h"
 
 namespace abbe::fusion {
 

@@ -23,7 +23,7 @@
 #include "machine/machine.h"
 #include "machine/tanh_network.h"
 #include "machine/volumetric_model.h"
-#include "simulation/plate_simulation.h"
+#include "simulation/points/plate_simulation.h"
 
 namespace abbe::fusion {
 

@@ -9,7 +9,7 @@
 
 #include "failure/failure.h"
 #include "fusion/calibration.h"
-#include "simulation/linkage_gaps.h"
+#include "simulation/linkage/linkage_gaps.h"
 
 namespace abbe::fusion {
 namespace {

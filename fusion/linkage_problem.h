@@ -5,7 +5,7 @@
 //   const Result result = SolveLinkage(problem);
 //   const VectorXd x = ParametersOf(result.blocks, runs[0].mounting);   // for the simulation
 //
-// Each run is a source; its rows are the gaps of simulation/linkage_gaps.h. Runs of one mounting
+// Each run is a source; its rows are the gaps of simulation/linkage/linkage_gaps.h. Runs of one mounting
 // share the pose of the base; every mounting has base blocks of its own (fusion/calibration.h),
 // with the priors of the machine file. The displacement form knows nothing of the base position
 // beforehand: its prior is left out. That is the same as to use differences from a first pose, but
@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "estimation/problem.h"
-#include "simulation/linkage_simulation.h"
+#include "simulation/linkage/linkage_simulation.h"
 
 namespace abbe::fusion {
 

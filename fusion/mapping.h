@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "fusion/calibration.h"
-#include "simulation/linkage_simulation.h"
+#include "simulation/linkage/linkage_simulation.h"
 
 namespace abbe::fusion {
 

@@ -28,7 +28,7 @@
 #include <vector>
 
 #include "estimation/result.h"
-#include "simulation/plate_simulation.h"
+#include "simulation/points/plate_simulation.h"
 
 namespace abbe::fusion {
 

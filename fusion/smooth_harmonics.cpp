@@ -30,7 +30,7 @@ struct Circle {
   Eigen::MatrixXd J_radial;    // by the 18 error motions, one row a place
 };
 
-Circle CircleOf(const machine::Machine& machine, const relm::CircleRun& run) {
+Circle CircleOf(const machine::Machine& machine, const paths::CircleRun& run) {
   Circle circle{Eigen::Matrix3Xd(3, kPlaces),
                 Eigen::MatrixXd(kPlaces, machine::kAxes * machine::kMotions)};
   for (Index i = 0; i < kPlaces; ++i) {
@@ -63,7 +63,7 @@ Eigen::MatrixXd RadialCovariance(const machine::Machine& machine, const Circle& 
 
 }  // namespace
 
-std::vector<double> SmoothHarmonics(const machine::Machine& machine, const relm::CircleRun& run) {
+std::vector<double> SmoothHarmonics(const machine::Machine& machine, const paths::CircleRun& run) {
   const Eigen::MatrixXd covariance = RadialCovariance(machine, CircleOf(machine, run));
   std::vector<double> deviations;
   std::size_t last = 0;

@@ -19,13 +19,13 @@
 #include <vector>
 
 #include "machine/machine.h"
-#include "relm/circle_run.h"
+#include "paths/circle_run.h"
 
 namespace abbe::fusion {
 
 inline constexpr int kFirstHarmonic = 4;
 inline constexpr int kLastHarmonic = 40;
 
-std::vector<double> SmoothHarmonics(const machine::Machine& machine, const relm::CircleRun& run);
+std::vector<double> SmoothHarmonics(const machine::Machine& machine, const paths::CircleRun& run);
 
 }  // namespace abbe::fusion

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "simulation/length_simulation.h"
-#include "simulation/machine_points.h"
+#include "simulation/points/length_simulation.h"
+#include "simulation/points/machine_points.h"
 
 namespace abbe::fusion {
 

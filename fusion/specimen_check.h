@@ -3,7 +3,7 @@
 //
 //   for (const SpecimenLength& each : CheckSpecimen(map, recording)) ...
 //
-// The recording is of kind length (simulation/length_simulation.h) and took no part in the map.
+// The recording is of kind length (simulation/points/length_simulation.h) and took no part in the map.
 // Units: m. Failure: InputError as there. Source: Ha and Khanh, "An application of neural network
 // in calibration of coordinate measuring machines" (2011), section 6: a specimen of 100 mm measured
 // 100.037 mm before and 100.009 mm after compensation.

@@ -15,7 +15,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "simulation/linkage_simulation.h"
+#include "simulation/linkage/linkage_simulation.h"
 
 namespace abbe::fusion {
 

@@ -46,10 +46,6 @@ std::string SimulatedText(const std::map<std::string, std::string>& transport) {
 
 }  // namespace
 
-std::string UtcNow() {
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::time(nullptr)));
-}
-
 std::vector<std::string> SweepColumns(const std::vector<Channel>& channels) {
   std::vector<std::string> columns = kOfSweep;
   for (const Channel& channel : channels) {

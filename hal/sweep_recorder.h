@@ -77,9 +77,6 @@ struct SweepAbout {
   std::map<std::string, std::string> transport = {};  // of each device, "modbus, maker's name"
 };
 
-// The present time as a header writes it.
-std::string UtcNow();
-
 // The header of the recording: kind, machine, axis, started, the sources of the channels, the plan;
 // "simulated = true" where a device says so.
 std::string SweepHeader(const SweepPlan& plan, const SweepAbout& about,

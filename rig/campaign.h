@@ -1,54 +1,46 @@
-// Recordings of the rig without wires: what `abbe sweep` would write of a sweep of this world, made
-// in memory in milliseconds, for statistics over many seeds.
+// A whole campaign of measurements on the rig, made in memory: sweeps, courses of the linkage,
+// lengths and standstills, one after the other, on one machine that hides what it was told to.
 //
-//   const World world(ReadRigSettings(document.Root()), seed);
-//   const auto devices = hal::ReadDevices(document.Root().Child("devices"));
-//   const recording::Recording sweep = RecordSweep(world, 'X', ChannelsOf(devices), {.rate
-//   = 75.0});
+//   const CampaignMachine machine = ReadCampaignMachine(document.Root());
+//   HiddenEffects hidden = {ParseHidden("backlash:object=X", 7, machine.sensors)};
+//   const Campaign campaign = RecordCampaign(machine, 7, hidden, {.kind =
+//   CampaignKind::kStandard});
+//   // campaign.recordings: "01_sweep_X", "02_sweep_Y", ...; campaign.hidden: with all its numbers
 //
-// Columns and header are those of hal/sweep_recorder.h, with every pass from its first motion. The
-// values are those of the sensors before they are cut into counts. A gap outside 0 to `range` is
-// NaN with the flag kOutOfRange. The same (machine file, seed, axis, run, rate) gives the same
-// recording.
-//
-// What the world hides acts here too: the machine is followed row by row, motion included
-// (hidden_run.h), and x_mm, y_mm, z_mm stay what the controller shows.
-//
-// Speed: while the axis moves by less than 1 nm the gaps are kept; they change by less than 1e-12 m
-// there (slopes of the faces and of the errors are below 1e-3).
+// docs/virtual-rig.md lists the recordings of each kind and what their headers say. The machine is
+// switched on when the first recording begins: warm-up and instants count from there through all of
+// them, and the temperatures go on from one to the next. Runs that the machine file has no table
+// for (a sweep, the linkage) are left out. `reduced`: the same structure of fewer stations, places
+// and rows, for statistics. The same (machine file, seed, hidden effects, plan) gives the same
+// campaign, and without effects the same machine as abbe rig serves.
+// Failure: InputError when nothing can be recorded, or a place is out of the linkage's reach.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
-#include <string>
 #include <vector>
 
-#include "hal/device_settings.h"
-#include "hal/sample_source.h"
 #include "recording/recording.h"
-#include "rig/climate.h"
-#include "rig/world.h"
+#include "rig/campaign_machine.h"
+#include "rig/hidden_effect.h"
 
 namespace abbe::rig {
 
-struct CampaignOptions {
-  double rate = 200.0;        // rows in a second; at most the sensors' update rate
-  bool moving = true;         // also write the rows between the stations
-  std::uint64_t run = 1;      // runs of one world differ in their noise only; 0 is the served rig's
-  std::string mounting = {};  // for the header; empty: not stated
-  std::string started = "1970-01-01T00:00:00Z";  // for the header
-  std::string more = {};       // further lines of its table [mounting], or of TOML
-  int passes = 0;              // 0: as many as the machine file plans
-  double begin = 0.0;          // s since the machine was switched on
-  Climate* climate = nullptr;  // of a campaign; none: its own, and `begin` is 0
+enum class CampaignKind : std::uint8_t { kMinimal, kStandard, kFull };
+
+struct CampaignPlan {
+  CampaignKind kind = CampaignKind::kStandard;
+  bool reduced = false;
+  // When the machine was switched on: 2026-11-21, 08:00.
+  std::chrono::sys_seconds started{std::chrono::seconds(1'795'248'000)};
 };
 
-// The channels that the devices of a machine file give, in their order.
-std::vector<hal::Channel> ChannelsOf(const hal::DevicesSettings& devices);
+struct Campaign {
+  std::vector<recording::Recording> recordings;  // named by number and what they are
+  HiddenEffects hidden;                          // nothing left open
+};
 
-// `axis` 'X', 'Y' or 'Z'. InputError when no sweep of the axis is programmed, when the rate is
-// above the update rate, or when a channel is none of the rig's.
-recording::Recording RecordSweep(const World& world, char axis,
-                                 const std::vector<hal::Channel>& channels,
-                                 const CampaignOptions& options = {});
+Campaign RecordCampaign(const CampaignMachine& machine, std::uint64_t seed, HiddenEffects hidden,
+                        const CampaignPlan& plan);
 
 }  // namespace abbe::rig

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "rig/campaign.h"
+#include "rig/record_sweep.h"
 
 namespace abbe::rig {
 

@@ -25,9 +25,9 @@
 #include "rig/climate.h"
 #include "rig/course.h"
 #include "rig/hidden_run.h"
-#include "rig/linkage_campaign.h"
 #include "rig/motion.h"
 #include "rig/noise.h"
+#include "rig/record_course.h"
 #include "rig/world.h"
 
 namespace abbe::rig {

@@ -20,7 +20,7 @@
 
 #include "recording/recording.h"
 #include "rig/climate.h"
-#include "rig/linkage_campaign.h"
+#include "rig/record_course.h"
 #include "rig/world.h"
 
 namespace abbe::rig {

@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "recording/instant.h"
 #include "settings/document.h"
 #include "settings/nearest_word.h"
 #include "settings/toml_text.h"
 #include "simulation/causes/registry.h"
-#include "simulation/instant.h"
-#include "simulation/shaft_run.h"
+#include "simulation/shaft/shaft_run.h"
 
 namespace abbe::simulation {
 namespace {
@@ -108,7 +108,7 @@ ModelledCause ReadCause(const Table& table, const CauseObjects& machine) {
 Origin ReadOrigin(const Table& root) {
   Origin origin;
   if (root.Has("started")) {
-    const auto seconds = SecondsOf(root.Text("started"));
+    const auto seconds = recording::SecondsOf(root.Text("started"));
     if (!seconds) throw root.Error("started", "is no time; write it as 2026-11-21T09:00:00Z");
     origin.started = *seconds;
   }
@@ -201,7 +201,7 @@ std::string ExtendedModelText(const ExtendedModel& model) {
       "extended_model = {}\nmachine = {}\n",
       kFormat, Quoted(model.machine));
   if (model.origin.started != 0.0) {
-    text += fmt::format("started = {}\n", Quoted(InstantText(model.origin.started)));
+    text += fmt::format("started = {}\n", Quoted(recording::InstantText(model.origin.started)));
   }
   for (const ModelledCause& cause : model.causes) text += CauseText(cause);
   const ModelGain& gain = model.gain;

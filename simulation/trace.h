@@ -17,15 +17,15 @@
 
 #include "recording/recording.h"
 #include "simulation/disturbance.h"
-#include "simulation/linkage_run.h"
-#include "simulation/linkage_simulation.h"
-#include "simulation/rim_readings.h"
-#include "simulation/sweep_run.h"
+#include "simulation/linkage/linkage_run.h"
+#include "simulation/linkage/linkage_simulation.h"
+#include "simulation/shaft/rim_readings.h"
+#include "simulation/sweep/sweep_run.h"
 
 namespace abbe::simulation {
 
 inline constexpr double kLongAgo = 1.0;
-inline constexpr const char* kArm = "arm";  // simulation/arm_run.h
+inline constexpr const char* kArm = "arm";  // simulation/arm/arm_run.h
 
 struct Trace {
   std::string name;  // of the recording

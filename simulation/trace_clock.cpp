@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "failure/failure.h"
-#include "simulation/instant.h"
+#include "recording/instant.h"
 #include "simulation/trace.h"
 
 namespace abbe::simulation {
@@ -14,7 +14,7 @@ using Eigen::Index;
 double StartedOf(const recording::Recording& recording) {
   const auto text = recording.HeaderText("started");
   if (!text) return 0.0;
-  const auto seconds = SecondsOf(*text);
+  const auto seconds = recording::SecondsOf(*text);
   if (seconds) return *seconds;
   throw InputError(fmt::format("{}: started = {} is no time; write it as 2026-11-21T09:00:00Z",
                                recording.name, *text));

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "simulation/causes/registry.h"
-#include "simulation/target_spots.h"
+#include "simulation/sweep/target_spots.h"
 
 namespace abbe::simulation {
 

@@ -23,13 +23,14 @@ ARROWS = {
     "map": "failure settings recording geometry estimation machine",
     "compensation": "failure random standards geometry estimation machine map",
     "probes": "failure random settings recording geometry estimation standards machine",
-    "relm": "failure random settings recording geometry estimation standards machine",
-    "simulation": "failure random settings recording geometry estimation machine probes relm",
-    "fusion": "failure settings recording geometry estimation standards machine map probes relm simulation",
+    "paths": "failure random settings recording geometry standards machine",
+    "relm": "failure random settings recording geometry estimation machine",
+    "simulation": "failure random settings recording geometry estimation machine probes paths relm",
+    "fusion": "failure settings recording geometry estimation standards machine map probes paths relm simulation",
     "diagnosis": "failure recording estimation machine probes relm simulation fusion",
     "report": "failure",
     "rig": "failure random settings recording hal",
-    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes relm simulation fusion diagnosis report rig",
+    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis report rig",
 }
 
 # header of a library -> the files that may include it; everybody else goes through them.

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "diagnosis/diagnose.h"
-#include "rig/plate_campaign.h"
+#include "rig/record_plate.h"
 #include "rig/rig_settings.h"
 #include "settings/document.h"
 

@@ -12,8 +12,8 @@
 #include "diagnosis/diagnose.h"
 #include "machine/machine.h"
 #include "random/counter_random.h"
-#include "rig/linkage_campaign.h"
-#include "rig/measuring_campaign.h"
+#include "rig/campaign.h"
+#include "rig/record_course.h"
 #include "settings/document.h"
 
 namespace abbe {

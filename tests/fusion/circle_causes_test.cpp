@@ -28,9 +28,9 @@ struct Machine {
 double Sign(double value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
 // Where the tool goes: position errors, one after the other; nothing of the table of signatures.
-relm::CircleRun Measure(const Machine& m, double feed, const std::vector<int>& senses,
-                        std::uint64_t seed = 1, int points = 720) {
-  relm::CircleRun run;
+paths::CircleRun Measure(const Machine& m, double feed, const std::vector<int>& senses,
+                         std::uint64_t seed = 1, int points = 720) {
+  paths::CircleRun run;
   run.recordings = {"made"};
   run.instrument = "reference";
   run.plane = {"XY", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
@@ -211,7 +211,7 @@ TEST(CircleCauses, SmoothErrorsAreNoSpikes) {
   Machine m;
   m.noise = 0.1e-6;
   const auto plain = Measure(m, 0.002, {1, -1});
-  relm::CircleRun smooth = plain;
+  paths::CircleRun smooth = plain;
   for (auto& point : smooth.points) {
     const double wave = 2e-6 * std::cos(4 * point.angle + 0.3) + 1e-6 * std::sin(7 * point.angle);
     point.first += wave * std::cos(point.angle);
@@ -240,7 +240,7 @@ TEST(CircleCauses, TheInstrumentsUncertaintyIsInThoseOfTheCauses) {
   Machine m;
   m.noise = 0.01e-6;
   const auto seen = Measure(m, 0.002, {1, -1});
-  relm::CircleRun shifted = seen;
+  paths::CircleRun shifted = seen;
   for (auto& point : shifted.points) point.first -= 10e-6 * point.second;
   CauseOptions options;
   options.shifted = {{&shifted}};
@@ -253,7 +253,7 @@ TEST(CircleCauses, TheInstrumentsUncertaintyIsInThoseOfTheCauses) {
 }
 
 TEST(CircleCauses, CyclicErrorsAtAKnownPitch) {
-  relm::CircleRun run = Measure({}, 0.002, {1, -1});
+  paths::CircleRun run = Measure({}, 0.002, {1, -1});
   for (auto& point : run.points) {
     const double x = 0.03 + kRadius * std::cos(point.angle);
     point.first += 0.5e-6 * std::sin(2 * kPi * x / 0.002);
@@ -270,7 +270,7 @@ TEST(CircleCauses, RefusesCirclesThatAreNotOne) {
   const auto one = Measure({}, 0.002, {1});
   auto other = one;
   other.radius = 0.02;
-  EXPECT_THROW(FitCircleCauses(std::vector<const relm::CircleRun*>{}), InputError);
+  EXPECT_THROW(FitCircleCauses(std::vector<const paths::CircleRun*>{}), InputError);
   EXPECT_THROW(FitCircleCauses({&one, &other}), InputError);
   other = one;
   other.plane.name = "inclined";

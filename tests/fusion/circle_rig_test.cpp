@@ -9,7 +9,7 @@
 
 #include "fusion/circle_causes.h"
 #include "machine/machine.h"
-#include "rig/linkage_campaign.h"
+#include "rig/record_course.h"
 #include "settings/document.h"
 
 namespace abbe::fusion {
@@ -25,7 +25,7 @@ const settings::Document& MachineFile() {
   return document;
 }
 
-relm::MeasuredPath Circle(std::uint64_t seed, double feed) {
+paths::MeasuredPath Circle(std::uint64_t seed, double feed) {
   const settings::Table root = MachineFile().Root();
   const rig::LinkageRig rig(rig::World(rig::ReadRigSettings(root), seed),
                             rig::Linkage(rig::ReadLinkage(root), seed));
@@ -33,11 +33,11 @@ relm::MeasuredPath Circle(std::uint64_t seed, double feed) {
   program.centre = Eigen::Vector3d::Constant(kMiddle);
   program.radius = kRadius;
   program.feed = feed;
-  return relm::ReferencePath(rig.Record(CircleCourse(program), {.kind = "reference"}));
+  return paths::ReferencePath(rig.Record(CircleCourse(program), {.kind = "reference"}));
 }
 
 // X trails its command by half the backlash.
-void AddBacklash(relm::MeasuredPath& path) {
+void AddBacklash(paths::MeasuredPath& path) {
   for (Eigen::Index i = 0; i < path.poses(); ++i) {
     const double towards = -path.direction[i] * (path.commanded(1, i) - kMiddle);
     path.measured(0, i) -= kBacklash / 2.0 * (towards > 0.0 ? 1.0 : -1.0);
@@ -46,16 +46,16 @@ void AddBacklash(relm::MeasuredPath& path) {
 
 enum class Smooth { kPopulation, kAnySize, kNone };
 
-CircleCauses CausesOf(const std::vector<relm::MeasuredPath>& paths, Smooth smooth) {
-  const std::vector<relm::CircleRun> runs = relm::CircleRuns(paths);
+CircleCauses CausesOf(const std::vector<paths::MeasuredPath>& paths, Smooth smooth) {
+  const std::vector<paths::CircleRun> runs = paths::CircleRuns(paths);
   CauseOptions options;
   if (smooth == Smooth::kNone) options.smooth.clear();
   if (smooth == Smooth::kPopulation) {
     options.smooth = SmoothHarmonics(machine::ReadMachine(MachineFile().Root()), runs.front());
   }
-  std::vector<const relm::CircleRun*> all;
+  std::vector<const paths::CircleRun*> all;
   all.reserve(runs.size());
-  for (const relm::CircleRun& run : runs) all.push_back(&run);
+  for (const paths::CircleRun& run : runs) all.push_back(&run);
   return FitCircleCauses(all, options);
 }
 
@@ -92,11 +92,11 @@ TEST(CircleOnTheRig, SmoothErrorsPassForNoOtherCauseAndBacklashIsFound) {
   Counts known, unknown, naive;
   int found = 0, within = 0;
   for (int seed = 1; seed <= kWorlds; ++seed) {
-    std::vector<relm::MeasuredPath> paths{Circle(seed, 0.02), Circle(seed, 0.1)};
+    std::vector<paths::MeasuredPath> paths{Circle(seed, 0.02), Circle(seed, 0.1)};
     Count(CausesOf(paths, Smooth::kPopulation), known);
     Count(CausesOf(paths, Smooth::kAnySize), unknown);
     Count(CausesOf(paths, Smooth::kNone), naive);
-    for (relm::MeasuredPath& path : paths) AddBacklash(path);
+    for (paths::MeasuredPath& path : paths) AddBacklash(path);
     for (const CauseEstimate& one : CausesOf(paths, Smooth::kPopulation).causes) {
       if (one.cause != "backlash" || one.object != "X") continue;
       if (one.seen && std::abs(one.value) > kCoverage * one.u) ++found;
@@ -119,11 +119,11 @@ TEST(CircleOnTheRig, SmoothHarmonicsHaveThePopulationsSize) {
   std::vector<double> squares(3), stated;
   double rows = 0.0;
   for (int seed = 1; seed <= kWorlds; ++seed) {
-    const auto runs = relm::CircleRuns({Circle(seed, 0.1)});
+    const auto runs = paths::CircleRuns({Circle(seed, 0.1)});
     stated = SmoothHarmonics(machine::ReadMachine(MachineFile().Root()), runs.front());
-    const auto figures = relm::EvaluateCircle(runs.front(), {.cutoff = 0.0, .harmonics = 6});
+    const auto figures = paths::EvaluateCircle(runs.front(), {.cutoff = 0.0, .harmonics = 6});
     rows =
-        static_cast<double>(std::ranges::count(runs.front().points, 1, &relm::CirclePoint::sense));
+        static_cast<double>(std::ranges::count(runs.front().points, 1, &paths::CirclePoint::sense));
     for (const standards::Harmonic& wave : figures.ccw->harmonics) {
       if (wave.order < kFirstHarmonic || wave.order > 6) continue;
       squares[static_cast<std::size_t>(wave.order - kFirstHarmonic)] +=

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "fusion/fuse.h"
-#include "simulation/reference_simulation.h"
+#include "simulation/points/reference_simulation.h"
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::fusion {

@@ -12,7 +12,7 @@
 #include "random/counter_random.h"
 #include "relm/linkage_settings.h"
 #include "settings/document.h"
-#include "simulation/linkage_run.h"
+#include "simulation/linkage/linkage_run.h"
 
 namespace abbe::fusion {
 

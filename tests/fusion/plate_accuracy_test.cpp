@@ -1,5 +1,5 @@
 // Are the 21 errors of a plate as uncertain as they say? One world of the virtual rig a seed, which
-// shares no code with the simulation; the five set-ups of rig/plate_campaign.h.
+// shares no code with the simulation; the five set-ups of rig/record_plate.h.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include "fusion/plate_diagonals.h"
 #include "fusion/specimen_check.h"
 #include "random/counter_random.h"
-#include "rig/plate_campaign.h"
+#include "rig/record_plate.h"
 #include "tests/fusion/rig_campaign.h"
 #include "tests/pull_statistics.h"
 #include "tests/seeds.h"

@@ -12,7 +12,7 @@
 #include "fusion/plate_diagonals.h"
 #include "recording/hole_table.h"
 #include "settings/document.h"
-#include "simulation/plate_simulation.h"
+#include "simulation/points/plate_simulation.h"
 
 namespace abbe::fusion {
 namespace plate_field_test {

@@ -10,7 +10,7 @@
 
 #include "fusion/model_comparison.h"
 #include "linkage_world.h"
-#include "rig/linkage_campaign.h"
+#include "rig/record_course.h"
 #include "settings/document.h"
 #include "tests/seeds.h"
 

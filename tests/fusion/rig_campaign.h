@@ -17,13 +17,13 @@
 #include "machine/machine.h"
 #include "probes/head_settings.h"
 #include "relm/linkage_settings.h"
-#include "rig/campaign.h"
-#include "rig/length_campaign.h"
-#include "rig/linkage_campaign.h"
+#include "rig/record_course.h"
+#include "rig/record_lengths.h"
+#include "rig/record_sweep.h"
 #include "settings/document.h"
-#include "simulation/length_simulation.h"
-#include "simulation/linkage_on_machine.h"
-#include "simulation/sweep_simulation.h"
+#include "simulation/linkage/linkage_on_machine.h"
+#include "simulation/points/length_simulation.h"
+#include "simulation/sweep/sweep_simulation.h"
 
 namespace abbe::fusion {
 

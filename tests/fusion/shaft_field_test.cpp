@@ -9,8 +9,8 @@
 #include <span>
 
 #include "fusion/bearing_harmonics.h"
+#include "paths/shaft_readings.h"
 #include "recording/monitor_log.h"
-#include "relm/shaft_readings.h"
 
 namespace abbe::fusion {
 namespace shaft_field_test {
@@ -30,7 +30,7 @@ TEST(ShaftField, TwoHarmonicsTakeTheEccentricityOut) {
     const auto recording = recording::ReadMonitorLog(
         path, {{"shaft_deg", "TARGET_DU:Rotation-PosAct"},
                {"gap_mm", std::string("TARGET_MUTS_LOGGER:m0s002-") + probe.channel}});
-    const auto shaft = relm::ReadShaft(recording, "shaft_deg", "gap_mm");
+    const auto shaft = paths::ReadShaft(recording, "shaft_deg", "gap_mm");
     const std::size_t half = shaft.value.size() / 2;
     const std::span angle(shaft.angle), value(shaft.value);
     const auto held_out = [&](const std::vector<int>& orders) {

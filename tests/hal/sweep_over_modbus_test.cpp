@@ -10,6 +10,7 @@
 #include "hal/combined_source.h"
 #include "hal/modbus_server.h"
 #include "hal/sweep_recorder.h"
+#include "recording/instant.h"
 #include "swept_machine.h"
 
 namespace abbe::hal {
@@ -91,7 +92,8 @@ TEST(SweepOverModbus, GoesOnWhenTheServerVanishesAndReturns) {
   std::filesystem::remove(path);
   const auto& channels = opened.source->channels();
   const auto writer = recording::Writer::Create(
-      path, SweepHeader(plan, {"test", UtcNow(), "modbus", ""}, channels), SweepColumns(channels));
+      path, SweepHeader(plan, {"test", recording::UtcNow(), "modbus", ""}, channels),
+      SweepColumns(channels));
   // Away from the middle of the second stand to the middle of the fourth.
   const auto& stands = bank.machine().stands();
   const double gone_s = 0.5 * (stands[1].from_s + stands[1].to_s);

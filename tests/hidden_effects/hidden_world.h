@@ -15,7 +15,7 @@
 #include "probes/head_settings.h"
 #include "random/counter_random.h"
 #include "relm/linkage_settings.h"
-#include "rig/measuring_campaign.h"
+#include "rig/campaign.h"
 #include "settings/document.h"
 
 namespace abbe {

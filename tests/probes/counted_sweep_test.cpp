@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "probes/sweep_reduction.h"
-#include "rig/campaign.h"
+#include "rig/record_sweep.h"
 #include "tests/counted_machine.h"
 
 namespace abbe::probes {

@@ -5,7 +5,7 @@
 
 #include "probes/sweep_reduction.h"
 #include "random/counter_random.h"
-#include "rig/campaign.h"
+#include "rig/record_sweep.h"
 #include "tests/probes/cramer_rao_bound.h"
 #include "tests/pull_statistics.h"
 #include "tests/seeds.h"

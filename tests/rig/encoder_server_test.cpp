@@ -15,8 +15,8 @@
 #include "hal/combined_source.h"
 #include "hal/recorder.h"
 #include "machine/machine.h"
+#include "paths/circle_run.h"
 #include "recording/recording_file.h"
-#include "relm/circle_run.h"
 #include "relm/linkage_model.h"
 #include "relm/tip_path.h"
 #include "rig/register_server.h"
@@ -61,8 +61,8 @@ class SharedHandClock : public hal::Clock {
 
 hal::DevicesSettings Devices() { return hal::ReadDevices(DemoMill().Root().Child("devices")); }
 
-relm::CircleRun OneRun(const relm::MeasuredPath& path) {
-  const auto runs = relm::CircleRuns({path});
+paths::CircleRun OneRun(const paths::MeasuredPath& path) {
+  const auto runs = paths::CircleRuns({path});
   EXPECT_EQ(runs.size(), 1u);
   return runs.front();
 }
@@ -116,14 +116,14 @@ TEST(LinkageEncoders, ACircleIsRecordedAndEvaluatedAsTheRigRanIt) {
   const relm::LinkageModel model = relm::MakeLinkageModel(settings, relm::ErrorModel::kComplete);
   const recording::Recording recorded = recording::Read(file);
   const relm::TipPath tips = relm::EvaluateTipPath(recorded, settings, model, model.Values());
-  const relm::CircleRun measured = OneRun(relm::LinkagePath(
+  const paths::CircleRun measured = OneRun(paths::LinkagePath(
       recorded, described.chain, tips.rows, relm::InFrame(settings.X_MB, tips.tips)));
 
   // What the rig knows of the same course.
-  const relm::CircleRun truth =
-      OneRun(relm::ReferencePath(linkage.Record(course, {.kind = "reference", .rate = 1000.0})));
-  const auto of_linkage = relm::EvaluateCircle(measured).iso;
-  const auto of_truth = relm::EvaluateCircle(truth).iso;
+  const paths::CircleRun truth =
+      OneRun(paths::ReferencePath(linkage.Record(course, {.kind = "reference", .rate = 1000.0})));
+  const auto of_linkage = paths::EvaluateCircle(measured).iso;
+  const auto of_truth = paths::EvaluateCircle(truth).iso;
   ASSERT_TRUE(of_linkage.ccw && of_linkage.cw && of_linkage.both);
   EXPECT_GT(of_truth.both->G, 2e-6);
   // A count is 0.4 urad, 45 nm at the end of a link, two links and both edges of the ring.

@@ -7,8 +7,8 @@
 #include <map>
 #include <numbers>
 
-#include "rig/campaign.h"
 #include "rig/probe_runs.h"
+#include "rig/record_sweep.h"
 #include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "rig/hidden_effect.h"
-#include "rig/linkage_campaign.h"
+#include "rig/record_course.h"
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {

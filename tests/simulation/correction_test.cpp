@@ -13,8 +13,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "rig/measuring_campaign.h"
-#include "simulation/linkage_simulation.h"
+#include "rig/campaign.h"
+#include "simulation/linkage/linkage_simulation.h"
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::simulation {

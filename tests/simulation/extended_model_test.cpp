@@ -10,8 +10,8 @@
 #include <fstream>
 
 #include "failure/failure.h"
+#include "recording/instant.h"
 #include "simulation/causes/registry.h"
-#include "simulation/instant.h"
 
 namespace abbe::simulation {
 namespace extended_model_test {
@@ -160,9 +160,9 @@ TEST(ExtendedModel, TheLinkageIsNothingToAMachineWithoutOne) {
 }
 
 TEST(Instant, IsWrittenAsItIsRead) {
-  EXPECT_EQ(SecondsOf("1970-01-02T00:00:01Z"), 86401.0);
-  EXPECT_EQ(InstantText(86401.0), "1970-01-02T00:00:01Z");
-  EXPECT_FALSE(SecondsOf("yesterday"));
+  EXPECT_EQ(recording::SecondsOf("1970-01-02T00:00:01Z"), 86401.0);
+  EXPECT_EQ(recording::InstantText(86401.0), "1970-01-02T00:00:01Z");
+  EXPECT_FALSE(recording::SecondsOf("yesterday"));
 }
 
 }  // namespace extended_model_test

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "simulation/causes/registry.h"
-#include "simulation/target_spots.h"
+#include "simulation/sweep/target_spots.h"
 
 namespace abbe::simulation {
 namespace line_and_form_causes_test {

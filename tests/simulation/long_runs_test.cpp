@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "simulation/linkage_parts.h"
+#include "simulation/linkage/linkage_parts.h"
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::simulation {

@@ -1,4 +1,4 @@
-#include "simulation/one_ball.h"
+#include "simulation/linkage/one_ball.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

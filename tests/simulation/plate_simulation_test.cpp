@@ -1,6 +1,6 @@
 // The plate simulation against the closed forms of Ha and Khanh: a moving bridge whose error at
 // each hole is theirs.
-#include "simulation/plate_simulation.h"
+#include "simulation/points/plate_simulation.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

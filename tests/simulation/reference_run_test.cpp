@@ -1,5 +1,5 @@
 // Positioning tests as runs: what is read, their noise by hand, which way they head.
-#include "simulation/reference_run.h"
+#include "simulation/points/reference_run.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 
 #include "failure/failure.h"
 #include "random/counter_random.h"
-#include "simulation/reference_noise.h"
-#include "simulation/reference_trace.h"
+#include "simulation/points/reference_noise.h"
+#include "simulation/points/reference_trace.h"
 
 namespace abbe::simulation {
 namespace reference_run_test {

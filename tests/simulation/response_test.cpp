@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rig/plate_campaign.h"
-#include "simulation/length_simulation.h"
-#include "simulation/plate_simulation.h"
-#include "simulation/reference_noise.h"
-#include "simulation/reference_simulation.h"
-#include "simulation/reference_trace.h"
+#include "rig/record_plate.h"
+#include "simulation/points/length_simulation.h"
+#include "simulation/points/plate_simulation.h"
+#include "simulation/points/reference_noise.h"
+#include "simulation/points/reference_simulation.h"
+#include "simulation/points/reference_trace.h"
 #include "simulation/trace.h"
 #include "tests/fusion/rig_campaign.h"
 

@@ -1,5 +1,5 @@
 // Recordings of a turning shaft: what is read, what is refused, how well turns repeat.
-#include "simulation/shaft_run.h"
+#include "simulation/shaft/shaft_run.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@
 
 #include "failure/failure.h"
 #include "random/counter_random.h"
-#include "simulation/shaft_noise.h"
+#include "simulation/shaft/shaft_noise.h"
 
 namespace abbe::simulation {
 namespace shaft_run_test {

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "random/counter_random.h"
-#include "rig/plate_campaign.h"
 #include "rig/probe_runs.h"
-#include "simulation/plate_simulation.h"
-#include "simulation/reference_simulation.h"
+#include "rig/record_plate.h"
+#include "simulation/points/plate_simulation.h"
+#include "simulation/points/reference_simulation.h"
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::simulation {

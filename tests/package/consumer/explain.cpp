@@ -3,8 +3,8 @@
 #include <cstdio>
 
 #include "diagnosis/diagnose.h"
-#include "rig/linkage_campaign.h"
-#include "rig/measuring_campaign.h"
+#include "rig/campaign.h"
+#include "rig/record_course.h"
 
 int main(int, char** argv) {
   const auto document = abbe::settings::Document::Read(argv[1]);

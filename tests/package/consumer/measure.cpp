@@ -4,8 +4,8 @@
 
 #include "compensation/corrector.h"
 #include "fusion/fuse.h"
-#include "rig/plate_campaign.h"
-#include "simulation/plate_simulation.h"
+#include "rig/record_plate.h"
+#include "simulation/points/plate_simulation.h"
 
 int main(int, char** argv) {
   const auto document = abbe::settings::Document::Read(argv[1]);

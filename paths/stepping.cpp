@@ -1,0 +1,88 @@
+#include "paths/stepping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "failure/failure.h"
+#include "paths/stays.h"
+
+namespace abbe::paths {
+namespace {
+
+constexpr double kSamePlace = 20e-6;  // m: what a stop may differ from another and be the same
+
+// The axis along which the machine went from one stay to the next, if it was one alone.
+std::optional<int> AxisOfMove(const Stay& from, const Stay& to) {
+  const Eigen::Vector3d move = (to.commanded - from.commanded).cwiseAbs();
+  int moved = 0, axis = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (move[i] < kSamePlace) continue;
+    ++moved;
+    axis = i;
+  }
+  return moved == 1 ? std::optional(axis) : std::nullopt;
+}
+
+struct Visits {
+  Eigen::Vector3d commanded = Eigen::Vector3d::Zero(), measured = Eigen::Vector3d::Zero();
+  double variance = 0.0;  // of the mean of one coordinate
+  int count = 0;
+};
+
+SteppingLine LineOf(int axis, const std::vector<Stay>& stays) {
+  std::map<long long, Visits> places;
+  for (const Stay& stay : stays) {
+    const double along = stay.commanded[axis] - stays.front().commanded[axis];
+    Visits& visits = places[std::llround(along / kSamePlace)];
+    visits.commanded += stay.commanded;
+    visits.measured += stay.measured;
+    visits.variance += stay.scatter.squaredNorm() / 3.0 / static_cast<double>(stay.rows);
+    ++visits.count;
+  }
+  const Visits& start = places.at(0);
+  SteppingLine line{"XYZ" [axis], {}};
+  for (const auto& [place, visits] : places) {
+    const Eigen::Vector3d commanded =
+        visits.commanded / visits.count - start.commanded / start.count;
+    const Eigen::Vector3d measured = visits.measured / visits.count - start.measured / start.count;
+    const double variance = visits.variance / (visits.count * visits.count) +
+                            (place == 0 ? 0.0 : start.variance / (start.count * start.count));
+    const Eigen::Vector3d deviation = measured - commanded;
+    line.stops.push_back({commanded[axis], deviation, std::sqrt(variance), visits.count});
+    line.largest_along = std::max(line.largest_along, std::abs(deviation[axis]));
+    line.largest = std::max(line.largest, deviation.norm());
+  }
+  return line;
+}
+
+}  // namespace
+
+std::vector<SteppingLine> EvaluateStepping(const MeasuredPath& path) {
+  const std::vector<Stay> stays = Stays(path);
+  std::vector<SteppingLine> lines;
+  for (std::size_t begin = 0; begin + 1 < stays.size();) {
+    const std::optional<int> axis = AxisOfMove(stays[begin], stays[begin + 1]);
+    if (!axis) {
+      ++begin;
+      continue;
+    }
+    std::size_t end = begin + 2;
+    while (end < stays.size() && AxisOfMove(stays[end - 1], stays[end]) == axis) ++end;
+    lines.push_back(LineOf(*axis, {stays.begin() + static_cast<std::ptrdiff_t>(begin),
+                                   stays.begin() + static_cast<std::ptrdiff_t>(end)}));
+    begin = end - 1;
+  }
+  if (lines.empty()) {
+    throw InputError(fmt::format(
+        "{}: {} stops, no two of which differ in one axis alone: a stepping test stops every few "
+        "millimetres along X, Y or Z, for {} rows at least",
+        path.recording, stays.size(), kLeastRows));
+  }
+  return lines;
+}
+
+}  // namespace abbe::paths

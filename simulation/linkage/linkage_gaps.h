@@ -1,0 +1,44 @@
+// The gaps of a run of the linkage as a residual: where the linkage finds the ball less where the
+// reference does.
+//
+//   const LinkageGaps gaps(simulation, run);
+//   gaps.InSpace(left);                               // m, of whitened rows
+//
+// Rows: x, y, z of pose 0, then of pose 1, ..., in M, made white with GapNoise, so they have the
+// standard deviation 1. x: that of LinkageSimulation. Disturbances act at the stages tip and
+// encoder (simulation/disturbance.h): no machine is between. Units: m, rad. Failure: InputError of
+// GapNoise.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "simulation/linkage/linkage_simulation.h"
+#include "simulation/simulated_run.h"
+
+namespace abbe::simulation {
+
+class LinkageGaps : public Responsive {
+ public:
+  // `excess`: how many times larger than stated the noise is.
+  LinkageGaps(LinkageSimulation simulation, LinkageRun run, double excess = 1.0);
+
+  Eigen::Index Rows() const override { return 3 * run_.poses(); }
+  void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& values,
+                estimation::RowMatrix* jacobian) const override;
+  std::shared_ptr<const Response> At(const Eigen::VectorXd& x) const override;
+
+  // What whitened rows are in space, one column for each pose.
+  Eigen::Matrix3Xd InSpace(const Eigen::VectorXd& rows) const;
+
+ private:
+  auto Noise(Eigen::Index pose) const {
+    return noise_.middleCols<3>(3 * pose).triangularView<Eigen::Lower>();
+  }
+
+  LinkageSimulation simulation_;
+  LinkageRun run_;
+  Eigen::Matrix3Xd noise_;
+};
+
+}  // namespace abbe::simulation

@@ -1,0 +1,37 @@
+// What a run of the linkage should read on a machine with errors of its own.
+//
+// The loop of linkage_simulation.h, with the ball where the machine really holds it:
+//
+//   gap = X_MB p_BT(readings) - (p_MT(commanded) + error(commanded))       error: machine/
+//
+// Here the commanded position is no reference with an uncertainty of its own: what the machine does
+// with a command is what is to be found. What is left is the noise of the encoders and how well the
+// ball repeats (linkage.noise.repeatability). The ball stands in the machine's origin when all axes
+// are at zero.
+// A run of more than 4096 poses is gathered into cells of a quarter of the correlation length
+// (linkage_cells.h) at the parameters that fit 1024 of them; their chi-square is that of the cells.
+//
+// The angles that are read are noisy, and so are the derivatives of the gap there: a fit would
+// shrink the linkage to shrink its noise, by 3 poses u^2 of the scale's uncertainty u. `condense`
+// takes that away: it turns the angles until x closes the gap, and keeps the gap as a constant.
+// Unknowns: those of the linkage and its base, then the machine's functions and squareness.
+// Units: m, rad. Failure: InputError for a position outside the travels, naming the row, and for a
+// ball that does not go where the chain takes it. Validity: exact.
+#pragma once
+
+#include "machine/volumetric_model.h"
+#include "simulation/linkage/linkage_parts.h"
+#include "simulation/linkage/linkage_simulation.h"
+#include "simulation/simulated_run.h"
+
+namespace abbe::simulation {
+
+// `reference`: the machine's reference point, m, in M.
+SimulatedRun SimulateLinkage(const machine::VolumetricModel& model,
+                             const Eigen::Vector3d& reference, const LinkageSimulation& linkage,
+                             const LinkageParts& parts);
+SimulatedRun SimulateLinkage(const machine::VolumetricModel& model,
+                             const Eigen::Vector3d& reference, const LinkageSimulation& linkage,
+                             const LinkageRun& run);
+
+}  // namespace abbe::simulation

@@ -1,0 +1,34 @@
+// What a reference instrument (grid encoder, tracker) should read: the place of the tool point.
+//
+//   const SimulatedRun run = SimulateReference(model, reference, 0.3e-6, recording);
+//
+// Columns ref_x_mm, ref_y_mm, ref_z_mm are in axis coordinates: what the axes would show there on a
+// perfect machine; any may be absent. The instrument is set up by hand, so its place and its turn
+// are unknown, its own scales and squareness are taken as right:
+//
+//   residual = ref - (place + exp(turn) p(x, y, z))         p of simulation/points/machine_points.h
+//
+// Unknowns: "reference_place RUN" [x y z], of which nothing is known, "reference_turn RUN" [a b c],
+// known to 10 mrad; the machine's functions and squareness. Turn and squareness together stay as
+// well determined as two or three directions of the instrument allow.
+// Noise: that of the run; of a recording that states none, `sd` in each direction.
+// Units: m, rad. Failure: that of simulation/points/reference_run.h; InputError for no noise.
+#pragma once
+
+#include "machine/volumetric_model.h"
+#include "recording/recording.h"
+#include "simulation/points/reference_run.h"
+#include "simulation/simulated_run.h"
+
+namespace abbe::simulation {
+
+// `run` states its noise in all directions that it shows.
+SimulatedRun SimulateReference(const machine::VolumetricModel& model,
+                               const Eigen::Vector3d& reference, const ReferenceRun& run);
+
+// Row by row, as it was recorded.
+SimulatedRun SimulateReference(const machine::VolumetricModel& model,
+                               const Eigen::Vector3d& reference, double sd,
+                               const recording::Recording& recording);
+
+}  // namespace abbe::simulation

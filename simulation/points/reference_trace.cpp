@@ -1,0 +1,50 @@
+#include "simulation/points/reference_trace.h"
+
+#include <algorithm>
+
+#include "simulation/trace_columns.h"
+
+namespace abbe::simulation {
+namespace {
+
+Eigen::VectorXd NumbersOf(const std::vector<std::size_t>& rows) {
+  Eigen::VectorXd numbers(static_cast<Eigen::Index>(rows.size()));
+  std::copy(rows.begin(), rows.end(), numbers.begin());
+  return numbers;
+}
+
+}  // namespace
+
+Trace TraceOf(const recording::Recording& recording, const ReferenceRun& run) {
+  Trace trace;
+  trace.name = run.points.name;
+  trace.kind = "reference";
+  trace.axis = run.tested;
+  trace.started = StartedOf(recording);
+  trace.time = trace.clock = run.time;
+  trace.pass = run.pass;
+  trace.direction = run.direction;
+  trace.SetAxes(run.points.axes);
+  if (run.tested != ' ' && trace.velocity.isZero(0.0)) trace.since_reversal.setConstant(kLongAgo);
+  AddSensors(recording, run.points.rows, trace);
+  return trace;
+}
+
+Trace TraceOf(const recording::Recording& recording, const MachinePoints& points) {
+  Trace trace;
+  trace.name = points.name;
+  trace.kind = recording.Kind();
+  trace.started = StartedOf(recording);
+  const auto rows = static_cast<Eigen::Index>(points.count());
+  trace.time = trace.clock =
+      recording.Find("time_s") ? ColumnAt(recording, points, "time_s") : NumbersOf(points.rows);
+  trace.pass = IntegersAt(recording, "pass", points.rows);
+  trace.direction.assign(points.rows.size(), 0);
+  trace.axes = points.axes;
+  trace.velocity = trace.acceleration = trace.heading = Eigen::Matrix3Xd::Zero(3, rows);
+  trace.since_reversal = Eigen::Matrix3Xd::Constant(3, rows, kLongAgo);
+  AddSensors(recording, points.rows, trace);
+  return trace;
+}
+
+}  // namespace abbe::simulation

@@ -1,0 +1,23 @@
+// The traces of runs whose rows are points of the machine (simulation/trace.h): those with a
+// reference instrument, of lengths and of plates.
+//
+// In a positioning test the tested axis heads as the column `direction` says, also where it comes
+// back to a target from the other side; a play is taken up at each target. How far beyond its last
+// target it turned is not known, so it last reversed kLongAgo. In other runs the axes head as they
+// move. Of runs of lengths and plates nothing is known of the way to their rows, so no axis has a
+// heading. Without the column time_s a row counts as a second. Failure: InputError with the
+// recording's name for a start that is no time.
+#pragma once
+
+#include "recording/recording.h"
+#include "simulation/points/machine_points.h"
+#include "simulation/points/reference_run.h"
+#include "simulation/trace.h"
+
+namespace abbe::simulation {
+
+Trace TraceOf(const recording::Recording& recording, const ReferenceRun& run);
+// Of lengths and plates.
+Trace TraceOf(const recording::Recording& recording, const MachinePoints& points);
+
+}  // namespace abbe::simulation

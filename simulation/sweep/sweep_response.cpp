@@ -1,0 +1,164 @@
+#include "simulation/sweep/sweep_response.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <utility>
+
+#include "failure/failure.h"
+#include "simulation/sweep/target_spots.h"
+
+namespace abbe::simulation {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// cov of the readings of the probes of one face: noise of each, form of the face for all.
+MatrixXd FaceCovariance(const SweepPlan& plan, const SweepInstrument& instrument,
+                        const SweepRun& run, std::size_t first, std::size_t count) {
+  const Index n = run.rows();
+  const auto probes_of_face = static_cast<Index>(count);
+  const double sign = plan.chain.ToolSense(run.axis) * plan.R_MH.col(0)[plan.axis];
+  const double variance = instrument.target.form * instrument.target.form;
+  const double length = instrument.target.form_length;
+  MatrixXd V(n * probes_of_face, n * probes_of_face);
+  for (std::size_t p = 0; p < count; ++p) {
+    for (std::size_t q = 0; q < count; ++q) {
+      const Eigen::Vector2d apart =
+          PlaceOf(instrument.head.layout, first + p) - PlaceOf(instrument.head.layout, first + q);
+      auto block = V.block(static_cast<Index>(p) * n, static_cast<Index>(q) * n, n, n);
+      for (Index h = 0; h < n; ++h) {
+        for (Index g = 0; g < n; ++g) {
+          const double along = apart[0] + sign * (run.position[g] - run.position[h]);
+          const double square = along * along + apart[1] * apart[1];
+          block(g, h) = variance == 0.0 ? 0.0 : variance * FormCorrelation(square, length);
+        }
+      }
+      if (p == q) block += run.covariance[first + p];
+    }
+  }
+  return V;
+}
+
+// The diagonal of the inverse, L^-T L^-1: the columns of L^-1 begin with zeros.
+VectorXd InverseDiagonal(const Eigen::LLT<MatrixXd>& factor) {
+  constexpr Index kTogether = 64;
+  const Index n = factor.rows();
+  const MatrixXd L = factor.matrixL();
+  VectorXd diagonal(n);
+  for (Index first = 0; first < n; first += kTogether) {
+    const Index left = n - first, count = std::min(kTogether, left);
+    MatrixXd columns = MatrixXd::Identity(left, count);
+    L.bottomRightCorner(left, left).triangularView<Eigen::Lower>().solveInPlace(columns);
+    diagonal.segment(first, count) = columns.colwise().squaredNorm();
+  }
+  return diagonal;
+}
+
+}  // namespace
+
+FaceNoise FaceNoiseOf(const SweepPlan& plan, const SweepInstrument& instrument,
+                      const SweepRun& run) {
+  const std::array<std::size_t, 3> bounds{0, kTopProbes, kProbes};
+  FaceNoise noise{{}, VectorXd(static_cast<Index>(kProbes) * run.rows())};
+  for (std::size_t face = 0; face < noise.factors.size(); ++face) {
+    const std::size_t first = bounds[face], count = bounds[face + 1] - first;
+    auto& factor = noise.factors[face];
+    factor.compute(FaceCovariance(plan, instrument, run, first, count));
+    if (factor.info() != Eigen::Success) {
+      throw InputError(fmt::format(
+          "{}: the probes have no noise; state probe_nm in [noise] of the machine file", run.name));
+    }
+    noise.weights.segment(static_cast<Index>(first) * run.rows(), factor.rows()) =
+        InverseDiagonal(factor);
+  }
+  return noise;
+}
+
+ReadingResponse::ReadingResponse(MatrixXd by_motions, MatrixXd gaps, MatrixXd tilts,
+                                 std::shared_ptr<const FaceNoise> noise)
+    : by_motions_(std::move(by_motions)),
+      gaps_(std::move(gaps)),
+      tilts_(std::move(tilts)),
+      noise_(std::move(noise)) {}
+
+MatrixXd ReadingResponse::Columns(const std::vector<Disturbance>& disturbances) const {
+  const Index rows = gaps_.cols();
+  MatrixXd columns = MatrixXd::Zero(gaps_.size(), static_cast<Index>(disturbances.size()));
+  for (Index d = 0; d < columns.cols(); ++d) {
+    for (const auto& [stage, values] : disturbances[static_cast<std::size_t>(d)].stages()) {
+      if (stage >= kReadingStage && stage < kEncoderStage) {
+        columns.col(d).segment((stage - kReadingStage) * rows, rows) += values.transpose();
+      }
+      if (stage >= kToolStage) continue;
+      for (Index row = 0; row < rows; ++row) {
+        for (Index probe = 0; probe < gaps_.rows(); ++probe) {
+          columns(probe * rows + row, d) +=
+              by_motions_(probe, row * kToolStage + stage) * values[row];
+        }
+      }
+    }
+  }
+  WhitenRows(*noise_, columns);
+  return columns;
+}
+
+MatrixXd ReadingResponse::Readings(const VectorXd& left) const {
+  VectorXd off(left.size());
+  Index first = 0;
+  for (const auto& factor : noise_->factors) {
+    off.segment(first, factor.rows()) = factor.matrixL() * left.segment(first, factor.rows());
+    first += factor.rows();
+  }
+  return gaps_ - off.reshaped(gaps_.cols(), gaps_.rows()).transpose();
+}
+
+MatrixXd ReadingResponse::BackToReadings(const MatrixXd& left) const {
+  MatrixXd back(left.rows(), left.cols());
+  Index first = 0;
+  for (const auto& factor : noise_->factors) {
+    const Index count = factor.rows();
+    back.middleRows(first, count) = factor.matrixU().solve(left.middleRows(first, count));
+    first += count;
+  }
+  return back;
+}
+
+VectorXd ReadingResponse::SlopesOf(Index probe, Index stage) const {
+  const Index rows = gaps_.cols();
+  if (stage >= kToolStage) {
+    return VectorXd::Constant(rows, stage == kReadingStage + probe ? 1.0 : 0.0);
+  }
+  const Eigen::RowVectorXd slopes = by_motions_(probe, Eigen::seqN(stage, rows, Index{kToolStage}));
+  return slopes.transpose();
+}
+
+MatrixXd ReadingResponse::BackToStage(Index stage, const MatrixXd& back) const {
+  const Index rows = gaps_.cols();
+  if (stage >= kReadingStage && stage < kEncoderStage) {
+    return back.middleRows((stage - kReadingStage) * rows, rows);
+  }
+  MatrixXd of_stage = MatrixXd::Zero(rows, back.cols());
+  if (stage >= kToolStage) return of_stage;
+  for (Index probe = 0; probe < gaps_.rows(); ++probe) {
+    of_stage += SlopesOf(probe, stage).asDiagonal() * back.middleRows(probe * rows, rows);
+  }
+  return of_stage;
+}
+
+Eigen::RowVectorXd ReadingResponse::WeightsOf(Index stage) const {
+  const Index rows = gaps_.cols();
+  VectorXd weights = VectorXd::Zero(rows);
+  for (Index probe = 0; probe < gaps_.rows(); ++probe) {
+    weights += SlopesOf(probe, stage)
+                   .cwiseAbs2()
+                   .cwiseProduct(noise_->weights.segment(probe * rows, rows));
+  }
+  return weights.transpose();
+}
+
+}  // namespace abbe::simulation

@@ -1,0 +1,236 @@
+#include "simulation/sweep/sweep_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "failure/failure.h"
+#include "probes/sweep_dwells.h"
+#include "probes/sweep_stations.h"
+#include "recording/good_rows.h"
+
+namespace abbe::simulation {
+namespace {
+
+using Eigen::Index;
+
+struct Sweep {
+  SweepRun run;  // without rows
+  probes::StationMeans means;
+};
+
+// A name, or a table [mounting] with an `id`.
+std::string MountingOf(const recording::Recording& recording) {
+  if (const auto id = recording.HeaderText("mounting.id")) return *id;
+  return recording.HeaderText("mounting").value_or("");
+}
+
+Sweep ReadMeans(const recording::Recording& recording, const recording::Blocks& blocks,
+                const probes::HeadSettings& head, const probes::ProbeNoise& noise) {
+  const auto dwells =
+      probes::FindDwells(recording, blocks, probes::DwellRuleOf(recording), head.Ranges());
+  Sweep sweep{{}, probes::FitStations(recording.name, dwells, noise)};
+  sweep.run.name = recording.name;
+  sweep.run.mounting = MountingOf(recording);
+  sweep.run.mounted = MountedOf(recording);
+  sweep.run.axis = dwells.axis;
+  sweep.run.start = dwells.start;
+  return sweep;
+}
+
+Eigen::MatrixXd DriftCovariance(const Eigen::VectorXd& time, const probes::ProbeNoise& noise) {
+  Eigen::MatrixXd covariance(time.size(), time.size());
+  for (Index a = 0; a < time.size(); ++a) {
+    covariance.col(a) =
+        noise.drift * noise.drift * (-(time.array() - time[a]).abs() / noise.drift_time).exp();
+  }
+  return covariance;
+}
+
+Eigen::VectorXd ColumnOf(const recording::Recording& recording, const std::string& column,
+                         const std::vector<std::size_t>& rows) {
+  const std::vector<double> read = recording::ValuesOf(recording, column, rows);
+  return Eigen::Map<const Eigen::VectorXd>(read.data(), static_cast<Index>(read.size()));
+}
+
+Eigen::Matrix3Xd AxesOf(const recording::Recording& recording,
+                        const std::vector<std::size_t>& rows) {
+  Eigen::Matrix3Xd axes(3, static_cast<Index>(rows.size()));
+  for (Index k = 0; k < 3; ++k) {
+    axes.row(k) = ColumnOf(recording, fmt::format("{}_mm", "xyz"[k]), rows).transpose();
+  }
+  return axes;
+}
+
+// The rows [first, last) of those that count.
+struct Standstill {
+  std::size_t first, last;
+};
+
+// One row of the run is the mean of one standstill.
+SweepRun Standing(const recording::Recording& recording, const std::vector<std::size_t>& rows,
+                  const std::vector<Standstill>& each, const probes::ProbeNoise& noise) {
+  if (each.empty()) {
+    throw InputError(fmt::format("{}: no row counts; record it again", recording.name));
+  }
+  const auto count = static_cast<Index>(each.size());
+  SweepRun run;
+  run.name = recording.name;
+  run.mounting = MountingOf(recording);
+  run.mounted = MountedOf(recording);
+  run.axis = recording.HeaderText("axis").value_or("X")[0];
+  Eigen::VectorXd readings(count);
+  for (Index row = 0; row < count; ++row) {
+    const Standstill& stands = each[static_cast<std::size_t>(row)];
+    readings[row] = static_cast<double>(stands.last - stands.first);
+    run.first_rows.push_back(rows[stands.first]);
+  }
+  const auto means = [&](const Eigen::MatrixXd& values) {
+    Eigen::MatrixXd mean(values.rows(), count);
+    for (Index row = 0; row < count; ++row) {
+      const auto first = static_cast<Index>(each[static_cast<std::size_t>(row)].first);
+      mean.col(row) = values.middleCols(first, static_cast<Index>(readings[row])).rowwise().mean();
+    }
+    return mean;
+  };
+  const Eigen::Matrix3Xd axes = means(AxesOf(recording, rows));
+  const Index swept = run.axis - 'X';
+  run.start = axes.col(0);
+  run.position = axes.row(swept).transpose();
+  run.steps = axes.colwise() - run.start;
+  run.steps.row(swept).setZero();
+  const Eigen::VectorXd time = ColumnOf(recording, "time_s", rows);
+  run.time = means(time.transpose()).transpose();
+  run.samples = readings;
+  run.lasting.resize(count);
+  for (Index row = 0; row < count; ++row) {
+    const Standstill& stands = each[static_cast<std::size_t>(row)];
+    run.lasting[row] =
+        time[static_cast<Index>(stands.last) - 1] - time[static_cast<Index>(stands.first)];
+  }
+  run.pass.assign(each.size(), 1);
+  run.gap.resize(probes::kProbes, count);
+  for (std::size_t i = 0; i < probes::kProbes; ++i) {
+    const std::string column = fmt::format("probe_{}_um", static_cast<char>('a' + i));
+    run.gap.row(static_cast<Index>(i)) = means(ColumnOf(recording, column, rows).transpose());
+    run.covariance[i] = DriftCovariance(run.time, noise);
+    run.covariance[i].diagonal().array() += noise.probe * noise.probe / readings.array();
+  }
+  return run;
+}
+
+}  // namespace
+
+SweepMounting MountedOf(const recording::Recording& recording) {
+  const std::string head = recording.HeaderText("mounting.head").value_or("0deg");
+  if (head != "0deg" && head != "180deg") {
+    throw InputError(fmt::format(
+        "{}: mounting.head is \"{}\"; a head is mounted as the machine file says, \"0deg\", or "
+        "turned by half a turn, \"180deg\"",
+        recording.name, head));
+  }
+  return {head == "180deg", 1e-3 * recording.HeaderNumber("mounting.target_shift_mm").value_or(0.0),
+          recording.HeaderText("mounting.target_reversed").value_or("false") == "true"};
+}
+
+SweepRun ReadSweepRun(const recording::Recording& recording, const probes::HeadSettings& head,
+                      const probes::ProbeNoise& noise) {
+  return ReadSweepRun(
+      recording, [&](const auto& use) { use(recording); }, head, noise);
+}
+
+SweepRun ReadSweepRun(const recording::Recording& recording, const recording::Blocks& blocks,
+                      const probes::HeadSettings& head, const probes::ProbeNoise& noise) {
+  auto [run, means] = ReadMeans(recording, blocks, head, noise);
+  run.position = std::move(means.position);
+  run.gap = std::move(means.gap);
+  run.covariance = std::move(means.covariance);
+  run.pass.assign(static_cast<std::size_t>(run.rows()), 0);
+  run.time.resize(run.rows());
+  run.samples = Eigen::VectorXd::Ones(run.rows());
+  run.lasting = Eigen::VectorXd::Zero(run.rows());
+  const std::vector<int>& directions = means.directions;
+  for (Index row = 0; row < run.rows(); ++row) {
+    const auto group = static_cast<std::size_t>(row);
+    const int direction = directions[group % directions.size()];
+    const std::size_t station = group / directions.size();
+    const auto first =
+        std::find_if(means.dwells.begin(), means.dwells.end(), [&](const probes::Dwell& dwell) {
+          return dwell.station == station && dwell.direction == direction;
+        });
+    run.direction.push_back(direction);
+    run.first_rows.push_back(first->first_row);
+    run.time[row] = first->time;
+  }
+  return run;
+}
+
+SweepRun ReadSweepDwells(const recording::Recording& recording, const probes::HeadSettings& head,
+                         const probes::ProbeNoise& noise) {
+  auto [run, means] = ReadMeans(
+      recording, [&](const auto& use) { use(recording); }, head, noise);
+  const auto rows = static_cast<Index>(means.dwells.size());
+  run.position.resize(rows);
+  run.time.resize(rows);
+  run.samples.resize(rows);
+  run.lasting.resize(rows);
+  run.gap.resize(probes::kProbes, rows);
+  for (Index row = 0; row < rows; ++row) {
+    const probes::Dwell& dwell = means.dwells[static_cast<std::size_t>(row)];
+    run.position[row] = dwell.position;
+    run.time[row] = dwell.time;
+    run.samples[row] = static_cast<double>(dwell.samples);
+    run.lasting[row] = dwell.duration;
+    run.pass.push_back(dwell.pass);
+    run.direction.push_back(dwell.direction);
+    run.first_rows.push_back(dwell.first_row);
+    for (std::size_t i = 0; i < probes::kProbes; ++i) {
+      run.gap(static_cast<Index>(i), row) = dwell.gap[i];
+    }
+  }
+  for (std::size_t i = 0; i < probes::kProbes; ++i) {
+    run.covariance[i] = DriftCovariance(run.time, noise);
+    run.covariance[i].diagonal() += means.white.col(static_cast<Index>(i));
+  }
+  return run;
+}
+
+SweepRun ReadStillReadings(const recording::Recording& recording, const probes::ProbeNoise& noise) {
+  std::vector<std::size_t> rows = recording::GoodRows(recording);
+  if (rows.size() > kStillReadings) rows.resize(kStillReadings);
+  std::vector<Standstill> each;
+  for (std::size_t i = 0; i < rows.size(); ++i) each.push_back({i, i + 1});
+  SweepRun run = Standing(recording, rows, each, noise);
+  run.direction.assign(each.size(), 0);
+  run.steps.resize(3, 0);
+  return run;
+}
+
+SweepRun ReadGapSteps(const recording::Recording& recording, const probes::ProbeNoise& noise,
+                      const Eigen::Matrix<double, 6, 3>& slopes) {
+  constexpr double kStays = 5e-6;  // m: nearer rows are of one standstill
+  constexpr double kPause = 0.5;   // s: rows farther apart are of two
+  const std::vector<std::size_t> rows = recording::GoodRows(recording);
+  const Eigen::Matrix3Xd axes = AxesOf(recording, rows);
+  const Eigen::VectorXd time = ColumnOf(recording, "time_s", rows);
+  std::vector<Standstill> each;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto row = static_cast<Index>(i);
+    const bool stays = i > 0 && time[row] - time[row - 1] < kPause &&
+                       (axes.col(row) - axes.col(row - 1)).cwiseAbs().maxCoeff() < kStays;
+    if (stays) {
+      each.back().last = i + 1;
+    } else {
+      each.push_back({i, i + 1});
+    }
+  }
+  SweepRun run = Standing(recording, rows, each, noise);
+  run.slopes = slopes;
+  const auto direction = recording::ValuesOf(recording, "direction", run.first_rows);
+  run.direction.assign(direction.begin(), direction.end());
+  return run;
+}
+
+}  // namespace abbe::simulation
