@@ -126,8 +126,8 @@ class Calibration {
     const Eigen::Vector3d mm(arguments_.volume_mm.data());
     auto run = simulation::RunAt(fusion::GridIn(Travel(), 1e-3 * mm, kCubePoints), *file_.linkage);
     run.readings.angles = simulation.Readings(run, simulation.Values());
-    const auto problem = fusion::MakeLinkageProblem(simulation, {run}, options_.problem);
-    const auto seen = fusion::Observe(problem, fusion::SolveLinkage(problem));
+    const auto problem = simulation::MakeLinkageProblem(simulation, {run}, options_.problem);
+    const auto seen = fusion::Observe(problem, simulation::SolveLinkage(problem));
     Show(fmt::format("{} poses in {:g} x {:g} x {:g} mm, model \"{}\".\n", run.poses(), mm.x(),
                      mm.y(), mm.z(), fusion::ErrorModelName(options_.model)));
     Show(SeenTable(seen));

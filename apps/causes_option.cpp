@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/instruments.h"
 #include "settings/unit.h"
 #include "simulation/path_displacement.h"
 
@@ -60,7 +61,7 @@ CLI::Option* AddCausesOption(CLI::App& command, std::filesystem::path& path) {
 
 CauseCorrection::CauseCorrection(const std::filesystem::path& path, const MachineFile& file,
                                  const Seats& taken)
-    : file_(file) {
+    : instruments_(InstrumentsOf(file)) {
   if (path.empty()) return;
   name_ = path.filename().string();
   simulation::ExtendedModel model = simulation::ReadExtendedModel(
@@ -74,14 +75,9 @@ CauseCorrection::CauseCorrection(const std::filesystem::path& path, const Machin
   }
 }
 
-simulation::CorrectedMachine CauseCorrection::On() const {
-  return {file_.sweep_setup.machine, file_.sweep_setup.head,
-          file_.linkage ? &*file_.linkage : nullptr};
-}
-
 recording::Recording CauseCorrection::Take(recording::Recording recording) {
   if (taken_.empty()) return recording;
-  simulation::Correction corrected = simulation::Correct(recording, taken_, origin_, On());
+  simulation::Correction corrected = simulation::Correct(recording, taken_, origin_, instruments_);
   Join(corrected.changes.positions, changes_.positions);
   Join(corrected.changes.gaps, changes_.gaps);
   Join(corrected.changes.angles, changes_.angles);

@@ -46,10 +46,8 @@ class CauseCorrection {
   nlohmann::ordered_json Data() const;
 
  private:
-  simulation::CorrectedMachine On() const;
-
   std::string name_;
-  MachineFile file_;
+  simulation::Instruments instruments_;
   simulation::Origin origin_;
   std::vector<simulation::ModelledCause> taken_, left_;
   simulation::Changes changes_;

@@ -100,7 +100,7 @@ std::vector<Circle> Circles(const MeasuredPaths& paths, const CircleCommand& com
   for (Runs& group : Grouped(paths::CircleRuns(paths.All(), options))) {
     std::vector<const Runs*> others;
     others.reserve(shifted.size());
-    if (group.front().instrument == "linkage") {
+    if (group.front().instrument == paths::kByLinkage) {
       for (const auto& one : shifted) others.push_back(&one[circles.size()]);
     }
     circles.push_back(Evaluate(std::move(group), others, paths, command));

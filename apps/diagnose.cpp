@@ -14,7 +14,7 @@
 #include "apps/diagnose_plan.h"
 #include "apps/diagnosis_result.h"
 #include "apps/file_hash.h"
-#include "apps/machine_file.h"
+#include "apps/instruments.h"
 #include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "diagnosis/found_model.h"
@@ -22,7 +22,7 @@
 #include "diagnosis/next_run.h"
 #include "failure/failure.h"
 #include "settings/toml_text.h"
-#include "simulation/linkage/one_ball.h"
+#include "simulation/kinds.h"
 
 namespace abbe::apps {
 namespace {
@@ -35,18 +35,6 @@ struct DiagnoseArguments {
   std::string campaign;  // to plan
   bool plan = false, quiet = false;
 };
-
-// A file without [devices] is enough for runs with a reference, for an arm, and for a shaft.
-diagnosis::Setup SetupOf(const fs::path& machine) {
-  const auto document = settings::Document::Read(machine);
-  if (!document.Root().Has("devices")) {
-    MachineAlone alone = ReadMachineAlone(document);
-    return {std::move(alone.machine), std::nullopt, {}, {}, std::move(alone.linkage)};
-  }
-  const MachineFile file = ReadMachineFile(machine);
-  const auto& setup = file.sweep_setup;
-  return {setup.machine, setup.head, setup.target, setup.noise, file.linkage};
-}
 
 void WriteModel(simulation::ExtendedModel model, const DiagnoseArguments& arguments) {
   for (const fs::path& path : arguments.recordings) {
@@ -61,7 +49,7 @@ nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
                               const diagnosis::HeldOutGain& gain) {
   auto json = DiagnosisJson(diagnosis, gain);
   json["abbe"] = ABBE_VERSION;
-  json["machine"] = campaign.setup().machine.name;
+  json["machine"] = campaign.instruments().machine.name;
   for (const fs::path& path : arguments.recordings) {
     json["recordings"].push_back(path.filename().string());
   }
@@ -74,7 +62,7 @@ diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
                               const std::vector<recording::Recording>& recordings,
                               const std::vector<diagnosis::Candidate>& causes) {
   // How well an arm is known where it was not fitted is worth a figure also without a cause.
-  if (causes.empty() && !campaign.HasArms()) return {};
+  if (causes.empty() && !campaign.EstimatesNoise()) return {};
   try {
     return diagnosis::HoldOut(campaign, recordings, causes);
   } catch (const NumericalError& error) {
@@ -83,16 +71,6 @@ diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
                "enough for a fit: {}\n",
                error.what());
     return {};
-  }
-}
-
-void RefuseOtherBall(const std::vector<recording::Recording>& recordings,
-                     const diagnosis::Setup& setup) {
-  simulation::OneBall ball;
-  for (const recording::Recording& recording : recordings) {
-    if (!setup.linkage || recording.HeaderText("kind") != "linkage") continue;
-    ball.Add(recording,
-             simulation::MeansOfStays(simulation::ReadLinkageRun(recording, *setup.linkage)));
   }
 }
 
@@ -106,10 +84,12 @@ int Diagnose(const DiagnoseArguments& arguments) {
   }
   std::vector<recording::Recording> recordings;
   for (const fs::path& path : arguments.recordings) recordings.push_back(ReadWithWarnings(path));
-  diagnosis::Setup setup = SetupOf(arguments.machine);
-  RefuseOtherBall(recordings, setup);
-  diagnosis::UseMeasuredNoise(recordings, setup);
-  diagnosis::Campaign campaign(std::move(setup));
+  simulation::Instruments instruments = ReadInstruments(arguments.machine);
+  std::vector<simulation::RunSource> sources;
+  for (const recording::Recording& each : recordings) sources.push_back(simulation::SourceOf(each));
+  simulation::RefuseStrangers(sources, instruments);
+  diagnosis::UseMeasuredNoise(recordings, instruments);
+  diagnosis::Campaign campaign(std::move(instruments));
   for (const recording::Recording& recording : recordings) campaign.Add(recording);
   diagnosis::Diagnosis diagnosis = diagnosis::Diagnose(campaign);
   diagnosis::AddNextRuns(campaign, recordings, diagnosis);

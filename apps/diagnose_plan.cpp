@@ -6,13 +6,13 @@
 
 #include "apps/campaign_kinds.h"
 #include "apps/command.h"
-#include "apps/machine_file.h"
+#include "apps/instruments.h"
 #include "apps/plan_result.h"
 #include "apps/result_file.h"
-#include "diagnosis/planned_run.h"
 #include "failure/failure.h"
 #include "random/counter_random.h"
 #include "recording/recording_file.h"
+#include "simulation/planned_run.h"
 
 namespace abbe::apps {
 namespace {
@@ -41,13 +41,11 @@ std::vector<recording::Recording> PathsOf(const PlanArguments& arguments, const 
 
 int DiagnosePlan(const PlanArguments& arguments) {
   const MachineFile file = ReadMachineFile(arguments.machine);
-  const auto& setup = file.sweep_setup;
-  diagnosis::Campaign campaign(
-      {setup.machine, setup.head, setup.target, setup.noise, file.linkage});
+  diagnosis::Campaign campaign(InstrumentsOf(file));
   std::vector<std::string> runs;
   for (auto& path : PathsOf(arguments, file)) {
     runs.push_back(std::filesystem::path(path.name).filename().string());
-    campaign.Add(diagnosis::Planned(std::move(path), campaign.setup()));
+    campaign.Add(simulation::Planned(std::move(path), campaign.instruments()));
   }
   const random::CounterRandom random(kSeed, kStream);
   std::uint64_t index = 0;
@@ -55,7 +53,7 @@ int DiagnosePlan(const PlanArguments& arguments) {
   if (!arguments.json.empty()) {
     auto json = PlanJson(plan);
     json["abbe"] = ABBE_VERSION;
-    json["machine"] = setup.machine.name;
+    json["machine"] = file.sweep_setup.machine.name;
     json["runs"] = runs;
     WriteResult(json, arguments.json);
   }

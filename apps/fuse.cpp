@@ -16,23 +16,18 @@
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/fuse_result.h"
-#include "apps/machine_file.h"
+#include "apps/instruments.h"
 #include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "map/map_file.h"
 #include "map/map_grid.h"
-#include "simulation/linkage/linkage_on_machine.h"
-#include "simulation/linkage/linkage_parts.h"
-#include "simulation/linkage/one_ball.h"
-#include "simulation/points/length_simulation.h"
-#include "simulation/points/plate_simulation.h"
-#include "simulation/points/reference_simulation.h"
-#include "simulation/sweep/sweep_simulation.h"
+#include "simulation/kinds.h"
 
 namespace abbe::apps {
 namespace {
 
 namespace fs = std::filesystem;
+using simulation::RunSource;
 using simulation::SimulatedRun;
 
 struct FuseArguments {
@@ -42,93 +37,22 @@ struct FuseArguments {
   bool fixed_smoothness = false, quiet = false;
 };
 
-// A recording, block by block or as a whole.
-struct Source {
-  recording::Recording head;
-  recording::Blocks blocks;
-  std::function<recording::Recording()> whole;
-};
-
-Source SourceAt(const machine::Machine& machine, const fs::path& path) {
+RunSource SourceAt(const machine::Machine& machine, const fs::path& path) {
   return {ReadHeadOf(machine, path), BlocksOf(path),
           [&machine, path] { return ReadRecordingOf(machine, path); }};
 }
 
-Source SourceOf(recording::Recording recording) {
-  const auto shared = std::make_shared<const recording::Recording>(std::move(recording));
-  return {*shared, [shared](const auto& use) { use(*shared); }, [shared] { return *shared; }};
+std::vector<SimulatedRun> Simulate(const std::vector<RunSource>& sources,
+                                   const simulation::Instruments& instruments) {
+  const machine::VolumetricModel model = fusion::UnknownMachine(instruments.machine);
+  std::vector<SimulatedRun> runs;
+  for (const RunSource& source : sources) {
+    for (SimulatedRun& run : simulation::SimulateForMap(source, model, instruments)) {
+      runs.push_back(std::move(run));
+    }
+  }
+  return runs;
 }
-
-// Every recording with the simulation of its kind.
-class RunReader {
- public:
-  explicit RunReader(const MachineFile& file)
-      : file_(file), machine_(file.sweep_setup.machine), model_(fusion::UnknownMachine(machine_)) {}
-
-  void Add(const Source& source, std::vector<SimulatedRun>& runs) {
-    const std::string kind = source.head.Kind();
-    if (kind == "sweep") {
-      AddSweep(source, runs);
-    } else if (kind == "linkage") {
-      AddLinkage(source, runs);
-    } else if (kind == "reference") {
-      AddReference(source, runs);
-    } else if (kind == "length") {
-      runs.push_back(simulation::SimulateLengths(model_, machine_.reference, source.whole()));
-    } else if (kind == "plate") {
-      for (const auto& setup : simulation::ReadPlate(source.whole())) {
-        runs.push_back(simulation::SimulatePlate(model_, machine_.reference, setup));
-      }
-    } else {
-      throw InputError(
-          fmt::format("{}: kind is \"{}\"; fuse takes sweep, linkage, reference, length and plate",
-                      source.head.name, kind));
-    }
-  }
-
- private:
-  void AddSweep(const Source& source, std::vector<SimulatedRun>& runs) const {
-    const auto& setup = file_.sweep_setup;
-    runs.push_back(simulation::SimulateSweep(
-        model_, machine_.reference, {setup.head, setup.target},
-        simulation::ReadSweepRun(source.head, source.blocks, setup.head, setup.noise)));
-  }
-
-  void AddLinkage(const Source& source, std::vector<SimulatedRun>& runs) {
-    const relm::LinkageSettings& linkage = file_.Linkage();
-    const simulation::LinkageSimulation nominal(
-        machine_.chain, linkage, relm::MakeLinkageModel(linkage, relm::ErrorModel::kComplete));
-    const auto parts = simulation::PartsOf(source.blocks, linkage);
-    RefuseOtherBall(source.head, parts);
-    runs.push_back(simulation::SimulateLinkage(model_, machine_.reference, nominal, parts));
-    if (source.head.Find("ref_x_mm") || source.head.Find("ref_y_mm") ||
-        source.head.Find("ref_z_mm")) {
-      AddReference(source, runs);
-    }
-  }
-
-  // A single run is not read for it.
-  void RefuseOtherBall(const recording::Recording& head, const simulation::LinkageParts& parts) {
-    constexpr Eigen::Index kMost = 4096, kSample = 1024;
-    linkages_.emplace_back(recording::Recording{head.name, head.header, {}, {}}, parts);
-    for (; linkages_.size() > 1 && compared_ < linkages_.size(); ++compared_) {
-      const auto& [of, its_parts] = linkages_[compared_];
-      ball_.Add(of, simulation::SampleOf(its_parts, kMost, kSample).run);
-    }
-  }
-
-  void AddReference(const Source& source, std::vector<SimulatedRun>& runs) const {
-    runs.push_back(simulation::SimulateReference(model_, machine_.reference,
-                                                 file_.Linkage().noise.reference, source.whole()));
-  }
-
-  const MachineFile& file_;
-  const machine::Machine& machine_;
-  machine::VolumetricModel model_;
-  std::vector<std::pair<recording::Recording, simulation::LinkageParts>> linkages_;
-  std::size_t compared_ = 0;  // of them
-  simulation::OneBall ball_;
-};
 
 struct MapChange {
   double rms, largest;  // m
@@ -146,11 +70,12 @@ MapChange ChangeOf(const map::ErrorMap& before, const map::ErrorMap& after) {
 }
 
 // Recordings as they were read, causes and all, may fit no map.
-std::optional<fusion::FuseReport> FuseIfItFits(const machine::Machine& machine,
-                                               const std::vector<SimulatedRun>& runs,
+std::optional<fusion::FuseReport> FuseIfItFits(const simulation::Instruments& instruments,
+                                               const std::vector<RunSource>& sources,
                                                bool choose_smoothness) {
   try {
-    return fusion::Fuse(machine, runs, {.choose_smoothness = choose_smoothness});
+    return fusion::Fuse(instruments.machine, Simulate(sources, instruments),
+                        {.choose_smoothness = choose_smoothness});
   } catch (const NumericalError&) {
     return std::nullopt;
   }
@@ -187,17 +112,15 @@ int Fuse(const FuseArguments& arguments) {
   const MachineFile file = ReadMachineFile(arguments.machine);
   const machine::Machine& machine = file.sweep_setup.machine;
   CauseCorrection causes(arguments.causes, file, kForMaps);
-  RunReader reader(file);
-  std::vector<SimulatedRun> runs, as_read;
+  const simulation::Instruments instruments = InstrumentsOf(file);
+  std::vector<RunSource> sources, corrected;
   for (const fs::path& path : arguments.recordings) {
-    const Source source = SourceAt(machine, path);
-    if (!causes.Active()) {
-      reader.Add(source, runs);
-      continue;
-    }
-    reader.Add(SourceOf(causes.Take(source.whole())), runs);
-    reader.Add(source, as_read);
+    sources.push_back(SourceAt(machine, path));
+    if (!causes.Active()) continue;
+    corrected.push_back(simulation::SourceOf(causes.Take(sources.back().whole())));
   }
+  simulation::RefuseStrangers(sources, instruments);
+  const auto runs = Simulate(causes.Active() ? corrected : sources, instruments);
   const fusion::FuseReport report = fusion::Fuse(
       machine, runs,
       {.choose_smoothness = !arguments.fixed_smoothness, .holdout = arguments.holdout});
@@ -207,7 +130,7 @@ int Fuse(const FuseArguments& arguments) {
   if (causes.Active()) {
     json["causes_taken_out"] = causes.Data();
     text += fmt::format("\n{}\n{}", causes.Line(), NotInMap(causes.taken()));
-    if (const auto without = FuseIfItFits(machine, as_read, !arguments.fixed_smoothness)) {
+    if (const auto without = FuseIfItFits(instruments, sources, !arguments.fixed_smoothness)) {
       const MapChange change = ChangeOf(without->map, report.map);
       json["map_change_um"] = {{"rms", 1e6 * change.rms}, {"largest", 1e6 * change.largest}};
       text +=

@@ -31,12 +31,6 @@ std::vector<simulation::PlateSetUp> ReadSetUps(const PlateArguments& arguments,
   std::vector<simulation::PlateSetUp> setups;
   for (const fs::path& path : arguments.recordings) {
     const recording::Recording recording = ReadRecordingOf(machine, path);
-    if (recording.Kind() != "plate") {
-      throw InputError(
-          fmt::format("{}: kind is \"{}\", not \"plate\"; abbe fuse takes it together "
-                      "with plates",
-                      recording.name, recording.Kind()));
-    }
     for (auto& setup : simulation::ReadPlate(recording)) setups.push_back(std::move(setup));
   }
   return setups;

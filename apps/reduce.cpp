@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,25 +51,33 @@ class Reduction {
 
  private:
   void Reduce(const recording::Recording& recording, const fs::path& path) {
-    const std::string kind = recording.Kind();
-    if (kind == "sweep") {
-      const probes::SweepSetup& setup = Setup();
-      sweeps_.push_back(probes::ReduceSweep(causes_->Take(recording), setup));
-      Show(SweepTable(sweeps_.back()));
-      auto json = SweepJson(sweeps_.back());
-      if (causes_->Active()) json["causes_taken_out"] = causes_->Data();
-      AddProtocol(recording, json);
-      Keep(json, path.stem().string());
-    } else if (kind == "reference") {
-      nlohmann::ordered_json result = ReduceReference(recording);
-      AddProtocol(recording, result);
-      Show(ReferenceTable(result));
-      Keep(result, path.stem().string());
-    } else {
+    using Step = nlohmann::ordered_json (Reduction::*)(const recording::Recording&);
+    static const std::map<std::string, Step> steps{{"sweep", &Reduction::Sweep},
+                                                   {"reference", &Reduction::Reference}};
+    const auto step = steps.find(recording.Kind());
+    if (step == steps.end()) {
       throw InputError(
           fmt::format("{}: kind is \"{}\"; reduce takes recordings of kind sweep or reference",
-                      path.string(), kind));
+                      path.string(), recording.Kind()));
     }
+    nlohmann::ordered_json result = (this->*step->second)(recording);
+    AddProtocol(recording, result);
+    Keep(result, path.stem().string());
+  }
+
+  nlohmann::ordered_json Sweep(const recording::Recording& recording) {
+    const probes::SweepSetup& setup = Setup();
+    sweeps_.push_back(probes::ReduceSweep(causes_->Take(recording), setup));
+    Show(SweepTable(sweeps_.back()));
+    auto json = SweepJson(sweeps_.back());
+    if (causes_->Active()) json["causes_taken_out"] = causes_->Data();
+    return json;
+  }
+
+  nlohmann::ordered_json Reference(const recording::Recording& recording) {
+    nlohmann::ordered_json result = ReduceReference(recording);
+    Show(ReferenceTable(result));
+    return result;
   }
 
   void Squareness() {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "recording/made_on.h"
 #include "settings/unit.h"
 #include "standards/positioning.h"
 
@@ -118,11 +119,7 @@ ordered_json FiguresJson(const standards::Positioning& figures) {
 }  // namespace
 
 ordered_json ReduceReference(const Recording& recording) {
-  if (recording.Kind() != "reference") {
-    throw InputError(
-        fmt::format("{}: kind = \"{}\": ISO 230-2 needs a recording of kind \"reference\"",
-                    recording.name, recording.Kind()));
-  }
+  recording::RefuseOtherKind(recording, "reference", "ISO 230-2 figures are those of its targets");
   const char axis = AxisOf(recording);
   const GroupedReadings grouped = Group(recording, axis);
   std::vector<standards::TargetDeviations> deviations;

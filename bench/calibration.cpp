@@ -14,10 +14,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "fusion/linkage_problem.h"
 #include "fusion/mapping.h"
 #include "random/counter_random.h"
 #include "settings/document.h"
+#include "simulation/linkage/linkage_problem.h"
 
 namespace {
 
@@ -75,7 +75,7 @@ struct Case {
 
   estimation::Problem Problem() const {
     auto problem =
-        fusion::MakeLinkageProblem(simulation, {run}, {.loss = estimation::RobustLoss::None()});
+        simulation::MakeLinkageProblem(simulation, {run}, {.loss = estimation::RobustLoss::None()});
     problem.Block(problem.Find("base")).Hold();
     problem.Block(problem.Find("base_turn")).Hold();
     return problem;
@@ -103,7 +103,7 @@ void WritePoses(const std::string& path) {
     line.back() = '\n';
     out.print("{}", line);
   }
-  const auto result = fusion::SolveLinkage(c.Problem());
+  const auto result = simulation::SolveLinkage(c.Problem());
   for (const auto& block : result.blocks) {
     if (block.name.starts_with("base")) continue;
     for (std::size_t i = 0; i < block.entries.size(); ++i) {
@@ -117,13 +117,14 @@ void WritePoses(const std::string& path) {
 void Calibrate588x24(benchmark::State& state) {
   const Case& c = TheCase();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(fusion::SolveLinkage(c.Problem()).chi_square);
+    benchmark::DoNotOptimize(simulation::SolveLinkage(c.Problem()).chi_square);
   }
 }
 
 void MapTheCube(benchmark::State& state) {
   const Case& c = TheCase();
-  const Eigen::VectorXd x = fusion::ParametersOf(fusion::SolveLinkage(c.Problem()).blocks, "");
+  const Eigen::VectorXd x =
+      simulation::ParametersOf(simulation::SolveLinkage(c.Problem()).blocks, "");
   for (auto _ : state) {
     benchmark::DoNotOptimize(fusion::MapParameters(c.simulation, c.run, x).values.size());
   }

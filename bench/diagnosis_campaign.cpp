@@ -50,7 +50,7 @@ Linear LinearAt(const diagnosis::Campaign& campaign, const diagnosis::Fit& fit) 
   for (const auto& run : campaign.runs()) runs.push_back(run.simulated);
   machine::VolumetricModel model = campaign.model();
   const estimation::Problem problem =
-      fusion::MakeMachineProblem(campaign.setup().machine, model, campaign.prior(), runs);
+      fusion::MakeMachineProblem(campaign.instruments().machine, model, campaign.prior(), runs);
   const estimation::Layout layout(problem);
   const VectorXd x = fusion::ValuesFound(fit.result(), fit.result().blocks);
   const auto at = estimation::Linearize(problem, layout, x, 1);

@@ -6,7 +6,6 @@
 #include <memory>
 #include <utility>
 
-#include "diagnosis/arm_baseline.h"
 #include "diagnosis/scatter.h"
 #include "diagnosis/shape_posterior.h"
 #include "diagnosis/shortlist.h"
@@ -14,6 +13,7 @@
 #include "failure/failure.h"
 #include "simulation/causes/registry.h"
 #include "simulation/causes/shaft.h"
+#include "simulation/excess_noise.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -41,8 +41,8 @@ bool InReadings(const Candidate& candidate) {
 class Search {
  public:
   explicit Search(const Campaign& campaign)
-      : candidates_(
-            AllCandidates(campaign.scene(), CoarsenessOf(campaign.setup().machine.population))),
+      : candidates_(AllCandidates(campaign.scene(),
+                                  CoarsenessOf(campaign.instruments().machine.population))),
         rim_sensors_(simulation::RimSensorsOf(campaign.scene()).size()),
         base_(std::make_shared<const Fit>(campaign)),
         fit_(base_) {}
@@ -185,7 +185,7 @@ class Search {
 
   // Found row by row, so certain.
   void AddBadData() {
-    for (const BadData& bad : fit_->campaign().bad_data()) {
+    for (const InvalidReadings& bad : fit_->campaign().invalid_readings()) {
       const simulation::Cause& cause = simulation::CauseNamed(bad.cause);
       Finding finding{{{&cause, bad.object, {}}, {}, {}}, 1.0, {}};
       finding.score.coefficients =
@@ -297,6 +297,18 @@ class Search {
   Diagnosis diagnosis_;
 };
 
+// How much larger than stated the noise of each run is; 1 where the stated one is believed.
+std::vector<double> ExcessOf(const Fit& fit) {
+  std::vector<double> excess;
+  const auto& runs = fit.campaign().runs();
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    excess.push_back(runs[r].EstimatesNoise() ? simulation::ExcessOf(fit.result().sources[r],
+                                                                     fit.LeftOf(r), runs[r].excess)
+                                              : 1.0);
+  }
+  return excess;
+}
+
 }  // namespace
 
 bool IsModelled(const Finding& finding) {
@@ -319,7 +331,7 @@ std::string_view Name(Verdict verdict) {
 }
 
 Diagnosis Diagnose(const Campaign& campaign) {
-  if (!campaign.HasArms()) return Search(campaign).Run();
+  if (!campaign.EstimatesNoise()) return Search(campaign).Run();
   Campaign noisy = campaign;
   // Runs that do not go together leave much more than each does alone.
   noisy.SetExcess(ExcessOf(Fit(noisy)), Campaign::Change::kUp);

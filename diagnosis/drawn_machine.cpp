@@ -48,8 +48,9 @@ VectorXd Drawn(const estimation::ParameterBlock& block, const Normal& normal) {
 Values DrawnMachine(const Campaign& campaign, const Normal& normal) {
   Values values;
   DrawFunctions(campaign, normal, values);
-  values.emplace("squareness", campaign.setup().machine.population.squareness * Draws(3, normal));
-  for (const DiagnosedRun& run : campaign.runs()) {
+  values.emplace("squareness",
+                 campaign.instruments().machine.population.squareness * Draws(3, normal));
+  for (const PreparedRun& run : campaign.runs()) {
     for (const auto& block : run.simulated.blocks) {
       if (!values.contains(block.name)) values.emplace(block.name, Drawn(block, normal));
     }

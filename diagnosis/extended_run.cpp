@@ -70,7 +70,7 @@ void Undo(const Candidate& cause, const simulation::Trace& read, simulation::Tra
   for (const auto& each : cause.cause->columns(read, cause.object, cause.shape)) {
     for (const auto& [stage, values] : each.stages()) {
       const Index probe = stage - simulation::kReadingStage;
-      if (probe >= 0 && probe < trace.gap.rows()) trace.gap.row(probe) -= values;
+      if (probe >= 0 && probe < trace.head->gap.rows()) trace.head->gap.row(probe) -= values;
     }
   }
 }
@@ -87,7 +87,7 @@ RowVectorXd AddedTo(const simulation::Trace& trace, const std::vector<Candidate>
       for (const auto& [stage, values] : columns[i].stages()) {
         const auto sensor = static_cast<int>(stage - simulation::kReadingStage);
         if (sensor < 0) continue;
-        added += cause.coefficients[static_cast<Index>(i)] * trace.rim.Of(sensor, values);
+        added += cause.coefficients[static_cast<Index>(i)] * trace.rim->Of(sensor, values);
       }
     }
   }
@@ -101,23 +101,23 @@ void LearnFrom(const std::vector<Candidate>& causes, simulation::Trace& trace) {
   const auto of_sensor = [&](const Candidate& cause) { return !of_shaft(cause); };
   simulation::Trace moved = trace;
   const RowVectorXd here = AddedTo(trace, causes, of_shaft);
-  moved.rim.shaft.array() += kTurn;
+  moved.rim->shaft.array() += kTurn;
   const RowVectorXd ahead = AddedTo(moved, causes, of_shaft);
-  moved.rim.shaft.array() -= 2.0 * kTurn;
+  moved.rim->shaft.array() -= 2.0 * kTurn;
   const RowVectorXd behind = AddedTo(moved, causes, of_shaft);
-  trace.rim.by_angle = (ahead - behind) / (2.0 * kTurn);
-  trace.rim.by_angle_twice = (ahead - 2.0 * here + behind) / (kTurn * kTurn);
-  trace.rim.seen = AddedTo(trace, causes, of_shaft);
+  trace.rim->by_angle = (ahead - behind) / (2.0 * kTurn);
+  trace.rim->by_angle_twice = (ahead - 2.0 * here + behind) / (kTurn * kTurn);
+  trace.rim->seen = AddedTo(trace, causes, of_shaft);
   moved = trace;
-  moved.rim.seen.array() += kStep;
+  moved.rim->seen.array() += kStep;
   const RowVectorXd more = AddedTo(moved, causes, of_sensor) - AddedTo(trace, causes, of_sensor);
-  trace.rim.slope = 1.0 + more.array() / kStep;
+  trace.rim->slope = 1.0 + more.array() / kStep;
 }
 
 // The columns are slopes where the causes are by now; what they do there, less what these slopes
 // make of their coefficients.
 VectorXd BesideSlopes(const LinearRun& at) {
-  const simulation::RimReadings& rim = at.trace.rim;
+  const simulation::RimReadings& rim = *at.trace.rim;
   simulation::Disturbance beside = simulation::NoDisturbance(at.trace);
   for (int sensor = 0; sensor < rim.sensors; ++sensor) {
     beside.row(simulation::kReadingStage + sensor) = (1.0 - rim.slope.array()) * rim.seen.array();
@@ -126,7 +126,7 @@ VectorXd BesideSlopes(const LinearRun& at) {
 }
 
 // What an encoder shows too little at its zero, in a fit: its graduation turns with the shaft.
-VectorXd OffsetsOf(const DiagnosedRun& run, const VectorXd& x) {
+VectorXd OffsetsOf(const PreparedRun& run, const VectorXd& x) {
   Index first = 0;
   for (const auto& block : run.simulated.blocks) {
     const auto count = static_cast<Index>(block.entries.size());
@@ -155,19 +155,19 @@ MatrixXd LinearRun::Columns(const Candidate& cause) const {
   return disturbances.empty() ? MatrixXd{} : response->Columns(disturbances);
 }
 
-LinearRun LinearAt(const DiagnosedRun& run, const VectorXd& x, const VectorXd& left,
+LinearRun LinearAt(const PreparedRun& run, const VectorXd& x, const VectorXd& left,
                    const std::vector<Candidate>& causes) {
   LinearRun at{run.trace, nullptr};
   if (!run.simulated.response) return at;
   at.response = run.simulated.response->At(x);
-  at.trace.tilt = at.response->Tilts();
-  if (at.trace.rim.sensors > 0) LearnFrom(causes, at.trace);
+  if (at.trace.head) at.trace.head->tilt = at.response->Tilts();
+  if (at.trace.rim) LearnFrom(causes, at.trace);
   if (left.size() == 0) return at;
   const MatrixXd readings = at.response->Readings(left);
   if (at.trace.pivots() > 0) {
     at.trace.SetAngles(readings.colwise() + OffsetsOf(run, x));
-  } else if (at.trace.gap.size() > 0) {
-    at.trace.gap = readings;
+  } else if (at.trace.head) {
+    at.trace.head->gap = readings;
     for (const Candidate& cause : causes) {
       if (cause.cause->whole) Undo(cause, run.trace, at.trace);
     }
@@ -175,12 +175,12 @@ LinearRun LinearAt(const DiagnosedRun& run, const VectorXd& x, const VectorXd& l
   return at;
 }
 
-simulation::SimulatedRun Extend(const DiagnosedRun& run, const LinearRun& at,
+simulation::SimulatedRun Extend(const PreparedRun& run, const LinearRun& at,
                                 const std::vector<Candidate>& causes) {
   simulation::SimulatedRun extended = run.simulated;
   const Index rows = run.simulated.residual->Rows();
   VectorXd always = VectorXd::Zero(rows);
-  if (at.trace.rim.sensors > 0) always += BesideSlopes(at);
+  if (at.trace.rim) always += BesideSlopes(at);
   MatrixXd columns(rows, 0);
   for (const Candidate& cause : causes) {
     if (cause.cause->widens) {

@@ -31,10 +31,10 @@ struct LinearRun {
 };
 // `left`: what the simulation leaves of the run, whitened, causes included; empty: the readings
 // stay as they are. Of `causes` those that are there or not are undone in the readings.
-LinearRun LinearAt(const DiagnosedRun& run, const Eigen::VectorXd& x, const Eigen::VectorXd& left,
+LinearRun LinearAt(const PreparedRun& run, const Eigen::VectorXd& x, const Eigen::VectorXd& left,
                    const std::vector<Candidate>& causes = {});
 
-simulation::SimulatedRun Extend(const DiagnosedRun& run, const LinearRun& at,
+simulation::SimulatedRun Extend(const PreparedRun& run, const LinearRun& at,
                                 const std::vector<Candidate>& causes);
 
 inline constexpr const char* kShapeEntry = "log_shape";  // beside where it was taken

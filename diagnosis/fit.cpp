@@ -63,7 +63,7 @@ Problem ProblemOf(const Campaign& campaign, const std::vector<SimulatedRun>& run
   machine::VolumetricModel model = campaign.model();
   if (!start.blocks.empty()) model.SetParameters(fusion::ValuesFound(start, model.Blocks()));
   Problem problem =
-      fusion::MakeMachineProblem(campaign.setup().machine, model, campaign.prior(), runs);
+      fusion::MakeMachineProblem(campaign.instruments().machine, model, campaign.prior(), runs);
   // The machine's own blocks are made by the problem, not by a run.
   for (const Candidate& cause : taken_in) {
     if (!cause.cause->widens) continue;
@@ -109,7 +109,7 @@ void FreeShape(MatrixXd& covariance) {
 Fit::Fit(const Campaign& campaign) : campaign_(campaign) {
   std::vector<SimulatedRun> runs;
   runs.reserve(campaign.runs().size());
-  for (const DiagnosedRun& run : campaign.runs()) runs.push_back(run.simulated);
+  for (const PreparedRun& run : campaign.runs()) runs.push_back(run.simulated);
   const Problem problem = ProblemOf(campaign, runs, {});
   estimation::Linearization at;
   result_ = Solve(problem, kAsItIs, at);
@@ -188,7 +188,7 @@ void Fit::TakeRuns(const Problem& problem) {
   estimation::RowEvaluator evaluator(problem, layout);
   runs_.clear();
   for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
-    const DiagnosedRun& run = campaign_.runs()[r];
+    const PreparedRun& run = campaign_.runs()[r];
     const VectorXd& left = evaluator.Evaluate(problem.terms()[r], x, false)->r;
     runs_.push_back(
         {LinearAt(run, ValuesIn(result_, run.simulated), left, taken_in_), left, {}, {}});
@@ -226,8 +226,8 @@ void Fit::Linearize(const Problem& problem, const estimation::Linearization& at)
     if (!runs_[r].at.response) continue;
     const auto* rows = evaluator.Evaluate(problem.terms()[r], x, true);
     runs_[r].columns = rows->columns;
-    const DiagnosedRun& run = campaign_.runs()[r];
-    if (run.arm) {
+    const PreparedRun& run = campaign_.runs()[r];
+    if (run.EstimatesNoise()) {
       left_out_ += run.excess * run.excess * LeftOut(rows->r, rows->columns, rows->jacobian);
     }
     MatrixXd both(rows->r.size(), rows->jacobian.cols() + 1);

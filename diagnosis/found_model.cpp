@@ -17,7 +17,7 @@ simulation::ModelledCause FoundCause(const Score& score) {
 simulation::ExtendedModel FoundModel(const Diagnosis& diagnosis, const Campaign& campaign,
                                      const HeldOutGain& gain) {
   simulation::ExtendedModel model;
-  model.machine = campaign.setup().machine.name;
+  model.machine = campaign.instruments().machine.name;
   model.origin = campaign.origin();
   model.gain = {gain.rows, gain.before, gain.after, std::sqrt(diagnosis.chi_before),
                 std::sqrt(diagnosis.chi_after)};

@@ -30,9 +30,8 @@ struct Peak {
   double frequency, power;
 };
 
-// Runs with a reference and of plates do not say how long they averaged.
 bool AreSingleReadings(const simulation::Trace& trace) {
-  if (trace.kind == "reference" || trace.kind == "plate") return false;
+  if (!trace.averages_known) return false;
   return trace.samples.size() == 0 || (trace.samples.array() <= 1.0).all();
 }
 

@@ -16,12 +16,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using estimation::Problem;
 
-Problem ProblemAt(const Campaign& campaign, const std::vector<DiagnosedRun>& runs,
+Problem ProblemAt(const Campaign& campaign, const std::vector<PreparedRun>& runs,
                   const Values& at) {
   std::vector<simulation::SimulatedRun> simulated;
   simulated.reserve(runs.size());
-  for (const DiagnosedRun& run : runs) simulated.push_back(run.simulated);
-  Problem problem = fusion::MakeMachineProblem(campaign.setup().machine, campaign.model(),
+  for (const PreparedRun& run : runs) simulated.push_back(run.simulated);
+  Problem problem = fusion::MakeMachineProblem(campaign.instruments().machine, campaign.model(),
                                                campaign.prior(), simulated);
   for (const auto& [name, values] : at) {
     const auto known = [&, block = name](const auto& other) { return other.name == block; };
@@ -119,7 +119,7 @@ std::vector<const RunSums*> PointersTo(const std::vector<RunSums>& sums) {
   return pointers;
 }
 
-LinearRuns::LinearRuns(const Campaign& campaign, std::vector<DiagnosedRun> runs, const Values& at)
+LinearRuns::LinearRuns(const Campaign& campaign, std::vector<PreparedRun> runs, const Values& at)
     : runs_(std::move(runs)),
       problem_(ProblemAt(campaign, runs_, at)),
       layout_(problem_),
@@ -136,7 +136,7 @@ LinearizedRun LinearRuns::At(std::size_t run) const {
   }
   LinearizedRun linear{LinearAt(runs_[run], x, rows->r), rows->columns, rows->jacobian, {}};
   simulation::Trace& trace = linear.at.trace;
-  if (trace.gap.size() > 0) trace.zero = trace.gap.rowwise().mean();
+  if (trace.head) trace.head->zero = trace.head->gap.rowwise().mean();
   linear.J_J = linear.J.transpose() * linear.J;
   return linear;
 }

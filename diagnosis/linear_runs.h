@@ -46,7 +46,7 @@ class LinearRuns {
  public:
   // `campaign` says what machine they are made on. Blocks without values stay as the runs have
   // them.
-  LinearRuns(const Campaign& campaign, std::vector<DiagnosedRun> runs, const Values& at);
+  LinearRuns(const Campaign& campaign, std::vector<PreparedRun> runs, const Values& at);
 
   std::size_t count() const { return runs_.size(); }
   LinearizedRun At(std::size_t run) const;
@@ -55,7 +55,7 @@ class LinearRuns {
   Eigen::MatrixXd Information(const std::vector<const RunSums*>& runs) const;
 
  private:
-  std::vector<DiagnosedRun> runs_;
+  std::vector<PreparedRun> runs_;
   estimation::Problem problem_;
   estimation::Layout layout_;
   Eigen::MatrixXd prior_;  // information

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "recording/good_rows.h"
+#include "simulation/kinds.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -75,7 +76,7 @@ void Replace(const std::vector<Recording>& recordings, const Kind& kind, double&
 StillNoise NoiseAtRest(const std::vector<Recording>& recordings, const std::string& column) {
   double sum = 0.0, pairs = 0.0;
   for (const Recording& recording : recordings) {
-    if (recording.Kind() == "sweep" || !recording.Find(column)) continue;
+    if (!recording.Find(column) || !simulation::KindOf(recording).ShowsNoiseAtRest()) continue;
     if (!recording::HasGoodRow(recording)) continue;
     const auto rows = recording::GoodRows(recording);
     const auto values = recording::ValuesOf(recording, column, rows);
@@ -90,20 +91,22 @@ StillNoise NoiseAtRest(const std::vector<Recording>& recordings, const std::stri
   return {std::sqrt(sum / pairs), 2.0 / 3.0 * pairs};
 }
 
-void UseMeasuredNoise(const std::vector<Recording>& recordings, Setup& setup) {
-  if (setup.head) {
+void UseMeasuredNoise(const std::vector<Recording>& recordings,
+                      simulation::Instruments& instruments) {
+  if (instruments.head) {
     Kind probes{"probes", "nm", 1e-9, {}};
     for (const char letter : {'a', 'b', 'c', 'd', 'e'}) {
       probes.columns.push_back(fmt::format("probe_{}_um", letter));
     }
-    Replace(recordings, probes, setup.noise.probe, setup.notes);
+    Replace(recordings, probes, instruments.noise.probe, instruments.notes);
   }
-  if (setup.linkage) {
+  if (instruments.linkage) {
     Kind encoders{"encoders", "urad", 1e-6, {}};
-    for (std::size_t i = 1; i <= static_cast<std::size_t>(setup.linkage->chain.joints()); ++i) {
+    for (std::size_t i = 1; i <= static_cast<std::size_t>(instruments.linkage->chain.joints());
+         ++i) {
       encoders.columns.push_back(fmt::format("pivot_{}_rad", i));
     }
-    Replace(recordings, encoders, setup.linkage->noise.encoder, setup.notes);
+    Replace(recordings, encoders, instruments.linkage->noise.encoder, instruments.notes);
   }
 }
 

@@ -82,8 +82,8 @@ class Prospects {
   }
 
  private:
-  std::vector<DiagnosedRun> AllRuns(const Campaign& campaign) const {
-    std::vector<DiagnosedRun> runs = campaign.runs();
+  std::vector<PreparedRun> AllRuns(const Campaign& campaign) const {
+    std::vector<PreparedRun> runs = campaign.runs();
     for (const PossibleRun& possible : possible_) runs.push_back(possible.run);
     return runs;
   }
@@ -127,7 +127,7 @@ class Prospects {
 void AddNextRuns(const Campaign& campaign, const std::vector<recording::Recording>& recordings,
                  Diagnosis& diagnosis) {
   if (std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), HasRivals)) return;
-  if (!campaign.setup().HasAxes()) return;
+  if (!campaign.instruments().HasAxes()) return;
   const Prospects prospects(campaign, PossibleRuns(campaign, recordings),
                             ValuesOf(diagnosis.fitted));
   for (Finding& finding : diagnosis.findings) {

@@ -1,7 +1,7 @@
 // Which causes a set of runs would show, before anything is measured.
 //
-//   Campaign campaign(setup);
-//   for (const recording::Recording& path : paths) campaign.Add(Planned(path, setup));
+//   Campaign campaign(instruments);
+//   for (const recording::Recording& path : paths) campaign.Add(Planned(path, instruments));
 //   const Plan plan = PlanOf(campaign, normal);
 //
 // The machine that is measured is one drawn from what the machine file says of such machines, its

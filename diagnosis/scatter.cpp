@@ -4,6 +4,8 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "simulation/excess_noise.h"
+
 namespace abbe::diagnosis {
 namespace {
 
@@ -25,14 +27,15 @@ Leftover ScatterOf(const VectorXd& left, double excess) {
   const double stated = left.squaredNorm() * excess * excess;
   const auto rows = static_cast<double>(left.size());
   const double beyond = std::sqrt(std::max(0.0, stated / rows - 1.0));
-  const double p_value = Chance(stated / (kNoiseIsKnown * kNoiseIsKnown), rows);
+  const double p_value =
+      Chance(stated / (simulation::kNoiseIsKnown * simulation::kNoiseIsKnown), rows);
   return {kScatter, {}, beyond, {"times the noise"}, p_value, 0.0};
 }
 
 // Channels x instants.
 MatrixXd InTime(const VectorXd& left, const simulation::Trace& trace) {
   const Index instants = trace.rows(), channels = left.size() / instants;
-  if (trace.gap.size() > 0) return left.reshaped(instants, channels).transpose();
+  if (trace.head) return left.reshaped(instants, channels).transpose();
   return left.reshaped(channels, instants);
 }
 
@@ -54,13 +57,12 @@ Leftover MemoryOf(const MatrixXd& left) {
   return {kMemory, {}, std::sqrt(most), {"times the noise"}, p_value, 0.0};
 }
 
-// Rows in time, of one instrument. The poses of an arm come in any order. A run that scatters less
-// than is stated is whitened with too much noise, and what is left of its drift goes on.
-bool HasNeighbours(const DiagnosedRun& run, const VectorXd& left) {
-  const bool kind = run.trace.kind == "sweep" || run.trace.kind == "linkage";
+// A run that scatters less than is stated is whitened with too much noise, and what is left of its drift goes on.
+bool HasNeighbours(const PreparedRun& run, const VectorXd& left) {
   const auto rows = static_cast<double>(left.size());
-  return kind && !run.arm && run.trace.rows() >= kFewRows && left.size() % run.trace.rows() == 0 &&
-         left.squaredNorm() * kNoiseIsKnown * kNoiseIsKnown > rows;
+  return run.trace.continuous && run.trace.rows() >= kFewRows &&
+         left.size() % run.trace.rows() == 0 &&
+         left.squaredNorm() * simulation::kNoiseIsKnown * simulation::kNoiseIsKnown > rows;
 }
 
 }  // namespace

@@ -18,8 +18,6 @@
 
 namespace abbe::diagnosis {
 
-inline constexpr double kNoiseIsKnown = 1.05;
-
 // The variable is kScatter or kMemory, the object the name of the run.
 std::vector<Leftover> RunsThatScatter(const Fit& fit);
 

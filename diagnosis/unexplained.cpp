@@ -33,8 +33,8 @@ const estimation::PrintUnit kMicrometres{"um", 1e-6}, kMicroradians{"urad", 1e-6
 enum Instrument : unsigned { kProbes = 1, kLinkage = 2, kRim = 4 };
 
 Instrument InstrumentOf(const Trace& trace) {
-  if (trace.rim.sensors > 0) return kRim;
-  return trace.gap.size() > 0 ? kProbes : kLinkage;
+  if (trace.rim) return kRim;
+  return trace.head ? kProbes : kLinkage;
 }
 
 struct Channel {

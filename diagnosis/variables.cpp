@@ -12,7 +12,7 @@ using simulation::Trace;
 
 RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
   if (variable == "time") return trace.clock.transpose();
-  if (variable == "shaft") return trace.rim.shaft;
+  if (variable == "shaft") return trace.rim->shaft;
   if (variable == "feed") return trace.velocity.colwise().norm();
   if (variable.size() == 1) return trace.axes.row(variable[0] - 'x');
   if (variable.size() == 3) {
@@ -21,7 +21,7 @@ RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
   }
   if (variable.starts_with("pivot_")) {
     if (trace.pivots() == 0) return {};
-    return trace.angles.row(simulation::PivotOf(variable));
+    return trace.linkage->angles.row(simulation::PivotOf(variable));
   }
   const auto sensor = std::find(trace.sensors.begin(), trace.sensors.end(), variable);
   if (sensor == trace.sensors.end()) return {};

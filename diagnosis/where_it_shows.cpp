@@ -44,8 +44,8 @@ std::map<Index, RowVectorXd> EffectOf(const Score& score, const Trace& trace) {
 
 // Which way the object moves: +1, -1, 0.
 RowVectorXd HeadingOf(const std::string& object, const Trace& trace) {
-  if (object.starts_with("pivot_") && trace.turning.size() > 0) {
-    return trace.turning.row(simulation::PivotOf(object));
+  if (object.starts_with("pivot_") && trace.linkage) {
+    return trace.linkage->turning.row(simulation::PivotOf(object));
   }
   const bool of_axes = object.find_first_not_of("XYZ") != 0;
   if (of_axes) return trace.heading.row(simulation::AxisOf(object[0]));
@@ -186,11 +186,11 @@ Curve CurveOf(const Fit& base, const Fit& found, std::size_t taken_in) {
 double MapChange(const Fit& base, const Fit& found) {
   constexpr int kPlaces = 5;  // along each axis
   const Campaign& campaign = found.campaign();
-  if (!campaign.setup().HasAxes() || simulation::AxesOf(campaign.scene()).empty()) return 0.0;
+  if (!campaign.instruments().HasAxes() || simulation::AxesOf(campaign.scene()).empty()) return 0.0;
   std::array<machine::VolumetricModel, 2> models{campaign.model(), campaign.model()};
   models[0].SetParameters(fusion::ValuesFound(base.result(), models[0].Blocks()));
   models[1].SetParameters(fusion::ValuesFound(found.result(), models[1].Blocks()));
-  const auto& mill = campaign.setup().machine;
+  const auto& mill = campaign.instruments().machine;
   double most = 0.0;
   for (int place = 0; place < kPlaces * kPlaces * kPlaces; ++place) {
     Eigen::Vector3d axes;

@@ -99,7 +99,8 @@ class CalibrationJob {
   }
 
   CalibrationReport Run() {
-    estimation::Problem problem = MakeLinkageProblem(simulation_, runs_, options_.problem);
+    estimation::Problem problem =
+        simulation::MakeLinkageProblem(simulation_, runs_, options_.problem);
     RefusePoorPoses(runs_, estimation::Layout(problem).columns());
     CalibrationReport report;
     report.fit = Solve(problem);
@@ -109,9 +110,9 @@ class CalibrationJob {
     report.seen = Observe(problem, report.fit);
     report.calibration = From(report.fit, runs_);
     if (options_.mapped) {
-      report.cell_shifts =
-          CellShifts(simulation_, runs_[0], ParametersOf(report.fit.blocks, runs_[0].mounting),
-                     *report.calibration.mapped);
+      report.cell_shifts = CellShifts(
+          simulation_, runs_[0], simulation::ParametersOf(report.fit.blocks, runs_[0].mounting),
+          *report.calibration.mapped);
     }
     const auto before = BeforeCalibration();
     report.before = DistancesOf(All(before));
@@ -129,7 +130,7 @@ class CalibrationJob {
 
   Result Solve(const estimation::Problem& problem) const {
     try {
-      return SolveLinkage(problem);
+      return simulation::SolveLinkage(problem);
     } catch (const NumericalError&) {
       CheckAllEncoders();
       throw;
@@ -144,13 +145,13 @@ class CalibrationJob {
     Calibration calibration;
     calibration.model = options_.model;
     calibration.displacement = options_.problem.displacement;
-    calibration.mountings = MountingsOf(runs);
+    calibration.mountings = simulation::MountingsOf(runs);
     calibration.blocks = fit.blocks;
     calibration.names = fit.names;
     calibration.covariance = fit.covariance;
     if (options_.mapped) {
-      calibration.mapped =
-          MapParameters(simulation_, runs[0], ParametersOf(fit.blocks, runs[0].mounting));
+      calibration.mapped = MapParameters(simulation_, runs[0],
+                                         simulation::ParametersOf(fit.blocks, runs[0].mounting));
     }
     return calibration;
   }
@@ -167,18 +168,18 @@ class CalibrationJob {
   // Displacements of the nominal linkage: only the base position is free.
   PerRun BeforeCalibration() const {
     estimation::Problem problem =
-        MakeLinkageProblem(simulation_, runs_, {.displacement = true, .loss = {}});
+        simulation::MakeLinkageProblem(simulation_, runs_, {.displacement = true, .loss = {}});
     for (std::size_t b = 0; b < problem.blocks().size(); ++b) {
       problem.Block({static_cast<int>(b)}).Hold();
     }
-    for (const std::string& mounting : MountingsOf(runs_)) {
+    for (const std::string& mounting : simulation::MountingsOf(runs_)) {
       problem.Block(problem.Find(simulation::BaseBlock(mounting))).Free();
     }
     Calibration nominal;
     nominal.model = options_.model;
-    nominal.mountings = MountingsOf(runs_);
+    nominal.mountings = simulation::MountingsOf(runs_);
     nominal.displacement = true;
-    nominal.blocks = SolveLinkage(problem).blocks;
+    nominal.blocks = simulation::SolveLinkage(problem).blocks;
     return Gaps(nominal, runs_);
   }
 
@@ -199,7 +200,8 @@ class CalibrationJob {
         left_out.push_back(Selection(run, out));
         chosen.push_back(out);
       }
-      const auto fit = SolveLinkage(MakeLinkageProblem(simulation_, rest, options_.problem));
+      const auto fit = simulation::SolveLinkage(
+          simulation::MakeLinkageProblem(simulation_, rest, options_.problem));
       const PerRun fold_gaps = Gaps(From(fit, rest), left_out);
       for (std::size_t r = 0; r < runs_.size(); ++r) gaps[r](Eigen::all, chosen[r]) = fold_gaps[r];
     }

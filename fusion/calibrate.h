@@ -21,14 +21,14 @@
 
 #include "estimation/result.h"
 #include "fusion/calibration.h"
-#include "fusion/linkage_problem.h"
 #include "fusion/observability.h"
+#include "simulation/linkage/linkage_problem.h"
 
 namespace abbe::fusion {
 
 struct CalibrateOptions {
   relm::ErrorModel model = relm::ErrorModel::kComplete;
-  LinkageProblemOptions problem = {};
+  simulation::LinkageProblemOptions problem = {};
   int folds = 5;        // below 2: nothing is held out
   bool mapped = false;  // also local parameter sets, fusion/mapping.h
   // Whether estimates may contradict their priors: a model that leaves something out bends its

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "failure/failure.h"
-#include "fusion/linkage_problem.h"
 #include "fusion/mapping.h"
 #include "relm/tip_path.h"
+#include "simulation/linkage/linkage_problem.h"
 #include "simulation/linkage/linkage_run.h"
 #include "simulation/linkage/linkage_simulation.h"
 
@@ -33,7 +33,7 @@ CalibratedLinkage::CalibratedLinkage(const relm::LinkageSettings& settings, Cali
       nominal_X_MB_(settings.X_MB) {
   if (calibration_.mountings.empty()) throw InputError("calibration: has no mounting of the base");
   for (const std::string& mounting : calibration_.mountings) {
-    x_.push_back(ParametersOf(calibration_.blocks, mounting));
+    x_.push_back(simulation::ParametersOf(calibration_.blocks, mounting));
     if (x_.back().size() != simulation::LinkageSimulation::kBase + model_.parameters()) {
       throw InputError(fmt::format(
           "calibration: {} parameters, but model \"{}\" of this machine file has {}; calibrate "
@@ -77,7 +77,7 @@ MatrixXd CalibratedLinkage::JacobianByFree(const relm::LinkageReadings& readings
   const std::size_t index = IndexOf(mounting, strict);
   const VectorXd& x = x_[index];
   const auto columns =
-      ColumnsOf(calibration_.blocks, calibration_.mountings[index], calibration_.names);
+      simulation::ColumnsOf(calibration_.blocks, calibration_.mountings[index], calibration_.names);
   Matrix3Xd p_BT;
   estimation::RowMatrix J_tip_x, J;
   model_.Tips(readings, x.tail(model_.parameters()), p_BT, &J_tip_x);

@@ -13,8 +13,8 @@
 
 #include "estimation/problem.h"
 #include "failure/failure.h"
-#include "fusion/linkage_problem.h"
 #include "geometry/rotation.h"
+#include "simulation/linkage/linkage_problem.h"
 
 namespace abbe::fusion {
 namespace {
@@ -100,7 +100,7 @@ std::optional<Assumption> FitAssuming(const LinkageSimulation& simulation, const
   const auto residual = std::make_shared<NominalGap>(simulation, p_MT, angles);
   problem.Add(source, residual, inputs, kSpread);
   try {
-    const auto result = SolveLinkage(problem);
+    const auto result = simulation::SolveLinkage(problem);
     const auto& gap = result.Source("gaps");
     return Assumption{kSpread * gap.rms * std::sqrt(3.0), result.Block("gain").Values()};
   } catch (const NumericalError&) {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "estimation/linearization.h"
-#include "fusion/linkage_problem.h"
 #include "fusion/marginal.h"
+#include "simulation/linkage/linkage_problem.h"
 
 namespace abbe::fusion {
 namespace {
@@ -104,7 +104,7 @@ class FuseJob {
       auto& entries = fitted.problem.Block(fitted.problem.Find(block.name)).entries;
       for (std::size_t i = 0; i < entries.size(); ++i) entries[i].value = block.entries[i].value;
     }
-    fitted.fit = SolveLinkage(fitted.problem, options_.threads, false);
+    fitted.fit = simulation::SolveLinkage(fitted.problem, options_.threads, false);
     fitted.at = estimation::Linearize(fitted.problem, estimation::Layout(fitted.problem),
                                       ValuesFound(fitted.fit, fitted.fit.blocks), options_.threads);
     return fitted;

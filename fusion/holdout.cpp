@@ -10,8 +10,8 @@
 #include "estimation/chosen_rows.h"
 #include "estimation/linearization.h"
 #include "failure/failure.h"
-#include "fusion/linkage_problem.h"
 #include "fusion/machine_problem.h"
+#include "simulation/linkage/linkage_problem.h"
 
 namespace abbe::fusion {
 namespace {
@@ -53,7 +53,7 @@ std::vector<HeldOut> HoldOut(int n, const std::vector<SimulatedRun>& runs,
     kept.push_back(Part(run, n, false));
     held.push_back(Part(run, n, true));
   }
-  const estimation::Result fit = SolveLinkage(problem_of(kept), 0, false);
+  const estimation::Result fit = simulation::SolveLinkage(problem_of(kept), 0, false);
   const estimation::Problem problem = problem_of(held);
   const auto at = estimation::Linearize(problem, estimation::Layout(problem),
                                         ValuesFound(fit, problem.blocks()), 0);

@@ -10,8 +10,8 @@
 
 #include "estimation/chosen_rows.h"
 #include "failure/failure.h"
-#include "fusion/linkage_problem.h"
 #include "fusion/machine_problem.h"
+#include "simulation/linkage/linkage_problem.h"
 
 namespace abbe::fusion {
 namespace {
@@ -202,7 +202,7 @@ estimation::Result FitWithout(const machine::Machine& machine, double smoothness
         runs.emplace_back(simulation::SimulatePlate(model, machine.reference, setup));
     run.residual = std::make_shared<estimation::ChosenRows>(run.residual, std::move(rows));
   }
-  return SolveLinkage(
+  return simulation::SolveLinkage(
       MakeMachineProblem(machine, model, MachinePrior(machine, model, smoothness), runs));
 }
 

@@ -28,13 +28,6 @@ BSplineBasis BasisOf(const machine::Travel& travel, Index size) {
 
 }  // namespace
 
-double PopulationDeviation(const machine::Population& population, int axis, int motion) {
-  if (motion < 3) return motion == axis ? population.positioning : population.straightness;
-  const int about = motion - 3;
-  if (about == axis) return population.roll;
-  return about == (axis == 1 ? 0 : 1) ? population.pitch : population.yaw;
-}
-
 machine::VolumetricModel UnknownMachine(const machine::Machine& machine) {
   machine::VolumetricModel model(machine.chain, machine.travels);
   for (int axis = 0; axis < machine::kAxes; ++axis) {
@@ -70,7 +63,7 @@ MatrixXd MachinePrior::Covariance(int axis, int motion) const {
   const VectorXd x = VectorXd::LinSpaced(points, travel.first, travel.last);
   MatrixXd B(points, basis.size());
   for (Index i = 0; i < points; ++i) B.row(i) = basis.Row(x[i]);
-  const double sd = PopulationDeviation(machine_.population, axis, motion);
+  const double sd = machine::PopulationDeviation(machine_.population, axis, motion);
   MatrixXd K(points, points);
   for (Index j = 0; j < points; ++j) {
     K.col(j) = sd * sd * (-0.5 * ((x.array() - x[j]) / smoothness_).square()).exp();

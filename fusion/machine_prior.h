@@ -40,7 +40,4 @@ class MachinePrior {
   double smoothness_;
 };
 
-// The standard deviation of a function of this population: m or rad.
-double PopulationDeviation(const machine::Population& population, int axis, int motion);
-
 }  // namespace abbe::fusion

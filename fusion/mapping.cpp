@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "failure/failure.h"
-#include "fusion/linkage_problem.h"
 #include "relm/tip_path.h"
+#include "simulation/linkage/linkage_problem.h"
 
 namespace abbe::fusion {
 namespace {
@@ -83,7 +83,7 @@ std::vector<Index> PosesAround(const PoseGrid& grid, const GridPoint& centre) {
 // The global blocks with the estimates as nominal values and the base held.
 VectorXd CellParameters(const LinkageSimulation& simulation, const LinkageRun& cell,
                         const VectorXd& x) {
-  estimation::Problem problem = MakeLinkageProblem(
+  estimation::Problem problem = simulation::MakeLinkageProblem(
       simulation, {cell}, {.loss = estimation::RobustLoss::None()});  // too few rows to judge one
   Index at = 0;
   for (std::size_t b = 0; b < problem.blocks().size(); ++b) {
@@ -91,8 +91,9 @@ VectorXd CellParameters(const LinkageSimulation& simulation, const LinkageRun& c
     for (auto& entry : block.entries) entry.nominal = entry.value = x[at++];
     if (b < 2) block.Hold();
   }
-  const auto result = SolveLinkage(problem, 1);
-  return ParametersOf(result.blocks, cell.mounting).tail(simulation.model().parameters());
+  const auto result = simulation::SolveLinkage(problem, 1);
+  return simulation::ParametersOf(result.blocks, cell.mounting)
+      .tail(simulation.model().parameters());
 }
 
 // Where a position stands between the centres: the lower one and the share of the upper one.

@@ -85,6 +85,13 @@ int AxisIndex(char axis) {
   return axis - 'X';
 }
 
+double PopulationDeviation(const Population& population, int axis, int motion) {
+  if (motion < 3) return motion == axis ? population.positioning : population.straightness;
+  const int about = motion - 3;
+  if (about == axis) return population.roll;
+  return about == (axis == 1 ? 0 : 1) ? population.pitch : population.yaw;
+}
+
 double InTravel(const Travel& travel, int axis, double position) {
   const double rounding = 16 * std::numeric_limits<double>::epsilon() *
                           std::max(std::abs(travel.first), std::abs(travel.last));

@@ -48,6 +48,9 @@ struct Population {
   double smoothness;    // m
 };
 
+// The standard deviation of one of the 18 error functions: m or rad.
+double PopulationDeviation(const Population& population, int axis, int motion);
+
 struct Machine {
   std::string name;
   Chain chain;                    // with the way in which the control counts

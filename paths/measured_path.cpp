@@ -83,7 +83,7 @@ MeasuredPath Commanded(const Recording& recording, const Rows& rows) {
 MeasuredPath LinkagePath(const Recording& recording, const machine::Chain& chain, const Rows& rows,
                          const Eigen::Matrix3Xd& p_MT) {
   MeasuredPath path = Commanded(recording, rows);
-  path.instrument = "linkage";
+  path.instrument = kByLinkage;
   path.seen = {true, true, true};
   path.measured = chain.ToolSenses().asDiagonal() * p_MT;
   return path;

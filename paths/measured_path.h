@@ -22,9 +22,11 @@
 
 namespace abbe::paths {
 
+inline constexpr const char* kByLinkage = "linkage";
+
 struct MeasuredPath {
   std::string recording;
-  std::string instrument;         // "linkage", "reference"
+  std::string instrument;         // kByLinkage, "reference"
   std::string plane;              // of the header, may be empty
   double radius = 0.0;            // m: the programmed radius of a circle by the header; 0: not said
   std::vector<std::size_t> rows;  // of the recording

@@ -13,6 +13,7 @@
 
 #include "estimation/robust_mean.h"
 #include "failure/failure.h"
+#include "recording/made_on.h"
 #include "settings/unit.h"
 
 namespace abbe::probes {
@@ -33,10 +34,7 @@ struct Rows {
 };
 
 char SweptAxis(const recording::Recording& recording) {
-  if (recording.Kind() != "sweep") {
-    throw InputError(fmt::format("{}: kind is \"{}\", not \"sweep\"; only a sweep has five errors",
-                                 recording.name, recording.Kind()));
-  }
+  recording::RefuseOtherKind(recording, "sweep", "only a sweep has five errors");
   const std::string axis = recording.HeaderText("axis").value_or("");
   if (axis != "X" && axis != "Y" && axis != "Z") {
     throw InputError(fmt::format(

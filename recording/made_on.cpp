@@ -15,4 +15,10 @@ void RefuseOtherMachine(const Recording& recording, const std::string& machine) 
                   recording.name, *named, machine));
 }
 
+void RefuseOtherKind(const Recording& recording, std::string_view kind, std::string_view why) {
+  if (recording.Kind() == kind) return;
+  throw InputError(fmt::format("{}: kind is \"{}\", not \"{}\"; {}", recording.name,
+                               recording.Kind(), kind, why));
+}
+
 }  // namespace abbe::recording

@@ -5,6 +5,7 @@
 
 #include "settings/unit.h"
 #include "simulation/correction_steps.h"
+#include "simulation/kinds.h"
 
 namespace abbe::simulation {
 
@@ -71,15 +72,9 @@ void Moved::By(std::size_t row, double change) {
 std::string PositionColumn(Index axis) { return std::string(1, "xyz"[axis]) + "_mm"; }
 
 Correction Correct(const Recording& recording, const std::vector<ModelledCause>& causes,
-                   const Origin& origin, const CorrectedMachine& on) {
-  const std::string kind = recording.Kind();
+                   const Origin& origin, const Instruments& instruments) {
   if (causes.empty()) return {recording, {}};
-  if (kind == "sweep") return CorrectSweep(recording, causes, origin, on);
-  if (kind == "linkage") return CorrectLinkage(recording, causes, origin, on);
-  if (kind == "reference" || kind == "length" || kind == "plate") {
-    return CorrectPoints(recording, causes, origin, on);
-  }
-  return {recording, {}};
+  return KindOf(recording).Correct(recording, causes, origin, instruments);
 }
 
 }  // namespace abbe::simulation

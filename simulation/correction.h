@@ -1,7 +1,7 @@
 // A recording without what causes add to it: how an extended model reaches everything that works on
 // recordings.
 //
-//   Correction corrected = Correct(recording, causes, origin, {machine, head, &linkage});
+//   Correction corrected = Correct(recording, causes, origin, instruments);
 //   abbe::probes::ReduceSweep(corrected.recording, ...);
 //
 // Where the stages of a cause go (simulation/disturbance.h):
@@ -16,19 +16,17 @@
 // Rows with a flag stay as they are, and so do recordings that no map is made of (dwell, shaft, a
 // linkage before an instrument). What a cause does to a reading is worked out from the reading
 // itself: what is neglected is its square (a gain of 1 % beside a swap: 1e-4 of the gap's change).
-// Units: `changes` in m and rad. Failure: InputError as for the run itself; a cause of the linkage
-// on a recording of the linkage without `linkage`.
+// Units: `changes` in m and rad. Failure: InputError as for the run itself; a recording of an
+// instrument that the machine file lacks.
 #pragma once
 
 #include <Eigen/Core>
 #include <optional>
 #include <vector>
 
-#include "machine/machine.h"
-#include "probes/head_settings.h"
 #include "recording/recording.h"
-#include "relm/linkage_settings.h"
 #include "simulation/extended_model.h"
+#include "simulation/instruments.h"
 
 namespace abbe::simulation {
 
@@ -50,14 +48,8 @@ struct Correction {
   Changes changes;
 };
 
-struct CorrectedMachine {
-  const machine::Machine& machine;
-  const probes::HeadSettings& head;
-  const relm::LinkageSettings* linkage;  // null: the machine file has none
-};
-
 // `origin`: of the model; a recording begins its own where it says nothing.
 Correction Correct(const recording::Recording& recording, const std::vector<ModelledCause>& causes,
-                   const Origin& origin, const CorrectedMachine& on);
+                   const Origin& origin, const Instruments& instruments);
 
 }  // namespace abbe::simulation

@@ -34,15 +34,4 @@ class Moved {
 // The position columns "x_mm", "y_mm", "z_mm".
 std::string PositionColumn(Eigen::Index axis);
 
-Correction CorrectSweep(const recording::Recording& recording,
-                        const std::vector<ModelledCause>& causes, const Origin& origin,
-                        const CorrectedMachine& on);
-Correction CorrectLinkage(const recording::Recording& recording,
-                          const std::vector<ModelledCause>& causes, const Origin& origin,
-                          const CorrectedMachine& on);
-// Kinds reference, length and plate.
-Correction CorrectPoints(const recording::Recording& recording,
-                         const std::vector<ModelledCause>& causes, const Origin& origin,
-                         const CorrectedMachine& on);
-
 }  // namespace abbe::simulation

@@ -29,9 +29,9 @@ constexpr std::int64_t kFormat = 1;
 std::vector<std::string> ObjectsOf(const Cause& cause, const CauseObjects& machine,
                                    const std::string& sensor) {
   Trace head, linkage, shaft;
-  if (machine.head) head.gap.resize(5, 1);
-  linkage.angles.resize(machine.pivots, 1);
-  shaft.rim.sensors = kMostRimSensors;  // a machine file says nothing of shafts
+  if (machine.head) head.head.emplace();
+  linkage.linkage.emplace().angles.resize(machine.pivots, 1);
+  shaft.rim.emplace().sensors = kMostRimSensors;  // a machine file says nothing of shafts
   if (!sensor.empty()) head.sensors = {sensor};
   return cause.objects({{&head, &linkage, &shaft}, Eigen::Vector3d::Ones()});
 }

@@ -58,13 +58,15 @@ class Responsive : public estimation::Residual {
 
 struct SimulatedRun {
   std::string name;  // of the recording
-  std::string kind;  // "sweep", "linkage", "reference", "length", "plate", "shaft"
+  std::string kind;  // how a report calls it: "sweep"
   std::vector<estimation::ParameterBlock> blocks;
   std::shared_ptr<const estimation::Residual> residual;
   estimation::RobustLoss loss = estimation::RobustLoss::None();
   std::shared_ptr<const Responsive> response = nullptr;  // `residual` itself, where it can tell
   std::function<std::shared_ptr<const estimation::Residual>(const Eigen::VectorXd& x)> condense =
       {};
+  // m: whitened rows as they are in space, one column for each pose; empty: rows are no places.
+  std::function<Eigen::Matrix3Xd(const Eigen::VectorXd& whitened)> in_space = {};
 };
 
 }  // namespace abbe::simulation

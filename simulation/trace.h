@@ -1,9 +1,10 @@
-// What stands in a recording beside the readings of a simulated run: when, where, which way, how
-// warm. From this a cause works out what it does to each row.
+// What a recording says about each row of a simulated run besides its readings: when, where, which
+// way, how warm. From this a cause works out what it does to each row.
 //
-//   const Trace trace = TraceOf(recording, run);         // of a sweep or of a linkage
+//   const Trace trace = TraceOf(recording, run);         // of the run's kind: sweep_trace.h, ...
 //   trace.heading(0, row)                                // which way the X axis last moved
 //
+// What only one instrument has is a part of its own that other runs lack.
 // Units: m, s, rad, K. Shapes: one column or entry per row of the run; an axis or a pivot that has
 // not moved yet has heading 0 and has last reversed `kLongAgo` metres ago. Temperatures are
 // differences from the first row of the recording with the earliest start (Origin).
@@ -12,31 +13,36 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "recording/recording.h"
 #include "simulation/disturbance.h"
-#include "simulation/linkage/linkage_run.h"
-#include "simulation/linkage/linkage_simulation.h"
+#include "simulation/linkage/linkage_rows.h"
 #include "simulation/shaft/rim_readings.h"
-#include "simulation/sweep/sweep_run.h"
+#include "simulation/sweep/head_rows.h"
 
 namespace abbe::simulation {
 
 inline constexpr double kLongAgo = 1.0;
-inline constexpr const char* kArm = "arm";  // simulation/arm/arm_run.h
+
+// Whether rows lie on the way of an axis, so that lost motion develops along it; at stations and
+// targets it is taken up.
+enum class OnTheWay : unsigned char { kNever, kWhileMoving, kAlways };
 
 struct Trace {
   std::string name;  // of the recording
-  std::string kind;  // "sweep", "dwell", "gap-steps", "linkage", "reference", "length", "plate",
-                     // "shaft", kArm
   char axis = ' ';   // the swept one
+  std::string mounting;
   double started = 0.0;   // s since 1970; 0: not stated
   Eigen::VectorXd time;   // s since the recording began
   Eigen::VectorXd clock;  // s since the first recording began; like `time` before CountFrom
   // Readings in each row, s from the first to the last of them; empty: a row is a reading.
   Eigen::VectorXd samples, lasting;
+  bool averages_known = true;  // else a reading may be a mean over an unknown time
+  bool continuous = false;     // one instrument read the rows one after the other
+  OnTheWay on_the_way = OnTheWay::kNever;
   std::vector<int> pass, direction;
   Eigen::Matrix3Xd axes;            // [x y z]
   Eigen::Matrix3Xd velocity;        // m/s; 0 while standing
@@ -46,42 +52,24 @@ struct Trace {
   std::vector<std::string> sensors;
   Eigen::MatrixXd temperature, warming;  // degC and K, sensors x rows
 
-  Eigen::Matrix<double, 5, Eigen::Dynamic> gap;  // as read; of a sweep
-  Eigen::Matrix<double, 5, 1> zero;              // gap that counts as no motion
-
-  Eigen::MatrixXd tilt;  // rad: of the face against each probe, as simulated; 5 x rows or empty
-  bool head_turned = false;
-  Eigen::MatrixXd spots;  // where the probes look at the target: target_spots.h; or empty
-
-  Eigen::MatrixXd angles;     // as read, pivots x rows; of a linkage
-  Eigen::MatrixXd turning;    // heading of the pivots
-  Eigen::MatrixXd aside;      // of the pivots on their way to rows that stand: trace.cpp
-  Eigen::Matrix3Xd ball_way;  // where the cap last moved, in M: a direction; 0: nowhere
-  Eigen::MatrixXd link;       // 3 pivots x rows, in B: the direction of the link after each pivot
-  std::string mounting;
-
-  RimReadings rim;  // of a turning shaft
+  std::optional<HeadRows> head;
+  std::optional<LinkageRows> linkage;
+  std::optional<RimReadings> rim;
 
   Eigen::Index rows() const { return time.size(); }
-  Eigen::Index pivots() const { return angles.rows(); }
+  Eigen::Index pivots() const { return linkage ? linkage->angles.rows() : 0; }
+  bool HasTilt() const { return head && head->tilt.size() > 0; }
+  bool HasSpots() const { return head && head->spots.size() > 0; }
 
-  // Where what an axis or a pivot drives through a play of this width stands beside the middle, in
-  // widths: from -1/2 (it goes to +) to 1/2. Width 0: a play that is taken up at once.
-  Eigen::RowVectorXd Behind(int which, double width) const;
-  Eigen::RowVectorXd PivotBehind(int pivot, double width) const;
+  // Output minus input of a backlash element that an axis or a pivot drives, in units of its width:
+  // -1/2 while it moves to +, 1/2 to -. Width 0: backlash that is taken up at once.
+  Eigen::RowVectorXd BacklashLag(int which, double width) const;
+  Eigen::RowVectorXd PivotBacklashLag(int pivot, double width) const;
   // The way of the axes with all that follows from it; after time, pass and direction.
   void SetAxes(const Eigen::Matrix3Xd& path);
-  // Angles that are nearer to the truth than those that were read.
-  void SetAngles(const Eigen::MatrixXd& nearer);
+  // Angles of the linkage, and which way they turn.
+  void SetAngles(const Eigen::MatrixXd& angles);
 };
-
-Trace TraceOf(const recording::Recording& recording, const SweepRun& run);
-Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
-              const LinkageSimulation& linkage);
-// Of an arm: `axes` are where the instrument finds the ball; how the arm went from pose to pose is
-// not known.
-Trace ArmTraceOf(const recording::Recording& recording, const LinkageRun& run,
-                 const LinkageSimulation& linkage);
 
 // s since 1970; 0: not stated.
 double StartedOf(const recording::Recording& recording);

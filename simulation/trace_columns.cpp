@@ -6,6 +6,12 @@ namespace abbe::simulation {
 
 using Eigen::Index;
 
+Eigen::RowVectorXd ApproachOf(const std::vector<int>& direction) {
+  Eigen::RowVectorXd heading(static_cast<Eigen::Index>(direction.size()));
+  std::copy(direction.begin(), direction.end(), heading.begin());
+  return heading;
+}
+
 std::vector<int> IntegersAt(const recording::Recording& recording, const std::string& column,
                             const std::vector<std::size_t>& rows) {
   std::vector<int> integers(rows.size(), 1);

@@ -14,6 +14,9 @@ namespace abbe::simulation {
 std::vector<int> IntegersAt(const recording::Recording& recording, const std::string& column,
                             const std::vector<std::size_t>& rows);
 
+// The heading of the axis that a column `direction` is of.
+Eigen::RowVectorXd ApproachOf(const std::vector<int>& direction);
+
 // All temperatures of the recording, to a trace that has its times.
 void AddSensors(const recording::Recording& recording, const std::vector<std::size_t>& rows,
                 Trace& trace);

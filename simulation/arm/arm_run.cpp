@@ -87,6 +87,7 @@ SimulatedRun SimulateArm(const LinkageSimulation& arm, const LinkageRun& run,
   }
   const auto gaps = std::make_shared<LinkageGaps>(arm, run, excess);
   simulated.residual = simulated.response = gaps;
+  simulated.in_space = [gaps](const Eigen::VectorXd& rows) { return gaps->InSpace(rows); };
   return simulated;
 }
 

@@ -20,7 +20,7 @@ Cause Backlash() {
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd& width) -> std::vector<Disturbance> {
         const int axis = AxisOf(object[0]);
-        return {InStage(trace, Positioning(axis), trace.Behind(axis, SizeOf(width)))};
+        return {InStage(trace, Positioning(axis), trace.BacklashLag(axis, SizeOf(width)))};
       },
       .follows_size = true,
   };

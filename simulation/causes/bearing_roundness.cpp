@@ -25,10 +25,10 @@ Cause BearingRoundness() {
         for (const double order : {2.0, 3.0}) {
           for (const double quarter : {0.0, 0.5 * std::numbers::pi}) {
             const Eigen::RowVectorXd wave =
-                (order * trace.angles.row(pivot).array() + quarter).sin();
+                (order * trace.linkage->angles.row(pivot).array() + quarter).sin();
             Disturbance longer = NoDisturbance(trace);
             for (int k = 0; k < 3; ++k) {
-              longer.row(kTipStage + k) = trace.link.row(3 * pivot + k).cwiseProduct(wave);
+              longer.row(kTipStage + k) = trace.linkage->link.row(3 * pivot + k).cwiseProduct(wave);
             }
             columns.push_back(std::move(longer));
           }

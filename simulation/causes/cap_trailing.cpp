@@ -23,12 +23,12 @@ Cause CapTrailing() {
           },
       .columns = [](const Trace& trace, const std::string&,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
-        if (trace.pivots() == 0 || trace.ball_way.size() == 0) return {};
+        if (!trace.linkage) return {};
         const Eigen::RowVectorXd feed = trace.velocity.colwise().norm();
         Disturbance behind = NoDisturbance(trace);
         for (int k = 0; k < 3; ++k) {
           behind.row(kToolStage + k) =
-              -trace.ball_way.row(k).array() * feed.array() / (feed.array() + shape[0]);
+              -trace.linkage->ball_way.row(k).array() * feed.array() / (feed.array() + shape[0]);
         }
         return {behind};
       },

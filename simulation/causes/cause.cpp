@@ -11,12 +11,12 @@ using Eigen::VectorXd;
 
 bool Scene::HasSweeps() const {
   return std::any_of(traces.begin(), traces.end(),
-                     [](const Trace* trace) { return trace->gap.size() > 0; });
+                     [](const Trace* trace) { return trace->head.has_value(); });
 }
 
 bool Scene::OnlyShafts() const {
   return !traces.empty() && std::all_of(traces.begin(), traces.end(),
-                                        [](const Trace* trace) { return trace->rim.sensors > 0; });
+                                        [](const Trace* trace) { return trace->rim.has_value(); });
 }
 
 Eigen::Index Scene::Pivots() const {

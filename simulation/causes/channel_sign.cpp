@@ -15,10 +15,10 @@ Cause ChannelSign() {
       .objects = ProbesOf,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        if (trace.gap.size() == 0) return {};
+        if (!trace.head) return {};
         const int probe = ProbeOf(object);
         return {InStage(trace, kReadingStage + probe,
-                        2.0 * (trace.gap.row(probe).array() - trace.zero[probe]))};
+                        2.0 * (trace.head->gap.row(probe).array() - trace.head->zero[probe]))};
       },
       .tell = [](const Eigen::VectorXd&, const Eigen::VectorXd&) -> Eigen::VectorXd { return {}; },
       .whole = true,

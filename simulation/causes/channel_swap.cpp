@@ -29,9 +29,9 @@ Cause ChannelSwap() {
       .objects = PairsOfProbes,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        if (trace.gap.size() == 0) return {};
+        if (!trace.head) return {};
         const int one = ProbeOf(object.substr(0, 7)), other = ProbeOf(object);
-        const Eigen::RowVectorXd apart = trace.gap.row(one) - trace.gap.row(other);
+        const Eigen::RowVectorXd apart = trace.head->gap.row(one) - trace.head->gap.row(other);
         Disturbance swapped = NoDisturbance(trace);
         swapped.row(kReadingStage + one) = apart;
         swapped.row(kReadingStage + other) = -apart;

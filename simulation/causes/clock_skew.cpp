@@ -28,7 +28,7 @@ Cause ClockSkew() {
       .objects = SourcesOf,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd& delay) -> std::vector<Disturbance> {
-        if (object == "linkage" ? trace.pivots() == 0 : trace.gap.size() == 0) return {};
+        if (object == "linkage" ? trace.pivots() == 0 : !trace.head) return {};
         Disturbance late = NoDisturbance(trace);
         for (int axis = 0; axis < 3; ++axis) {
           late.row(Positioning(axis)) =

@@ -19,7 +19,8 @@ Cause EncoderSubdivision() {
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
         if (trace.pivots() == 0) return {};
         const int pivot = PivotOf(object);
-        return WaveInStage(trace, kEncoderStage + pivot, shape[0] * trace.angles.row(pivot));
+        return WaveInStage(trace, kEncoderStage + pivot,
+                           shape[0] * trace.linkage->angles.row(pivot));
       },
       .shapes =
           [](const Scene&) {

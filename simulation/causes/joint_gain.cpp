@@ -10,7 +10,7 @@ namespace {
 std::vector<std::string> JointsOf(const Scene& scene) {
   Eigen::Index joints = 0;
   for (const Trace* trace : scene.traces) {
-    if (trace->kind == kArm) joints = std::max(joints, trace->pivots());
+    if (trace->linkage && trace->linkage->is_arm) joints = std::max(joints, trace->pivots());
   }
   std::vector<std::string> names;
   for (Eigen::Index i = 1; i <= joints; ++i) names.push_back("pivot_" + std::to_string(i));
@@ -31,9 +31,9 @@ Cause JointGain() {
       .objects = JointsOf,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        if (trace.kind != kArm) return {};
+        if (!trace.linkage || !trace.linkage->is_arm) return {};
         const int pivot = PivotOf(object);
-        return {InStage(trace, kEncoderStage + pivot, trace.angles.row(pivot))};
+        return {InStage(trace, kEncoderStage + pivot, trace.linkage->angles.row(pivot))};
       },
   };
 }

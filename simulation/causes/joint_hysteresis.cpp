@@ -18,7 +18,8 @@ Cause JointHysteresis() {
                     const Eigen::VectorXd& width) -> std::vector<Disturbance> {
         if (trace.pivots() == 0) return {};
         const int pivot = PivotOf(object);
-        return {InStage(trace, kEncoderStage + pivot, -trace.PivotBehind(pivot, SizeOf(width)))};
+        return {
+            InStage(trace, kEncoderStage + pivot, -trace.PivotBacklashLag(pivot, SizeOf(width)))};
       },
       .follows_size = true,
   };

@@ -17,7 +17,7 @@ Cause MainsPickup() {
       .objects = ProbesOf,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
-        if (trace.gap.size() == 0) return {};
+        if (!trace.head) return {};
         return LineInStage(trace, kReadingStage + ProbeOf(object), shape[0], trace.time);
       },
       .shapes =

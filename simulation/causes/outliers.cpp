@@ -1,4 +1,4 @@
-// Found before any fit, row by row: diagnosis/data_integrity.h.
+// Found before any fit, row by row: diagnosis/invalid_readings.h.
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {

@@ -29,10 +29,10 @@ Cause ProbeCrosstalk() {
       .objects = PairsOfProbes,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        if (trace.gap.size() == 0) return {};
+        if (!trace.head) return {};
         const int from = ProbeOf(object);
         return {InStage(trace, kReadingStage + ProbeOf(object.substr(0, 7)),
-                        trace.gap.row(from).array() - trace.zero[from])};
+                        trace.head->gap.row(from).array() - trace.head->zero[from])};
       },
   };
 }

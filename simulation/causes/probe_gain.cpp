@@ -15,10 +15,10 @@ Cause ProbeGain() {
       .objects = ProbesOf,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        if (trace.gap.size() == 0) return {};
+        if (!trace.head) return {};
         const int probe = ProbeOf(object);
         return {InStage(trace, kReadingStage + probe,
-                        trace.gap.row(probe).array() - trace.zero[probe])};
+                        trace.head->gap.row(probe).array() - trace.head->zero[probe])};
       },
       .tell = [](const Eigen::VectorXd& found, const Eigen::VectorXd&) -> Eigen::VectorXd {
         return (found.array() / (1.0 - found.array())).matrix();  // the column is what was read

@@ -16,10 +16,10 @@ Cause ProbeNonlinearity() {
       .objects = ProbesOf,
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        if (trace.gap.size() == 0) return {};
+        if (!trace.head) return {};
         const int probe = ProbeOf(object);
         return {InStage(trace, kReadingStage + probe,
-                        -(trace.gap.row(probe).array() - trace.zero[probe]).square())};
+                        -(trace.head->gap.row(probe).array() - trace.head->zero[probe]).square())};
       },
   };
 }

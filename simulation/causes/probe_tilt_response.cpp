@@ -21,11 +21,11 @@ Cause ProbeTiltResponse() {
       },
       .columns = [](const Trace& trace, const std::string&,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        if (trace.tilt.size() == 0) return {};
+        if (!trace.HasTilt()) return {};
         Disturbance nearer = NoDisturbance(trace);
-        for (Eigen::Index probe = 0; probe < trace.tilt.rows(); ++probe) {
-          nearer.row(kReadingStage + probe) =
-              -0.25 * trace.tilt.row(probe).array().square() / trace.gap.row(probe).array();
+        for (Eigen::Index probe = 0; probe < trace.head->tilt.rows(); ++probe) {
+          nearer.row(kReadingStage + probe) = -0.25 * trace.head->tilt.row(probe).array().square() /
+                                              trace.head->gap.row(probe).array();
         }
         return {nearer};
       },

@@ -31,8 +31,8 @@ Cause SensorGain() {
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         const int sensor = RimSensorOf(object);
-        if (sensor >= trace.rim.sensors) return {};
-        return {InStage(trace, kReadingStage + sensor, trace.rim.Of(sensor, trace.rim.seen))};
+        if (!trace.rim || sensor >= trace.rim->sensors) return {};
+        return {InStage(trace, kReadingStage + sensor, trace.rim->Of(sensor, trace.rim->seen))};
       },
   };
 }

@@ -21,9 +21,9 @@ Cause SensorNonlinearity() {
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         const int sensor = RimSensorOf(object);
-        if (sensor >= trace.rim.sensors) return {};
+        if (!trace.rim || sensor >= trace.rim->sensors) return {};
         return {InStage(trace, kReadingStage + sensor,
-                        trace.rim.Of(sensor, trace.rim.seen.cwiseAbs2()))};
+                        trace.rim->Of(sensor, trace.rim->seen.cwiseAbs2()))};
       },
   };
 }

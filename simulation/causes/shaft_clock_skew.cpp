@@ -12,7 +12,7 @@ namespace {
 // tells the speed badly.
 double SpeedOf(const Trace& trace) {
   const Eigen::ArrayXd time = trace.time.array() - trace.time.mean();
-  return (time * trace.rim.shaft.transpose().array()).sum() / time.square().sum();
+  return (time * trace.rim->shaft.transpose().array()).sum() / time.square().sum();
 }
 
 }  // namespace
@@ -31,10 +31,10 @@ Cause ShaftClockSkew() {
       // What they saw `delay` before, less what they see, over the delay: to its third power.
       .columns = [](const Trace& trace, const std::string&,
                     const Eigen::VectorXd& delay) -> std::vector<Disturbance> {
-        if (trace.rim.sensors == 0) return {};
+        if (!trace.rim) return {};
         const double speed = SpeedOf(trace), turned = speed * SizeOf(delay);
         return {
-            OnRim(trace, speed * (0.5 * turned * trace.rim.by_angle_twice - trace.rim.by_angle))};
+            OnRim(trace, speed * (0.5 * turned * trace.rim->by_angle_twice - trace.rim->by_angle))};
       },
       .follows_size = true,
   };

@@ -24,12 +24,12 @@ Cause ShaftErrorMotion() {
       .objects = ShaftOf,
       .columns = [](const Trace& trace, const std::string&,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        if (trace.rim.sensors == 0) return {};
+        if (!trace.rim) return {};
         std::vector<Disturbance> columns;
         for (const double order : {2.0, 3.0, 4.0}) {
-          const Eigen::ArrayXXd phase = order * trace.rim.shaft.array();
+          const Eigen::ArrayXXd phase = order * trace.rim->shaft.array();
           for (const double quarter : {0.0, 0.5 * std::numbers::pi}) {
-            const Eigen::ArrayXXd towards = (trace.rim.place.array() - quarter).cos();
+            const Eigen::ArrayXXd towards = (trace.rim->place.array() - quarter).cos();
             columns.push_back(OnRim(trace, -towards * phase.sin()));
             columns.push_back(OnRim(trace, -towards * phase.cos()));
           }

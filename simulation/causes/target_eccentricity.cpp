@@ -20,8 +20,8 @@ Cause TargetEccentricity() {
       .objects = ShaftOf,
       .columns = [](const Trace& trace, const std::string&,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        if (trace.rim.sensors == 0) return {};
-        const Eigen::RowVectorXd seen = trace.rim.shaft - trace.rim.place;
+        if (!trace.rim) return {};
+        const Eigen::RowVectorXd seen = trace.rim->shaft - trace.rim->place;
         return {OnRim(trace, seen.array().sin()), OnRim(trace, -seen.array().cos())};
       },
       // sin(seen) amplitude sin(phase) - cos(seen) amplitude cos(phase)

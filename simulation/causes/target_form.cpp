@@ -37,7 +37,7 @@ std::vector<Index> ProbesAt(const std::string& object) {
 Index UnitOf(const std::string& object) { return object == "target_top" ? 0 : 1; }
 
 Index FaceOf(const Trace& trace, const std::string& object) {
-  return AxisOf(trace.axis) + (trace.head_turned && UnitOf(object) == 1 ? 3 : 0);
+  return AxisOf(trace.axis) + (trace.head && trace.head->turned && UnitOf(object) == 1 ? 3 : 0);
 }
 
 // All places, in order, each once.
@@ -69,12 +69,12 @@ VectorXd GridOver(const Scene& scene) {
   std::array<Places, kFaces> along;
   std::array<std::array<Places, kUnits>, kFaces> across;
   for (const Trace* trace : scene.traces) {
-    if (trace->spots.size() == 0) continue;
+    if (!trace->HasSpots()) continue;
     for (const char* object : {"target_top", "target_side"}) {
       const auto face = static_cast<std::size_t>(FaceOf(*trace, object));
       for (const Index probe : ProbesAt(object)) {
-        Take(trace->spots.row(2 * probe), along[face]);
-        Take(trace->spots.row(2 * probe + 1),
+        Take(trace->head->spots.row(2 * probe), along[face]);
+        Take(trace->head->spots.row(2 * probe + 1),
              across[face][static_cast<std::size_t>(UnitOf(object))]);
       }
     }
@@ -125,14 +125,14 @@ Cause TargetForm() {
       },
       .columns = [](const Trace& trace, const std::string& object,
                     const VectorXd& shape) -> std::vector<Disturbance> {
-        if (trace.spots.size() == 0) return {};
+        if (!trace.HasSpots()) return {};
         std::vector<Disturbance> columns(kFaces * kNodes, NoDisturbance(trace));
         const Index face = FaceOf(trace, object), along_at = kFirst + kOfFace * face,
                     across_at = along_at + kAlong + kAcross * UnitOf(object);
         for (const Index probe : ProbesAt(object)) {
-          const MatrixXd along = FunctionsOf(trace.spots.row(2 * probe),
+          const MatrixXd along = FunctionsOf(trace.head->spots.row(2 * probe),
                                              shape.segment(along_at, kAlong), shape[kLength]),
-                         across = FunctionsOf(trace.spots.row(2 * probe + 1),
+                         across = FunctionsOf(trace.head->spots.row(2 * probe + 1),
                                               shape.segment(across_at, kAcross), shape[kLength]);
           for (Index node = 0; node < kNodes; ++node) {
             columns[static_cast<std::size_t>(face * kNodes + node)].row(kReadingStage + probe) =

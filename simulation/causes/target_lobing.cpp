@@ -23,8 +23,8 @@ Cause TargetLobing() {
       .objects = ShaftOf,
       .columns = [](const Trace& trace, const std::string&,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        if (trace.rim.sensors == 0) return {};
-        const Eigen::RowVectorXd seen = trace.rim.place - trace.rim.shaft;
+        if (!trace.rim) return {};
+        const Eigen::RowVectorXd seen = trace.rim->place - trace.rim->shaft;
         std::vector<Disturbance> columns;
         for (const double order : {2.0, 3.0, 4.0}) {
           columns.push_back(OnRim(trace, -(order * seen.array()).sin()));

@@ -20,7 +20,7 @@ Cause Vibration() {
       .columns = [](const Trace& trace, const std::string& object,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
         // Neither says how long it averaged.
-        if (trace.kind == "reference" || trace.kind == "plate") return {};
+        if (!trace.averages_known) return {};
         return LineInStage(trace, Positioning(AxisOf(object[0])), shape[0], trace.clock);
       },
       .shapes =

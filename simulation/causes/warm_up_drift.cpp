@@ -29,7 +29,7 @@ Cause WarmUpDrift() {
         const Eigen::RowVectorXd warm = 1.0 - (-trace.clock.transpose().array() / shape[0]).exp();
         if (!object.starts_with("probe_"))
           return {InStage(trace, Positioning(AxisOf(object[0])), warm)};
-        if (trace.gap.size() == 0) return {};
+        if (!trace.head) return {};
         return {InStage(trace, kReadingStage + ProbeOf(object), warm)};
       },
       .shapes = [](const Scene&) { return GeometricShapes(20.0, 20000.0, 1.7); },

@@ -1,15 +1,16 @@
-// Correction of a run of the linkage: of its angles and of the positions of the axes.
+#include "simulation/linkage/linkage_correction.h"
+
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 
-#include "failure/failure.h"
 #include "machine/volumetric_jacobian.h"
 #include "simulation/correction_steps.h"
 #include "simulation/linkage/linkage_run.h"
 #include "simulation/linkage/linkage_simulation.h"
+#include "simulation/linkage/linkage_trace.h"
 
 namespace abbe::simulation {
 namespace {
@@ -72,16 +73,12 @@ Steps StepsOf(const LinkageRun& run, const LinkageSimulation& linkage, const Sum
 }  // namespace
 
 Correction CorrectLinkage(const Recording& recording, const std::vector<ModelledCause>& causes,
-                          const Origin& origin, const CorrectedMachine& on) {
-  if (on.linkage == nullptr) {
-    throw InputError(
-        fmt::format("{}: the machine file has no table [linkage]; add it or leave the run out",
-                    recording.name));
-  }
+                          const Origin& origin, const Instruments& on) {
+  const relm::LinkageSettings& settings = on.LinkageFor(recording.name);
   Correction corrected{recording, {}};
-  const LinkageSimulation linkage(on.machine.chain, *on.linkage,
-                                  relm::MakeLinkageModel(*on.linkage, relm::ErrorModel::kComplete));
-  const LinkageRun rows = ReadLinkageRun(recording, *on.linkage);
+  const LinkageSimulation linkage(on.machine.chain, settings,
+                                  relm::MakeLinkageModel(settings, relm::ErrorModel::kComplete));
+  const LinkageRun rows = ReadLinkageRun(recording, settings);
   const LinkageRun stays = MeansOfStays(rows);
   Trace trace = TraceOf(recording, stays, linkage);
   const Sums sums = SumsOf(trace, causes, origin);

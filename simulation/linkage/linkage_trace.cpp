@@ -1,11 +1,11 @@
-// The trace of a run of the linkage: its pivots, its links and the way of its ball.
+#include "simulation/linkage/linkage_trace.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "failure/failure.h"
 #include "relm/linkage_model.h"
-#include "simulation/trace.h"
 #include "simulation/trace_columns.h"
 #include "simulation/trace_motion.h"
 
@@ -110,7 +110,6 @@ Trace PivotsOfRun(const recording::Recording& recording, const LinkageRun& run,
                   const LinkageSimulation& linkage) {
   Trace trace;
   trace.name = run.name;
-  trace.kind = "linkage";
   trace.mounting = run.mounting;
   trace.started = StartedOf(recording);
   trace.time = trace.clock = run.time;
@@ -119,7 +118,7 @@ Trace PivotsOfRun(const recording::Recording& recording, const LinkageRun& run,
   trace.pass = IntegersAt(recording, "pass", run.rows);
   trace.direction = IntegersAt(recording, "direction", run.rows);
   trace.SetAngles(run.readings.angles);
-  trace.link = LinksOf(run, linkage.model());
+  trace.linkage->link = LinksOf(run, linkage.model());
   AddSensors(recording, run.rows, trace);
   return trace;
 }
@@ -129,18 +128,20 @@ Trace PivotsOfRun(const recording::Recording& recording, const LinkageRun& run,
 Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
               const LinkageSimulation& linkage) {
   Trace trace = PivotsOfRun(recording, run, linkage);
+  trace.continuous = true;
+  trace.on_the_way = OnTheWay::kAlways;
   trace.SetAxes(run.commanded);
-  trace.aside = AsideOf(trace, run, linkage);
-  trace.ball_way = WayOf(trace, linkage.chain());
+  trace.linkage->aside = AsideOf(trace, run, linkage);
+  trace.linkage->ball_way = WayOf(trace, linkage.chain());
   return trace;
 }
 
 Trace ArmTraceOf(const recording::Recording& recording, const LinkageRun& run,
                  const LinkageSimulation& linkage) {
   Trace trace = PivotsOfRun(recording, run, linkage);
-  trace.kind = kArm;
+  trace.linkage->is_arm = true;
   trace.SetAxes(run.reference);
-  trace.ball_way = Eigen::Matrix3Xd::Zero(3, trace.rows());
+  trace.linkage->ball_way = Eigen::Matrix3Xd::Zero(3, trace.rows());
   return trace;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "recording/made_on.h"
 #include "simulation/stage_response.h"
 
 namespace abbe::simulation {
@@ -175,6 +176,7 @@ std::string HoleBlock(const PlateSetUp& setup, int hole) {
 }
 
 std::vector<PlateSetUp> ReadPlate(const recording::Recording& recording) {
+  recording::RefuseOtherKind(recording, "plate", "abbe fuse takes it together with plates");
   PlateSetUp all;
   all.points = ReadMachinePoints(recording);
   all.plate = recording.HeaderText("plate").value_or(recording.name);

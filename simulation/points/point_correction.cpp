@@ -1,11 +1,7 @@
-// Correction of runs whose rows are points of the machine (machine_points.h): of the positions of
-// the axes.
+#include "simulation/points/point_correction.h"
+
 #include "machine/volumetric_jacobian.h"
 #include "simulation/correction_steps.h"
-#include "simulation/points/machine_points.h"
-#include "simulation/points/plate_simulation.h"
-#include "simulation/points/reference_run.h"
-#include "simulation/points/reference_trace.h"
 
 namespace abbe::simulation {
 namespace {
@@ -14,30 +10,6 @@ using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using recording::Recording;
-
-struct PartOfRecording {
-  MachinePoints points;  // where the trace has its rows
-  Trace trace;
-  std::vector<std::size_t> rows;  // of the recording: all that belong to them
-};
-
-std::vector<PartOfRecording> PartsOfRecording(const Recording& recording,
-                                              const machine::Machine& machine) {
-  std::vector<PartOfRecording> parts;
-  if (recording.Kind() == "reference") {
-    const ReferenceRun rows = ReadReferenceRun(WithAllAxes(recording, machine.travels));
-    const ReferenceRun stays = MeansOfStays(rows);
-    parts.push_back({stays.points, TraceOf(recording, stays), rows.points.rows});
-  } else if (recording.Kind() == "plate") {
-    for (const PlateSetUp& setup : ReadPlate(recording)) {
-      parts.push_back({setup.points, TraceOf(recording, setup.points), setup.points.rows});
-    }
-  } else {
-    const MachinePoints points = ReadMachinePoints(recording);
-    parts.push_back({points, TraceOf(recording, points), points.rows});
-  }
-  return parts;
-}
 
 // By how much the axes really stood elsewhere, [x y z] of each point.
 Matrix3Xd StepsOf(const MachinePoints& points, const Sums& sums, const machine::Machine& machine) {
@@ -53,14 +25,15 @@ Matrix3Xd StepsOf(const MachinePoints& points, const Sums& sums, const machine::
 
 }  // namespace
 
-Correction CorrectPoints(const Recording& recording, const std::vector<ModelledCause>& causes,
-                         const Origin& origin, const CorrectedMachine& on) {
+Correction CorrectPoints(const Recording& recording, std::vector<PartOfPoints> parts,
+                         const std::vector<ModelledCause>& causes, const Origin& origin,
+                         const Instruments& on) {
   Correction corrected{recording, {}};
   std::vector<Moved> axes;
   for (Index axis = 0; axis < 3; ++axis) {
     axes.emplace_back(corrected.recording, PositionColumn(axis), corrected.changes.positions);
   }
-  for (PartOfRecording& part : PartsOfRecording(recording, on.machine)) {
+  for (PartOfPoints& part : parts) {
     const Matrix3Xd steps = StepsOf(part.points, SumsOf(part.trace, causes, origin), on.machine);
     std::size_t point = 0;
     for (const std::size_t row : part.rows) {

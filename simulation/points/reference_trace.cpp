@@ -18,7 +18,8 @@ Eigen::VectorXd NumbersOf(const std::vector<std::size_t>& rows) {
 Trace TraceOf(const recording::Recording& recording, const ReferenceRun& run) {
   Trace trace;
   trace.name = run.points.name;
-  trace.kind = "reference";
+  trace.averages_known = false;
+  trace.on_the_way = OnTheWay::kWhileMoving;
   trace.axis = run.tested;
   trace.started = StartedOf(recording);
   trace.time = trace.clock = run.time;
@@ -33,7 +34,7 @@ Trace TraceOf(const recording::Recording& recording, const ReferenceRun& run) {
 Trace TraceOf(const recording::Recording& recording, const MachinePoints& points) {
   Trace trace;
   trace.name = points.name;
-  trace.kind = recording.Kind();
+  trace.averages_known = recording.Kind() != "plate";
   trace.started = StartedOf(recording);
   const auto rows = static_cast<Eigen::Index>(points.count());
   trace.time = trace.clock =

@@ -82,7 +82,6 @@ SimulatedRun SimulateShaft(const ShaftRun& run) {
 Trace TraceOf(const recording::Recording& recording, const ShaftRun& run) {
   Trace trace;
   trace.name = run.name;
-  trace.kind = "shaft";
   trace.started = StartedOf(recording);
   trace.time = trace.clock = run.time;
   trace.pass = run.turn;

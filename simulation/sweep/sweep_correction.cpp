@@ -1,4 +1,5 @@
-// Correction of a sweep: of its gaps, and of the position of the axis that is swept.
+#include "simulation/sweep/sweep_correction.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include "simulation/correction_steps.h"
 #include "simulation/sweep/sweep_reading.h"
 #include "simulation/sweep/sweep_run.h"
+#include "simulation/sweep/sweep_trace.h"
 
 namespace abbe::simulation {
 namespace {
@@ -73,16 +75,17 @@ MotionJacobian ReadingsByMotions(const SweepPlan& plan, const probes::HeadSettin
 }  // namespace
 
 Correction CorrectSweep(const Recording& recording, const std::vector<ModelledCause>& causes,
-                        const Origin& origin, const CorrectedMachine& on) {
+                        const Origin& origin, const Instruments& on) {
+  const probes::HeadSettings& head = on.HeadFor(recording.name);
   Correction corrected{recording, {}};
   const SweepRun run = RowsOf(recording);
   Trace trace = TraceOf(recording, run);
-  trace.zero = run.gap.col(0);  // as the causes define it: the gap at the start
+  trace.head->zero = run.gap.col(0);  // as the causes define it: the gap at the start
   Sums sums = SumsOf(trace, causes, origin);
   const int swept = machine::AxisIndex(run.axis);
   const Eigen::RowVectorXd along = sums.machine.row(Positioning(swept));
   sums.machine.row(Positioning(swept)).setZero();
-  const SweepPlan plan = MakeSweepPlan(on.machine.chain, on.machine.reference, on.head, run);
+  const SweepPlan plan = MakeSweepPlan(on.machine.chain, on.machine.reference, head, run);
   Moved position(corrected.recording, PositionColumn(swept), corrected.changes.positions);
   std::vector<Moved> gaps;
   for (const char probe : {'a', 'b', 'c', 'd', 'e'}) {
@@ -96,7 +99,7 @@ Correction CorrectSweep(const Recording& recording, const std::vector<ModelledCa
     const auto motions = sum.col(row).head<kToolStage>();
     Eigen::Matrix<double, kProbes, 1> shown = sum.col(row).segment<kProbes>(kReadingStage);
     if (!motions.isZero(0.0)) {
-      shown += ReadingsByMotions(plan, on.head, run.AxesAt(row)) * motions;
+      shown += ReadingsByMotions(plan, head, run.AxesAt(row)) * motions;
     }
     for (std::size_t probe = 0; probe < kProbes; ++probe) {
       gaps[probe].By(at, -shown[static_cast<Index>(probe)]);

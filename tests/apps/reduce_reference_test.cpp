@@ -101,7 +101,8 @@ TEST(ReduceReference, RefusesWhatIsNoPositioningTest) {
   Recording other = ByHand();
   other.header = "kind = \"sweep\"\naxis = \"X\"\n";
   EXPECT_EQ(Refusal(other),
-            "hand.csv: kind = \"sweep\": ISO 230-2 needs a recording of kind \"reference\"");
+            "hand.csv: kind is \"sweep\", not \"reference\"; ISO 230-2 figures are those of its "
+            "targets");
 
   Recording plane = ByHand();
   plane.header = "kind = \"reference\"\naxis = \"XY\"\n";

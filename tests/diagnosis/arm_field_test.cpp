@@ -104,7 +104,7 @@ class RealArm : public testing::Test {
 
  private:
   // The machine file that comes with abbe, its first row for either arm.
-  static diagnosis::Setup ArmSetup(const std::string& alpha) {
+  static simulation::Instruments ArmSetup(const std::string& alpha) {
     std::ifstream in(ABBE_SOURCE_DIR "/machines/motoman_left.toml");
     std::string text{std::istreambuf_iterator<char>(in), {}};
     const std::string left = "alpha_deg = -15.0";
@@ -122,7 +122,7 @@ TEST_F(RealArm, LeftGridInventsNoCause) {
   Read("leica_left_hand_6x6x6", "l");
   if (IsSkipped()) return;
   ExpectNothingInvented();
-  EXPECT_EQ(campaign_->bad_data().size(), 0U);
+  EXPECT_EQ(campaign_->invalid_readings().size(), 0U);
   EXPECT_LT(gain_.arm_before, 85e-6);
   EXPECT_LE(gain_.arm_after, gain_.arm_before);
 }
@@ -131,7 +131,7 @@ TEST_F(RealArm, RightGridInventsNoCause) {
   Read("leica_right_hand_6x6x6", "r");
   if (IsSkipped()) return;
   ExpectNothingInvented();
-  EXPECT_EQ(campaign_->bad_data().size(), 0U);
+  EXPECT_EQ(campaign_->invalid_readings().size(), 0U);
   EXPECT_LT(gain_.arm_before, 85e-6);
   EXPECT_LE(gain_.arm_after, gain_.arm_before);
 }

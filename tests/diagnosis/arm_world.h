@@ -33,7 +33,7 @@ class ArmWorld {
  public:
   static constexpr int kJoints = 6, kPoses = 160;
 
-  static diagnosis::Setup SetupOf(int joints = kJoints) {
+  static simulation::Instruments SetupOf(int joints = kJoints) {
     std::string text = "[linkage]\nform = \"denavit-hartenberg\"\nball_mm = [40.0, 0.0, 0.0]\n";
     for (int i = 0; i < joints; ++i) {
       const Row& row = kRows[static_cast<std::size_t>(i)];

@@ -52,7 +52,7 @@ TEST(MeasuredNoise, IsThatOfTheStandstills) {
 }
 
 TEST(MeasuredNoise, ReplacesWhatTheMachineFileStatesWhereThatIsWrong) {
-  diagnosis::Setup setup;
+  simulation::Instruments setup;
   setup.head.emplace();
   setup.noise.probe = 20e-9;
   UseMeasuredNoise({Dwell(20.0)}, setup);

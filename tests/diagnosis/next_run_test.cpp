@@ -9,9 +9,9 @@
 
 #include "diagnosis/expected_odds.h"
 #include "diagnosis/linear_runs.h"
-#include "diagnosis/planned_paths.h"
 #include "diagnosis/run_catalogue.h"
 #include "simulation/causes/registry.h"
+#include "simulation/planned_paths.h"
 #include "tests/hidden_effects/hidden_world.h"
 
 namespace abbe::diagnosis {

@@ -9,10 +9,10 @@
 
 #include "diagnosis/diagnose.h"
 #include "diagnosis/linear_runs.h"
-#include "diagnosis/planned_run.h"
 #include "failure/failure.h"
 #include "random/counter_random.h"
 #include "simulation/causes/registry.h"
+#include "simulation/planned_run.h"
 #include "tests/diagnosis/planned_circles.h"
 #include "tests/hidden_effects/hidden_world.h"
 
@@ -22,7 +22,7 @@ namespace plan_test {
 using Eigen::MatrixXd;
 
 Campaign Circles(const std::vector<double>& feeds) {
-  const Setup setup = DemoSetup();
+  const simulation::Instruments setup = DemoInstruments();
   Campaign campaign(setup);
   for (const double feed : feeds) campaign.Add(Planned(CircleAt(feed), setup));
   return campaign;
@@ -123,9 +123,9 @@ TEST_P(Promises, AreKeptByTheRig) {
   const HiddenWorlds worlds(rig::CampaignKind::kMinimal);
   const auto world = worlds.Record(11, {promise.hidden});
   const Campaign recorded = worlds.Recordings(world);
-  Campaign paths(recorded.setup());
+  Campaign paths(recorded.instruments());
   for (const auto& recording : world.recordings) {
-    paths.Add(Planned(recording, recorded.setup()));
+    paths.Add(Planned(recording, recorded.instruments()));
   }
   const Plan plan = PlanOf(paths);
   const PlannedCause& planned = Find(plan, promise.name);
@@ -155,9 +155,9 @@ TEST(Plan, SeesAsMuchAsTheDiagnosisOfTheRigThenDoes) {
   const HiddenWorlds worlds(rig::CampaignKind::kMinimal);
   const auto world = worlds.Record(12, {});
   const Campaign recorded = worlds.Recordings(world);
-  Campaign paths(recorded.setup());
+  Campaign paths(recorded.instruments());
   for (const auto& recording : world.recordings) {
-    paths.Add(Planned(recording, recorded.setup()));
+    paths.Add(Planned(recording, recorded.instruments()));
   }
   std::map<std::string, double> visible;
   for (const Score& score : ScoreAll(Fit(recorded), AllCandidates(recorded.scene()))) {
@@ -176,7 +176,7 @@ TEST(Plan, SeesAsMuchAsTheDiagnosisOfTheRigThenDoes) {
 }
 
 TEST(Plan, WantsALinkageInTheMachineFile) {
-  auto setup = DemoSetup();
+  auto setup = DemoInstruments();
   setup.linkage.reset();
   EXPECT_THROW(Planned(CircleAt(600.0), setup), InputError);
 }

@@ -13,7 +13,7 @@
 
 namespace abbe::diagnosis {
 
-inline Setup DemoSetup() {
+inline simulation::Instruments DemoInstruments() {
   const auto document =
       settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml");
   const auto& root = document.Root();

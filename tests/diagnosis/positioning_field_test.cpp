@@ -58,12 +58,12 @@ class RealAxis : public testing::Test {
     return found == diagnosis_.findings.end() ? nullptr : &*found;
   }
 
-  Campaign campaign_{
-      diagnosis::Setup{machine::ReadMachine(settings::Document::Parse(kStage, "stage.toml").Root()),
-                       std::nullopt,
-                       {},
-                       {},
-                       std::nullopt}};
+  Campaign campaign_{simulation::Instruments{
+      machine::ReadMachine(settings::Document::Parse(kStage, "stage.toml").Root()),
+      std::nullopt,
+      {},
+      {},
+      std::nullopt}};
   Diagnosis diagnosis_;
 };
 

@@ -45,7 +45,7 @@ class PositioningWorlds {
     return world;
   }
 
-  diagnosis::Setup setup() const {
+  simulation::Instruments setup() const {
     return {machine::ReadMachine(document_.Root()), std::nullopt, {}, {}, std::nullopt};
   }
 

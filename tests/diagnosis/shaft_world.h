@@ -111,7 +111,7 @@ class WheelUnderSensors {
   std::uint64_t next_ = 0;
 };
 
-inline diagnosis::Setup SetupOfWheel() {
+inline simulation::Instruments SetupOfWheel() {
   constexpr const char* kWheel = R"(
 name = "wheel"
 chain = "[w X Y b Z t]"

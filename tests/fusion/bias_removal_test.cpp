@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "fusion/linkage_problem.h"
+#include "simulation/linkage/linkage_problem.h"
 #include "tests/fusion/rig_campaign.h"
 #include "tests/pull_statistics.h"
 #include "tests/seeds.h"
@@ -125,7 +125,7 @@ SimulatedRun CalibratedOnAPerfectMachine(const Campaign& world) {
   const simulation::LinkageSimulation nominal(
       world.machine.chain, world.linkage,
       relm::MakeLinkageModel(world.linkage, relm::ErrorModel::kComplete));
-  const auto calibrated = SolveLinkage(MakeLinkageProblem(
+  const auto calibrated = simulation::SolveLinkage(simulation::MakeLinkageProblem(
       nominal, {simulation::MeansOfStays(simulation::ReadLinkageRun(recording, world.linkage))},
       {}));
   SimulatedRun run = world.Linkage(recording);

@@ -6,9 +6,9 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "fusion/linkage_problem.h"
 #include "fusion/pose_choice.h"
 #include "linkage_world.h"
+#include "simulation/linkage/linkage_problem.h"
 
 namespace abbe::fusion {
 namespace volume_study_test {
@@ -29,7 +29,8 @@ TEST(VolumeStudy, PredictsTheCovarianceThatTheEstimatorReports) {
   auto run = simulation::RunAt(GridPositions({0.025, 0.025, 0.050}, {4, 4, 5}), WorldSettings());
   run.readings.angles = simulation.Readings(run, simulation.Values());
   const auto result =
-      MakeLinkageProblem(simulation, {run}, {.loss = estimation::RobustLoss::None()}).Solve();
+      simulation::MakeLinkageProblem(simulation, {run}, {.loss = estimation::RobustLoss::None()})
+          .Solve();
   const PoseInformation candidates(simulation, run, simulation.Values());
   const Index n = candidates.white.cols();
   ASSERT_EQ(result.covariance.rows(), n);

@@ -39,7 +39,7 @@ class HiddenWorlds {
   }
 
   const rig::CampaignMachine& machine() const { return machine_; }
-  const diagnosis::Setup& setup() const { return setup_; }
+  const simulation::Instruments& setup() const { return setup_; }
 
   // The same, with encoders that do not count in steps.
   HiddenWorlds WithoutCounts() const {
@@ -58,7 +58,7 @@ class HiddenWorlds {
   }
 
   diagnosis::Campaign Recordings(const rig::Campaign& world) const {
-    diagnosis::Setup setup = setup_;
+    simulation::Instruments setup = setup_;
     diagnosis::UseMeasuredNoise(world.recordings, setup);
     diagnosis::Campaign campaign(std::move(setup));
     for (const auto& recording : world.recordings) campaign.Add(recording);
@@ -68,7 +68,7 @@ class HiddenWorlds {
  private:
   settings::Document document_;
   rig::CampaignMachine machine_;
-  diagnosis::Setup setup_;
+  simulation::Instruments setup_;
   rig::CampaignKind kind_;
 };
 

@@ -32,7 +32,7 @@ Found LineOf(const std::vector<std::string>& hidden) {
   Found found{diagnosis::StrongestLine(fit, {&vibration, "X", shapes.front()})};
   double first = std::numeric_limits<double>::infinity();
   for (const simulation::Trace* trace : campaign.scene().traces) {
-    if (trace->kind != "linkage") continue;
+    if (!trace->linkage) continue;
     first = std::min(first, trace->clock.minCoeff());
     found.span = std::max(found.span, trace->clock.maxCoeff() - first);
   }

@@ -27,13 +27,14 @@ Trace ToAndFro() {
   trace.heading = trace.velocity = Eigen::Matrix3Xd::Zero(3, kRows);
   trace.heading.row(0) = HeadingOf(trace.axes.row(0), 1e-6);
   trace.velocity.row(0) = 1e-3 * trace.heading.row(0);
-  trace.ball_way = -trace.heading;  // a table
   trace.since_reversal = Eigen::Matrix3Xd::Constant(3, kRows, kLongAgo);
   trace.since_reversal.row(0).tail(3) << 1e-3, 2e-3, 3e-3;
-  trace.angles = trace.axes.topRows(1) * 100.0;
-  trace.turning = trace.heading.topRows(1);
-  trace.link = Eigen::MatrixXd::Zero(3, kRows);
-  trace.link.row(2).setOnes();
+  trace.linkage.emplace();
+  trace.linkage->ball_way = -trace.heading;  // a table
+  trace.linkage->angles = trace.axes.topRows(1) * 100.0;
+  trace.linkage->turning = trace.heading.topRows(1);
+  trace.linkage->link = Eigen::MatrixXd::Zero(3, kRows);
+  trace.linkage->link.row(2).setOnes();
   trace.sensors = {"temp_table_c"};
   trace.warming = RowVectorXd::LinSpaced(kRows, 0.0, 0.7);
   return trace;
@@ -121,12 +122,12 @@ TEST(Causes, AJointWithAGainShowsMoreInProportionToItsAngle) {
   const Scene carried{{&trace}, Eigen::Vector3d::Constant(0.06)};
   EXPECT_TRUE(JointGain().objects(carried).empty());  // encoders on the pivots of a linkage
   EXPECT_TRUE(JointGain().columns(trace, "pivot_1", {}).empty());
-  trace.kind = kArm;
+  trace.linkage->is_arm = true;
   const Scene arm{{&trace}, Eigen::Vector3d::Zero()};
   EXPECT_EQ(JointGain().objects(arm), std::vector<std::string>{"pivot_1"});
   const auto columns = JointGain().columns(trace, "pivot_1", {});
   ASSERT_EQ(columns.size(), 1U);
-  EXPECT_EQ(At(columns[0], kEncoderStage, "joint-gain"), RowVectorXd(trace.angles.row(0)));
+  EXPECT_EQ(At(columns[0], kEncoderStage, "joint-gain"), RowVectorXd(trace.linkage->angles.row(0)));
 }
 
 TEST(Causes, AGainOfTheTrueGapIsToldFromWhatWasRead) {
@@ -194,25 +195,28 @@ TEST(Causes, WhoDealsWithACauseIsToldByItsObject) {
 Trace Recorded(bool of_shaft) {
   Trace trace = ToAndFro();
   const Eigen::Index rows = trace.rows();
-  trace.kind = kArm;
+  trace.linkage->is_arm = true;
   trace.axis = 'X';
   trace.temperature = trace.warming;
   trace.pass.assign(static_cast<std::size_t>(rows), 1);
   trace.direction.assign(static_cast<std::size_t>(rows), 1);
   trace.acceleration = 1e-3 * trace.axes;
   if (of_shaft) {
-    trace.rim.sensors = 2;
-    for (int row = 0; row < rows; ++row) trace.rim.sensor.push_back(row % 2);
-    trace.rim.shaft = RowVectorXd::LinSpaced(rows, 0.0, 5.0);
-    trace.rim.place = RowVectorXd::Constant(rows, 0.4);
-    trace.rim.seen = trace.rim.by_angle = trace.rim.by_angle_twice = trace.rim.shaft.array().sin();
-    trace.rim.slope = RowVectorXd::Ones(rows);
+    trace.rim.emplace();
+    trace.rim->sensors = 2;
+    for (int row = 0; row < rows; ++row) trace.rim->sensor.push_back(row % 2);
+    trace.rim->shaft = RowVectorXd::LinSpaced(rows, 0.0, 5.0);
+    trace.rim->place = RowVectorXd::Constant(rows, 0.4);
+    trace.rim->seen = trace.rim->by_angle = trace.rim->by_angle_twice =
+        trace.rim->shaft.array().sin();
+    trace.rim->slope = RowVectorXd::Ones(rows);
     return trace;
   }
-  trace.gap = Eigen::MatrixXd::Random(5, rows);
-  trace.zero.setOnes();
-  trace.tilt = Eigen::MatrixXd::Random(5, rows);
-  trace.spots = 0.01 * Eigen::MatrixXd::Random(10, rows);
+  trace.head.emplace();
+  trace.head->gap = Eigen::MatrixXd::Random(5, rows);
+  trace.head->zero.setOnes();
+  trace.head->tilt = Eigen::MatrixXd::Random(5, rows);
+  trace.head->spots = 0.01 * Eigen::MatrixXd::Random(10, rows);
   return trace;
 }
 

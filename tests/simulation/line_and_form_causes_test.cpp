@@ -20,7 +20,6 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 // Rows are means of so many readings, so far apart.
 Trace Stays(Index readings, double apart) {
   Trace trace;
-  trace.kind = "sweep";
   trace.time = trace.clock = VectorXd::LinSpaced(7, 1.3, 19.7);
   trace.samples = VectorXd::Constant(7, static_cast<double>(readings));
   trace.lasting = VectorXd::Constant(7, apart * static_cast<double>(readings - 1));
@@ -56,7 +55,7 @@ TEST(LineCauses, VibrationIsToldByFrequencyAmplitudeAndPhase) {
                   .columns(
                       [] {
                         Trace test = Stays(1, 0.1);
-                        test.kind = "reference";
+                        test.averages_known = false;
                         return test;
                       }(),
                       "X", VectorXd::Constant(1, 17.0))
@@ -67,15 +66,15 @@ TEST(LineCauses, VibrationIsToldByFrequencyAmplitudeAndPhase) {
 Trace Looking() {
   constexpr Index kRows = 25;
   Trace trace;
-  trace.kind = "sweep";
   trace.axis = 'X';
   trace.time = trace.clock = VectorXd::LinSpaced(kRows, 0.0, kRows - 1.0);
-  trace.gap = MatrixXd::Constant(5, kRows, 100e-6);
-  trace.spots = MatrixXd::Zero(10, kRows);
+  trace.head.emplace();
+  trace.head->gap = MatrixXd::Constant(5, kRows, 100e-6);
+  trace.head->spots = MatrixXd::Zero(10, kRows);
   for (Index probe = 0; probe < 5; ++probe) {
-    trace.spots.row(2 * probe) = Eigen::RowVectorXd::LinSpaced(kRows, 0.0, 60e-3);
+    trace.head->spots.row(2 * probe) = Eigen::RowVectorXd::LinSpaced(kRows, 0.0, 60e-3);
   }
-  trace.spots.row(3).setConstant(10e-3);
+  trace.head->spots.row(3).setConstant(10e-3);
   return trace;
 }
 
@@ -124,7 +123,7 @@ TEST(TargetForm, ASpotKeepsItsCoordinatesWhenTheTargetIsMoved) {
 
 TEST(ProbeTilt, MakesTheGapSmallerAsOfAWideElectrode) {
   Trace trace = Looking();
-  trace.tilt = MatrixXd::Constant(5, trace.rows(), 2e-3);
+  trace.head->tilt = MatrixXd::Constant(5, trace.rows(), 2e-3);
   const auto columns = ProbeTiltResponse().columns(trace, "head", {});
   // The disc of radius a over a tilted plane, probes/electrode.h: g (1 + sqrt(1 - (a t / g)^2))
   // / 2.

@@ -57,8 +57,10 @@ TEST(PathDisplacement, OfAllCausesThoseActThatFollowThePath) {
   trace.pass.assign(21, 1);
   trace.direction.assign(21, 1);
   trace.SetAxes(path);
-  trace.gap = Eigen::MatrixXd::Constant(5, 21, 100e-6);
-  trace.angles = path.topRows<1>();
+  trace.head.emplace();
+  trace.head->gap = Eigen::MatrixXd::Constant(5, 21, 100e-6);
+  trace.linkage.emplace();
+  trace.linkage->angles = path.topRows<1>();
   trace.sensors = {"temp_table_c"};
   const Scene scene{{&trace}, Eigen::Vector3d::Constant(0.06)};
   int acting = 0;

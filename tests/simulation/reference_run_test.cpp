@@ -125,7 +125,7 @@ TEST(ReferenceTrace, HeadsAsEachTargetWasApproached) {
   const Trace trace = TraceOf(test, run);
   for (Eigen::Index row = 0; row < trace.rows(); ++row) {
     EXPECT_EQ(trace.heading(0, row), run.direction[static_cast<std::size_t>(row)]);
-    EXPECT_EQ(trace.Behind(0, 10e-6)[row], -0.5 * trace.heading(0, row));
+    EXPECT_EQ(trace.BacklashLag(0, 10e-6)[row], -0.5 * trace.heading(0, row));
   }
   EXPECT_TRUE(trace.velocity.isZero(0.0));
   EXPECT_TRUE((trace.since_reversal.array() == kLongAgo).all());
@@ -146,7 +146,7 @@ TEST(ReferenceTrace, TakesUpAPlayWhileTheAxisMoves) {
   }
   const Trace trace = TraceOf(course, RunOf(course));
   const double width = 0.25e-3;
-  const Eigen::RowVectorXd behind = trace.Behind(0, width);
+  const Eigen::RowVectorXd behind = trace.BacklashLag(0, width);
   EXPECT_NEAR(behind[19], -0.5, 1e-12);
   EXPECT_NEAR(behind[21], -0.5 + 0.1e-3 / width, 1e-12);
   EXPECT_NEAR(behind[22], -0.5 + 0.2e-3 / width, 1e-12);

@@ -216,7 +216,7 @@ TEST_F(Response, OfALinkageIsThatOfItsParameters) {
   }
   // The tip moved as the ball's offset along the last link moves it.
   Disturbance longer = NoDisturbance(trace);
-  for (int k = 0; k < 3; ++k) longer.row(kTipStage + k) = trace.link.row(6 + k);
+  for (int k = 0; k < 3; ++k) longer.row(kTipStage + k) = trace.linkage->link.row(6 + k);
   ExpectSame(run.response->At(x)->Columns({longer}).col(0), -ByParameter(run, x, "ball.along"));
   Disturbance dragged = NoDisturbance(trace);
   dragged.row(kToolStage + 1).setOnes();

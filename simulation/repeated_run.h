@@ -4,23 +4,24 @@
 //
 // The rows are those of the recording, readings included (planned_run.h replaces them). The header
 // keeps what a simulation asks for: kind, axis, the rule of the dwells, and the mounting unless
-// another one is named. Units: those of a recording.
+// another one is given. Units: those of a recording.
 #pragma once
 
 #include <string>
 
 #include "recording/recording.h"
-#include "simulation/sweep/sweep_run.h"
 
-namespace abbe::diagnosis {
+namespace abbe::simulation {
 
 struct AgainAbout {
   std::string machine;
   double started = 0.0;       // s since 1970
-  std::string mounting = {};  // of the target, or of the linkage's base; empty: as it was
-  simulation::SweepMounting mounted = {};  // of head and target, where `mounting` is another one
+  std::string mounting = {};  // the lines of the table [mounting]; empty: as it was
 };
 recording::Recording Again(const recording::Recording& run, const AgainAbout& about);
+
+// The name of the mounting of a run on the machine; of a run without one its own name.
+std::string MountingIdOf(const recording::Recording& run);
 
 // From its end to its beginning, on the same way.
 recording::Recording TurnedRound(recording::Recording run);
@@ -30,7 +31,14 @@ recording::Recording AtFeed(recording::Recording run, double times);
 
 recording::Recording Warmer(recording::Recording run, double kelvin);
 
+// An hour later, the machine 3 K warmer.
+inline constexpr double kWarmer = 3.0;  // K
+recording::Recording AnHourLater(const recording::Recording& run, AgainAbout about);
+
 // Whether most of its rows are of a motion.
 bool Moves(const recording::Recording& run);
 
-}  // namespace abbe::diagnosis
+// The file name without folder and extension.
+std::string ShortName(const recording::Recording& run);
+
+}  // namespace abbe::simulation

@@ -1,4 +1,4 @@
-#include "diagnosis/data_integrity.h"
+#include "diagnosis/invalid_readings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -314,10 +314,10 @@ void Flag(recording::Recording& recording, std::size_t row) {
 
 }  // namespace
 
-std::vector<BadData> FlagBadRows(recording::Recording& recording) {
+std::vector<InvalidReadings> FlagInvalidReadings(recording::Recording& recording) {
   if (!recording.Find("time_s")) return {};
   const Table table = TableOf(recording);
-  std::vector<BadData> bad;
+  std::vector<InvalidReadings> bad;
   if (table.rows.size() < kLeastStuck) return bad;
   if (!recording.Find("flags")) {
     recording.columns.push_back({"flags", Numbers(recording.rows(), 0.0)});

@@ -1,13 +1,14 @@
-#include "diagnosis/planned_paths.h"
+#include "simulation/planned_paths.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
-namespace abbe::diagnosis {
+#include "recording/instant.h"
+#include "settings/toml_text.h"
+
+namespace abbe::simulation {
 namespace {
 
 using Eigen::Vector3d;
@@ -57,21 +58,11 @@ class PathMaker {
 
 }  // namespace
 
-std::string Quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char each : text) {
-    if (each == '"' || each == '\\') quoted += '\\';
-    quoted += each;
-  }
-  return quoted + '"';
-}
-
 std::string HeaderOf(const HeaderAbout& about) {
-  const std::chrono::sys_seconds started(
-      std::chrono::seconds(static_cast<std::int64_t>(std::llround(about.started))));
-  return fmt::format(
-      "kind = \"{}\"\nmachine = {}\nstarted = \"{:%Y-%m-%dT%H:%M:%SZ}\"\n{}[mounting]\n{}",
-      about.kind, Quoted(about.machine), started, about.more, about.mounting);
+  return fmt::format("kind = \"{}\"\nmachine = {}\nstarted = {}\n{}[mounting]\n{}", about.kind,
+                     settings::Quoted(about.machine),
+                     settings::Quoted(recording::InstantText(about.started)), about.more,
+                     about.mounting);
 }
 
 Recording CirclePath(const CirclePlan& plan, const PathAbout& about) {
@@ -159,4 +150,4 @@ double DurationOf(const Recording& recording) {
   return time && !time->empty() ? time->back() - time->front() : 0.0;
 }
 
-}  // namespace abbe::diagnosis
+}  // namespace abbe::simulation

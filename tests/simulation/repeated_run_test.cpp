@@ -1,15 +1,15 @@
 // A recorded run made again, by hand on four rows.
-#include "diagnosis/repeated_run.h"
+#include "simulation/repeated_run.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "diagnosis/planned_run.h"
+#include "simulation/planned_run.h"
 #include "tests/diagnosis/planned_circles.h"
 
-namespace abbe::diagnosis {
+namespace abbe::simulation {
 namespace repeated_run_test {
 
 using testing::ElementsAre;
@@ -53,7 +53,7 @@ TEST(RepeatedRun, KeepsWhatASimulationAsksFor) {
   EXPECT_EQ(again.HeaderText("started"), "2026-11-21T08:00:00Z");
   EXPECT_EQ(again.HeaderNumber("sweep.settle_s"), 0.2);
   EXPECT_EQ(again.HeaderText("mounting.id"), "a \"b\"");
-  EXPECT_EQ(Again(FourRows(), {"mill", 0.0, "anew"}).HeaderText("mounting.id"), "anew");
+  EXPECT_EQ(Again(FourRows(), {"mill", 0.0, "id = \"anew\"\n"}).HeaderText("mounting.id"), "anew");
 }
 
 TEST(RepeatedRun, WarmerIsEverySensor) {
@@ -63,7 +63,7 @@ TEST(RepeatedRun, WarmerIsEverySensor) {
 TEST(PlannedRun, RowsWithoutAPlaceDoNotCount) {
   auto run = CircleAt(600.0);
   run.columns[1].values[3] = std::nan("");
-  const auto planned = Planned(run, DemoSetup());
+  const auto planned = Planned(run, DemoInstruments());
   EXPECT_EQ(planned.At("flags")[2], 0.0);
   EXPECT_NE(planned.At("flags")[3], 0.0);
   EXPECT_EQ(planned.At("pivot_1_rad")[3], 0.0);
@@ -71,4 +71,4 @@ TEST(PlannedRun, RowsWithoutAPlaceDoNotCount) {
 }
 
 }  // namespace repeated_run_test
-}  // namespace abbe::diagnosis
+}  // namespace abbe::simulation

@@ -20,7 +20,7 @@
 #include "estimation/problem.h"
 #include "simulation/linkage/linkage_simulation.h"
 
-namespace abbe::fusion {
+namespace abbe::simulation {
 
 struct LinkageProblemOptions {
   bool displacement = false;
@@ -51,4 +51,4 @@ Eigen::VectorXd ParametersOf(const std::vector<estimation::ParameterBlock>& bloc
 std::vector<int> ColumnsOf(const std::vector<estimation::ParameterBlock>& blocks,
                            const std::string& mounting, const std::vector<std::string>& names);
 
-}  // namespace abbe::fusion
+}  // namespace abbe::simulation

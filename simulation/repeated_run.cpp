@@ -1,45 +1,37 @@
-#include "diagnosis/repeated_run.h"
+#include "simulation/repeated_run.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
-#include "diagnosis/planned_paths.h"
-#include "diagnosis/planned_run.h"
+#include "settings/toml_text.h"
+#include "simulation/kinds.h"
 #include "simulation/linkage/linkage_run.h"
+#include "simulation/planned_run.h"
 
-namespace abbe::diagnosis {
-namespace {
+namespace abbe::simulation {
 
 using recording::Recording;
 
-std::string MountingOf(const Recording& run) {
-  if (run.Kind() == "linkage") return run.HeaderText("mounting.base").value_or("");
+std::string MountingIdOf(const Recording& run) {
   if (auto id = run.HeaderText("mounting.id")) return *std::move(id);
-  return run.HeaderText("mounting").value_or(run.name);  // as a sweep without one counts
+  return run.HeaderText("mounting").value_or(run.name);
 }
-
-}  // namespace
 
 Recording Again(const Recording& run, const AgainAbout& about) {
   std::string more;
-  if (const auto axis = run.HeaderText("axis")) more += fmt::format("axis = {}\n", Quoted(*axis));
+  if (const auto axis = run.HeaderText("axis")) {
+    more += fmt::format("axis = {}\n", settings::Quoted(*axis));
+  }
   for (const char* key : {"sweep.window_um", "sweep.settle_s"}) {
     if (const auto value = run.HeaderNumber(key)) more += fmt::format("{} = {}\n", key, *value);
   }
-  const std::string mounting = about.mounting.empty() ? MountingOf(run) : about.mounting;
-  const bool of_base = run.Kind() == "linkage";
-  std::string table = fmt::format("{} = {}\n", of_base ? "base" : "id", Quoted(mounting));
-  if (!of_base) {
-    const simulation::SweepMounting mounted =
-        about.mounting.empty() ? simulation::MountedOf(run) : about.mounted;
-    table += fmt::format("head = {}\ntarget_shift_mm = {}\ntarget_reversed = {}\n",
-                         Quoted(mounted.head_turned ? "180deg" : "0deg"),
-                         1e3 * mounted.target_shift, mounted.target_reversed);
-  }
   Recording again = run;
-  again.header = HeaderOf({run.Kind(), about.machine, about.started, more, table});
+  again.header =
+      HeaderOf({run.Kind(), about.machine, about.started, more,
+                about.mounting.empty() ? KindOf(run).MountingTable(run) : about.mounting});
   return again;
 }
 
@@ -70,6 +62,12 @@ Recording Warmer(Recording run, double kelvin) {
   return run;
 }
 
+Recording AnHourLater(const Recording& run, AgainAbout about) {
+  constexpr double kHour = 3600.0;  // s
+  about.started += kHour;
+  return Warmer(Again(run, about), kWarmer);
+}
+
 bool Moves(const Recording& run) {
   constexpr double kMillimetre = 1e-3;
   std::size_t moved = 0;
@@ -80,9 +78,13 @@ bool Moves(const Recording& run) {
         way = std::max(way, std::abs((*column)[row] - (*column)[row - 1]));
       }
     }
-    if (way * kMillimetre > simulation::kStayWindow) ++moved;
+    if (way * kMillimetre > kStayWindow) ++moved;
   }
   return 2 * moved > run.rows();
 }
 
-}  // namespace abbe::diagnosis
+std::string ShortName(const Recording& run) {
+  return std::filesystem::path(run.name).stem().string();
+}
+
+}  // namespace abbe::simulation

@@ -1,5 +1,5 @@
 // Readings that are none, put into a table whose every other reading is known to be good.
-#include "diagnosis/data_integrity.h"
+#include "diagnosis/invalid_readings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "random/counter_random.h"
 
 namespace abbe::diagnosis {
-namespace data_integrity_test {
+namespace invalid_readings_test {
 
 using recording::Recording;
 using testing::ElementsAreArray;
@@ -52,7 +52,7 @@ std::vector<std::size_t> Flagged(const Recording& run) {
 
 TEST(DataIntegrity, FindsNothingInGoodReadings) {
   Recording run = QuarterAndBack();
-  EXPECT_TRUE(FlagBadRows(run).empty());
+  EXPECT_TRUE(FlagInvalidReadings(run).empty());
   EXPECT_TRUE(Flagged(run).empty());
 }
 
@@ -71,7 +71,7 @@ TEST(DataIntegrity, FindsReadingsThatJump) {
         run.columns[3].values[row] += size;
         size *= 1.6 * sign;
       }
-      const auto bad = FlagBadRows(run);
+      const auto bad = FlagInvalidReadings(run);
       EXPECT_THAT(Flagged(run), ElementsAreArray(rows)) << where << sign;
       ASSERT_EQ(bad.size(), 1u) << where;
       EXPECT_EQ(bad[0].cause, "outliers");
@@ -89,7 +89,7 @@ TEST(DataIntegrity, LeavesAStepAlone) {
     for (const double step : {1e-4, -3e-4}) {
       Recording run = QuarterAndBack();
       for (std::size_t row = from; row < run.rows(); ++row) run.columns[3].values[row] += step;
-      EXPECT_TRUE(FlagBadRows(run).empty()) << from << " " << step;
+      EXPECT_TRUE(FlagInvalidReadings(run).empty()) << from << " " << step;
     }
   }
 }
@@ -98,7 +98,7 @@ TEST(DataIntegrity, SaysNothingWithoutTimes) {
   Recording run = QuarterAndBack();
   run.columns[3].values[40] += 0.1;
   run.columns.erase(run.columns.begin());
-  EXPECT_TRUE(FlagBadRows(run).empty());
+  EXPECT_TRUE(FlagInvalidReadings(run).empty());
 }
 
 TEST(DataIntegrity, FindsAChannelThatRepeatsOneValue) {
@@ -106,7 +106,7 @@ TEST(DataIntegrity, FindsAChannelThatRepeatsOneValue) {
   for (std::size_t row = 31; row < 60; ++row) {
     run.columns[4].values[row] = run.columns[4].values[30];
   }
-  const auto bad = FlagBadRows(run);
+  const auto bad = FlagInvalidReadings(run);
   ASSERT_EQ(bad.size(), 1u);
   EXPECT_EQ(bad[0].cause, "stuck-channel");
   EXPECT_EQ(bad[0].object, "pivot_2");
@@ -114,5 +114,5 @@ TEST(DataIntegrity, FindsAChannelThatRepeatsOneValue) {
   EXPECT_EQ(Flagged(run).front(), 31u);  // the first of them was a reading
 }
 
-}  // namespace data_integrity_test
+}  // namespace invalid_readings_test
 }  // namespace abbe::diagnosis

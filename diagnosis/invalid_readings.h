@@ -1,6 +1,6 @@
 // Readings that are none: a channel that repeats one value, single readings that jump.
 //
-//   for (const BadData& bad : FlagBadRows(recording)) ...     // those rows count no more
+//   for (const InvalidReadings& bad : FlagInvalidReadings(recording)) ...     // those rows count no more
 //
 // Stuck: one value, to the last bit, in at least kLeastStuck rows while another channel of the
 // instrument changes in most of them. Outlier: a reading farther from its neighbours than kFar
@@ -15,19 +15,13 @@
 #include <vector>
 
 #include "recording/recording.h"
+#include "simulation/run_kind.h"
 
 namespace abbe::diagnosis {
 
 inline constexpr std::size_t kLeastStuck = 12;
 inline constexpr double kFar = 8.0;
 
-struct BadData {
-  std::string cause;   // "stuck-channel", "outliers"
-  std::string object;  // "probe_a", "pivot_1"
-  double from = 0.0, to = 0.0;
-  int count = 0;  // rows
-};
-
-std::vector<BadData> FlagBadRows(recording::Recording& recording);
+std::vector<simulation::InvalidReadings> FlagInvalidReadings(recording::Recording& recording);
 
 }  // namespace abbe::diagnosis

@@ -17,7 +17,7 @@
 #include "machine/machine.h"
 #include "recording/recording.h"
 
-namespace abbe::diagnosis {
+namespace abbe::simulation {
 
 struct PathAbout {
   std::string machine;
@@ -32,8 +32,6 @@ struct HeaderAbout {
   std::string more = {};      // further keys, a line each
   std::string mounting = {};  // keys of the table [mounting]
 };
-// As TOML writes a text of one line.
-std::string Quoted(const std::string& text);
 std::string HeaderOf(const HeaderAbout& about);
 
 struct CirclePlan {
@@ -56,4 +54,4 @@ recording::Recording LengthPath(char axis, const Eigen::Vector3d& middle,
 // Of a recording.
 double DurationOf(const recording::Recording& recording);
 
-}  // namespace abbe::diagnosis
+}  // namespace abbe::simulation

@@ -1,4 +1,4 @@
-#include "fusion/linkage_problem.h"
+#include "simulation/linkage/linkage_problem.h"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,9 @@
 #include <utility>
 
 #include "failure/failure.h"
-#include "fusion/calibration.h"
 #include "simulation/linkage/linkage_gaps.h"
 
-namespace abbe::fusion {
+namespace abbe::simulation {
 namespace {
 
 using Eigen::Index;
@@ -125,4 +124,4 @@ estimation::Problem MakeLinkageProblem(const LinkageSimulation& simulation,
   return problem;
 }
 
-}  // namespace abbe::fusion
+}  // namespace abbe::simulation

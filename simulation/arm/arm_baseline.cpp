@@ -1,4 +1,4 @@
-#include "diagnosis/arm_baseline.h"
+#include "simulation/arm/arm_baseline.h"
 
 #include <fmt/format.h>
 
@@ -6,21 +6,22 @@
 #include <cmath>
 #include <limits>
 
-#include "diagnosis/scatter.h"
 #include "failure/failure.h"
-#include "fusion/linkage_problem.h"
 #include "simulation/arm/arm_run.h"
+#include "simulation/excess_noise.h"
 #include "simulation/linkage/linkage_gaps.h"
+#include "simulation/linkage/linkage_problem.h"
 
-namespace abbe::diagnosis {
+namespace abbe::simulation {
 namespace {
 
+using LinkageRun;
 using Eigen::Index;
 using Eigen::VectorXd;
-using simulation::LinkageRun;
 
 constexpr int kRounds = 10;            // of leaving out
 constexpr double kSettled = 0.02;      // standard uncertainties, as Fit
+constexpr double kFar = 8.0;           // times the usual gap, as invalid readings
 constexpr double kMedianNorm = 1.538;  // of three normal numbers of deviation 1
 constexpr Index kShareOut = 10;        // one in so many at most
 
@@ -31,7 +32,7 @@ struct Fitted {
 };
 
 VectorXd WhiteGaps(const LinkageRun& run, const Fitted& fitted) {
-  const simulation::LinkageGaps gaps(simulation::ArmSimulation(fitted.settings), run);
+  const LinkageGaps gaps(ArmSimulation(fitted.settings), run);
   VectorXd rows(gaps.Rows());
   gaps.Evaluate(fitted.x, rows, nullptr);
   return rows;
@@ -44,9 +45,9 @@ VectorXd NormsOf(const LinkageRun& run, const ArmBaseline& baseline) {
 }
 
 estimation::Result FitOf(const LinkageRun& run, const relm::LinkageSettings& settings) {
-  return fusion::SolveLinkage(fusion::MakeLinkageProblem(simulation::ArmSimulation(settings), {run},
-                                                         {.loss = estimation::RobustLoss::None()}),
-                              1, false, kSettled);
+  return SolveLinkage(
+      MakeLinkageProblem(ArmSimulation(settings), {run}, {.loss = estimation::RobustLoss::None()}),
+      1, false, kSettled);
 }
 
 std::vector<Index> Within(const VectorXd& norms, double far) {
@@ -83,22 +84,6 @@ void RefuseOtherArm(const LinkageRun& run, const ArmBaseline& baseline) {
       run.name, 1e3 * gap, 1e3 * way));
 }
 
-// Poses that share what is left, 1 of white noise.
-double SharedBy(const VectorXd& left) {
-  constexpr double kByChance = 2.0;  // standard deviations of the correlation of white noise
-  const Index poses = left.size() / 3;
-  const auto rows = left.reshaped(3, poses);
-  const double least = kByChance / std::sqrt(static_cast<double>(left.size()));
-  double shared = 1.0;
-  for (Index lag = 1; lag < poses / 2; ++lag) {
-    const double rho = rows.leftCols(poses - lag).cwiseProduct(rows.rightCols(poses - lag)).sum() /
-                       left.squaredNorm();
-    if (rho < least) break;
-    shared += 2.0 * rho;
-  }
-  return shared;
-}
-
 ArmBaseline Fitting(const LinkageRun& run, ArmBaseline baseline) {
   auto& tolerance = baseline.lenient.tolerance;
   tolerance.eccentricity = std::max(kLenient, tolerance.eccentricity);
@@ -108,7 +93,7 @@ ArmBaseline Fitting(const LinkageRun& run, ArmBaseline baseline) {
   std::vector<Index> kept = Within(VectorXd::Zero(run.poses()), 0.0);
   for (int round = 0; round < kRounds; ++round) {
     const estimation::Result fit = FitOf(Selection(run, kept), baseline.lenient);
-    baseline.lenient_x = fusion::ParametersOf(fit.blocks, run.mounting);
+    baseline.lenient_x = ParametersOf(fit.blocks, run.mounting);
     const VectorXd norms = NormsOf(run, baseline);
     baseline.far = FarFrom(norms, kept);
     std::vector<Index> next = Within(norms, baseline.far);
@@ -117,7 +102,7 @@ ArmBaseline Fitting(const LinkageRun& run, ArmBaseline baseline) {
   }
   const LinkageRun rest = Selection(run, kept);
   const estimation::Result fit = FitOf(rest, baseline.settings);
-  baseline.x = fusion::ParametersOf(fit.blocks, run.mounting);
+  baseline.x = ParametersOf(fit.blocks, run.mounting);
   baseline.excess =
       ExcessOf(fit.sources.front(), WhiteGaps(rest, {baseline.settings, baseline.x}), 1.0);
   return baseline;
@@ -125,25 +110,8 @@ ArmBaseline Fitting(const LinkageRun& run, ArmBaseline baseline) {
 
 }  // namespace
 
-double ExcessOf(const estimation::SourceResult& run, const VectorXd& left, double used) {
-  constexpr double kFewest = 6.0;  // degrees of freedom that tell a noise
-  if (run.redundancy < kFewest) return used;
-  const double excess = used * std::sqrt(run.chi_square / run.redundancy);
-  return excess > kNoiseIsKnown ? excess * std::sqrt(SharedBy(left)) : 1.0;
-}
-
-std::vector<double> ExcessOf(const Fit& fit) {
-  std::vector<double> excess;
-  const auto& runs = fit.campaign().runs();
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    excess.push_back(runs[r].arm ? ExcessOf(fit.result().sources[r], fit.LeftOf(r), runs[r].excess)
-                                 : 1.0);
-  }
-  return excess;
-}
-
 ArmBaseline FitArm(const LinkageRun& run, const relm::LinkageSettings& placed) {
-  ArmBaseline nominal{run.mounting, placed, simulation::ArmSimulation(placed).Values(), placed, {}};
+  ArmBaseline nominal{run.mounting, placed, ArmSimulation(placed).Values(), placed, {}};
   try {
     ArmBaseline fitted = Fitting(run, nominal);
     RefuseOtherArm(run, fitted);
@@ -165,8 +133,8 @@ std::vector<Index> FarOff(const LinkageRun& run, const ArmBaseline& baseline) {
 
 Eigen::Matrix3Xd GapsOf(const LinkageRun& run, const ArmBaseline& baseline) {
   Eigen::Matrix3Xd gaps;
-  simulation::ArmSimulation(baseline.settings).Gap(run, baseline.x, gaps);
+  ArmSimulation(baseline.settings).Gap(run, baseline.x, gaps);
   return gaps;
 }
 
-}  // namespace abbe::diagnosis
+}  // namespace abbe::simulation

@@ -1,0 +1,154 @@
+#include "simulation/arm/arm_kind.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "failure/failure.h"
+#include "simulation/arm/arm_baseline.h"
+#include "simulation/arm/arm_run.h"
+#include "simulation/linkage/linkage_kind.h"
+#include "simulation/linkage/linkage_trace.h"
+
+namespace abbe::simulation {
+namespace {
+
+using Eigen::Index;
+using recording::Recording;
+
+constexpr Index kFewest = 8;       // poses
+constexpr std::size_t kNamed = 5;  // poses by their row
+
+struct ArmFacts : RunFacts {
+  explicit ArmFacts(ArmBaseline of_run) : baseline(std::move(of_run)) {}
+  ArmBaseline baseline;
+};
+
+const ArmFacts* FactsOf(const std::shared_ptr<const RunFacts>& facts) {
+  return dynamic_cast<const ArmFacts*>(facts.get());
+}
+
+// The linkage with its base where another run with this one's mounting has it, or this run itself.
+relm::LinkageSettings PlacedFor(const LinkageRun& run, const relm::LinkageSettings& settings,
+                                const FactsByRun& known) {
+  for (const auto& [name, facts] : known) {
+    const ArmFacts* arm = FactsOf(facts);
+    if (arm == nullptr || arm->baseline.mounting != run.mounting) continue;
+    return HeldAtOnePlace(arm->baseline.settings, run);
+  }
+  return HeldAtOnePlace(Placed(settings, run), run);
+}
+
+std::string NoiseNote(const LinkageRun& kept, const ArmBaseline& baseline) {
+  const double rms = GapsOf(kept, baseline).norm() / std::sqrt(static_cast<double>(kept.poses()));
+  std::string note =
+      fmt::format("{}: the arm as its geometry fits {} poses leaves {:.3g} mm rms in space",
+                  kept.name, kept.poses(), 1e3 * rms);
+  if (baseline.excess == 1.0) return note + ", as its stated noise would";
+  return note +
+         fmt::format(
+             "; as neighbours share it, that counts as {:.3g} times its stated noise until a "
+             "cause explains it",
+             baseline.excess);
+}
+
+std::string FarNote(const LinkageRun& run, const ArmBaseline& baseline, std::vector<Index> far) {
+  const Eigen::VectorXd size = GapsOf(run, baseline).colwise().norm();
+  std::sort(far.begin(), far.end(), [&](Index a, Index b) { return size[a] > size[b]; });
+  std::vector<std::string> worst;
+  for (std::size_t i = 0; i < std::min(kNamed, far.size()); ++i) {
+    worst.push_back(fmt::format(
+        "row {} by {:.3g} mm", run.rows[static_cast<std::size_t>(far[i])] + 1, 1e3 * size[far[i]]));
+  }
+  const std::string more =
+      far.size() > kNamed ? fmt::format(" and {} more", far.size() - kNamed) : "";
+  return fmt::format("{}: {} of {} poses are left out, for they are off what fits the others: {}{}",
+                     run.name, far.size(), run.poses(), fmt::join(worst, ", "), more);
+}
+
+InvalidReadings Outliers(const LinkageRun& run, const std::vector<Index>& far) {
+  return {"outliers", "arm", run.time[far.front()], run.time[far.back()],
+          static_cast<int>(far.size())};
+}
+
+LinkageRun Without(const LinkageRun& run, const std::vector<Index>& far) {
+  std::vector<Index> kept;
+  for (Index pose = 0; pose < run.poses(); ++pose) {
+    if (!std::binary_search(far.begin(), far.end(), pose)) kept.push_back(pose);
+  }
+  return Selection(run, kept);
+}
+
+class Arm : public RunKind {
+ public:
+  std::string_view name() const override { return "arm"; }
+  bool Takes(const Recording& head) const override { return IsArm(head); }
+  bool NeedsAxes() const override { return false; }
+
+  // An arm may well stand with a pivot that shows one value, and its poses are no neighbours.
+  bool RowsFollowEachOther() const override { return false; }
+
+  PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel&,
+                       const Instruments& on, const FactsByRun& known) const override {
+    const relm::LinkageSettings& settings = on.LinkageFor(recording.name);
+    LinkageRun run = AtMost(MeansOfStays(ReadLinkageRun(recording, settings)), kMostPoses);
+    const double again = settings.noise.repeatability;
+    run.reference_sd = (run.reference_sd.array().square() + again * again).sqrt();
+    const auto found = known.find(run.name);
+    const bool is_new = found == known.end();
+    if (is_new && run.poses() < kFewest) {
+      throw InputError(fmt::format("{}: has {} poses; an arm is diagnosed from {} on", run.name,
+                                   run.poses(), kFewest));
+    }
+    PreparedRuns prepared;
+    prepared.facts =
+        is_new ? std::make_shared<const ArmFacts>(FitArm(run, PlacedFor(run, settings, known)))
+               : found->second;
+    const ArmBaseline& baseline = FactsOf(prepared.facts)->baseline;
+    const std::vector<Index> far = FarOff(run, baseline);
+    const LinkageRun kept = Without(run, far);
+    if (is_new) prepared.notes.push_back(NoiseNote(kept, baseline));
+    if (is_new && !far.empty()) prepared.notes.push_back(FarNote(run, baseline, far));
+    if (!far.empty()) prepared.invalid.push_back(Outliers(run, far));
+    NoteUnknownTimes(recording, prepared.notes);
+    const LinkageSimulation arm = ArmSimulation(baseline.settings);
+    const auto simulated = [arm, kept, x = baseline.x](double excess) {
+      return SimulateArm(arm, kept, x, excess);
+    };
+    prepared.runs.push_back(
+        {simulated(baseline.excess), ArmTraceOf(recording, kept, arm), baseline.excess, simulated});
+    return prepared;
+  }
+
+  void RefuseStrangers(const std::vector<RunSource>& sources,
+                       const Instruments& on) const override {
+    if (on.linkage) RefuseOtherBalls(sources, *on.linkage);
+  }
+
+  // Its poses are measured one by one.
+  RowRule HeldOut(const Recording&) const override {
+    constexpr std::size_t kFourth = 4;
+    return [](std::size_t row) { return row % kFourth == 0; };
+  }
+
+  Recording Plan(Recording path, const Instruments&) const override {
+    throw InputError(fmt::format(
+        "{}: has no axis positions x_mm, y_mm, z_mm: the poses of an arm cannot be planned with",
+        path.name));
+  }
+
+  std::string MountingTable(const Recording& run) const override { return BaseLines(BaseOf(run)); }
+};
+
+}  // namespace
+
+const RunKind& ArmKind() {
+  static const Arm kind;
+  return kind;
+}
+
+}  // namespace abbe::simulation

@@ -1,0 +1,25 @@
+// How much larger than stated the noise of a run is, by what a fit leaves of it.
+//
+// What a model of an arm leaves beyond the stated noise is noise until a cause explains it: no such
+// model is as exact as a tracker, and against the noise of the tracker every cause would be
+// certain. Poses that follow each other share it, so its variance counts as often as they do:
+//
+//   excess^2 = chi-square / redundancy * (1 + 2 sum of rho_k),   rho_k: correlation k poses apart,
+//
+// the sum up to the first that white noise could have. Up to kNoiseIsKnown the stated noise stands.
+// Source: Sokal, Monte Carlo methods (1996), 2 (integrated autocorrelation).
+// Shapes: three rows, x, y and z, for each pose.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "estimation/result.h"
+
+namespace abbe::simulation {
+
+inline constexpr double kNoiseIsKnown = 1.05;
+
+// `left`: the residual in the order of the poses, whitened with `used` times the stated noise.
+double ExcessOf(const estimation::SourceResult& run, const Eigen::VectorXd& left, double used);
+
+}  // namespace abbe::simulation

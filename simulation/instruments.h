@@ -1,0 +1,29 @@
+// A machine and the instruments on it, as its machine file describes them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "machine/machine.h"
+#include "probes/head_settings.h"
+#include "relm/linkage_settings.h"
+
+namespace abbe::simulation {
+
+struct Instruments {
+  machine::Machine machine;
+  std::optional<probes::HeadSettings> head;
+  probes::TargetSettings target;
+  probes::ProbeNoise noise;  // of the head
+  std::optional<relm::LinkageSettings> linkage;
+  std::vector<std::string> notes = {};  // where recordings contradict the file
+
+  // A machine file may describe an arm or a shaft and no axes.
+  bool HasAxes() const;
+  // InputError naming the recording that needs the table [head] or [linkage], if it is missing.
+  const probes::HeadSettings& HeadFor(const std::string& recording) const;
+  const relm::LinkageSettings& LinkageFor(const std::string& recording) const;
+};
+
+}  // namespace abbe::simulation

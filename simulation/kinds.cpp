@@ -1,0 +1,81 @@
+#include "simulation/kinds.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "failure/failure.h"
+#include "simulation/arm/arm_kind.h"
+#include "simulation/linkage/linkage_kind.h"
+#include "simulation/points/length_kind.h"
+#include "simulation/points/plate_kind.h"
+#include "simulation/points/reference_kind.h"
+#include "simulation/shaft/shaft_kind.h"
+#include "simulation/sweep/sweep_kinds.h"
+
+namespace abbe::simulation {
+namespace {
+
+// A special case stands before the kind that would take it too: an arm is a linkage without axes,
+// a shaft may be recorded as a dwell.
+std::vector<const RunKind*>& Kinds() {
+  static std::vector<const RunKind*> kinds{
+      &SweepKind(), &ArmKind(),   &LinkageKind(), &ReferenceKind(), &LengthKind(),
+      &PlateKind(), &ShaftKind(), &DwellKind(),   &GapStepsKind(),
+  };
+  return kinds;
+}
+
+std::string Listed(std::vector<std::string> names) {
+  const std::string last = names.back();
+  names.pop_back();
+  return names.empty() ? last : fmt::format("{} and {}", fmt::join(names, ", "), last);
+}
+
+}  // namespace
+
+const std::vector<const RunKind*>& RunKinds() { return Kinds(); }
+
+void AddRunKind(const RunKind& kind) { Kinds().push_back(&kind); }
+
+const RunKind& KindOf(const recording::Recording& head) {
+  for (const RunKind* kind : Kinds()) {
+    if (kind->Takes(head)) return *kind;
+  }
+  throw InputError(
+      fmt::format("{}: kind is \"{}\"; known are {}", head.name, head.Kind(), KindNames()));
+}
+
+std::string KindNames(bool (RunKind::*wanted)() const) {
+  std::vector<std::string> names;
+  for (const RunKind* kind : Kinds()) {
+    if ((kind->*wanted)()) names.emplace_back(kind->name());
+  }
+  return Listed(names);
+}
+
+std::string KindNames() {
+  std::vector<std::string> names;
+  for (const RunKind* kind : Kinds()) names.emplace_back(kind->name());
+  return Listed(names);
+}
+
+std::vector<SimulatedRun> SimulateForMap(const RunSource& source,
+                                         const machine::VolumetricModel& model,
+                                         const Instruments& instruments) {
+  const RunKind& kind = KindOf(source.head);
+  if (kind.MakesMaps()) return kind.ForMap(source, model, instruments);
+  throw InputError(fmt::format("{}: kind is \"{}\"; an error map is made of {}", source.head.name,
+                               kind.name(), KindNames(&RunKind::MakesMaps)));
+}
+
+void RefuseStrangers(const std::vector<RunSource>& sources, const Instruments& instruments) {
+  std::map<const RunKind*, std::vector<RunSource>> by_kind;
+  for (const RunSource& source : sources) by_kind[&KindOf(source.head)].push_back(source);
+  for (const auto& [kind, of_kind] : by_kind) {
+    if (of_kind.size() > 1) kind->RefuseStrangers(of_kind, instruments);
+  }
+}
+
+}  // namespace abbe::simulation

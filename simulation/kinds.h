@@ -1,0 +1,31 @@
+// Every kind of run that abbe knows, and which one a recording is of.
+#pragma once
+
+#include <vector>
+
+#include "simulation/run_kind.h"
+
+namespace abbe::simulation {
+
+const std::vector<const RunKind*>& RunKinds();
+
+// The first kind that takes the recording. InputError where none does.
+const RunKind& KindOf(const recording::Recording& head);
+
+// Adds a kind of a program that uses the library. Not while others read the list.
+void AddRunKind(const RunKind& kind);
+
+// The names of the kinds of which `wanted` holds: "sweep, linkage and shaft".
+std::string KindNames(bool (RunKind::*wanted)() const);
+std::string KindNames();
+
+// The simulations of a recording, for an error map. InputError where its kind makes none.
+std::vector<SimulatedRun> SimulateForMap(const RunSource& source,
+                                         const machine::VolumetricModel& model,
+                                         const Instruments& instruments);
+
+// Refuses recordings of one kind that do not belong together. Kinds with one recording are not
+// read.
+void RefuseStrangers(const std::vector<RunSource>& sources, const Instruments& instruments);
+
+}  // namespace abbe::simulation

@@ -1,0 +1,234 @@
+#include "simulation/linkage/linkage_kind.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "recording/good_rows.h"
+#include "settings/toml_text.h"
+#include "settings/unit.h"
+#include "simulation/linkage/linkage_correction.h"
+#include "simulation/linkage/linkage_on_machine.h"
+#include "simulation/linkage/linkage_parts.h"
+#include "simulation/linkage/linkage_run.h"
+#include "simulation/linkage/linkage_trace.h"
+#include "simulation/linkage/one_ball.h"
+#include "simulation/planned_run.h"
+#include "simulation/points/reference_simulation.h"
+
+namespace abbe::simulation {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+using recording::Recording;
+
+constexpr const char* kAnew = "planned anew";  // a base
+
+LinkageSimulation Nominal(const Instruments& on, const relm::LinkageSettings& settings) {
+  return {on.machine.chain, settings,
+          relm::MakeLinkageModel(settings, relm::ErrorModel::kComplete)};
+}
+
+bool HasReference(const Recording& head) {
+  return head.Find("ref_x_mm") || head.Find("ref_y_mm") || head.Find("ref_z_mm");
+}
+
+Eigen::Matrix3Xd PositionsOf(const Recording& path, const std::vector<std::size_t>& rows) {
+  Eigen::Matrix3Xd positions(3, static_cast<Index>(rows.size()));
+  for (Index axis = 0; axis < 3; ++axis) {
+    const auto values = recording::ValuesOf(path, fmt::format("{}_mm", "xyz"[axis]), rows);
+    positions.row(axis) = Eigen::Map<const Eigen::RowVectorXd>(values.data(), positions.cols());
+  }
+  return positions;
+}
+
+// The angles that close the nominal linkage.
+void SetAngles(const Instruments& on, Recording& path) {
+  const relm::LinkageSettings& linkage = on.LinkageFor(path.name);
+  const LinkageSimulation nominal = Nominal(on, linkage);
+  const std::vector<std::size_t> rows = recording::GoodRows(path);
+  LinkageRun run = RunAt(PositionsOf(path, rows), linkage);
+  run.name = path.name;
+  const Eigen::MatrixXd angles = nominal.Readings(run, nominal.Values());
+  for (Index pivot = 0; pivot < angles.rows(); ++pivot) {
+    auto& column = ColumnIn(path, fmt::format("pivot_{}_rad", pivot + 1));
+    double before = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      // A turn on, not a jump by a turn, where an angle passes pi.
+      const double angle = angles(pivot, static_cast<Index>(i));
+      before += std::remainder(angle - before, 2.0 * std::numbers::pi);
+      column[rows[i]] =
+          before + AlternatingSign(i, static_cast<std::size_t>(pivot)) * linkage.noise.encoder;
+    }
+  }
+}
+
+// The runs that could follow those of a linkage.
+class AfterLinkage {
+ public:
+  AfterLinkage(const std::vector<const Recording*>& recorded, const Instruments& on,
+               const PathAbout& about)
+      : on_(on), about_(about) {
+    for (const Recording* each : recorded) {
+      const Recording*& first = Moves(*each) ? moving_ : standing_;
+      if (first == nullptr) first = each;
+    }
+  }
+
+  std::vector<NextRun> Make() {
+    if (moving_ != nullptr) AddOtherFeed(*moving_);
+    for (const Recording* run : {moving_, standing_}) {
+      if (run != nullptr) AddAgain(*run);
+    }
+    AddCircles();
+    return std::move(runs_);
+  }
+
+ private:
+  AgainAbout AsItWas() const { return {about_.machine, about_.started}; }
+
+  void AddOtherFeed(const Recording& run) {
+    constexpr double kFast = 300.0;     // mm/min
+    constexpr double kOtherFeed = 5.0;  // times
+    const auto column = run.Find("feed_mm_min");
+    const double feed = column ? *std::max_element(column->begin(), column->end()) : 0.0;
+    const double times = feed == 0.0 || feed >= kFast ? 1.0 / kOtherFeed : kOtherFeed;
+    runs_.push_back({feed == 0.0 ? fmt::format("repeat {} at a fifth of its feed", ShortName(run))
+                                 : fmt::format("repeat {} at {:.0f} mm/min instead of {:.0f}",
+                                               ShortName(run), times * feed, feed),
+                     AtFeed(Again(run, AsItWas()), times)});
+  }
+
+  void AddAgain(const Recording& run) {
+    const std::string name = ShortName(run);
+    runs_.push_back(
+        {fmt::format("repeat {} in the reverse order", name), TurnedRound(Again(run, AsItWas()))});
+    runs_.push_back({fmt::format("take the linkage's base off, set it up anew and repeat {}", name),
+                     Again(run, {about_.machine, about_.started, BaseLines(kAnew)})});
+    runs_.push_back(
+        {fmt::format("repeat {} an hour later, the machine {:.0f} K warmer", name, kWarmer),
+         AnHourLater(run, AsItWas())});
+    if (!on_.linkage->pivots) return;
+    auto other = std::make_shared<Instruments>(on_);
+    relm::Elbow& elbow = other->linkage->branch.elbow;
+    elbow = elbow == relm::Elbow::kUp ? relm::Elbow::kDown : relm::Elbow::kUp;
+    runs_.push_back({fmt::format("repeat {} with the linkage's elbow {}", name,
+                                 elbow == relm::Elbow::kUp ? "up" : "down"),
+                     Again(run, AsItWas()), std::move(other)});
+  }
+
+  void AddCircles() {
+    constexpr double kFeed = 600.0;  // mm/min
+    double smallest = on_.machine.travels[0].last - on_.machine.travels[0].first;
+    Vector3d middle;
+    for (std::size_t axis = 0; axis < on_.machine.travels.size(); ++axis) {
+      const machine::Travel& travel = on_.machine.travels[axis];
+      smallest = std::min(smallest, travel.last - travel.first);
+      middle[static_cast<Index>(axis)] = std::midpoint(travel.first, travel.last);
+    }
+    const auto add = [&](const char* plane, double radius) {
+      runs_.push_back(
+          {fmt::format("record a circle in {} of radius {:.3g} mm at {:.0f} mm/min, in both senses",
+                       plane, radius / settings::kMillimetre, kFeed),
+           CirclePath({plane, middle, radius, kFeed * settings::kMillimetre / 60.0}, about_)});
+    };
+    for (const char* plane : {"XY", "YZ", "ZX"}) add(plane, smallest / 3.0);
+    add("XY", smallest / 6.0);
+  }
+
+  const Instruments& on_;
+  const PathAbout& about_;
+  const Recording *moving_ = nullptr, *standing_ = nullptr;  // the first of each
+  std::vector<NextRun> runs_;
+};
+
+class Linkage : public RunKind {
+ public:
+  std::string_view name() const override { return "linkage"; }
+  bool Takes(const Recording& head) const override { return head.Kind() == name(); }
+
+  bool MakesMaps() const override { return true; }
+  std::vector<SimulatedRun> ForMap(const RunSource& source, const machine::VolumetricModel& model,
+                                   const Instruments& on) const override {
+    const relm::LinkageSettings& settings = on.LinkageFor(source.head.name);
+    const auto& reference = on.machine.reference;
+    std::vector<SimulatedRun> runs{
+        SimulateLinkage(model, reference, Nominal(on, settings), PartsOf(source.blocks, settings))};
+    if (HasReference(source.head)) {
+      runs.push_back(SimulateReference(model, reference, settings.noise.reference, source.whole()));
+    }
+    return runs;
+  }
+
+  PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel& model,
+                       const Instruments& on, const FactsByRun&) const override {
+    const relm::LinkageSettings& settings = on.LinkageFor(recording.name);
+    const LinkageSimulation nominal = Nominal(on, settings);
+    const LinkageRun run = AtMost(MeansOfStays(ReadLinkageRun(recording, settings)), kMostPoses);
+    return {{{SimulateLinkage(model, on.machine.reference, nominal, run),
+              TraceOf(recording, run, nominal)}}};
+  }
+
+  void RefuseStrangers(const std::vector<RunSource>& sources,
+                       const Instruments& on) const override {
+    if (on.linkage) RefuseOtherBalls(sources, *on.linkage);
+  }
+
+  Correction Correct(const Recording& recording, const std::vector<ModelledCause>& causes,
+                     const Origin& origin, const Instruments& on) const override {
+    return CorrectLinkage(recording, causes, origin, on);
+  }
+
+  // A part of a run would not know which way its axes last turned.
+  std::optional<std::string> HeldOutGroup(const Recording& recording) const override {
+    return BaseOf(recording);
+  }
+  RowRule HeldOut(const Recording& recording) const override {
+    RowRule passes = EverySecondPass(recording);
+    return passes ? passes : EverySecondBlock(recording);
+  }
+
+  Recording Plan(Recording path, const Instruments& on) const override {
+    FlagPlaces(path);
+    SetAngles(on, path);
+    return path;
+  }
+
+  std::string MountingTable(const Recording& run) const override { return BaseLines(BaseOf(run)); }
+
+  std::vector<NextRun> NextRuns(const std::vector<const Recording*>& recorded,
+                                const Instruments& on, const PathAbout& about) const override {
+    if (!on.linkage) return {};
+    return AfterLinkage(recorded, on, about).Make();
+  }
+};
+
+}  // namespace
+
+void RefuseOtherBalls(const std::vector<RunSource>& sources, const relm::LinkageSettings& linkage) {
+  constexpr Index kMost = 4096, kSample = 1024;  // poses of a run
+  OneBall ball;
+  for (const RunSource& source : sources) {
+    const LinkageParts parts = PartsOf(source.blocks, linkage);
+    ball.Add(source.head, SampleOf(parts, kMost, kSample).run);
+  }
+}
+
+std::string BaseLines(const std::string& base) {
+  return fmt::format("base = {}\n", settings::Quoted(base));
+}
+
+std::string BaseOf(const Recording& run) { return run.HeaderText("mounting.base").value_or(""); }
+
+const RunKind& LinkageKind() {
+  static const Linkage kind;
+  return kind;
+}
+
+}  // namespace abbe::simulation

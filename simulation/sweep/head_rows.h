@@ -1,0 +1,16 @@
+// What the head of probes read in the rows of a run: the part of a trace that sweeps have.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace abbe::simulation {
+
+struct HeadRows {
+  Eigen::Matrix<double, 5, Eigen::Dynamic> gap;  // m, as read
+  Eigen::Matrix<double, 5, 1> zero;              // m: the gap that counts as no motion
+  Eigen::MatrixXd tilt;   // rad: of the face against each probe, as simulated; 5 x rows or empty
+  bool turned = false;    // the head, by half a turn
+  Eigen::MatrixXd spots;  // where the probes look at the target: target_spots.h; or empty
+};
+
+}  // namespace abbe::simulation

@@ -1,0 +1,244 @@
+#include "simulation/sweep/sweep_kinds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "recording/good_rows.h"
+#include "settings/toml_text.h"
+#include "settings/unit.h"
+#include "simulation/planned_run.h"
+#include "simulation/sweep/sweep_correction.h"
+#include "simulation/sweep/sweep_run.h"
+#include "simulation/sweep/sweep_simulation.h"
+#include "simulation/sweep/sweep_trace.h"
+#include "simulation/sweep/target_spots.h"
+
+namespace abbe::simulation {
+namespace {
+
+using Eigen::Vector3d;
+using recording::Recording;
+
+constexpr const char* kAnew = "planned anew";  // a mounting
+
+// The slope of a Gaussian process: its deviation over its length (fusion/machine_prior.h).
+Eigen::Matrix<double, 6, 3> SlopesOf(const machine::Population& population) {
+  Eigen::Matrix<double, 6, 3> slopes;
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    for (int motion = 0; motion < machine::kMotions; ++motion) {
+      slopes(motion, axis) =
+          machine::PopulationDeviation(population, axis, motion) / population.smoothness;
+    }
+    slopes(axis, axis) = std::hypot(slopes(axis, axis), population.scale);
+  }
+  return slopes;
+}
+
+std::string MountingLines(const std::string& id, const SweepMounting& mounted) {
+  return fmt::format("id = {}\nhead = {}\ntarget_shift_mm = {}\ntarget_reversed = {}\n",
+                     settings::Quoted(id),
+                     settings::Quoted(mounted.head_turned ? "180deg" : "0deg"),
+                     mounted.target_shift / settings::kMillimetre, mounted.target_reversed);
+}
+
+// The common part of the kinds.
+class HeadKind : public RunKind {
+ public:
+  bool Takes(const Recording& head) const override { return head.Kind() == name(); }
+
+  PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel& model,
+                       const Instruments& on, const FactsByRun&) const override {
+    const probes::HeadSettings& head = on.HeadFor(recording.name);
+    const SweepRun run = Read(recording, on);
+    PreparedRun prepared{SimulateSweep(model, on.machine.reference, {head, on.target}, run),
+                         TraceOf(recording, run)};
+    prepared.trace.head->spots = SpotsOnTarget(on.machine.chain, head, run);
+    return {{std::move(prepared)}};
+  }
+
+  Recording Plan(Recording path, const Instruments& on) const override {
+    FlagPlaces(path);
+    const probes::HeadSettings& head = on.HeadFor(path.name);
+    for (std::size_t probe = 0; probe < probes::kProbes; ++probe) {
+      const double middle = 0.5 * head.probes[probe].range;
+      auto& gap = ColumnIn(path, fmt::format("probe_{:c}_um", 'a' + probe));
+      for (std::size_t row = 0; row < gap.size(); ++row) {
+        gap[row] = (middle + AlternatingSign(row, probe) * on.noise.probe) / settings::kMicrometre;
+      }
+    }
+    return path;
+  }
+
+  std::string MountingTable(const Recording& run) const override {
+    return MountingLines(MountingIdOf(run), MountedOf(run));
+  }
+
+ protected:
+  // On a machine with a head.
+  virtual SweepRun Read(const Recording& recording, const Instruments& on) const = 0;
+};
+
+// The runs that could follow the first sweep of an axis.
+class AfterSweep {
+ public:
+  AfterSweep(char axis, const Recording& sweep, const Instruments& on, const PathAbout& about)
+      : axis_(axis), sweep_(sweep), on_(on), about_(about), name_(ShortName(sweep)) {}
+
+  void Add(std::vector<NextRun>& runs, bool is_first) const {
+    const double tilt = std::min(500e-6, 0.25 * on_.head->probes[0].range / Length());
+    runs.push_back({fmt::format("mount the target anew, tilted by {:.0f} urad, and repeat {}",
+                                tilt / settings::kMicro, name_),
+                    Again({}),
+                    {},
+                    [tilt](SimulatedRun& run) { TiltTarget(tilt, run); }});
+    constexpr double kShift = 10e-3;  // m
+    runs.push_back({fmt::format("shift the target by {:.0f} mm along the axis and repeat {}",
+                                kShift / settings::kMillimetre, name_),
+                    Again({.target_shift = kShift})});
+    runs.push_back({fmt::format("turn the target round by half a turn and repeat {}", name_),
+                    Again({.target_reversed = true})});
+    runs.push_back(
+        {fmt::format("turn the head by half a turn about its normal and repeat {}", name_),
+         Again({.head_turned = true})});
+    const AgainAbout as_it_was{about_.machine, about_.started};
+    runs.push_back({fmt::format("repeat {} in the reverse order, from the other end", name_),
+                    TurnedRound(simulation::Again(sweep_, as_it_was))});
+    runs.push_back(
+        {fmt::format("repeat {} an hour later, the machine {:.0f} K warmer", name_, kWarmer),
+         AnHourLater(sweep_, as_it_was)});
+    AddBeside(runs, is_first);
+  }
+
+ private:
+  static void TiltTarget(double tilt, SimulatedRun& run) {
+    for (auto& block : run.blocks) {
+      if (!block.name.starts_with("target_tilt")) continue;
+      for (auto& entry : block.entries) entry.value = tilt;
+    }
+  }
+
+  Recording Again(const SweepMounting& mounted) const {
+    return simulation::Again(sweep_,
+                             {about_.machine, about_.started, MountingLines(kAnew, mounted)});
+  }
+
+  const machine::Travel& TravelOf(char axis) const {
+    return on_.machine.travels[static_cast<std::size_t>(axis - 'X')];
+  }
+  double Length() const { return TravelOf(axis_).last - TravelOf(axis_).first; }
+
+  // With the head where the sweep has it.
+  void AddBeside(std::vector<NextRun>& runs, bool is_first) const {
+    const auto rows = recording::GoodRows(sweep_);
+    Vector3d first, last;  // of the sweep; its rows may leave the travel by their window
+    for (const char each : {'X', 'Y', 'Z'}) {
+      const int k = each - 'X';
+      const auto position = recording::ValuesOf(sweep_, fmt::format("{}_mm", "xyz"[k]), rows);
+      const auto [least, most] = std::minmax_element(position.begin(), position.end());
+      const auto& travel = TravelOf(each);
+      first[k] = std::clamp(each == axis_ ? *least : position.front(), travel.first, travel.last);
+      last[k] = std::clamp(*most, travel.first, travel.last);
+    }
+    const int swept = axis_ - 'X';
+    runs.push_back(
+        {fmt::format("record gap steps beside {}: at three stations of {} the other axes step by "
+                     "45 um to and fro",
+                     name_, axis_),
+         GapStepPath(axis_, first,
+                     {first[swept], std::midpoint(first[swept], last[swept]), last[swept]},
+                     about_)});
+    if (!is_first) return;
+    runs.push_back({"hold still for some seconds where the sweep begins, and record the probes",
+                    StillPath(axis_, first, about_)});
+  }
+
+  char axis_;
+  const Recording& sweep_;
+  const Instruments& on_;
+  const PathAbout& about_;
+  std::string name_;
+};
+
+class Sweep : public HeadKind {
+ public:
+  std::string_view name() const override { return "sweep"; }
+
+  bool MakesMaps() const override { return true; }
+  std::vector<SimulatedRun> ForMap(const RunSource& source, const machine::VolumetricModel& model,
+                                   const Instruments& on) const override {
+    const probes::HeadSettings& head = on.HeadFor(source.head.name);
+    return {SimulateSweep(model, on.machine.reference, {head, on.target},
+                          ReadSweepRun(source.head, source.blocks, head, on.noise))};
+  }
+
+  // The means of its stations have their scatter from the sweep itself.
+  bool ShowsNoiseAtRest() const override { return false; }
+
+  Correction Correct(const Recording& recording, const std::vector<ModelledCause>& causes,
+                     const Origin& origin, const Instruments& on) const override {
+    return CorrectSweep(recording, causes, origin, on);
+  }
+
+  RowRule HeldOut(const Recording& recording) const override { return EverySecondPass(recording); }
+
+  // After the first sweep of each axis.
+  std::vector<NextRun> NextRuns(const std::vector<const Recording*>& recorded,
+                                const Instruments& on, const PathAbout& about) const override {
+    std::map<char, const Recording*> sweeps;
+    for (const Recording* each : recorded) {
+      sweeps.emplace(each->HeaderText("axis").value_or("X")[0], each);
+    }
+    std::vector<NextRun> runs;
+    for (const auto& [axis, sweep] : sweeps) {
+      AfterSweep(axis, *sweep, on, about).Add(runs, axis == sweeps.begin()->first);
+    }
+    return runs;
+  }
+
+ protected:
+  SweepRun Read(const Recording& recording, const Instruments& on) const override {
+    return ReadSweepDwells(recording, *on.head, on.noise);
+  }
+};
+
+class Dwell : public HeadKind {
+ public:
+  std::string_view name() const override { return "dwell"; }
+
+ protected:
+  SweepRun Read(const Recording& recording, const Instruments& on) const override {
+    return ReadStillReadings(recording, on.noise);
+  }
+};
+
+class GapSteps : public HeadKind {
+ public:
+  std::string_view name() const override { return "gap-steps"; }
+
+ protected:
+  SweepRun Read(const Recording& recording, const Instruments& on) const override {
+    return ReadGapSteps(recording, on.noise, SlopesOf(on.machine.population));
+  }
+};
+
+}  // namespace
+
+const RunKind& SweepKind() {
+  static const Sweep kind;
+  return kind;
+}
+
+const RunKind& DwellKind() {
+  static const Dwell kind;
+  return kind;
+}
+
+const RunKind& GapStepsKind() {
+  static const GapSteps kind;
+  return kind;
+}
+
+}  // namespace abbe::simulation
