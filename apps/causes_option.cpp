@@ -47,8 +47,8 @@ nlohmann::ordered_json ChangeJson(const Change& change) {
 // What a correction of recordings can do something about: parameters of the head cannot be taken
 // out of gaps, and those of the machine stay in its map.
 bool Takes(const ModelledCause& cause) {
-  return cause.cause->columns || cause.object.starts_with("pivot_") ||
-         cause.object.starts_with("link_");
+  return cause.cause->columns || cause.object.kind() == simulation::Object::Kind::kPivot ||
+         cause.object.kind() == simulation::Object::Kind::kLink;
 }
 
 }  // namespace

@@ -58,9 +58,9 @@ std::optional<HeldOutGain::Without> WorthOf(std::size_t finding, const Diagnosis
 
 ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const HeldOutGain& gain) {
   const Finding& finding = diagnosis.findings[which];
-  const auto [object, sensor] = simulation::Split(finding.score.candidate.object);
+  const simulation::Object& object = finding.score.candidate.object;
   ordered_json json{{"cause", finding.score.candidate.cause->id},
-                    {"object", object},
+                    {"object", object.part()},
                     {"probability", finding.probability},
                     {"log_evidence", finding.score.log_evidence}};
   for (const Told& each : ParametersOf(finding.score)) {
@@ -97,7 +97,9 @@ ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const He
         {"before", listed(curve.before, curve.unit.si)},
         {"after", listed(curve.after, curve.unit.si)}};
   }
-  if (!sensor.empty()) json["parameters"].push_back({{"name", "sensor"}, {"value", sensor}});
+  if (const std::string sensor = object.sensor(); !sensor.empty()) {
+    json["parameters"].push_back({{"name", "sensor"}, {"value", sensor}});
+  }
   return json;
 }
 
@@ -167,8 +169,7 @@ std::string EvidenceText(const Diagnosis& diagnosis) {
 }  // namespace
 
 std::string NameOf(const Candidate& candidate) {
-  const auto [object, sensor] = simulation::Split(candidate.object);
-  return candidate.cause->id + ":" + object + (sensor.empty() ? "" : " (" + sensor + ")");
+  return candidate.cause->id + ":" + simulation::Title(candidate.object);
 }
 
 ordered_json KeyJson(const std::string& name) {
@@ -227,7 +228,7 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const HeldOutGain& gain) 
   }
   for (const Score& score : diagnosis.evidence) {
     json["evidence"].push_back({{"cause", score.candidate.cause->id},
-                                {"object", score.candidate.object},
+                                {"object", score.candidate.object.name()},
                                 {"log_evidence", score.log_evidence},
                                 {"visible_sd", score.visible}});
   }

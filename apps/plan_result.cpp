@@ -89,7 +89,7 @@ ordered_json PlanJson(const Plan& plan) {
                     {"confused", ordered_json::array()}};
   for (const PlannedCause& planned : plan.causes) {
     ordered_json cause{{"cause", planned.candidate.cause->id},
-                       {"object", planned.candidate.object},
+                       {"object", planned.candidate.object.name()},
                        {"visible_sd", planned.visible},
                        {"seen", planned.seen()},
                        {"sizes", ordered_json::array()}};

@@ -13,43 +13,43 @@ namespace abbe::diagnosis {
 namespace {
 
 // A length in the motion of an axis.
-bool ScalesWith(const simulation::Cause& cause, const std::string& object) {
+bool ScalesWith(const simulation::Cause& cause, const simulation::Object& object) {
   return cause.SeatAt(object) != simulation::Seat::kInstrument &&
          std::any_of(cause.keys.begin(), cause.keys.end(),
                      [](const auto& key) { return key.name.ends_with("_um"); });
 }
 
-// The letters of the axes in the name of an object; empty for one that is none.
-std::string_view AxesIn(const std::string& object) {
-  const std::size_t end = object.find_first_not_of("XYZ");
-  return std::string_view(object).substr(0, end == std::string::npos ? object.size() : end);
+// 0, 1, 2, of an object of axes; empty for any other.
+std::vector<int> AxesOfObject(const simulation::Object& object) {
+  if (!object.IsOfAxes()) return {};
+  if (object.kind() == simulation::Object::Kind::kAxis) return {object.first()};
+  return {object.first(), object.second()};
 }
 
 // An object with axes has only such as the machine has.
-bool IsOnMachine(const simulation::Scene& scene, const std::string& object) {
-  return std::ranges::all_of(
-      AxesIn(object), [&](char axis) { return scene.travel[simulation::AxisOf(axis)] > 0.0; });
+bool IsOnMachine(const simulation::Scene& scene, const simulation::Object& object) {
+  return std::ranges::all_of(AxesOfObject(object),
+                             [&](int axis) { return scene.travel[axis] > 0.0; });
 }
 
 // Between all rows of all runs. Beyond the jitter of a drive that stands.
-bool Moves(const simulation::Scene& scene, char axis) {
+bool Moves(const simulation::Scene& scene, int axis) {
   constexpr double kJitter = 1e-3;  // of the travel
-  const int row = simulation::AxisOf(axis);
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const simulation::Trace* trace : scene.traces) {
     if (trace->axes.cols() == 0) continue;
-    least = std::min(least, trace->axes.row(row).minCoeff());
-    most = std::max(most, trace->axes.row(row).maxCoeff());
+    least = std::min(least, trace->axes.row(axis).minCoeff());
+    most = std::max(most, trace->axes.row(axis).maxCoeff());
   }
-  return most - least > kJitter * scene.travel[row];
+  return most - least > kJitter * scene.travel[axis];
 }
 
 }  // namespace
 
-bool IsStandingPair(const simulation::Scene& scene, const std::string& object) {
-  const std::string_view axes = AxesIn(object);
+bool IsStandingPair(const simulation::Scene& scene, const simulation::Object& object) {
+  const std::vector<int> axes = AxesOfObject(object);
   return axes.size() > 1 &&
-         !std::ranges::all_of(axes, [&](char axis) { return Moves(scene, axis); });
+         !std::ranges::all_of(axes, [&](int axis) { return Moves(scene, axis); });
 }
 
 double CoarsenessOf(const machine::Population& population) {
@@ -62,7 +62,7 @@ std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coar
   for (const simulation::Cause& cause : simulation::Causes()) {
     const std::vector<Eigen::VectorXd> shapes =
         cause.shapes ? cause.shapes(scene) : std::vector<Eigen::VectorXd>{Eigen::VectorXd()};
-    for (const std::string& object : cause.objects(scene)) {
+    for (const simulation::Object& object : cause.objects(scene)) {
       if (!IsOnMachine(scene, object) || IsStandingPair(scene, object)) continue;
       const double own = ScalesWith(cause, object) ? coarseness : 1.0;
       for (const Eigen::VectorXd& shape : shapes) {
@@ -76,7 +76,7 @@ std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coar
 std::vector<std::string> StandingPairs(const simulation::Scene& scene) {
   std::vector<std::string> names;
   for (const simulation::Cause& cause : simulation::Causes()) {
-    for (const std::string& object : cause.objects(scene)) {
+    for (const simulation::Object& object : cause.objects(scene)) {
       if (!IsOnMachine(scene, object) || !IsStandingPair(scene, object)) continue;
       names.push_back(Candidate{&cause, object, {}}.Name());
     }

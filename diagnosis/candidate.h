@@ -12,13 +12,13 @@ namespace abbe::diagnosis {
 
 struct Candidate {
   const simulation::Cause* cause;
-  std::string object;
+  simulation::Object object;
   Eigen::VectorXd shape;  // empty for a cause without
   // Around which its shape is varied; empty: it is kept.
   Eigen::VectorXd coefficients = {};
   double coarseness = 1.0;  // times the plausible sizes of the cause
 
-  std::string Name() const { return cause->id + ":" + object; }
+  std::string Name() const { return cause->id + ":" + object.name(); }
   // Standard deviation of each coefficient, before any data.
   Eigen::VectorXd Plausible() const {
     return (cause->drawn ? shape[0] : coarseness) * cause->plausible;

@@ -35,7 +35,10 @@ double LogPrior(std::size_t names) { return std::log(kPresent / static_cast<doub
 
 // Whether a swap or a wrong sign of channels could be taken for it.
 bool InReadings(const Candidate& candidate) {
-  return candidate.object.starts_with("probe_") || candidate.object.starts_with("target_");
+  using Kind = simulation::Object::Kind;
+  const simulation::Object& object = candidate.object;
+  return object.kind() == Kind::kProbe || object.kind() == Kind::kProbePair ||
+         object == "target_top" || object == "target_side";
 }
 
 class Search {

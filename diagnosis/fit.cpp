@@ -279,7 +279,7 @@ Score Fit::ScoreOf(std::size_t taken_in) const {
     score.coefficients = result_.Block(BlockOf(cause)).Values().head(cause.cause->coefficients());
     score.covariance = result_.Covariance(BlockOf(cause), BlockOf(cause));
     if (cause.HasFreeShape()) FreeShape(score.covariance);
-    const std::string zero = "encoder_offset." + cause.object;
+    const std::string zero = "encoder_offset." + cause.object.name();
     if (cause.cause->graduated && !ColumnsNamed(zero).empty()) {
       const Eigen::Vector2d turned(score.coefficients[1], -score.coefficients[0]);
       score.covariance.topLeftCorner<2, 2>() +=

@@ -11,8 +11,7 @@
 
 namespace abbe::diagnosis {
 
-// `object` as causes name it: "X", "XY", "X temp_table_c", "probe_a".
-bool IsStandingPair(const simulation::Scene& scene, const std::string& object);
+bool IsStandingPair(const simulation::Scene& scene, const simulation::Object& object);
 
 // Names of causes at pairs of axes that the machine has: "servo-lag-mismatch:XZ".
 std::vector<std::string> StandingPairs(const simulation::Scene& scene);

@@ -49,23 +49,19 @@ struct Channel {
 
 std::vector<Channel> ChannelsOf(const Scene& scene) {
   std::vector<Channel> channels;
-  for (const std::string& probe : simulation::ProbesOf(scene)) {
-    channels.push_back(
-        {probe, simulation::kReadingStage + simulation::ProbeOf(probe), kMicrometres, kProbes});
-  }
-  for (const std::string& pivot : simulation::PivotsOf(scene)) {
-    channels.push_back(
-        {pivot, simulation::kEncoderStage + simulation::PivotOf(pivot), kMicroradians, kLinkage});
-  }
+  const auto add = [&](const std::vector<simulation::Object>& objects, auto stage_of,
+                       const auto& unit, unsigned instruments) {
+    for (const simulation::Object& each : objects) {
+      channels.push_back({each.name(), stage_of(each.first()), unit, instruments});
+    }
+  };
+  const auto reading = [](int index) { return simulation::kReadingStage + index; };
+  const auto encoder = [](int index) { return simulation::kEncoderStage + index; };
+  add(simulation::ProbesOf(scene), reading, kMicrometres, kProbes);
+  add(simulation::PivotsOf(scene), encoder, kMicroradians, kLinkage);
   if (scene.travel.isZero(0.0)) return channels;
-  for (const std::string& axis : simulation::AxesOf(scene)) {
-    channels.push_back({axis, simulation::Positioning(simulation::AxisOf(axis[0])), kMicrometres,
-                        kProbes | kLinkage});
-  }
-  for (const std::string& sensor : simulation::RimSensorsOf(scene)) {
-    channels.push_back(
-        {sensor, simulation::kReadingStage + simulation::RimSensorOf(sensor), kMicrometres, kRim});
-  }
+  add(simulation::AxesOf(scene), simulation::Positioning, kMicrometres, kProbes | kLinkage);
+  add(simulation::RimSensorsOf(scene), reading, kMicrometres, kRim);
   return channels;
 }
 

@@ -19,9 +19,10 @@ RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
     const double sign = variable[1] == '+' ? 1.0 : -1.0;
     return trace.axes.row(variable[0] - 'x') + sign * trace.axes.row(variable[2] - 'x');
   }
-  if (variable.starts_with("pivot_")) {
+  const simulation::Object object(variable);
+  if (object.kind() == simulation::Object::Kind::kPivot) {
     if (trace.pivots() == 0) return {};
-    return trace.linkage->angles.row(simulation::PivotOf(variable));
+    return trace.linkage->angles.row(object.first());
   }
   const auto sensor = std::find(trace.sensors.begin(), trace.sensors.end(), variable);
   if (sensor == trace.sensors.end()) return {};
@@ -30,7 +31,7 @@ RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
 
 std::vector<std::string> VariablesOf(const Scene& scene) {
   std::vector<std::string> variables{"time", "x", "y", "z", "feed"};
-  for (const std::string& pivot : simulation::PivotsOf(scene)) variables.push_back(pivot);
+  for (const auto& pivot : simulation::PivotsOf(scene)) variables.push_back(pivot.name());
   for (const std::string& sensor : scene.Sensors()) variables.push_back(sensor);
   return variables;
 }
@@ -38,8 +39,8 @@ std::vector<std::string> VariablesOf(const Scene& scene) {
 std::vector<std::string> PeriodicVariablesOf(const Scene& scene) {
   std::vector<std::string> variables{"time", "x",   "y",   "z",   "x+y",
                                      "x-y",  "x+z", "x-z", "y+z", "y-z"};
-  for (const std::string& shaft : simulation::ShaftOf(scene)) variables.push_back(shaft);
-  for (const std::string& pivot : simulation::PivotsOf(scene)) variables.push_back(pivot);
+  for (const auto& shaft : simulation::ShaftOf(scene)) variables.push_back(shaft.name());
+  for (const auto& pivot : simulation::PivotsOf(scene)) variables.push_back(pivot.name());
   return variables;
 }
 

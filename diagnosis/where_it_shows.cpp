@@ -43,19 +43,18 @@ std::map<Index, RowVectorXd> EffectOf(const Score& score, const Trace& trace) {
 }
 
 // Which way the object moves: +1, -1, 0.
-RowVectorXd HeadingOf(const std::string& object, const Trace& trace) {
-  if (object.starts_with("pivot_") && trace.linkage) {
-    return trace.linkage->turning.row(simulation::PivotOf(object));
+RowVectorXd HeadingOf(const simulation::Object& object, const Trace& trace) {
+  if (object.kind() == simulation::Object::Kind::kPivot && trace.linkage) {
+    return trace.linkage->turning.row(object.first());
   }
-  const bool of_axes = object.find_first_not_of("XYZ") != 0;
-  if (of_axes) return trace.heading.row(simulation::AxisOf(object[0]));
+  if (object.IsOfAxes()) return trace.heading.row(object.first());
   return RowVectorXd::Zero(trace.rows());
 }
 
 // The one that moves: "x" of the axis X, "pivot_2".
-std::string OwnVariable(const std::string& object) {
-  if (object.starts_with("pivot_")) return object;
-  return std::string(1, static_cast<char>(std::tolower(object[0])));
+std::string OwnVariable(const simulation::Object& object) {
+  if (object.kind() == simulation::Object::Kind::kPivot) return object.name();
+  return std::string(1, static_cast<char>(std::tolower(object.name()[0])));
 }
 
 struct Rows {

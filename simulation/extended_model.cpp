@@ -26,8 +26,8 @@ using settings::Table;
 constexpr std::int64_t kFormat = 1;
 
 // All objects of a machine that has this sensor.
-std::vector<std::string> ObjectsOf(const Cause& cause, const CauseObjects& machine,
-                                   const std::string& sensor) {
+std::vector<Object> ObjectsOf(const Cause& cause, const CauseObjects& machine,
+                              const std::string& sensor) {
   Trace head, linkage, shaft;
   if (machine.head) head.head.emplace();
   linkage.linkage.emplace().angles.resize(machine.pivots, 1);
@@ -56,9 +56,9 @@ ModelledCause FindCause(const Table& table, const CauseObjects& machine) {
   const std::string full = sensor.empty() ? object : fmt::format("{} {}", object, sensor);
   std::vector<std::string> offered;
   for (const Cause* cause : causes) {
-    for (const std::string& each : ObjectsOf(*cause, machine, sensor)) {
+    for (const Object& each : ObjectsOf(*cause, machine, sensor)) {
       if (each == full) return {cause, full, {}, {}, {}};
-      offered.push_back(Split(each).object);
+      offered.push_back(each.part());
     }
   }
   if (offered.empty()) {
@@ -133,10 +133,12 @@ ModelGain ReadGain(const Table& root) {
 }
 
 std::string CauseText(const ModelledCause& cause) {
-  const auto [object, sensor] = Split(cause.object);
-  std::string text = fmt::format("\n# {}\n[[cause]]\nid = {}\nobject = {}\n",
-                                 cause.cause->words.what, Quoted(cause.cause->id), Quoted(object));
-  if (!sensor.empty()) text += fmt::format("sensor = {}\n", Quoted(sensor));
+  std::string text =
+      fmt::format("\n# {}\n[[cause]]\nid = {}\nobject = {}\n", cause.cause->words.what,
+                  Quoted(cause.cause->id), Quoted(cause.object.part()));
+  if (const std::string sensor = cause.object.sensor(); !sensor.empty()) {
+    text += fmt::format("sensor = {}\n", Quoted(sensor));
+  }
   std::string u95;
   for (std::size_t i = 0; i < cause.cause->keys.size(); ++i) {
     const auto& key = cause.cause->keys[i];
@@ -157,11 +159,7 @@ std::string CauseText(const ModelledCause& cause) {
 
 }  // namespace
 
-std::string ModelledCause::Name() const {
-  const auto [own, sensor] = Split(object);
-  return sensor.empty() ? fmt::format("{}:{}", cause->id, own)
-                        : fmt::format("{}:{} ({})", cause->id, own, sensor);
-}
+std::string ModelledCause::Name() const { return fmt::format("{}:{}", cause->id, Title(object)); }
 
 ExtendedModel ReadExtendedModel(const std::filesystem::path& path, const CauseObjects& objects) {
   const auto document = settings::Document::Read(path);

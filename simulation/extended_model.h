@@ -22,7 +22,7 @@ namespace abbe::simulation {
 
 struct ModelledCause {
   const Cause* cause;
-  std::string object;          // as the cause knows it: "X", "X temp_table_c"
+  Object object;
   Eigen::VectorXd values;      // of the keys
   Eigen::VectorXd u95;         // of the values; empty: not stated
   Eigen::MatrixXd covariance;  // of the coefficients; empty: not stated

@@ -17,9 +17,9 @@ Cause Backlash() {
       .keys = {{"width_um", 1e-6, -1000.0, 1000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 10e-6),
       .objects = AxesOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd& width) -> std::vector<Disturbance> {
-        const int axis = AxisOf(object[0]);
+        const int axis = object.first();
         return {InStage(trace, Positioning(axis), trace.BacklashLag(axis, SizeOf(width)))};
       },
       .follows_size = true,

@@ -17,10 +17,10 @@ Cause BearingRoundness() {
                {"cos3_um", 1e-6, -1000.0, 1000.0}},
       .plausible = Eigen::VectorXd::Constant(4, 5e-6),
       .objects = PivotsOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (trace.pivots() == 0) return {};
-        const int pivot = PivotOf(object);
+        const int pivot = object.first();
         std::vector<Disturbance> columns;
         for (const double order : {2.0, 3.0}) {
           for (const double quarter : {0.0, 0.5 * std::numbers::pi}) {

@@ -17,10 +17,9 @@ Cause CapFriction() {
       .plausible = Eigen::VectorXd::Constant(1, 3e-6),
       .objects =
           [](const Scene& scene) {
-            return scene.Pivots() > 0 ? std::vector<std::string>{"cap"}
-                                      : std::vector<std::string>{};
+            return scene.Pivots() > 0 ? std::vector<Object>{"cap"} : std::vector<Object>{};
           },
-      .columns = [](const Trace& trace, const std::string&,
+      .columns = [](const Trace& trace, const Object&,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (trace.pivots() == 0) return {};
         Disturbance drag = NoDisturbance(trace);

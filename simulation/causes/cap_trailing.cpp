@@ -18,10 +18,9 @@ Cause CapTrailing() {
       .plausible = Eigen::VectorXd::Constant(1, 1e-6),
       .objects =
           [](const Scene& scene) {
-            return scene.Pivots() > 0 ? std::vector<std::string>{"cap"}
-                                      : std::vector<std::string>{};
+            return scene.Pivots() > 0 ? std::vector<Object>{"cap"} : std::vector<Object>{};
           },
-      .columns = [](const Trace& trace, const std::string&,
+      .columns = [](const Trace& trace, const Object&,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
         if (!trace.linkage) return {};
         const Eigen::RowVectorXd feed = trace.velocity.colwise().norm();

@@ -52,47 +52,34 @@ Recalled Cause::RecallFrom(const VectorXd& values) const {
   return {values.head(coefficients()), values.tail(values.size() - coefficients())};
 }
 
-Seat Cause::SeatAt(const std::string& object) const {
+Seat Cause::SeatAt(const Object& object) const {
   if (in_map) return Seat::kMap;
-  const bool of_axes = object.find_first_not_of("XYZ") != 0;  // "X", "XY", "X temp_table_c"
-  return of_axes ? Seat::kMotion : Seat::kInstrument;
+  return object.IsOfAxes() ? Seat::kMotion : Seat::kInstrument;
 }
 
-std::vector<std::string> AxesOf(const Scene& scene) {
+std::vector<Object> AxesOf(const Scene& scene) {
   if (scene.OnlyShafts()) return {};
   return {"X", "Y", "Z"};
 }
 
-std::vector<std::string> AxisPairsOf(const Scene& scene) {
+std::vector<Object> AxisPairsOf(const Scene& scene) {
   if (scene.OnlyShafts()) return {};
   return {"XY", "XZ", "YZ"};
 }
 
-std::vector<std::string> ProbesOf(const Scene& scene) {
+std::vector<Object> ProbesOf(const Scene& scene) {
   if (!scene.HasSweeps()) return {};
   return {"probe_a", "probe_b", "probe_c", "probe_d", "probe_e"};
 }
 
-std::vector<std::string> PivotsOf(const Scene& scene) {
-  std::vector<std::string> pivots;
+std::vector<Object> PivotsOf(const Scene& scene) {
+  std::vector<Object> pivots;
   for (Eigen::Index i = 1; i <= scene.Pivots(); ++i)
-    pivots.push_back(std::string("pivot_") + std::to_string(i));
+    pivots.emplace_back("pivot_" + std::to_string(i));
   return pivots;
 }
 
-int AxisOf(char letter) { return letter - 'X'; }
-
-int ProbeOf(const std::string& object) { return object.back() - 'a'; }
-
-int PivotOf(const std::string& object) { return std::stoi(object.substr(6)) - 1; }
-
 int Positioning(int axis) { return MotionStage(axis, axis); }
-
-ObjectName Split(const std::string& object) {
-  const std::size_t blank = object.find(' ');
-  if (blank == std::string::npos) return {object, ""};
-  return {object.substr(0, blank), object.substr(blank + 1)};
-}
 
 double SizeOf(const VectorXd& shape) { return shape.size() == 0 ? 0.0 : shape[0]; }
 

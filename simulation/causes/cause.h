@@ -1,7 +1,7 @@
 // A physical cause: something that the simulation leaves out, and what it would do to every run.
 //
 //   for (const Cause& cause : Causes())                                   // registry.h
-//     for (const std::string& object : cause.objects(scene))
+//     for (const Object& object : cause.objects(scene))
 //       columns = cause.columns(trace, object, shape);                    // one per coefficient
 //
 // A cause acts at one stage (simulation/disturbance.h) and is written once, for every kind of run
@@ -25,6 +25,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/causes/object.h"
 #include "simulation/trace.h"
 
 namespace abbe::simulation {
@@ -73,16 +74,16 @@ enum class Seat { kInstrument, kMotion, kMap };
 enum class Follows : unsigned char { kPath, kTime, kTemperature };
 
 struct Cause {
-  using Objects = std::function<std::vector<std::string>(const Scene&)>;
-  using Columns = std::function<std::vector<Disturbance>(const Trace&, const std::string& object,
+  using Objects = std::function<std::vector<Object>(const Scene&)>;
+  using Columns = std::function<std::vector<Disturbance>(const Trace&, const Object& object,
                                                          const Eigen::VectorXd& shape)>;
   using Shapes = std::function<std::vector<Eigen::VectorXd>(const Scene&)>;
   using Nearer = std::function<std::vector<Eigen::VectorXd>(const Scene&, const Eigen::VectorXd&)>;
-  using Widens = std::function<std::vector<std::string>(const std::string& object)>;
+  using Widens = std::function<std::vector<std::string>(const Object& object)>;
   using Tell = std::function<Eigen::VectorXd(const Eigen::VectorXd& coefficients,
                                              const Eigen::VectorXd& shape)>;
   using Recall = std::function<Recalled(const Eigen::VectorXd& values)>;
-  using LineIn = std::function<Eigen::Index(const std::string& object)>;
+  using LineIn = std::function<Eigen::Index(const Object& object)>;
 
   std::string id;
   CauseWords words;
@@ -116,25 +117,14 @@ struct Cause {
   Eigen::VectorXd ValuesOf(const Eigen::VectorXd& found, const Eigen::VectorXd& shape) const;
   // The way back.
   Recalled RecallFrom(const Eigen::VectorXd& values) const;
-  Seat SeatAt(const std::string& object) const;
+  Seat SeatAt(const Object& object) const;
 };
 
 // The objects that a scene offers: "X" ..., "XY" ..., "probe_a" ..., "pivot_1" ...
-std::vector<std::string> AxesOf(const Scene& scene);
-std::vector<std::string> AxisPairsOf(const Scene& scene);
-std::vector<std::string> ProbesOf(const Scene& scene);
-std::vector<std::string> PivotsOf(const Scene& scene);
-
-// "X temp_table_c" is the object X and the sensor temp_table_c.
-struct ObjectName {
-  std::string object, sensor;
-};
-ObjectName Split(const std::string& object);
-
-// 0, 1, 2 of 'X', 'Y', 'Z'; 0 ... 4 of "probe_a" ...; 0 ... of "pivot_1" ...
-int AxisOf(char letter);
-int ProbeOf(const std::string& object);
-int PivotOf(const std::string& object);
+std::vector<Object> AxesOf(const Scene& scene);
+std::vector<Object> AxisPairsOf(const Scene& scene);
+std::vector<Object> ProbesOf(const Scene& scene);
+std::vector<Object> PivotsOf(const Scene& scene);
 
 // Of the positioning error of an axis: EXX, EYY, EZZ.
 int Positioning(int axis);

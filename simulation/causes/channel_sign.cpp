@@ -13,10 +13,10 @@ Cause ChannelSign() {
       .keys = {},
       .plausible = Eigen::VectorXd::Constant(1, 1.0),
       .objects = ProbesOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.head) return {};
-        const int probe = ProbeOf(object);
+        const int probe = object.first();
         return {InStage(trace, kReadingStage + probe,
                         2.0 * (trace.head->gap.row(probe).array() - trace.head->zero[probe]))};
       },

@@ -5,12 +5,12 @@ namespace abbe::simulation {
 
 namespace {
 
-std::vector<std::string> PairsOfProbes(const Scene& scene) {
-  std::vector<std::string> pairs;
-  const std::vector<std::string> probes = ProbesOf(scene);
+std::vector<Object> PairsOfProbes(const Scene& scene) {
+  std::vector<Object> pairs;
+  const std::vector<Object> probes = ProbesOf(scene);
   for (std::size_t i = 0; i < probes.size(); ++i) {
     for (std::size_t j = i + 1; j < probes.size(); ++j)
-      pairs.push_back(probes[i] + "+" + probes[j]);
+      pairs.emplace_back(probes[i].name() + "+" + probes[j].name());
   }
   return pairs;
 }
@@ -27,10 +27,10 @@ Cause ChannelSwap() {
       .keys = {},
       .plausible = Eigen::VectorXd::Constant(1, 1.0),
       .objects = PairsOfProbes,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.head) return {};
-        const int one = ProbeOf(object.substr(0, 7)), other = ProbeOf(object);
+        const int one = object.first(), other = object.second();
         const Eigen::RowVectorXd apart = trace.head->gap.row(one) - trace.head->gap.row(other);
         Disturbance swapped = NoDisturbance(trace);
         swapped.row(kReadingStage + one) = apart;

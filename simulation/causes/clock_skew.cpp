@@ -6,8 +6,8 @@ namespace abbe::simulation {
 
 namespace {
 
-std::vector<std::string> SourcesOf(const Scene& scene) {
-  std::vector<std::string> sources;
+std::vector<Object> SourcesOf(const Scene& scene) {
+  std::vector<Object> sources;
   if (scene.Pivots() > 0) sources.emplace_back("linkage");
   if (scene.HasSweeps()) sources.emplace_back("probes");
   return sources;
@@ -26,7 +26,7 @@ Cause ClockSkew() {
       .keys = {{"delay_ms", 1e-3, -1000.0, 1000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 10e-3),
       .objects = SourcesOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd& delay) -> std::vector<Disturbance> {
         if (object == "linkage" ? trace.pivots() == 0 : !trace.head) return {};
         Disturbance late = NoDisturbance(trace);

@@ -53,10 +53,10 @@ Cause EncoderCountSlip() {
       .keys = {{"time_s", 1.0, -1e7, 1e7}, {"angle_urad", 1e-6, -1e6, 1e6}},
       .plausible = Eigen::VectorXd::Constant(1, 500e-6),
       .objects = PivotsOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
         if (trace.pivots() == 0) return {};
-        return {InStage(trace, kEncoderStage + PivotOf(object),
+        return {InStage(trace, kEncoderStage + object.first(),
                         (trace.clock.transpose().array() >= shape[0]).cast<double>())};
       },
       .shapes = InstantsTried,

@@ -13,8 +13,9 @@ Cause EncoderEccentricity() {
       .keys = {{"sin_urad", 1e-6, -20000.0, 20000.0}, {"cos_urad", 1e-6, -20000.0, 20000.0}},
       .plausible = Eigen::VectorXd::Constant(2, 200e-6),
       .objects = PivotsOf,
-      .widens = [](const std::string& object) -> std::vector<std::string> {
-        return {"eccentricity." + object + "_sin_1", "eccentricity." + object + "_cos_1"};
+      .widens = [](const Object& object) -> std::vector<std::string> {
+        return {"eccentricity." + object.name() + "_sin_1",
+                "eccentricity." + object.name() + "_cos_1"};
       },
       // The parameter is added to the angle that the encoder shows.
       .tell = [](const Eigen::VectorXd& found, const Eigen::VectorXd&) -> Eigen::VectorXd {

@@ -15,10 +15,10 @@ Cause EncoderSubdivision() {
                {"cos_urad", 1e-6, -5000.0, 5000.0}},
       .plausible = Eigen::VectorXd::Constant(2, 10e-6),
       .objects = PivotsOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
         if (trace.pivots() == 0) return {};
-        const int pivot = PivotOf(object);
+        const int pivot = object.first();
         return WaveInStage(trace, kEncoderStage + pivot,
                            shape[0] * trace.linkage->angles.row(pivot));
       },

@@ -16,10 +16,9 @@ Cause FixtureMisalignment() {
       .plausible = Eigen::VectorXd::Constant(3, 5e-3),
       .objects =
           [](const Scene& scene) {
-            return scene.HasSweeps() ? std::vector<std::string>{"head"}
-                                     : std::vector<std::string>{};
+            return scene.HasSweeps() ? std::vector<Object>{"head"} : std::vector<Object>{};
           },
-      .widens = [](const std::string&) -> std::vector<std::string> {
+      .widens = [](const Object&) -> std::vector<std::string> {
         return {"head_turn *.u", "head_turn *.s", "head_turn *.n"};
       },
   };

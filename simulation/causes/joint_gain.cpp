@@ -7,14 +7,14 @@ namespace abbe::simulation {
 
 namespace {
 
-std::vector<std::string> JointsOf(const Scene& scene) {
+std::vector<Object> JointsOf(const Scene& scene) {
   Eigen::Index joints = 0;
   for (const Trace* trace : scene.traces) {
     if (trace->linkage && trace->linkage->is_arm) joints = std::max(joints, trace->pivots());
   }
-  std::vector<std::string> names;
-  for (Eigen::Index i = 1; i <= joints; ++i) names.push_back("pivot_" + std::to_string(i));
-  return names;
+  std::vector<Object> pivots;
+  for (Eigen::Index i = 1; i <= joints; ++i) pivots.emplace_back("pivot_" + std::to_string(i));
+  return pivots;
 }
 
 }  // namespace
@@ -29,10 +29,10 @@ Cause JointGain() {
       .keys = {{"gain_ppm", 1e-6, -20000.0, 20000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 300e-6),
       .objects = JointsOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.linkage || !trace.linkage->is_arm) return {};
-        const int pivot = PivotOf(object);
+        const int pivot = object.first();
         return {InStage(trace, kEncoderStage + pivot, trace.linkage->angles.row(pivot))};
       },
   };

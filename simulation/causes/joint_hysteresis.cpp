@@ -14,10 +14,10 @@ Cause JointHysteresis() {
       .keys = {{"width_urad", 1e-6, -20000.0, 20000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 50e-6),
       .objects = PivotsOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd& width) -> std::vector<Disturbance> {
         if (trace.pivots() == 0) return {};
-        const int pivot = PivotOf(object);
+        const int pivot = object.first();
         return {
             InStage(trace, kEncoderStage + pivot, -trace.PivotBacklashLag(pivot, SizeOf(width)))};
       },

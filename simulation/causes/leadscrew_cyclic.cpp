@@ -34,9 +34,9 @@ Cause LeadscrewCyclic() {
                {"phase_rad", 1.0, -7.0, 7.0}},
       .plausible = Eigen::VectorXd::Constant(2, 2e-6),
       .objects = AxesOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
-        const int axis = AxisOf(object[0]);
+        const int axis = object.first();
         return WaveInStage(trace, Positioning(axis),
                            2.0 * std::numbers::pi / shape[0] * trace.axes.row(axis));
       },

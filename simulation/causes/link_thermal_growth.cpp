@@ -5,7 +5,7 @@ namespace abbe::simulation {
 
 namespace {
 
-std::vector<std::string> LinksOf(const Scene& scene) {
+std::vector<Object> LinksOf(const Scene& scene) {
   if (scene.Pivots() != 3) return {};
   return {"link_1", "link_2"};
 }
@@ -22,8 +22,8 @@ Cause LinkThermalGrowth() {
       .keys = {{"coefficient_ppm_per_c", 1e-6, -100.0, 100.0}},
       .plausible = Eigen::VectorXd::Constant(1, 10e-6),
       .objects = LinksOf,
-      .widens = [](const std::string& object) -> std::vector<std::string> {
-        return {object == "link_1" ? "expansion.after_pivot_2" : "expansion.after_pivot_3"};
+      .widens = [](const Object& object) -> std::vector<std::string> {
+        return {object.first() == 0 ? "expansion.after_pivot_2" : "expansion.after_pivot_3"};
       },
       .follows = Follows::kTemperature,
   };

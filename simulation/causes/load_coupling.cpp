@@ -15,9 +15,9 @@ Cause LoadCoupling() {
       .keys = {{"coefficient_nm_per_mm2", 1e-3, -100.0, 100.0}},
       .plausible = Eigen::VectorXd::Constant(1, 2e-3),
       .objects = AxisPairsOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        const int first = AxisOf(object[0]), second = AxisOf(object[1]);
+        const int first = object.first(), second = object.second();
         return {InStage(trace, Positioning(3 - first - second),
                         -trace.axes.row(first).cwiseProduct(trace.axes.row(second)))};
       },

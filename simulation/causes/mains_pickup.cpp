@@ -15,10 +15,10 @@ Cause MainsPickup() {
                {"phase_rad", 1.0, -7.0, 7.0}},
       .plausible = Eigen::VectorXd::Constant(2, 0.3e-6),
       .objects = ProbesOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
         if (!trace.head) return {};
-        return LineInStage(trace, kReadingStage + ProbeOf(object), shape[0], trace.time);
+        return LineInStage(trace, kReadingStage + object.first(), shape[0], trace.time);
       },
       .shapes =
           [](const Scene&) {

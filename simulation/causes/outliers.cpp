@@ -12,7 +12,7 @@ Cause Outliers() {
                 .remedy = "mend the channel; the readings are left out meanwhile"},
       .keys = {{"count", 1.0}},
       .plausible = Eigen::VectorXd::Constant(1, 1.0),
-      .objects = [](const Scene&) { return std::vector<std::string>{}; },
+      .objects = [](const Scene&) { return std::vector<Object>{}; },
       .one_event = true,
       .follows = Follows::kTime,
   };

@@ -5,11 +5,11 @@ namespace abbe::simulation {
 
 namespace {
 
-std::vector<std::string> PairsOfProbes(const Scene& scene) {
-  std::vector<std::string> pairs;
-  for (const std::string& one : ProbesOf(scene)) {
-    for (const std::string& other : ProbesOf(scene)) {
-      if (one != other) pairs.push_back(one + "+" + other);
+std::vector<Object> PairsOfProbes(const Scene& scene) {
+  std::vector<Object> pairs;
+  for (const Object& one : ProbesOf(scene)) {
+    for (const Object& other : ProbesOf(scene)) {
+      if (one != other) pairs.emplace_back(one.name() + "+" + other.name());
     }
   }
   return pairs;
@@ -27,11 +27,11 @@ Cause ProbeCrosstalk() {
       .keys = {{"coefficient", 1.0, -0.9, 0.9}},
       .plausible = Eigen::VectorXd::Constant(1, 0.02),
       .objects = PairsOfProbes,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.head) return {};
-        const int from = ProbeOf(object);
-        return {InStage(trace, kReadingStage + ProbeOf(object.substr(0, 7)),
+        const int from = object.second();
+        return {InStage(trace, kReadingStage + object.first(),
                         trace.head->gap.row(from).array() - trace.head->zero[from])};
       },
   };

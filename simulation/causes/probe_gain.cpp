@@ -13,10 +13,10 @@ Cause ProbeGain() {
       .keys = {{"delta", 1.0, -0.9, 0.9}},
       .plausible = Eigen::VectorXd::Constant(1, 0.02),
       .objects = ProbesOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.head) return {};
-        const int probe = ProbeOf(object);
+        const int probe = object.first();
         return {InStage(trace, kReadingStage + probe,
                         trace.head->gap.row(probe).array() - trace.head->zero[probe])};
       },

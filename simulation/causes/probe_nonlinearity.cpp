@@ -14,10 +14,10 @@ Cause ProbeNonlinearity() {
       .keys = {{"quadratic_per_mm", 1e3, -20.0, 20.0}},
       .plausible = Eigen::VectorXd::Constant(1, 200.0),
       .objects = ProbesOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.head) return {};
-        const int probe = ProbeOf(object);
+        const int probe = object.first();
         return {InStage(trace, kReadingStage + probe,
                         -(trace.head->gap.row(probe).array() - trace.head->zero[probe]).square())};
       },

@@ -15,11 +15,11 @@ Cause ProbeTiltResponse() {
                 .remedy = "align the target better, or state head.electrode_radius_mm"},
       .keys = {{"electrode_radius_mm", 1e-3, 0.0, 50.0}},
       .plausible = Eigen::VectorXd::Constant(1, kUsual * kUsual),
-      .objects = [](const Scene& scene) -> std::vector<std::string> {
+      .objects = [](const Scene& scene) -> std::vector<Object> {
         if (!scene.HasSweeps()) return {};
         return {"head"};
       },
-      .columns = [](const Trace& trace, const std::string&,
+      .columns = [](const Trace& trace, const Object&,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.HasTilt()) return {};
         Disturbance nearer = NoDisturbance(trace);

@@ -14,9 +14,9 @@ Cause ReversalSpike() {
       .keys = {{"height_um", 1e-6, -1000.0, 1000.0}, {"decay_mm", 1e-3, 0.01, 100.0}},
       .plausible = Eigen::VectorXd::Constant(1, 5e-6),
       .objects = AxesOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
-        const int axis = AxisOf(object[0]);
+        const int axis = object.first();
         return {InStage(trace, Positioning(axis),
                         -trace.heading.row(axis).cwiseProduct(
                             (-trace.since_reversal.row(axis) / shape[0]).array().exp().matrix()))};

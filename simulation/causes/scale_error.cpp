@@ -14,9 +14,9 @@ Cause ScaleError() {
       .keys = {{"gain_ppm", 1e-6, -10000.0, 10000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 100e-6),
       .objects = AxesOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        const int axis = AxisOf(object[0]);
+        const int axis = object.first();
         return {InStage(trace, Positioning(axis), trace.axes.row(axis))};
       },
       .in_map = true,

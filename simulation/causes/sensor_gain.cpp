@@ -7,8 +7,8 @@ namespace abbe::simulation {
 
 namespace {
 
-std::vector<std::string> AllButTheFirst(const Scene& scene) {
-  std::vector<std::string> sensors = RimSensorsOf(scene);
+std::vector<Object> AllButTheFirst(const Scene& scene) {
+  std::vector<Object> sensors = RimSensorsOf(scene);
   if (!sensors.empty()) sensors.erase(sensors.begin());
   return sensors;
 }
@@ -28,9 +28,9 @@ Cause SensorGain() {
       .keys = {{"delta", 1.0, -0.9, 9.0}},
       .plausible = Eigen::VectorXd::Constant(1, 0.1),
       .objects = AllButTheFirst,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        const int sensor = RimSensorOf(object);
+        const int sensor = object.first();
         if (!trace.rim || sensor >= trace.rim->sensors) return {};
         return {InStage(trace, kReadingStage + sensor, trace.rim->Of(sensor, trace.rim->seen))};
       },

@@ -18,9 +18,9 @@ Cause SensorNonlinearity() {
       .keys = {{"quadratic_per_mm", 1e3, -10.0, 10.0}},
       .plausible = Eigen::VectorXd::Constant(1, 50.0),
       .objects = RimSensorsOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        const int sensor = RimSensorOf(object);
+        const int sensor = object.first();
         if (!trace.rim || sensor >= trace.rim->sensors) return {};
         return {InStage(trace, kReadingStage + sensor,
                         trace.rim->Of(sensor, trace.rim->seen.cwiseAbs2()))};

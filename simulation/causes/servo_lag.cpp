@@ -15,9 +15,9 @@ Cause ServoLag() {
       .keys = {{"delay_ms", 1e-3, -1000.0, 1000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 5e-3),
       .objects = AxesOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        const int axis = AxisOf(object[0]);
+        const int axis = object.first();
         return {InStage(trace, Positioning(axis), -trace.velocity.row(axis))};
       },
   };

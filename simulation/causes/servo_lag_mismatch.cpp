@@ -15,9 +15,9 @@ Cause ServoLagMismatch() {
       .keys = {{"delay_ms", 1e-3, -1000.0, 1000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 5e-3),
       .objects = AxisPairsOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        const int first = AxisOf(object[0]), second = AxisOf(object[1]);
+        const int first = object.first(), second = object.second();
         Disturbance lag = NoDisturbance(trace);
         lag.row(Positioning(first)) = 0.5 * trace.velocity.row(first);
         lag.row(Positioning(second)) = -0.5 * trace.velocity.row(second);

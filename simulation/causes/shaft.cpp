@@ -6,21 +6,19 @@ namespace abbe::simulation {
 
 using Eigen::RowVectorXd;
 
-std::vector<std::string> RimSensorsOf(const Scene& scene) {
+std::vector<Object> RimSensorsOf(const Scene& scene) {
   int sensors = 0;
   for (const Trace* trace : scene.traces)
     sensors = std::max(sensors, trace->rim ? trace->rim->sensors : 0);
-  std::vector<std::string> names;
-  for (int i = 1; i <= sensors; ++i) names.push_back(std::string("sensor_") + std::to_string(i));
+  std::vector<Object> names;
+  for (int i = 1; i <= sensors; ++i) names.emplace_back("sensor_" + std::to_string(i));
   return names;
 }
 
-std::vector<std::string> ShaftOf(const Scene& scene) {
+std::vector<Object> ShaftOf(const Scene& scene) {
   if (RimSensorsOf(scene).empty()) return {};
   return {"shaft"};
 }
-
-int RimSensorOf(const std::string& object) { return std::stoi(object.substr(7)) - 1; }
 
 Disturbance OnRim(const Trace& trace, const RowVectorXd& values) {
   Disturbance disturbance = NoDisturbance(trace);

@@ -9,9 +9,8 @@
 namespace abbe::simulation {
 
 // "shaft" and "sensor_1" ..., where one was recorded.
-std::vector<std::string> ShaftOf(const Scene& scene);
-std::vector<std::string> RimSensorsOf(const Scene& scene);
-int RimSensorOf(const std::string& object);  // 0 ...
+std::vector<Object> ShaftOf(const Scene& scene);
+std::vector<Object> RimSensorsOf(const Scene& scene);
 
 // All sensors see the rim farther away by `values`, m, one per row, and show what they show of it.
 Disturbance OnRim(const Trace& trace, const Eigen::RowVectorXd& values);

@@ -29,7 +29,7 @@ Cause ShaftClockSkew() {
       .plausible = Eigen::VectorXd::Constant(1, 20e-3),
       .objects = ShaftOf,
       // What they saw `delay` before, less what they see, over the delay: to its third power.
-      .columns = [](const Trace& trace, const std::string&,
+      .columns = [](const Trace& trace, const Object&,
                     const Eigen::VectorXd& delay) -> std::vector<Disturbance> {
         if (!trace.rim) return {};
         const double speed = SpeedOf(trace), turned = speed * SizeOf(delay);

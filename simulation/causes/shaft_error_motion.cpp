@@ -22,7 +22,7 @@ Cause ShaftErrorMotion() {
       .keys = keys,
       .plausible = Eigen::VectorXd::Constant(12, 5e-6),
       .objects = ShaftOf,
-      .columns = [](const Trace& trace, const std::string&,
+      .columns = [](const Trace& trace, const Object&,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.rim) return {};
         std::vector<Disturbance> columns;

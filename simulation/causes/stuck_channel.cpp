@@ -12,7 +12,7 @@ Cause StuckChannel() {
                 .remedy = "mend the channel and measure again; the rows are left out meanwhile"},
       .keys = {{"from_s", 1.0}, {"to_s", 1.0}},
       .plausible = Eigen::VectorXd::Constant(2, 1.0),
-      .objects = [](const Scene&) { return std::vector<std::string>{}; },
+      .objects = [](const Scene&) { return std::vector<Object>{}; },
       .one_event = true,
       .follows = Follows::kTime,
   };

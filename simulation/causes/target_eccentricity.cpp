@@ -18,7 +18,7 @@ Cause TargetEccentricity() {
       .keys = {{"amplitude_um", 1e-6, 0.0, 10000.0}, {"phase_rad", 1.0, -7.0, 7.0}},
       .plausible = Eigen::VectorXd::Constant(2, 100e-6),
       .objects = ShaftOf,
-      .columns = [](const Trace& trace, const std::string&,
+      .columns = [](const Trace& trace, const Object&,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.rim) return {};
         const Eigen::RowVectorXd seen = trace.rim->shaft - trace.rim->place;

@@ -30,14 +30,15 @@ constexpr double kApart = 0.6;         // correlation lengths from node to node 
 constexpr double kSamePlace = 0.1e-3;  // m
 constexpr double kRounding = 1e-10;    // of the variance of a node
 
-std::vector<Index> ProbesAt(const std::string& object) {
+std::vector<Index> ProbesAt(const Object& object) {
   return object == "target_top" ? std::vector<Index>{0, 1, 2} : std::vector<Index>{3, 4};
 }
 
-Index UnitOf(const std::string& object) { return object == "target_top" ? 0 : 1; }
+Index UnitOf(const Object& object) { return object == "target_top" ? 0 : 1; }
 
-Index FaceOf(const Trace& trace, const std::string& object) {
-  return AxisOf(trace.axis) + (trace.head && trace.head->turned && UnitOf(object) == 1 ? 3 : 0);
+Index FaceOf(const Trace& trace, const Object& object) {
+  return machine::AxisIndex(trace.axis) +
+         (trace.head && trace.head->turned && UnitOf(object) == 1 ? 3 : 0);
 }
 
 // All places, in order, each once.
@@ -119,11 +120,11 @@ Cause TargetForm() {
                 .remedy = "lap or replace the target, or state its flatness (target.form_nm)"},
       .keys = {{"rms_um", 1e-6, 0.0, 100.0}},
       .plausible = VectorXd::Ones(kFaces * kNodes),
-      .objects = [](const Scene& scene) -> std::vector<std::string> {
+      .objects = [](const Scene& scene) -> std::vector<Object> {
         if (!scene.HasSweeps()) return {};
         return {"target_top", "target_side"};
       },
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const VectorXd& shape) -> std::vector<Disturbance> {
         if (!trace.HasSpots()) return {};
         std::vector<Disturbance> columns(kFaces * kNodes, NoDisturbance(trace));

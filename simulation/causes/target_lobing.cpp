@@ -21,7 +21,7 @@ Cause TargetLobing() {
                {"cos4_um", 1e-6, -1000.0, 1000.0}},
       .plausible = Eigen::VectorXd::Constant(6, 5e-6),
       .objects = ShaftOf,
-      .columns = [](const Trace& trace, const std::string&,
+      .columns = [](const Trace& trace, const Object&,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.rim) return {};
         const Eigen::RowVectorXd seen = trace.rim->place - trace.rim->shaft;

@@ -6,10 +6,11 @@ namespace abbe::simulation {
 
 namespace {
 
-std::vector<std::string> AxesWithSensors(const Scene& scene) {
-  std::vector<std::string> objects;
-  for (const std::string& axis : AxesOf(scene)) {
-    for (const std::string& sensor : scene.Sensors()) objects.push_back(axis + " " + sensor);
+std::vector<Object> AxesWithSensors(const Scene& scene) {
+  std::vector<Object> objects;
+  for (const Object& axis : AxesOf(scene)) {
+    for (const std::string& sensor : scene.Sensors())
+      objects.emplace_back(axis.name() + " " + sensor);
   }
   return objects;
 }
@@ -27,10 +28,10 @@ Cause ThermalGrowth() {
       .keys = {{"coefficient_ppm_per_c", 1e-6, -100.0, 100.0}},
       .plausible = Eigen::VectorXd::Constant(1, 10e-6),
       .objects = AxesWithSensors,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
-        const int axis = AxisOf(object[0]);
-        const auto sensor = std::find(trace.sensors.begin(), trace.sensors.end(), object.substr(2));
+        const int axis = object.first();
+        const auto sensor = std::find(trace.sensors.begin(), trace.sensors.end(), object.sensor());
         if (sensor == trace.sensors.end()) return {};
         const auto row = static_cast<Eigen::Index>(sensor - trace.sensors.begin());
         return {InStage(trace, Positioning(axis),

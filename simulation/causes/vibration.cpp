@@ -17,11 +17,11 @@ Cause Vibration() {
                {"phase_rad", 1.0, -7.0, 7.0}},
       .plausible = Eigen::VectorXd::Constant(2, 0.5e-6),
       .objects = AxesOf,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
         // Neither says how long it averaged.
         if (!trace.averages_known) return {};
-        return LineInStage(trace, Positioning(AxisOf(object[0])), shape[0], trace.clock);
+        return LineInStage(trace, Positioning(object.first()), shape[0], trace.clock);
       },
       .shapes =
           [](const Scene&) {
@@ -35,7 +35,7 @@ Cause Vibration() {
         return {SineAndCosine(values[1], values[2]), values.head(1)};
       },
       .follows = Follows::kTime,
-      .line_in = [](const std::string& object) { return Positioning(AxisOf(object[0])); },
+      .line_in = [](const Object& object) { return Positioning(object.first()); },
   };
 }
 

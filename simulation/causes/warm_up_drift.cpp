@@ -5,9 +5,9 @@ namespace abbe::simulation {
 
 namespace {
 
-std::vector<std::string> AxesAndProbes(const Scene& scene) {
-  std::vector<std::string> objects = AxesOf(scene);
-  for (std::string& probe : ProbesOf(scene)) objects.push_back(std::move(probe));
+std::vector<Object> AxesAndProbes(const Scene& scene) {
+  std::vector<Object> objects = AxesOf(scene);
+  for (Object& probe : ProbesOf(scene)) objects.push_back(std::move(probe));
   return objects;
 }
 
@@ -24,13 +24,13 @@ Cause WarmUpDrift() {
       .keys = {{"amplitude_um", 1e-6, -1000.0, 1000.0}, {"time_constant_s", 1.0, 1.0, 1e6}},
       .plausible = Eigen::VectorXd::Constant(1, 3e-6),
       .objects = AxesAndProbes,
-      .columns = [](const Trace& trace, const std::string& object,
+      .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
         const Eigen::RowVectorXd warm = 1.0 - (-trace.clock.transpose().array() / shape[0]).exp();
-        if (!object.starts_with("probe_"))
-          return {InStage(trace, Positioning(AxisOf(object[0])), warm)};
+        if (object.kind() != Object::Kind::kProbe)
+          return {InStage(trace, Positioning(object.first()), warm)};
         if (!trace.head) return {};
-        return {InStage(trace, kReadingStage + ProbeOf(object), warm)};
+        return {InStage(trace, kReadingStage + object.first(), warm)};
       },
       .shapes = [](const Scene&) { return GeometricShapes(20.0, 20000.0, 1.7); },
       .follows = Follows::kTime,

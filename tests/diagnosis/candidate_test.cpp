@@ -33,7 +33,7 @@ TEST(Coarseness, ScalesTheLengthsOfTheAxesOnly) {
     const std::string& id = each.cause->id;
     const bool length = id == "backlash" || id == "leadscrew-cyclic" || id == "reversal-spike" ||
                         id == "vibration" || id == "warm-up-drift";
-    const double factor = length && !each.object.starts_with("probe_") ? 20.0 : 1.0;
+    const double factor = length && !each.object.name().starts_with("probe_") ? 20.0 : 1.0;
     EXPECT_EQ(each.Plausible(), factor * each.cause->plausible) << each.Name();
     lengths += factor > 1.0 ? 1 : 0;
   }
@@ -56,7 +56,7 @@ simulation::Trace TraceThatMoves(const std::string& axes) {
 std::set<std::string> ObjectsOf(const std::string& cause, const simulation::Scene& scene) {
   std::set<std::string> objects;
   for (const Candidate& each : AllCandidates(scene)) {
-    if (each.cause->id == cause) objects.insert(each.object);
+    if (each.cause->id == cause) objects.insert(each.object.name());
   }
   return objects;
 }
@@ -88,7 +88,8 @@ TEST(AllCandidates, KnowsNoAxisThatTheMachineLacks) {
   x.axes.bottomRows<2>().setZero();
   const simulation::Scene scene{{&x}, {0.06, 0.0, 0.0}};
   for (const Candidate& each : AllCandidates(scene)) {
-    const std::string axes = each.object.substr(0, each.object.find_first_not_of("XYZ"));
+    const std::string axes =
+        each.object.name().substr(0, each.object.name().find_first_not_of("XYZ"));
     EXPECT_EQ(axes.find_first_of("YZ"), std::string::npos) << each.Name();
   }
   EXPECT_THAT(ObjectsOf("backlash", scene), testing::ElementsAre("X"));

@@ -92,7 +92,7 @@ TEST(Plan, LikenessIsTheCosineOfTwoColumns) {
 TEST(Plan, ACircleKnowsNoTemperatureAndNoProbe) {
   const Plan plan = PlanOf(Circles({600.0}));
   for (const PlannedCause& cause : plan.causes) {
-    EXPECT_FALSE(cause.candidate.object.starts_with("probe_")) << cause.candidate.Name();
+    EXPECT_FALSE(cause.candidate.object.name().starts_with("probe_")) << cause.candidate.Name();
     EXPECT_NE(cause.candidate.cause->id, "thermal-growth");
   }
 }

@@ -48,7 +48,8 @@ struct Rate {
 // Whether a finding is this effect; a thermal cause names its sensor behind the axis.
 inline bool Names(const Finding& finding, const rig::HiddenEffect& effect) {
   const auto& candidate = finding.score.candidate;
-  return candidate.cause->id == effect.entry->name && candidate.object.starts_with(effect.object);
+  return candidate.cause->id == effect.entry->name &&
+         candidate.object.name().starts_with(effect.object);
 }
 
 inline std::string NameOf(const rig::HiddenEffect& effect) {

@@ -124,7 +124,7 @@ TEST(Causes, AJointWithAGainShowsMoreInProportionToItsAngle) {
   EXPECT_TRUE(JointGain().columns(trace, "pivot_1", {}).empty());
   trace.linkage->is_arm = true;
   const Scene arm{{&trace}, Eigen::Vector3d::Zero()};
-  EXPECT_EQ(JointGain().objects(arm), std::vector<std::string>{"pivot_1"});
+  EXPECT_EQ(JointGain().objects(arm), std::vector<Object>{"pivot_1"});
   const auto columns = JointGain().columns(trace, "pivot_1", {});
   ASSERT_EQ(columns.size(), 1U);
   EXPECT_EQ(At(columns[0], kEncoderStage, "joint-gain"), RowVectorXd(trace.linkage->angles.row(0)));
@@ -250,7 +250,7 @@ TEST(Causes, FollowsWhatTheySayThatTheyFollow) {
       if (!cause.columns || objects.empty()) continue;
       const VectorXd shape = cause.shapes ? cause.shapes(scene).back() : VectorXd();
       bool is_seen = false, by_time = false, by_warmth = false;
-      for (const std::string& object : objects) {
+      for (const Object& object : objects) {
         const auto columns = cause.columns(trace, object, shape);
         if (columns.empty()) continue;
         is_seen = true;
@@ -264,7 +264,7 @@ TEST(Causes, FollowsWhatTheySayThatTheyFollow) {
     }
   }
   Trace linkage = Recorded(false);
-  linkage.angles = linkage.angles.replicate(3, 1).eval();
+  linkage.linkage->angles = linkage.linkage->angles.replicate(3, 1).eval();
   const Scene carried{{&linkage}, Eigen::Vector3d::Constant(0.06)};
   for (const Cause& cause : Causes()) {
     if (cause.columns) {

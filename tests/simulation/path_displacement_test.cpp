@@ -67,7 +67,7 @@ TEST(PathDisplacement, OfAllCausesThoseActThatFollowThePath) {
   for (const Cause& cause : Causes()) {
     const VectorXd shape = cause.shapes ? cause.shapes(scene).front() : VectorXd();
     const VectorXd values = cause.ValuesOf(cause.plausible, shape);
-    for (const std::string& object : cause.objects(scene)) {
+    for (const Object& object : cause.objects(scene)) {
       const ModelledCause modelled{&cause, object, values, {}, {}};
       const bool acts = cause.SeatAt(object) == Seat::kMotion && cause.follows == Follows::kPath;
       EXPECT_EQ(ActsOnPath(modelled), acts) << modelled.Name();
