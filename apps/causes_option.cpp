@@ -14,8 +14,8 @@
 namespace abbe::apps {
 
 using simulation::Change;
+using simulation::CorrectedBy;
 using simulation::ModelledCause;
-using simulation::Seat;
 
 namespace {
 
@@ -60,7 +60,7 @@ CLI::Option* AddCausesOption(CLI::App& command, std::filesystem::path& path) {
 }
 
 CauseCorrection::CauseCorrection(const std::filesystem::path& path, const MachineFile& file,
-                                 const Seats& taken)
+                                 const Corrections& taken)
     : instruments_(InstrumentsOf(file)) {
   if (path.empty()) return;
   name_ = path.filename().string();
@@ -69,7 +69,7 @@ CauseCorrection::CauseCorrection(const std::filesystem::path& path, const Machin
              file.linkage ? file.linkage->chain.joints() : Eigen::Index{0}});
   origin_ = model.origin;
   for (ModelledCause& cause : model.causes) {
-    const Seat seat = cause.cause->SeatAt(cause.object);
+    const CorrectedBy seat = cause.cause->CorrectedAt(cause.object);
     const bool wanted = std::find(taken.begin(), taken.end(), seat) != taken.end();
     (wanted && Takes(cause) ? taken_ : left_).push_back(std::move(cause));
   }
@@ -105,7 +105,7 @@ PathCauses::PathCauses(const std::filesystem::path& path, const std::string& mac
   if (path.empty()) return;
   name_ = path.filename().string();
   for (auto& cause : simulation::ReadExtendedModel(path, {machine, true, kAnyLinkage}).causes) {
-    if (cause.cause->SeatAt(cause.object) != Seat::kMotion) continue;
+    if (cause.cause->CorrectedAt(cause.object) != CorrectedBy::kMotion) continue;
     (simulation::ActsOnPath(cause) ? causes_ : left_).push_back(std::move(cause));
   }
 }

@@ -21,19 +21,22 @@ namespace abbe::apps {
 CLI::Option* AddCausesOption(CLI::App& command, std::filesystem::path& path);
 
 // Which seats of causes a command takes out.
-using Seats = std::vector<simulation::Seat>;
+using Corrections = std::vector<simulation::CorrectedBy>;
 // What the machine itself does is to be measured.
-inline const Seats kForMeasuring{simulation::Seat::kInstrument};
+inline const Corrections kForMeasuring{simulation::CorrectedBy::kInstrument};
 // A map holds and corrects what is a function of position.
-inline const Seats kForMaps{simulation::Seat::kInstrument, simulation::Seat::kMotion};
+inline const Corrections kForMaps{simulation::CorrectedBy::kInstrument,
+                                  simulation::CorrectedBy::kMotion};
 // The machine is the reference.
-inline const Seats kForCalibrating{simulation::Seat::kInstrument, simulation::Seat::kMotion,
-                                   simulation::Seat::kMap};
+inline const Corrections kForCalibrating{simulation::CorrectedBy::kInstrument,
+                                         simulation::CorrectedBy::kMotion,
+                                         simulation::CorrectedBy::kMap};
 
 class CauseCorrection {
  public:
   // An empty path takes nothing out.
-  CauseCorrection(const std::filesystem::path& path, const MachineFile& file, const Seats& taken);
+  CauseCorrection(const std::filesystem::path& path, const MachineFile& file,
+                  const Corrections& taken);
 
   bool Active() const { return !name_.empty(); }
   recording::Recording Take(recording::Recording recording);

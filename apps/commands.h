@@ -17,6 +17,7 @@ void AddCalibrate(CLI::App& program, int& exit_code);
 void AddPlate(CLI::App& program, int& exit_code);
 void AddFuse(CLI::App& program, int& exit_code);
 void AddDiagnose(CLI::App& program, int& exit_code);
+void AddCauses(CLI::App& program, int& exit_code);
 void AddHarmonics(CLI::App& program, int& exit_code);
 void AddExport(CLI::App& program, int& exit_code);
 void AddCorrect(CLI::App& program, int& exit_code);
@@ -25,9 +26,9 @@ void AddConvert(CLI::App& program, int& exit_code);
 void AddSensitivity(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 
-inline constexpr auto kCommands =
-    std::to_array<AddCommand>({AddRig, AddSweep, AddRecord, AddReduce, AddCalibrate, AddCircle,
-                               AddPath, AddHarmonics, AddPlate, AddFuse, AddDiagnose, AddExport,
-                               AddCorrect, AddSimulate, AddConvert, AddSensitivity, AddReport});
+inline constexpr auto kCommands = std::to_array<AddCommand>(
+    {AddRig, AddSweep, AddRecord, AddReduce, AddCalibrate, AddCircle, AddPath, AddHarmonics,
+     AddPlate, AddFuse, AddDiagnose, AddCauses, AddExport, AddCorrect, AddSimulate, AddConvert,
+     AddSensitivity, AddReport});
 
 }  // namespace abbe::apps

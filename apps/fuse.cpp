@@ -85,7 +85,7 @@ std::optional<fusion::FuseReport> FuseIfItFits(const simulation::Instruments& in
 std::string NotInMap(const std::vector<simulation::ModelledCause>& causes) {
   std::string text;
   for (const auto& cause : causes) {
-    if (cause.cause->SeatAt(cause.object) != simulation::Seat::kMotion) continue;
+    if (cause.cause->CorrectedAt(cause.object) != simulation::CorrectedBy::kMotion) continue;
     text += fmt::format("not in the map: {}", cause.Name());
     for (std::size_t i = 0; i < cause.cause->keys.size(); ++i) {
       const auto& key = cause.cause->keys[i];

@@ -132,7 +132,7 @@ int main(int argc, char** argv) {
   const diagnosis::Fit fit(campaign);
   std::vector<Candidate> candidates;
   for (const Candidate& each : diagnosis::AllCandidates(campaign.scene())) {
-    if (each.cause->columns && !each.cause->widens) candidates.push_back(each);
+    if (each.cause->columns && !each.cause->relaxes) candidates.push_back(each);
   }
   const double before = Seconds();
   const auto scores = diagnosis::ScoreAll(fit, candidates);
@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
   const double own_before = Seconds();
   for (std::size_t i = 0; i < candidates.size(); i += kEvery) {
     const double size = scores[i].coefficients.norm();
-    if (candidates[i].cause->whole || size == 0.0) continue;
+    if (candidates[i].cause->IsBinary() || size == 0.0) continue;
     ++solved;
     worst = std::max(worst, std::abs(OwnSolve(fit, linear, candidates[i]) - size) / size);
   }

@@ -14,7 +14,7 @@ namespace {
 
 // A length in the motion of an axis.
 bool ScalesWith(const simulation::Cause& cause, const simulation::Object& object) {
-  return cause.SeatAt(object) != simulation::Seat::kInstrument &&
+  return cause.CorrectedAt(object) != simulation::CorrectedBy::kInstrument &&
          std::any_of(cause.keys.begin(), cause.keys.end(),
                      [](const auto& key) { return key.name.ends_with("_um"); });
 }

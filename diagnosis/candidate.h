@@ -21,7 +21,7 @@ struct Candidate {
   std::string Name() const { return cause->id + ":" + object.name(); }
   // Standard deviation of each coefficient, before any data.
   Eigen::VectorXd Plausible() const {
-    return (cause->drawn ? shape[0] : coarseness) * cause->plausible;
+    return (cause->IsRandomField() ? shape[0] : coarseness) * cause->plausible;
   }
   // Whether the shape is a number between those tried, to be found with the coefficients.
   bool HasFreeShape() const {

@@ -130,7 +130,9 @@ class Search {
   bool Predicts(const Fit& fit) const {
     constexpr double kBetter = 0.9, kAll = 1.5;  // of chi-square
     const auto rows = static_cast<double>(fit.rows());
-    if (!OfArms() || fit_->chi_square() < kNoiseIsKnown * kNoiseIsKnown * rows) return true;
+    if (!OfArms() ||
+        fit_->chi_square() < simulation::kNoiseIsKnown * simulation::kNoiseIsKnown * rows)
+      return true;
     if (fit.left_out() > kBetter * fit_->left_out()) return false;
     return !fit.taken_in().back().cause->one_event || fit.chi_square() < kAll * rows;
   }
@@ -140,12 +142,12 @@ class Search {
   // of them, if there was one.
   std::shared_ptr<const Fit> DecideByFits(std::vector<Named>& names) {
     if (names.empty()) return nullptr;
-    const bool whole = names.front().best.candidate.cause->whole;
+    const bool whole = names.front().best.candidate.cause->IsBinary();
     const bool in_readings = InReadings(names.front().best.candidate);
     const double best = names.front().log_evidence;
     std::vector<Named*> leading;
     for (Named& named : names) {
-      const bool of_whole = named.best.candidate.cause->whole;
+      const bool of_whole = named.best.candidate.cause->IsBinary();
       const bool like_it =
           whole ? of_whole && named.log_evidence > 0.0
                 : named.log_evidence > best - kClose ||
@@ -250,7 +252,7 @@ class Search {
   // Whether, all others at their best, so much of it is left that no fit without it is needed.
   bool IsBeyondDoubt(std::size_t i) const {
     constexpr double kBeyond = 400.0;  // squares of standard deviations
-    if (taken_[i].cause->widens || taken_[i].cause->whole) return false;
+    if (taken_[i].cause->relaxes || taken_[i].cause->IsBinary()) return false;
     const Score score = fit_->ScoreOf(i);
     const Eigen::Index count = score.coefficients.size();
     const Eigen::MatrixXd covariance = score.covariance.topLeftCorner(count, count);
@@ -259,8 +261,8 @@ class Search {
 
   // What is there or not is too large for the first order.
   double EvidenceBeside(const Fit& without, std::size_t i) const {
-    return taken_[i].cause->whole ? fit_->log_likelihood() - without.log_likelihood()
-                                  : ScoreAll(without, {taken_[i]}).front().log_evidence;
+    return taken_[i].cause->IsBinary() ? fit_->log_likelihood() - without.log_likelihood()
+                                       : ScoreAll(without, {taken_[i]}).front().log_evidence;
   }
 
   // A cause that the later ones explain as well is taken out again.
@@ -316,7 +318,7 @@ std::vector<double> ExcessOf(const Fit& fit) {
 
 bool IsModelled(const Finding& finding) {
   const simulation::Cause& cause = *finding.score.candidate.cause;
-  return cause.columns || cause.widens;
+  return cause.columns || cause.relaxes;
 }
 
 std::string_view Name(Verdict verdict) {

@@ -55,7 +55,7 @@ DrawnSize SizeOfDraws(const MatrixXd& S, const VectorXd& g, double stated) {
 
 Score ScoreFrom(Candidate candidate, const Fit::Projection& projection) {
   const auto& [S, g] = projection;
-  if (candidate.cause->drawn) {
+  if (candidate.cause->IsRandomField()) {
     const VectorXd usual = candidate.Plausible();
     const double visible = std::sqrt(std::max(0.0, S.diagonal().dot(usual.cwiseAbs2())));
     const DrawnSize size = SizeOfDraws(S, g, candidate.shape[1]);
@@ -64,7 +64,7 @@ Score ScoreFrom(Candidate candidate, const Fit::Projection& projection) {
             size.log_evidence, visible};
   }
   const VectorXd plausible = candidate.Plausible();
-  if (candidate.cause->whole) {
+  if (candidate.cause->IsBinary()) {
     return {candidate, VectorXd::Ones(1), MatrixXd::Zero(1, 1), g[0] - 0.5 * S(0, 0),
             std::sqrt(std::max(0.0, S(0, 0)))};
   }
@@ -112,14 +112,14 @@ std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candid
   std::vector<Score> scores;
   scores.reserve(candidates.size());
   for (std::size_t first = 0; first < candidates.size();) {
-    if (candidates[first].cause->widens) {
+    if (candidates[first].cause->relaxes) {
       scores.push_back(ScoreFrom(candidates[first], fit.ProjectParameters(candidates[first])));
       ++first;
       continue;
     }
     std::size_t last = first;
     Index columns = 0;
-    for (; last < candidates.size() && !candidates[last].cause->widens && columns < kColumnsAtOnce;
+    for (; last < candidates.size() && !candidates[last].cause->relaxes && columns < kColumnsAtOnce;
          ++last) {
       columns += candidates[last].cause->coefficients();
     }

@@ -9,7 +9,7 @@
 //   c ~ N((S + P)^-1 g, (S + P)^-1),    P the precision of plausible coefficients
 //   log evidence = (g' (S + P)^-1 g - log det(1 + S P^-1)) / 2
 //
-// which is the exact marginal likelihood of the linear problem, noise known. A cause that widens
+// which is the exact marginal likelihood of the linear problem, noise known. A cause that relaxes
 // parameters has their own columns for C. One that is there or not has c = 1 and the log evidence
 // g - S / 2.
 // Source: Rasmussen and Williams, Gaussian Processes (2006), 2.7; MacKay, Neural Computation 4

@@ -24,7 +24,7 @@ struct Expected {
 
 // `m`: the mean of the score.
 Expected ExpectedOf(const Candidate& candidate, const MatrixXd& S, const VectorXd& m) {
-  if (candidate.cause->whole) return {m[0] - 0.5 * S(0, 0), VectorXd::Ones(1)};
+  if (candidate.cause->IsBinary()) return {m[0] - 0.5 * S(0, 0), VectorXd::Ones(1)};
   // In units of what is plausible.
   const VectorXd plausible = candidate.Plausible();
   const auto& unit = plausible.asDiagonal();

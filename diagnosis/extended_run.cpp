@@ -43,8 +43,8 @@ class ExtendedResidual : public estimation::Residual {
   MatrixXd columns_;
 };
 
-void Widen(const Candidate& cause, std::vector<estimation::ParameterBlock>& blocks) {
-  const std::vector<std::string> patterns = cause.cause->widens(cause.object);
+void RelaxPriors(const Candidate& cause, std::vector<estimation::ParameterBlock>& blocks) {
+  const std::vector<std::string> patterns = cause.cause->relaxes(cause.object);
   for (auto& block : blocks) {
     for (std::size_t i = 0; i < block.entries.size(); ++i) {
       for (std::size_t p = 0; p < patterns.size(); ++p) {
@@ -150,7 +150,7 @@ bool Matches(const std::string& full_name, const std::string& pattern) {
 }
 
 MatrixXd LinearRun::Columns(const Candidate& cause) const {
-  if (!response || cause.cause->widens) return {};
+  if (!response || cause.cause->relaxes) return {};
   const auto disturbances = cause.cause->columns(trace, cause.object, cause.shape);
   return disturbances.empty() ? MatrixXd{} : response->Columns(disturbances);
 }
@@ -169,7 +169,7 @@ LinearRun LinearAt(const PreparedRun& run, const VectorXd& x, const VectorXd& le
   } else if (at.trace.head) {
     at.trace.head->gap = readings;
     for (const Candidate& cause : causes) {
-      if (cause.cause->whole) Undo(cause, run.trace, at.trace);
+      if (cause.cause->IsBinary()) Undo(cause, run.trace, at.trace);
     }
   }
   return at;
@@ -183,15 +183,15 @@ simulation::SimulatedRun Extend(const PreparedRun& run, const LinearRun& at,
   if (at.trace.rim) always += BesideSlopes(at);
   MatrixXd columns(rows, 0);
   for (const Candidate& cause : causes) {
-    if (cause.cause->widens) {
-      Widen(cause, extended.blocks);
+    if (cause.cause->relaxes) {
+      RelaxPriors(cause, extended.blocks);
       continue;
     }
     // What is there or not is undone in the readings themselves, noise and all.
-    const MatrixXd own =
-        cause.cause->whole ? LinearRun{run.trace, at.response}.Columns(cause) : at.Columns(cause);
+    const MatrixXd own = cause.cause->IsBinary() ? LinearRun{run.trace, at.response}.Columns(cause)
+                                                 : at.Columns(cause);
     if (own.size() == 0) continue;
-    if (cause.cause->whole) {
+    if (cause.cause->IsBinary()) {
       always += own;
       continue;
     }

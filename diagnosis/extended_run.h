@@ -6,7 +6,7 @@
 //
 // The columns are those of the run at `x`, the parameters of its own blocks; the coefficients have
 // their plausible deviation as prior. A cause that is there or not has no parameter; one that
-// widens parameters changes their priors instead. Units, failure: those of
+// relaxes parameters changes their priors instead. Units, failure: those of
 // simulation/simulated_run.h. Validity: linear in the coefficients.
 #pragma once
 

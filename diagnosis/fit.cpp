@@ -66,8 +66,8 @@ Problem ProblemOf(const Campaign& campaign, const std::vector<SimulatedRun>& run
       fusion::MakeMachineProblem(campaign.instruments().machine, model, campaign.prior(), runs);
   // The machine's own blocks are made by the problem, not by a run.
   for (const Candidate& cause : taken_in) {
-    if (!cause.cause->widens) continue;
-    for (const std::string& name : cause.cause->widens(cause.object)) {
+    if (!cause.cause->relaxes) continue;
+    for (const std::string& name : cause.cause->relaxes(cause.object)) {
       if (!name.starts_with("squareness.")) continue;
       auto& entry = problem.Block(problem.Find("squareness"))[name.substr(11)];
       entry.prior_sd = std::hypot(entry.prior_sd, cause.cause->plausible[0]);
@@ -150,16 +150,16 @@ double Fit::FollowShapes() {
   constexpr double kAtMost = 0.2, kDrawnFound = 0.05;
   double most = 0.0;
   for (Candidate& cause : taken_in_) {
-    if (cause.cause->widens || cause.cause->whole) continue;
+    if (cause.cause->relaxes || cause.cause->IsBinary()) continue;
     const VectorXd found = result_.Block(BlockOf(cause)).Values();
     const VectorXd coefficients = found.head(cause.cause->coefficients());
-    if (cause.cause->drawn) {
+    if (cause.cause->IsRandomField()) {
       const double before = cause.shape[0];
       cause.shape[0] *= std::sqrt(coefficients.squaredNorm() / SeenOf(cause)) / before;
       // So few draws tell their deviation no better.
       const double moved = std::abs(1.0 - cause.shape[0] / before);
       if (moved > kDrawnFound) most = std::max(most, moved);
-    } else if (cause.cause->follows_size) {
+    } else if (cause.cause->FollowsItsSize()) {
       const double before = simulation::SizeOf(cause.shape);
       cause.shape = coefficients.head<1>();
       most = std::max(most, std::abs(1.0 - before / coefficients[0]));
@@ -270,22 +270,22 @@ Index Fit::rows() const {
 Score Fit::ScoreOf(std::size_t taken_in) const {
   const Candidate& cause = taken_in_[taken_in];
   Score score{cause, {}, {}, 0.0, 0.0};
-  if (cause.cause->whole) {
+  if (cause.cause->IsBinary()) {
     score.coefficients = VectorXd::Ones(1);
     score.covariance = MatrixXd::Zero(1, 1);
     return score;
   }
-  if (!cause.cause->widens) {
+  if (!cause.cause->relaxes) {
     score.coefficients = result_.Block(BlockOf(cause)).Values().head(cause.cause->coefficients());
     score.covariance = result_.Covariance(BlockOf(cause), BlockOf(cause));
     if (cause.HasFreeShape()) FreeShape(score.covariance);
     const std::string zero = "encoder_offset." + cause.object.name();
-    if (cause.cause->graduated && !ColumnsNamed(zero).empty()) {
+    if (cause.cause->phase_follows_encoder_zero && !ColumnsNamed(zero).empty()) {
       const Eigen::Vector2d turned(score.coefficients[1], -score.coefficients[0]);
       score.covariance.topLeftCorner<2, 2>() +=
           std::pow(cause.shape[0] * result_.Uncertainty(zero), 2) * turned * turned.transpose();
     }
-    if (cause.cause->drawn) {  // so many draws tell their deviation
+    if (cause.cause->IsRandomField()) {  // so many draws tell their deviation
       const Index count = score.coefficients.size();
       score.covariance.conservativeResize(count + 1, count + 1);
       score.covariance.row(count).setZero();
@@ -294,7 +294,7 @@ Score Fit::ScoreOf(std::size_t taken_in) const {
     }
     return score;
   }
-  const std::vector<std::string> patterns = cause.cause->widens(cause.object);
+  const std::vector<std::string> patterns = cause.cause->relaxes(cause.object);
   const auto count = static_cast<Index>(patterns.size());
   score.coefficients = VectorXd::Zero(count);
   score.covariance = MatrixXd::Zero(count, count);

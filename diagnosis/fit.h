@@ -70,7 +70,7 @@ class Fit {
   // What is left of a run, whitened.
   const Eigen::VectorXd& LeftOf(std::size_t run) const { return runs_[run].r; }
   std::size_t runs() const { return runs_.size(); }
-  // Of a cause that widens parameters.
+  // Of a cause that relaxes parameters.
   Projection ProjectParameters(const Candidate& candidate) const;
 
  private:

@@ -8,7 +8,7 @@ simulation::ModelledCause FoundCause(const Score& score) {
   const auto [values, u] = KeysOf(score);
   const Eigen::Index count = score.coefficients.size();
   // Of a random function the size counts, not what it was here.
-  const Eigen::MatrixXd covariance = score.candidate.cause->drawn
+  const Eigen::MatrixXd covariance = score.candidate.cause->IsRandomField()
                                          ? Eigen::MatrixXd{}
                                          : score.covariance.topLeftCorner(count, count).eval();
   return {score.candidate.cause, score.candidate.object, values, kCoverage * u, covariance};

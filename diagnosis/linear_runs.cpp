@@ -56,10 +56,10 @@ MatrixXd PriorInformation(const Problem& problem, const estimation::Layout& layo
   return information;
 }
 
-// Of a cause that widens parameters: what these do themselves.
+// Of a cause that relaxes parameters: what these do themselves.
 MatrixXd ParameterColumns(const LinearizedRun& run, const std::vector<std::string>& names,
                           const Candidate& candidate) {
-  const std::vector<std::string> patterns = candidate.cause->widens(candidate.object);
+  const std::vector<std::string> patterns = candidate.cause->relaxes(candidate.object);
   MatrixXd columns = MatrixXd::Zero(run.J.rows(), candidate.cause->coefficients());
   for (std::size_t c = 0; c < run.columns.size(); ++c) {
     const std::string& name = names[static_cast<std::size_t>(run.columns[c])];
@@ -79,7 +79,7 @@ MatrixXd ColumnsOf(const LinearizedRun& run, const std::vector<std::string>& nam
   std::vector<Index> places;
   std::vector<std::pair<Index, const Candidate*>> widening;
   for (const Candidate& candidate : candidates) {
-    if (candidate.cause->widens) {
+    if (candidate.cause->relaxes) {
       widening.emplace_back(count, &candidate);
     } else if (run.at.response) {
       auto own = candidate.cause->columns(run.at.trace, candidate.object, candidate.shape);

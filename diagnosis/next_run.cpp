@@ -32,7 +32,7 @@ struct Contest {
     }
     for (const Finding& other : diagnosis.findings) {
       const simulation::Cause& cause = *other.score.candidate.cause;
-      if (cause.whole || (!cause.columns && !cause.widens) || Known(other.score.candidate)) {
+      if (cause.IsBinary() || (!cause.columns && !cause.relaxes) || Known(other.score.candidate)) {
         continue;
       }
       candidates.push_back(other.score.candidate);

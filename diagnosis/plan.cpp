@@ -40,7 +40,7 @@ class PlannedRuns {
 };
 
 VectorXd PlausibleOf(const Candidate& candidate) {
-  return candidate.cause->whole ? VectorXd::Ones(1) : candidate.Plausible();
+  return candidate.cause->IsBinary() ? VectorXd::Ones(1) : candidate.Plausible();
 }
 
 // The best shape of each name; shapes of one name stand together.
@@ -67,7 +67,7 @@ std::vector<PlannedCause> BestOf(const PlannedRuns& runs,
       const VectorXd own = information.segment(at, plausible.size()).cwiseMax(0.0);
       const VectorXd each_visible = plausible.cwiseProduct(own.cwiseSqrt());
       cause.visible = each_visible.maxCoeff(&cause.coefficient);
-      if (each.cause->drawn) cause.visible = each_visible.norm();
+      if (each.cause->IsRandomField()) cause.visible = each_visible.norm();
       Keep(cause, best);
       at += plausible.size();
     }
@@ -128,7 +128,7 @@ PlannedCause::Sizes PlannedCause::sizes() const {
   const auto keys_at = [&](double size) {
     VectorXd coefficients = VectorXd::Zero(cause.coefficients()), shape = candidate.shape;
     coefficients[coefficient] = size * cause.plausible[coefficient];
-    if (cause.drawn) shape[0] *= size;
+    if (cause.IsRandomField()) shape[0] *= size;
     return cause.ValuesOf(coefficients, shape);
   };
   Sizes sizes{keys_at(1.0), keys_at(kShowable / visible)};

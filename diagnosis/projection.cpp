@@ -148,7 +148,7 @@ std::vector<int> Fit::ColumnsNamed(const std::string& pattern) const {
 }
 
 Fit::Projection Fit::ProjectParameters(const Candidate& candidate) const {
-  const std::vector<std::string> patterns = candidate.cause->widens(candidate.object);
+  const std::vector<std::string> patterns = candidate.cause->relaxes(candidate.object);
   const auto count = static_cast<Index>(patterns.size());
   MatrixXd select = MatrixXd::Zero(count, static_cast<Index>(names_.size()));
   for (Index i = 0; i < count; ++i) {

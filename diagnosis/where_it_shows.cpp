@@ -45,7 +45,7 @@ std::map<Index, RowVectorXd> EffectOf(const Score& score, const Trace& trace) {
 // Which way the object moves: +1, -1, 0.
 RowVectorXd HeadingOf(const simulation::Object& object, const Trace& trace) {
   if (object.kind() == simulation::Object::Kind::kPivot && trace.linkage) {
-    return trace.linkage->turning.row(object.first());
+    return trace.linkage->heading.row(object.first());
   }
   if (object.IsOfAxes()) return trace.heading.row(object.first());
   return RowVectorXd::Zero(trace.rows());

@@ -176,6 +176,21 @@ void CheckColumnNames(const std::vector<std::string>& names, std::string_view pl
   }
 }
 
+std::vector<std::string_view> KnownKinds() {
+  std::vector<std::string_view> kinds;
+  for (const KindRule& rule : KindRules()) kinds.push_back(rule.kind);
+  return kinds;
+}
+
+std::vector<std::string> RequiredColumns(std::string_view kind) {
+  std::vector<std::string> columns;
+  for (const KindRule& rule : KindRules()) {
+    if (rule.kind != kind) continue;
+    for (const auto& names : rule.required) columns.push_back(names.front());
+  }
+  return columns;
+}
+
 void CheckHeader(const std::string& header, const std::vector<std::string>& names,
                  const Places& places) {
   toml::table table;

@@ -27,6 +27,11 @@ struct Places {
 // not UTF-8.
 void CheckColumnNames(const std::vector<std::string>& names, std::string_view place);
 
+// The kinds that a header may state.
+std::vector<std::string_view> KnownKinds();
+// A column of each that a kind requires; of several names that would do the first.
+std::vector<std::string> RequiredColumns(std::string_view kind);
+
 // Throws InputError when the header is not TOML, its kind is unknown, or `names` lack a column that
 // the kind requires.
 void CheckHeader(const std::string& header, const std::vector<std::string>& names,

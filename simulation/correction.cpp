@@ -45,7 +45,7 @@ Sums SumsOf(Trace& trace, const std::vector<ModelledCause>& causes, const Origin
     if (!each.cause->columns) continue;
     const auto [coefficients, shape] = each.cause->RecallFrom(each.values);
     const auto columns = each.cause->columns(trace, each.object, shape);
-    const bool instrument = each.cause->SeatAt(each.object) == Seat::kInstrument;
+    const bool instrument = each.cause->CorrectedAt(each.object) == CorrectedBy::kInstrument;
     MatrixXd& sum = instrument ? sums.instrument : sums.machine;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       for (const auto& [stage, values] : columns[i].stages()) {

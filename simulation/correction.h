@@ -8,7 +8,7 @@
 //   reading   off the gaps of the probes
 //   encoder   off the angles of the pivots
 //   tool, tip into the angles: to first order those at which the nominal linkage finds the ball
-//             where it would be without the cause; likewise a late clock, and a cause that widens
+//             where it would be without the cause; likewise a late clock, and a cause that relaxes
 //             parameters of the linkage
 //   motion    of an axis: to the positions, for there the axes really were. In a sweep only that
 //             along the swept axis; what the others do the probes see: off the gaps, as the nominal

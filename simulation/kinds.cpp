@@ -6,24 +6,14 @@
 #include <algorithm>
 
 #include "failure/failure.h"
-#include "simulation/arm/arm_kind.h"
-#include "simulation/linkage/linkage_kind.h"
-#include "simulation/points/length_kind.h"
-#include "simulation/points/plate_kind.h"
-#include "simulation/points/reference_kind.h"
-#include "simulation/shaft/shaft_kind.h"
-#include "simulation/sweep/sweep_kinds.h"
 
 namespace abbe::simulation {
 namespace {
 
-// A special case stands before the kind that would take it too: an arm is a linkage without axes,
-// a shaft may be recorded as a dwell.
 std::vector<const RunKind*>& Kinds() {
-  static std::vector<const RunKind*> kinds{
-      &SweepKind(), &ArmKind(),   &LinkageKind(), &ReferenceKind(), &LengthKind(),
-      &PlateKind(), &ShaftKind(), &DwellKind(),   &GapStepsKind(),
-  };
+#define ABBE_LIST_KIND(name) &name(),
+  static std::vector<const RunKind*> kinds{ABBE_RUN_KINDS(ABBE_LIST_KIND)};
+#undef ABBE_LIST_KIND
   return kinds;
 }
 

@@ -7,6 +7,25 @@
 
 namespace abbe::simulation {
 
+// A special case stands before the kind that would take it too: an arm is a linkage without axes,
+// a shaft may be recorded as a dwell. Each is a function that a folder defines.
+// clang-format off
+#define ABBE_RUN_KINDS(KIND) \
+  KIND(SweepKind) \
+  KIND(ArmKind) \
+  KIND(LinkageKind) \
+  KIND(ReferenceKind) \
+  KIND(LengthKind) \
+  KIND(PlateKind) \
+  KIND(ShaftKind) \
+  KIND(DwellKind) \
+  KIND(GapStepsKind)
+// clang-format on
+
+#define ABBE_DECLARE_KIND(name) const RunKind& name();
+ABBE_RUN_KINDS(ABBE_DECLARE_KIND)
+#undef ABBE_DECLARE_KIND
+
 const std::vector<const RunKind*>& RunKinds();
 
 // The first kind that takes the recording. InputError where none does.

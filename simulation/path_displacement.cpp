@@ -28,7 +28,7 @@ Trace TraceOf(const Eigen::Matrix3Xd& path, double feed) {
 }  // namespace
 
 bool ActsOnPath(const ModelledCause& cause) {
-  return cause.cause->SeatAt(cause.object) == Seat::kMotion &&
+  return cause.cause->CorrectedAt(cause.object) == CorrectedBy::kMotion &&
          cause.cause->follows == Follows::kPath;
 }
 

@@ -21,8 +21,8 @@ namespace abbe::simulation {
 
 struct PathAbout {
   std::string machine;
-  double started = 0.0;                       // s since 1970
-  std::map<std::string, double> temperature;  // by column
+  double started = 0.0;                            // s since 1970
+  std::map<std::string, double> temperature = {};  // by column
 };
 
 // A recording's header: what there is to say, then its table [mounting].

@@ -7,8 +7,8 @@
 // detail for a diagnosis (`Prepare`) or condensed for an error map (`ForMap`). It also knows how to
 // take causes out of a recording, which rows to hold out, what a planned run reads and which runs
 // could be made next. Whatever a kind does not override, it does not need.
-// A new kind is a folder with a RunKind and a line in kinds.cpp; its required columns are a line in
-// recording/check.cpp.
+// A new kind is a folder with a RunKind and a line in kinds.h; the columns that its recordings must
+// have are a line in recording/check.cpp.
 // Units: SI; those of recordings as docs/recordings.md has them. Failure: InputError naming the
 // recording, for a run that contradicts itself, the machine file or its kind.
 #pragma once

@@ -17,8 +17,8 @@ RowVectorXd Trace::BacklashLag(int which, double width) const {
 }
 
 RowVectorXd Trace::PivotBacklashLag(int pivot, double width) const {
-  if (width <= 0.0) return -0.5 * linkage->turning.row(pivot);
-  const MatrixXd& aside = linkage->aside;
+  if (width <= 0.0) return -0.5 * linkage->heading.row(pivot);
+  const MatrixXd& aside = linkage->angle_bulge;
   return ShownPlayOf(
       linkage->angles.row(pivot), *this, width,
       aside.size() > 0 ? aside.middleRows(pivot * kWaySteps, kWaySteps) : MatrixXd{});
@@ -41,9 +41,9 @@ void Trace::SetAngles(const MatrixXd& angles) {
   constexpr double kPivotBand = 50e-6;  // rad: more than an encoder trembles
   if (!linkage) linkage.emplace();
   linkage->angles = angles;
-  linkage->turning.resize(angles.rows(), angles.cols());
+  linkage->heading.resize(angles.rows(), angles.cols());
   for (Index pivot = 0; pivot < angles.rows(); ++pivot) {
-    linkage->turning.row(pivot) = HeadingOf(angles.row(pivot), kPivotBand);
+    linkage->heading.row(pivot) = HeadingOf(angles.row(pivot), kPivotBand);
   }
 }
 

@@ -39,7 +39,7 @@ struct Trace {
   Eigen::VectorXd time;   // s since the recording began
   Eigen::VectorXd clock;  // s since the first recording began; like `time` before CountFrom
   // Readings in each row, s from the first to the last of them; empty: a row is a reading.
-  Eigen::VectorXd samples, lasting;
+  Eigen::VectorXd samples, duration;
   bool averages_known = true;  // else a reading may be a mean over an unknown time
   bool continuous = false;     // one instrument read the rows one after the other
   OnTheWay on_the_way = OnTheWay::kNever;

@@ -15,7 +15,6 @@
 namespace abbe::simulation {
 namespace {
 
-using LinkageRun;
 using Eigen::Index;
 using Eigen::VectorXd;
 

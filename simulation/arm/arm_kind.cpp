@@ -1,5 +1,10 @@
-#include "simulation/arm/arm_kind.h"
-
+// An arm before a reference instrument (arm_run.h).
+//
+// Noise of a pose: that of the encoders, of the instrument (ref_u_um or linkage.noise.reference_um)
+// and of how the arm repeats (linkage.noise.repeatability_um). Where the instrument stands is found
+// from the poses; runs with the same mounting.base in their header share it. Poses far off what the
+// arm's geometry makes of all others are left out as outliers (arm_baseline.h); the worst are noted
+// with row and size. Failure: that of ReadLinkageRun and of FitArm.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,7 +16,8 @@
 #include "failure/failure.h"
 #include "simulation/arm/arm_baseline.h"
 #include "simulation/arm/arm_run.h"
-#include "simulation/linkage/linkage_kind.h"
+#include "simulation/kinds.h"
+#include "simulation/linkage/linkage_kinds.h"
 #include "simulation/linkage/linkage_trace.h"
 
 namespace abbe::simulation {
@@ -83,7 +89,7 @@ LinkageRun Without(const LinkageRun& run, const std::vector<Index>& far) {
   return Selection(run, kept);
 }
 
-class Arm : public RunKind {
+class ArmRuns : public RunKind {
  public:
   std::string_view name() const override { return "arm"; }
   bool Takes(const Recording& head) const override { return IsArm(head); }
@@ -95,7 +101,7 @@ class Arm : public RunKind {
   PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel&,
                        const Instruments& on, const FactsByRun& known) const override {
     const relm::LinkageSettings& settings = on.LinkageFor(recording.name);
-    LinkageRun run = AtMost(MeansOfStays(ReadLinkageRun(recording, settings)), kMostPoses);
+    LinkageRun run = AtMost(MeansOfStays(ReadLinkageRun(recording, settings)), kMostDiagnosedPoses);
     const double again = settings.noise.repeatability;
     run.reference_sd = (run.reference_sd.array().square() + again * again).sqrt();
     const auto found = known.find(run.name);
@@ -147,7 +153,7 @@ class Arm : public RunKind {
 }  // namespace
 
 const RunKind& ArmKind() {
-  static const Arm kind;
+  static const ArmRuns kind;
   return kind;
 }
 

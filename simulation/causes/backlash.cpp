@@ -22,7 +22,7 @@ Cause Backlash() {
         const int axis = object.first();
         return {InStage(trace, Positioning(axis), trace.BacklashLag(axis, SizeOf(width)))};
       },
-      .follows_size = true,
+      .amount = Amount::kFollowsItsSize,
   };
 }
 

@@ -23,7 +23,7 @@ Cause CapFriction() {
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (trace.pivots() == 0) return {};
         Disturbance drag = NoDisturbance(trace);
-        for (int k = 0; k < 3; ++k) drag.row(kToolStage + k) = -trace.linkage->ball_way.row(k);
+        for (int k = 0; k < 3; ++k) drag.row(kToolStage + k) = -trace.linkage->cap_direction.row(k);
         return {drag};
       },
   };

@@ -26,8 +26,8 @@ Cause CapTrailing() {
         const Eigen::RowVectorXd feed = trace.velocity.colwise().norm();
         Disturbance behind = NoDisturbance(trace);
         for (int k = 0; k < 3; ++k) {
-          behind.row(kToolStage + k) =
-              -trace.linkage->ball_way.row(k).array() * feed.array() / (feed.array() + shape[0]);
+          behind.row(kToolStage + k) = -trace.linkage->cap_direction.row(k).array() * feed.array() /
+                                       (feed.array() + shape[0]);
         }
         return {behind};
       },

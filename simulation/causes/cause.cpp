@@ -39,22 +39,22 @@ std::vector<std::string> Scene::Sensors() const {
 
 VectorXd Cause::ValuesOf(const VectorXd& found, const VectorXd& shape) const {
   if (tell) return tell(found, shape);
-  if (follows_size) return found;
+  if (FollowsItsSize()) return found;
   VectorXd values(found.size() + shape.size());
   values << found, shape;
   return values;
 }
 
 Recalled Cause::RecallFrom(const VectorXd& values) const {
-  if (whole) return {VectorXd::Ones(1), {}};
-  if (follows_size) return {values, values};
+  if (IsBinary()) return {VectorXd::Ones(1), {}};
+  if (FollowsItsSize()) return {values, values};
   if (recall) return recall(values);
   return {values.head(coefficients()), values.tail(values.size() - coefficients())};
 }
 
-Seat Cause::SeatAt(const Object& object) const {
-  if (in_map) return Seat::kMap;
-  return object.IsOfAxes() ? Seat::kMotion : Seat::kInstrument;
+CorrectedBy Cause::CorrectedAt(const Object& object) const {
+  if (in_map) return CorrectedBy::kMap;
+  return object.IsOfAxes() ? CorrectedBy::kMotion : CorrectedBy::kInstrument;
 }
 
 std::vector<Object> AxesOf(const Scene& scene) {
@@ -102,7 +102,7 @@ std::vector<Disturbance> LineInStage(const Trace& trace, Eigen::Index stage, dou
   for (Eigen::Index row = 0; row < trace.samples.size(); ++row) {
     const double n = trace.samples[row];
     if (n <= 1.0) continue;
-    const double half = 0.5 * turn * trace.lasting[row] / (n - 1.0), sine = std::sin(half);
+    const double half = 0.5 * turn * trace.duration[row] / (n - 1.0), sine = std::sin(half);
     const double kept = std::abs(sine) < 1e-9 ? std::cos(n * half) / std::cos(half)
                                               : std::sin(n * half) / (n * sine);
     for (Disturbance& wave : waves) wave.row(stage)[row] *= kept;

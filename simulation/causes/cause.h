@@ -8,15 +8,15 @@
 // that it touches. It is linear in its coefficients (a width, a gain, a sine and a cosine) and may
 // have a shape besides (a period, a time constant, an order, an instant), which is searched over
 // `shapes`. Where what it does is not quite in proportion to its size (a play, a delay), the shape
-// is the size around which the column is taken, and none for a small one: `follows_size`.
+// is the size around which the column is taken, and none for a small one: Amount::kFollowsItsSize.
 // All coefficients are 0 when the cause is absent.
 // Some causes are already parameters of the simulation, within a tolerance (squareness, the
-// eccentricity of an encoder): these name the parameters that they set free in `widens` and have no
+// eccentricity of an encoder): these name the parameters that they set free in `relaxes` and have no
 // columns.
 // Keys: the names, units and signs by which files and reports know a cause; `tell` works them out
 // of coefficients and shape, `recall` goes back. Units: SI inside; CauseKey::unit is what one unit
 // of the key is in SI.
-// A new cause is one file here and one line in registry.cpp.
+// A new cause is one file here and one line in registry.h.
 #pragma once
 
 #include <Eigen/Core>
@@ -66,12 +66,22 @@ struct Recalled {
 // Where a cause sits decides who has to deal with it: an instrument is read without it; a motion
 // that is no function of position is taken out before a map is made, which cannot hold it; what a
 // map can hold stays there, to be compensated.
-enum class Seat { kInstrument, kMotion, kMap };
+enum class CorrectedBy { kInstrument, kMotion, kMap };
 
 // What a cause is a function of besides the readings themselves: positions, speeds and senses of
 // axes and pivots, which a path of commands has; the time on a clock, whose zero is of no meaning
 // to another path (a warm-up, the phase of a vibration); a recorded temperature.
 enum class Follows : unsigned char { kPath, kTime, kTemperature };
+
+// How what a cause does depends on its coefficients.
+enum class Amount : unsigned char {
+  kLinear,
+  kFollowsItsSize,  // the shape is the coefficient around which the columns are taken
+  kBinary,          // there or not: its one coefficient is 1
+  // The coefficients are draws of a random function with the standard deviation shape[0] in each:
+  // that is estimated, they are not what it is known by. Up to shape[1] it is as stated.
+  kRandomField,
+};
 
 struct Cause {
   using Objects = std::function<std::vector<Object>(const Scene&)>;
@@ -79,7 +89,7 @@ struct Cause {
                                                          const Eigen::VectorXd& shape)>;
   using Shapes = std::function<std::vector<Eigen::VectorXd>(const Scene&)>;
   using Nearer = std::function<std::vector<Eigen::VectorXd>(const Scene&, const Eigen::VectorXd&)>;
-  using Widens = std::function<std::vector<std::string>(const Object& object)>;
+  using Relaxes = std::function<std::vector<std::string>(const Object& object)>;
   using Tell = std::function<Eigen::VectorXd(const Eigen::VectorXd& coefficients,
                                              const Eigen::VectorXd& shape)>;
   using Recall = std::function<Recalled(const Eigen::VectorXd& values)>;
@@ -93,19 +103,15 @@ struct Cause {
   Columns columns = {};
   Shapes shapes = {};  // none: no shape
   Nearer nearer = {};  // those about one of the shapes, closer together; none: by halving the steps
-  Widens widens = {};  // none: columns
-  Tell tell = {};      // none: the coefficients are the keys, then the shape
-  bool follows_size = false;
+  Relaxes relaxes = {};  // the parameters whose priors it relaxes; none: columns
+  Tell tell = {};        // none: the coefficients are the keys, then the shape
+  Amount amount = Amount::kLinear;
   bool fixed_shapes = false;  // nothing between those tried
   bool one_event = false;     // cannot be held against other passes
-  bool whole = false;         // there or not: its one coefficient is 1
   Recall recall = {};         // of the values that `tell` gives; none: as without `tell`
   // Sine and cosine of shape[0] times the angle of a pivot: their phase is known no better than the
   // zero of its encoder.
-  bool graduated = false;
-  // Its coefficients are draws of a random function with the standard deviation shape[0] in each:
-  // that is estimated, they are not what it is known by. Up to shape[1] it is as stated.
-  bool drawn = false;
+  bool phase_follows_encoder_zero = false;
   bool in_map = false;  // one of the 21 errors, a function of position
   Follows follows = Follows::kPath;
   // The stage in which it is a line in time: its shape is a frequency, looked for among all that
@@ -113,11 +119,14 @@ struct Cause {
   LineIn line_in = {};
 
   Eigen::Index coefficients() const { return plausible.size(); }
+  bool FollowsItsSize() const { return amount == Amount::kFollowsItsSize; }
+  bool IsBinary() const { return amount == Amount::kBinary; }
+  bool IsRandomField() const { return amount == Amount::kRandomField; }
   // SI values in the order of the keys.
   Eigen::VectorXd ValuesOf(const Eigen::VectorXd& found, const Eigen::VectorXd& shape) const;
   // The way back.
   Recalled RecallFrom(const Eigen::VectorXd& values) const;
-  Seat SeatAt(const Object& object) const;
+  CorrectedBy CorrectedAt(const Object& object) const;
 };
 
 // The objects that a scene offers: "X" ..., "XY" ..., "probe_a" ..., "pivot_1" ...

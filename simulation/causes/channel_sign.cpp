@@ -21,7 +21,7 @@ Cause ChannelSign() {
                         2.0 * (trace.head->gap.row(probe).array() - trace.head->zero[probe]))};
       },
       .tell = [](const Eigen::VectorXd&, const Eigen::VectorXd&) -> Eigen::VectorXd { return {}; },
-      .whole = true,
+      .amount = Amount::kBinary,
   };
 }
 

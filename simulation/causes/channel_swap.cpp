@@ -38,7 +38,7 @@ Cause ChannelSwap() {
         return {swapped};
       },
       .tell = [](const Eigen::VectorXd&, const Eigen::VectorXd&) -> Eigen::VectorXd { return {}; },
-      .whole = true,
+      .amount = Amount::kBinary,
   };
 }
 

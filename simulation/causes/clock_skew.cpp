@@ -36,7 +36,7 @@ Cause ClockSkew() {
         }
         return {late};
       },
-      .follows_size = true,
+      .amount = Amount::kFollowsItsSize,
   };
 }
 

@@ -13,7 +13,7 @@ Cause EncoderEccentricity() {
       .keys = {{"sin_urad", 1e-6, -20000.0, 20000.0}, {"cos_urad", 1e-6, -20000.0, 20000.0}},
       .plausible = Eigen::VectorXd::Constant(2, 200e-6),
       .objects = PivotsOf,
-      .widens = [](const Object& object) -> std::vector<std::string> {
+      .relaxes = [](const Object& object) -> std::vector<std::string> {
         return {"eccentricity." + object.name() + "_sin_1",
                 "eccentricity." + object.name() + "_cos_1"};
       },

@@ -35,7 +35,7 @@ Cause EncoderSubdivision() {
       .recall = [](const Eigen::VectorXd& values) -> Recalled {
         return {values.tail(2), values.head(1)};
       },
-      .graduated = true,
+      .phase_follows_encoder_zero = true,
   };
 }
 

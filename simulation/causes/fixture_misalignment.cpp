@@ -18,7 +18,7 @@ Cause FixtureMisalignment() {
           [](const Scene& scene) {
             return scene.HasSweeps() ? std::vector<Object>{"head"} : std::vector<Object>{};
           },
-      .widens = [](const Object&) -> std::vector<std::string> {
+      .relaxes = [](const Object&) -> std::vector<std::string> {
         return {"head_turn *.u", "head_turn *.s", "head_turn *.n"};
       },
   };

@@ -21,7 +21,7 @@ Cause JointHysteresis() {
         return {
             InStage(trace, kEncoderStage + pivot, -trace.PivotBacklashLag(pivot, SizeOf(width)))};
       },
-      .follows_size = true,
+      .amount = Amount::kFollowsItsSize,
   };
 }
 

@@ -15,7 +15,7 @@ Cause LinkGravityBend() {
       .keys = {{"compliance_urad", 1e-6, -20000.0, 20000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 200e-6),
       .objects = PivotsOf,
-      .widens = [](const Object& object) -> std::vector<std::string> {
+      .relaxes = [](const Object& object) -> std::vector<std::string> {
         return {std::string("compliance.") + object.name()};
       },
   };

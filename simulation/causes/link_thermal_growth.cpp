@@ -22,7 +22,7 @@ Cause LinkThermalGrowth() {
       .keys = {{"coefficient_ppm_per_c", 1e-6, -100.0, 100.0}},
       .plausible = Eigen::VectorXd::Constant(1, 10e-6),
       .objects = LinksOf,
-      .widens = [](const Object& object) -> std::vector<std::string> {
+      .relaxes = [](const Object& object) -> std::vector<std::string> {
         return {object.first() == 0 ? "expansion.after_pivot_2" : "expansion.after_pivot_3"};
       },
       .follows = Follows::kTemperature,

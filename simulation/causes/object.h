@@ -31,6 +31,7 @@ class Object {
     kNamed
   };
 
+  Object() = default;             // a thing without a name
   Object(std::string_view name);  // NOLINT: a name is an object
   Object(const std::string& name) : Object(std::string_view(name)) {}  // NOLINT
   Object(const char* name) : Object(std::string_view(name)) {}         // NOLINT
@@ -50,7 +51,7 @@ class Object {
 
  private:
   std::string name_, sensor_;
-  std::string::size_type part_size_;
+  std::string::size_type part_size_ = 0;
   Kind kind_ = Kind::kNamed;
   int first_ = 0, second_ = 0;
 };

@@ -13,7 +13,7 @@ Cause ProbePosition() {
       .keys = {{"du_mm", 1e-3, -10.0, 10.0}, {"dv_mm", 1e-3, -10.0, 10.0}},
       .plausible = Eigen::VectorXd::Constant(2, 0.2e-3),
       .objects = ProbesOf,
-      .widens = [](const Object& object) -> std::vector<std::string> {
+      .relaxes = [](const Object& object) -> std::vector<std::string> {
         const std::string entry = std::string("probe_position.") + object.name().back();
         return {entry + "_u", entry + (object.first() < 3 ? "_s" : "_n")};
       },

@@ -8,47 +8,9 @@
 namespace abbe::simulation {
 
 const std::vector<Cause>& Causes() {
-  static const std::vector<Cause> causes{Backlash(),
-                                         LeadscrewCyclic(),
-                                         ScaleError(),
-                                         Squareness(),
-                                         ThermalGrowth(),
-                                         WarmUpDrift(),
-                                         PivotWarmUp(),
-                                         ServoLag(),
-                                         ServoLagMismatch(),
-                                         ReversalSpike(),
-                                         LoadCoupling(),
-                                         Vibration(),
-                                         ProbeGain(),
-                                         ProbeNonlinearity(),
-                                         ProbePosition(),
-                                         ProbeTiltResponse(),
-                                         ProbeCrosstalk(),
-                                         TargetForm(),
-                                         ChannelSwap(),
-                                         ChannelSign(),
-                                         MainsPickup(),
-                                         EncoderEccentricity(),
-                                         EncoderSubdivision(),
-                                         EncoderCountSlip(),
-                                         BearingRoundness(),
-                                         LinkThermalGrowth(),
-                                         LinkGravityBend(),
-                                         JointHysteresis(),
-                                         JointGain(),
-                                         CapFriction(),
-                                         CapTrailing(),
-                                         ClockSkew(),
-                                         FixtureMisalignment(),
-                                         TargetEccentricity(),
-                                         TargetLobing(),
-                                         ShaftErrorMotion(),
-                                         SensorGain(),
-                                         SensorNonlinearity(),
-                                         ShaftClockSkew(),
-                                         StuckChannel(),
-                                         Outliers()};
+#define ABBE_CALL_CAUSE(name) name(),
+  static const std::vector<Cause> causes{ABBE_CAUSES(ABBE_CALL_CAUSE)};
+#undef ABBE_CALL_CAUSE
   return causes;
 }
 

@@ -1,7 +1,6 @@
 // All known causes, in the order in which reports list them.
 //
-// A new cause: one file that defines a function like those below, its line here and in
-// registry.cpp.
+// A new cause: one file that defines its function, and its line here.
 #pragma once
 
 #include <algorithm>
@@ -15,47 +14,54 @@
 
 namespace abbe::simulation {
 
-Cause Backlash();
-Cause LeadscrewCyclic();
-Cause ScaleError();
-Cause Squareness();
-Cause ThermalGrowth();
-Cause WarmUpDrift();
-Cause PivotWarmUp();
-Cause ServoLag();
-Cause ServoLagMismatch();
-Cause ReversalSpike();
-Cause LoadCoupling();
-Cause Vibration();
-Cause ProbeGain();
-Cause ProbeNonlinearity();
-Cause ProbePosition();
-Cause ProbeTiltResponse();
-Cause ProbeCrosstalk();
-Cause TargetForm();
-Cause ChannelSwap();
-Cause ChannelSign();
-Cause MainsPickup();
-Cause EncoderEccentricity();
-Cause EncoderSubdivision();
-Cause EncoderCountSlip();
-Cause BearingRoundness();
-Cause LinkThermalGrowth();
-Cause LinkGravityBend();
-Cause JointHysteresis();
-Cause JointGain();
-Cause CapFriction();
-Cause CapTrailing();
-Cause ClockSkew();
-Cause FixtureMisalignment();
-Cause TargetEccentricity();
-Cause TargetLobing();
-Cause ShaftErrorMotion();
-Cause SensorGain();
-Cause SensorNonlinearity();
-Cause ShaftClockSkew();
-Cause StuckChannel();
-Cause Outliers();
+// clang-format off
+#define ABBE_CAUSES(CAUSE) \
+  CAUSE(Backlash) \
+  CAUSE(LeadscrewCyclic) \
+  CAUSE(ScaleError) \
+  CAUSE(Squareness) \
+  CAUSE(ThermalGrowth) \
+  CAUSE(WarmUpDrift) \
+  CAUSE(PivotWarmUp) \
+  CAUSE(ServoLag) \
+  CAUSE(ServoLagMismatch) \
+  CAUSE(ReversalSpike) \
+  CAUSE(LoadCoupling) \
+  CAUSE(Vibration) \
+  CAUSE(ProbeGain) \
+  CAUSE(ProbeNonlinearity) \
+  CAUSE(ProbePosition) \
+  CAUSE(ProbeTiltResponse) \
+  CAUSE(ProbeCrosstalk) \
+  CAUSE(TargetForm) \
+  CAUSE(ChannelSwap) \
+  CAUSE(ChannelSign) \
+  CAUSE(MainsPickup) \
+  CAUSE(EncoderEccentricity) \
+  CAUSE(EncoderSubdivision) \
+  CAUSE(EncoderCountSlip) \
+  CAUSE(BearingRoundness) \
+  CAUSE(LinkThermalGrowth) \
+  CAUSE(LinkGravityBend) \
+  CAUSE(JointHysteresis) \
+  CAUSE(JointGain) \
+  CAUSE(CapFriction) \
+  CAUSE(CapTrailing) \
+  CAUSE(ClockSkew) \
+  CAUSE(FixtureMisalignment) \
+  CAUSE(TargetEccentricity) \
+  CAUSE(TargetLobing) \
+  CAUSE(ShaftErrorMotion) \
+  CAUSE(SensorGain) \
+  CAUSE(SensorNonlinearity) \
+  CAUSE(ShaftClockSkew) \
+  CAUSE(StuckChannel) \
+  CAUSE(Outliers)
+// clang-format on
+
+#define ABBE_DECLARE_CAUSE(name) Cause name();
+ABBE_CAUSES(ABBE_DECLARE_CAUSE)
+#undef ABBE_DECLARE_CAUSE
 
 const std::vector<Cause>& Causes();
 

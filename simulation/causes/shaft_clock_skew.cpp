@@ -36,7 +36,7 @@ Cause ShaftClockSkew() {
         return {
             OnRim(trace, speed * (0.5 * turned * trace.rim->by_angle_twice - trace.rim->by_angle))};
       },
-      .follows_size = true,
+      .amount = Amount::kFollowsItsSize,
   };
 }
 

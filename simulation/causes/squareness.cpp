@@ -14,7 +14,7 @@ Cause Squareness() {
       .keys = {{"angle_urad", 1e-6, -10000.0, 10000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 100e-6),
       .objects = AxisPairsOf,
-      .widens = [](const Object& object) -> std::vector<std::string> {
+      .relaxes = [](const Object& object) -> std::vector<std::string> {
         if (object == "XY") return {"squareness.C0Y"};
         return {object == "XZ" ? "squareness.B0Z" : "squareness.A0Z"};
       },

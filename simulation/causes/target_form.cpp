@@ -144,11 +144,11 @@ Cause TargetForm() {
       },
       .shapes = [](const Scene& scene) -> std::vector<VectorXd> { return {GridOver(scene)}; },
       .tell = [](const VectorXd&, const VectorXd& shape) -> VectorXd { return shape.head(1); },
+      .amount = Amount::kRandomField,
       .fixed_shapes = true,
       .recall = [](const VectorXd& values) -> Recalled {
         return {VectorXd::Zero(kFaces * kNodes), VectorXd::Constant(1, values[0])};
       },
-      .drawn = true,
   };
 }
 

@@ -27,9 +27,9 @@ VectorXd ParametersMoved(const relm::LinkageModel& model,
   const std::vector<std::string> names = model.Names();
   VectorXd moved = VectorXd::Zero(model.parameters());
   for (const ModelledCause& each : causes) {
-    if (!each.cause->widens) continue;
+    if (!each.cause->relaxes) continue;
     const VectorXd coefficients = each.cause->RecallFrom(each.values).coefficients;
-    const std::vector<std::string> widened = each.cause->widens(each.object);
+    const std::vector<std::string> widened = each.cause->relaxes(each.object);
     for (std::size_t i = 0; i < widened.size(); ++i) {
       const auto found = std::find(names.begin(), names.end(), widened[i]);
       if (found != names.end()) moved[found - names.begin()] += coefficients[static_cast<Index>(i)];

@@ -1,5 +1,4 @@
-#include "simulation/linkage/linkage_kind.h"
-
+// Runs of the linkage that the machine carries: RELM on its axes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +11,9 @@
 #include "recording/good_rows.h"
 #include "settings/toml_text.h"
 #include "settings/unit.h"
+#include "simulation/kinds.h"
 #include "simulation/linkage/linkage_correction.h"
+#include "simulation/linkage/linkage_kinds.h"
 #include "simulation/linkage/linkage_on_machine.h"
 #include "simulation/linkage/linkage_parts.h"
 #include "simulation/linkage/linkage_run.h"
@@ -28,7 +29,7 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using recording::Recording;
 
-constexpr const char* kAnew = "planned anew";  // a base
+constexpr const char* kBaseAnew = "planned anew";
 
 LinkageSimulation Nominal(const Instruments& on, const relm::LinkageSettings& settings) {
   return {on.machine.chain, settings,
@@ -110,7 +111,7 @@ class AfterLinkage {
     runs_.push_back(
         {fmt::format("repeat {} in the reverse order", name), TurnedRound(Again(run, AsItWas()))});
     runs_.push_back({fmt::format("take the linkage's base off, set it up anew and repeat {}", name),
-                     Again(run, {about_.machine, about_.started, BaseLines(kAnew)})});
+                     Again(run, {about_.machine, about_.started, BaseLines(kBaseAnew)})});
     runs_.push_back(
         {fmt::format("repeat {} an hour later, the machine {:.0f} K warmer", name, kWarmer),
          AnHourLater(run, AsItWas())});
@@ -148,7 +149,7 @@ class AfterLinkage {
   std::vector<NextRun> runs_;
 };
 
-class Linkage : public RunKind {
+class LinkageRuns : public RunKind {
  public:
   std::string_view name() const override { return "linkage"; }
   bool Takes(const Recording& head) const override { return head.Kind() == name(); }
@@ -170,7 +171,8 @@ class Linkage : public RunKind {
                        const Instruments& on, const FactsByRun&) const override {
     const relm::LinkageSettings& settings = on.LinkageFor(recording.name);
     const LinkageSimulation nominal = Nominal(on, settings);
-    const LinkageRun run = AtMost(MeansOfStays(ReadLinkageRun(recording, settings)), kMostPoses);
+    const LinkageRun run =
+        AtMost(MeansOfStays(ReadLinkageRun(recording, settings)), kMostDiagnosedPoses);
     return {{{SimulateLinkage(model, on.machine.reference, nominal, run),
               TraceOf(recording, run, nominal)}}};
   }
@@ -227,7 +229,7 @@ std::string BaseLines(const std::string& base) {
 std::string BaseOf(const Recording& run) { return run.HeaderText("mounting.base").value_or(""); }
 
 const RunKind& LinkageKind() {
-  static const Linkage kind;
+  static const LinkageRuns kind;
   return kind;
 }
 

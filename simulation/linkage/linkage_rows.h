@@ -7,11 +7,13 @@ namespace abbe::simulation {
 
 struct LinkageRows {
   Eigen::MatrixXd angles;   // rad, as read, pivots x rows
-  Eigen::MatrixXd turning;  // heading of the pivots: +1, -1; 0: not moved yet
-  Eigen::MatrixXd aside;    // rad: of the pivots on their way to rows that stand; linkage_trace.cpp
-  Eigen::Matrix3Xd ball_way;  // where the cap last moved, in M: a direction; 0: nowhere
-  Eigen::MatrixXd link;       // 3 pivots x rows, in B: the direction of the link after each pivot
-  bool is_arm = false;        // no machine carries it
+  Eigen::MatrixXd heading;  // of the pivots: +1, -1; 0: not moved yet
+  // rad: how far a pivot leaves a straight line between its angles in two rows that stand, when the
+  // axes go straight from one to the other; kWaySteps rows for each pivot, or empty.
+  Eigen::MatrixXd angle_bulge;
+  Eigen::Matrix3Xd cap_direction;  // where the cap last moved, in M: a unit vector; 0: nowhere
+  Eigen::MatrixXd link;  // 3 pivots x rows, in B: the direction of the link after each pivot
+  bool is_arm = false;   // no machine carries it
 };
 
 }  // namespace abbe::simulation

@@ -38,14 +38,14 @@ Eigen::Matrix3Xd WayOf(const Trace& trace, const machine::Chain& chain) {
 
 // The time of a stay is the mean of its readings.
 VectorXd LastingOf(const recording::Recording& recording, const LinkageRun& run) {
-  VectorXd lasting = VectorXd::Zero(run.poses());
+  VectorXd duration = VectorXd::Zero(run.poses());
   const auto time = recording.Find("time_s");
-  if (!time) return lasting;
+  if (!time) return duration;
   for (Index pose = 0; pose < run.poses(); ++pose) {
     if (run.samples[pose] == 1.0) continue;
-    lasting[pose] = 2.0 * (run.time[pose] - (*time)[run.rows[static_cast<std::size_t>(pose)]]);
+    duration[pose] = 2.0 * (run.time[pose] - (*time)[run.rows[static_cast<std::size_t>(pose)]]);
   }
-  return lasting;
+  return duration;
 }
 
 // Pivots whose axes meet have no link between them: they move the next one.
@@ -73,7 +73,7 @@ MatrixXd LinksOf(const LinkageRun& run, const relm::LinkageModel& model) {
 
 // By how much each pivot is beside a straight line between its angles in two rows that stand, when
 // the axes go straight from one to the other: kWaySteps rows for each pivot.
-MatrixXd AsideOf(const Trace& trace, const LinkageRun& run, const LinkageSimulation& linkage) {
+MatrixXd BulgeOf(const Trace& trace, const LinkageRun& run, const LinkageSimulation& linkage) {
   std::vector<Index> stays;
   for (Index row = 1; row < trace.rows(); ++row) {
     const bool moved = (trace.axes.col(row) - trace.axes.col(row - 1)).norm() > kAxisBand;
@@ -81,7 +81,7 @@ MatrixXd AsideOf(const Trace& trace, const LinkageRun& run, const LinkageSimulat
   }
   if (stays.empty()) return {};
   const Index pivots = trace.pivots();
-  MatrixXd aside = MatrixXd::Zero(pivots * kWaySteps, trace.rows());
+  MatrixXd bulge = MatrixXd::Zero(pivots * kWaySteps, trace.rows());
   for (const Index row : stays) {
     LinkageRun way = Selection(run, std::vector<Index>(kWaySteps + 1, row));
     for (Index step = 0; step <= kWaySteps; ++step) {
@@ -97,12 +97,12 @@ MatrixXd AsideOf(const Trace& trace, const LinkageRun& run, const LinkageSimulat
     for (Index pivot = 0; pivot < pivots; ++pivot) {
       for (Index step = 0; step < kWaySteps; ++step) {
         const double s = static_cast<double>(step) / kWaySteps;
-        aside(pivot * kWaySteps + step, row) =
+        bulge(pivot * kWaySteps + step, row) =
             angles(pivot, step) - (1.0 - s) * angles(pivot, 0) - s * angles(pivot, kWaySteps);
       }
     }
   }
-  return aside;
+  return bulge;
 }
 
 // All but the way of the axes and of the ball.
@@ -114,7 +114,7 @@ Trace PivotsOfRun(const recording::Recording& recording, const LinkageRun& run,
   trace.started = StartedOf(recording);
   trace.time = trace.clock = run.time;
   trace.samples = run.samples;
-  trace.lasting = LastingOf(recording, run);
+  trace.duration = LastingOf(recording, run);
   trace.pass = IntegersAt(recording, "pass", run.rows);
   trace.direction = IntegersAt(recording, "direction", run.rows);
   trace.SetAngles(run.readings.angles);
@@ -131,8 +131,8 @@ Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
   trace.continuous = true;
   trace.on_the_way = OnTheWay::kAlways;
   trace.SetAxes(run.commanded);
-  trace.linkage->aside = AsideOf(trace, run, linkage);
-  trace.linkage->ball_way = WayOf(trace, linkage.chain());
+  trace.linkage->angle_bulge = BulgeOf(trace, run, linkage);
+  trace.linkage->cap_direction = WayOf(trace, linkage.chain());
   return trace;
 }
 
@@ -141,7 +141,7 @@ Trace ArmTraceOf(const recording::Recording& recording, const LinkageRun& run,
   Trace trace = PivotsOfRun(recording, run, linkage);
   trace.linkage->is_arm = true;
   trace.SetAxes(run.reference);
-  trace.linkage->ball_way = Eigen::Matrix3Xd::Zero(3, trace.rows());
+  trace.linkage->cap_direction = Eigen::Matrix3Xd::Zero(3, trace.rows());
   return trace;
 }
 

@@ -1,9 +1,9 @@
-#include "simulation/points/length_kind.h"
-
+// Lengths along a line through the volume: step gauges, laser interferometers (length_simulation.h).
 #include <fmt/format.h>
 
 #include <numeric>
 
+#include "simulation/kinds.h"
 #include "simulation/points/length_simulation.h"
 #include "simulation/points/point_correction.h"
 #include "simulation/points/reference_trace.h"

@@ -1,5 +1,5 @@
-#include "simulation/points/plate_kind.h"
-
+// A hole plate in one or more set-ups (plate_simulation.h), each a run of its own.
+#include "simulation/kinds.h"
 #include "simulation/points/plate_simulation.h"
 #include "simulation/points/point_correction.h"
 #include "simulation/points/reference_trace.h"
@@ -9,7 +9,7 @@ namespace {
 
 using recording::Recording;
 
-class Plate : public RunKind {
+class PlateRuns : public RunKind {
  public:
   std::string_view name() const override { return "plate"; }
   bool Takes(const Recording& head) const override { return head.Kind() == name(); }
@@ -48,7 +48,7 @@ class Plate : public RunKind {
 }  // namespace
 
 const RunKind& PlateKind() {
-  static const Plate kind;
+  static const PlateRuns kind;
   return kind;
 }
 

@@ -1,10 +1,17 @@
-#include "simulation/points/reference_kind.h"
-
+// Runs with a reference instrument: positioning tests (ISO 230-2) and any other way of the axes
+// under a grid encoder or a tracker.
+//
+// Axes that a test does not record stand still (reference_run.h); in a diagnosis a target counts
+// with the mean of its readings. Noise: what the recording states, else in a diagnosis how well a
+// positioning test repeats (reference_noise.h), else [linkage.noise] of the machine file. A run
+// without times has its readings a second apart. Failure: that of reference_run.h; InputError where
+// no noise is known.
 #include <fmt/format.h>
 
 #include <memory>
 
 #include "failure/failure.h"
+#include "simulation/kinds.h"
 #include "simulation/points/point_correction.h"
 #include "simulation/points/reference_noise.h"
 #include "simulation/points/reference_simulation.h"
@@ -59,7 +66,7 @@ Eigen::Vector3d NoiseOf(const ReferenceRun& run, const Instruments& on, const Fa
       run.points.name));
 }
 
-class Reference : public RunKind {
+class ReferenceRuns : public RunKind {
  public:
   std::string_view name() const override { return "reference"; }
   bool Takes(const Recording& head) const override { return head.Kind() == name(); }
@@ -99,7 +106,7 @@ class Reference : public RunKind {
 }  // namespace
 
 const RunKind& ReferenceKind() {
-  static const Reference kind;
+  static const ReferenceRuns kind;
   return kind;
 }
 

@@ -1,5 +1,9 @@
-#include "simulation/shaft/shaft_kind.h"
-
+// A turning shaft under gap sensors (shaft_run.h).
+//
+// Each run has its own zeros; the shaft, its axis and the sensors are the same in all runs of a
+// campaign. Noise: u_gap_um of the header, else how well the run repeats from turn to turn
+// (shaft_noise.h); the sense of the shaft: shaft_sense, else what the sensors see. Failure: that of
+// shaft_run.h; InputError where no noise is known.
 #include <fmt/format.h>
 
 #include <limits>
@@ -7,6 +11,7 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "simulation/kinds.h"
 #include "simulation/shaft/shaft_noise.h"
 #include "simulation/shaft/shaft_run.h"
 #include "simulation/shaft/shaft_simulation.h"
@@ -55,7 +60,7 @@ Eigen::VectorXd NoiseOf(const ShaftRun& run, const RimRepeats& repeats) {
       run.name));
 }
 
-class Shaft : public RunKind {
+class ShaftRuns : public RunKind {
  public:
   std::string_view name() const override { return "shaft"; }
   // No dwell of a head has an angle of a shaft.
@@ -111,7 +116,7 @@ class Shaft : public RunKind {
 }  // namespace
 
 const RunKind& ShaftKind() {
-  static const Shaft kind;
+  static const ShaftRuns kind;
   return kind;
 }
 

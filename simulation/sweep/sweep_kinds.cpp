@@ -1,5 +1,5 @@
-#include "simulation/sweep/sweep_kinds.h"
-
+// The kinds of run of the head of five probes: the swept axis goes over its travel and back; nothing
+// moves; at some stations the other axes step to and fro by a known way.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include "recording/good_rows.h"
 #include "settings/toml_text.h"
 #include "settings/unit.h"
+#include "simulation/kinds.h"
 #include "simulation/planned_run.h"
 #include "simulation/sweep/sweep_correction.h"
 #include "simulation/sweep/sweep_run.h"
@@ -162,7 +163,7 @@ class AfterSweep {
   std::string name_;
 };
 
-class Sweep : public HeadKind {
+class SweepRuns : public HeadKind {
  public:
   std::string_view name() const override { return "sweep"; }
 
@@ -204,7 +205,7 @@ class Sweep : public HeadKind {
   }
 };
 
-class Dwell : public HeadKind {
+class DwellRuns : public HeadKind {
  public:
   std::string_view name() const override { return "dwell"; }
 
@@ -214,7 +215,7 @@ class Dwell : public HeadKind {
   }
 };
 
-class GapSteps : public HeadKind {
+class GapStepsRuns : public HeadKind {
  public:
   std::string_view name() const override { return "gap-steps"; }
 
@@ -227,17 +228,17 @@ class GapSteps : public HeadKind {
 }  // namespace
 
 const RunKind& SweepKind() {
-  static const Sweep kind;
+  static const SweepRuns kind;
   return kind;
 }
 
 const RunKind& DwellKind() {
-  static const Dwell kind;
+  static const DwellRuns kind;
   return kind;
 }
 
 const RunKind& GapStepsKind() {
-  static const GapSteps kind;
+  static const GapStepsRuns kind;
   return kind;
 }
 

@@ -104,10 +104,10 @@ SweepRun Standing(const recording::Recording& recording, const std::vector<std::
   const Eigen::VectorXd time = ColumnOf(recording, "time_s", rows);
   run.time = means(time.transpose()).transpose();
   run.samples = readings;
-  run.lasting.resize(count);
+  run.duration.resize(count);
   for (Index row = 0; row < count; ++row) {
     const Standstill& stands = each[static_cast<std::size_t>(row)];
-    run.lasting[row] =
+    run.duration[row] =
         time[static_cast<Index>(stands.last) - 1] - time[static_cast<Index>(stands.first)];
   }
   run.pass.assign(each.size(), 1);
@@ -150,7 +150,7 @@ SweepRun ReadSweepRun(const recording::Recording& recording, const recording::Bl
   run.pass.assign(static_cast<std::size_t>(run.rows()), 0);
   run.time.resize(run.rows());
   run.samples = Eigen::VectorXd::Ones(run.rows());
-  run.lasting = Eigen::VectorXd::Zero(run.rows());
+  run.duration = Eigen::VectorXd::Zero(run.rows());
   const std::vector<int>& directions = means.directions;
   for (Index row = 0; row < run.rows(); ++row) {
     const auto group = static_cast<std::size_t>(row);
@@ -175,14 +175,14 @@ SweepRun ReadSweepDwells(const recording::Recording& recording, const probes::He
   run.position.resize(rows);
   run.time.resize(rows);
   run.samples.resize(rows);
-  run.lasting.resize(rows);
+  run.duration.resize(rows);
   run.gap.resize(probes::kProbes, rows);
   for (Index row = 0; row < rows; ++row) {
     const probes::Dwell& dwell = means.dwells[static_cast<std::size_t>(row)];
     run.position[row] = dwell.position;
     run.time[row] = dwell.time;
     run.samples[row] = static_cast<double>(dwell.samples);
-    run.lasting[row] = dwell.duration;
+    run.duration[row] = dwell.duration;
     run.pass.push_back(dwell.pass);
     run.direction.push_back(dwell.direction);
     run.first_rows.push_back(dwell.first_row);

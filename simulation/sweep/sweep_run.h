@@ -44,7 +44,7 @@ struct SweepRun {
   Eigen::Matrix<double, 6, 3> slopes = Eigen::Matrix<double, 6, 3>::Zero();  // ReadGapSteps
   Eigen::VectorXd position;                                                  // of the swept axis
   Eigen::VectorXd time;                 // s, of each row, or of its first dwell
-  Eigen::VectorXd samples, lasting;     // readings in each row, s from the first to the last
+  Eigen::VectorXd samples, duration;    // readings in each row, s from the first to the last
   std::vector<int> pass;                // 0: a mean over passes
   std::vector<int> direction;           // +1, -1
   std::vector<std::size_t> first_rows;  // of the recording: of the first dwell of each row

@@ -26,7 +26,7 @@ Trace TraceOf(const recording::Recording& recording, const SweepRun& run) {
   trace.started = StartedOf(recording);
   trace.time = trace.clock = run.time;
   trace.samples = run.samples;
-  trace.lasting = run.lasting;
+  trace.duration = run.duration;
   trace.continuous = recording.Kind() == "sweep";
   trace.pass = run.pass;
   trace.direction = run.direction;

@@ -49,7 +49,7 @@ class RealArm : public testing::Test {
     std::vector<Candidate> causes;
     for (const Finding& finding : diagnosis_.findings) {
       const Candidate& cause = finding.score.candidate;
-      if (cause.cause->columns || cause.cause->widens) causes.push_back(cause);
+      if (cause.cause->columns || cause.cause->relaxes) causes.push_back(cause);
     }
     gain_ = HoldOut(*campaign_, {recording_}, causes);
   }

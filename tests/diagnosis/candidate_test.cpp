@@ -29,7 +29,7 @@ TEST(Coarseness, ScalesTheLengthsOfTheAxesOnly) {
   const simulation::Scene scene{{&sweep}, Eigen::Vector3d::Constant(0.1)};
   int lengths = 0;
   for (const Candidate& each : AllCandidates(scene, 20.0)) {
-    if (each.cause->drawn) continue;  // as large as its shape says
+    if (each.cause->IsRandomField()) continue;  // as large as its shape says
     const std::string& id = each.cause->id;
     const bool length = id == "backlash" || id == "leadscrew-cyclic" || id == "reversal-spike" ||
                         id == "vibration" || id == "warm-up-drift";

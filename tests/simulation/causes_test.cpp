@@ -30,9 +30,9 @@ Trace ToAndFro() {
   trace.since_reversal = Eigen::Matrix3Xd::Constant(3, kRows, kLongAgo);
   trace.since_reversal.row(0).tail(3) << 1e-3, 2e-3, 3e-3;
   trace.linkage.emplace();
-  trace.linkage->ball_way = -trace.heading;  // a table
+  trace.linkage->cap_direction = -trace.heading;  // a table
   trace.linkage->angles = trace.axes.topRows(1) * 100.0;
-  trace.linkage->turning = trace.heading.topRows(1);
+  trace.linkage->heading = trace.heading.topRows(1);
   trace.linkage->link = Eigen::MatrixXd::Zero(3, kRows);
   trace.linkage->link.row(2).setOnes();
   trace.sensors = {"temp_table_c"};
@@ -146,11 +146,11 @@ TEST(Causes, WhatIsToldCanBeRecalled) {
     for (Eigen::Index i = 0; i < coefficients.size(); ++i) coefficients[i] *= 1.0 + 0.5 * i;
     const VectorXd shape = cause.shapes ? cause.shapes(scene).front() : VectorXd();
     for (const double sign : {1.0, -1.0}) {
-      if (cause.whole && sign < 0.0) continue;
+      if (cause.IsBinary() && sign < 0.0) continue;
       const VectorXd values = cause.ValuesOf(sign * coefficients, shape);
       ASSERT_EQ(values.size(), static_cast<Eigen::Index>(cause.keys.size())) << cause.id;
       const Recalled recalled = cause.RecallFrom(values);
-      if (cause.drawn) {  // how large its draws are, not which
+      if (cause.IsRandomField()) {  // how large its draws are, not which
         EXPECT_EQ(recalled.shape[0], shape[0]) << cause.id;
         EXPECT_TRUE(recalled.coefficients.isZero(0.0)) << cause.id;
         continue;
@@ -159,7 +159,7 @@ TEST(Causes, WhatIsToldCanBeRecalled) {
                 1e-15 + 1e-12 * coefficients.norm())
           << cause.id;
       // The column of a cause that follows its size is taken around the size that was found.
-      const VectorXd expected = cause.follows_size ? VectorXd(sign * coefficients) : shape;
+      const VectorXd expected = cause.FollowsItsSize() ? VectorXd(sign * coefficients) : shape;
       ASSERT_EQ(recalled.shape.size(), expected.size()) << cause.id;
       EXPECT_EQ(recalled.shape, expected) << cause.id;
     }
@@ -183,12 +183,12 @@ TEST(Causes, APlausibleSizeIsInTheRangeOfItsKeys) {
 }
 
 TEST(Causes, WhoDealsWithACauseIsToldByItsObject) {
-  EXPECT_EQ(Backlash().SeatAt("X"), Seat::kMotion);
-  EXPECT_EQ(ServoLagMismatch().SeatAt("XY"), Seat::kMotion);
-  EXPECT_EQ(ThermalGrowth().SeatAt("X temp_table_c"), Seat::kMotion);
-  EXPECT_EQ(WarmUpDrift().SeatAt("probe_a"), Seat::kInstrument);
-  EXPECT_EQ(ClockSkew().SeatAt("linkage"), Seat::kInstrument);
-  EXPECT_EQ(LeadscrewCyclic().SeatAt("Y"), Seat::kMap);
+  EXPECT_EQ(Backlash().CorrectedAt("X"), CorrectedBy::kMotion);
+  EXPECT_EQ(ServoLagMismatch().CorrectedAt("XY"), CorrectedBy::kMotion);
+  EXPECT_EQ(ThermalGrowth().CorrectedAt("X temp_table_c"), CorrectedBy::kMotion);
+  EXPECT_EQ(WarmUpDrift().CorrectedAt("probe_a"), CorrectedBy::kInstrument);
+  EXPECT_EQ(ClockSkew().CorrectedAt("linkage"), CorrectedBy::kInstrument);
+  EXPECT_EQ(LeadscrewCyclic().CorrectedAt("Y"), CorrectedBy::kMap);
 }
 
 // A recording of everything at once: sweep, pivots and temperatures, or a turning shaft.
@@ -269,10 +269,10 @@ TEST(Causes, FollowsWhatTheySayThatTheyFollow) {
   for (const Cause& cause : Causes()) {
     if (cause.columns) {
       EXPECT_TRUE(seen.contains(&cause)) << cause.id << " has no columns here";
-    } else if (cause.widens) {  // told by the parameter that it sets free
+    } else if (cause.relaxes) {  // told by the parameter that it sets free
       const auto objects = cause.objects(carried);
       ASSERT_FALSE(objects.empty()) << cause.id;
-      const auto widened = cause.widens(objects.front());
+      const auto widened = cause.relaxes(objects.front());
       const bool is_warm = !widened.empty() && widened.front().starts_with("expansion.");
       EXPECT_EQ(cause.follows == Follows::kTemperature, is_warm) << cause.id;
     } else {  // rows that are no readings
@@ -298,8 +298,8 @@ TEST(Causes, EachCauseExplainsItselfAndHasAName) {
   std::set<std::string> words;
   for (const Cause& cause : Causes()) {
     EXPECT_FALSE(cause.words.check.empty()) << cause.id;
-    EXPECT_TRUE(cause.whole || !cause.keys.empty()) << cause.id;
-    EXPECT_TRUE(cause.columns || cause.widens || cause.one_event) << cause.id;
+    EXPECT_TRUE(cause.IsBinary() || !cause.keys.empty()) << cause.id;
+    EXPECT_TRUE(cause.columns || cause.relaxes || cause.one_event) << cause.id;
     words.insert(cause.words.shows);
   }
   EXPECT_EQ(CauseNamed("cap-friction").id, "cap-friction");

@@ -125,7 +125,7 @@ TEST_P(Correcting, LeavesTheCampaignWithoutTheCause) {
     const std::string kind = hidden[i].Kind();
     if (kind != "sweep" && kind != "linkage") continue;
     const auto corrected =
-        Correct(hidden[i], model.causes, model.origin, {mill_, head_, &linkage_});
+        Correct(hidden[i], model.causes, model.origin, {mill_, head_, {}, {}, linkage_});
     const double before = OffClean(hidden[i], Clean()[i]);
     const double after = OffClean(corrected.recording, Clean()[i]);
     (kind == "sweep" ? largest_sweep : largest_path) =
@@ -166,7 +166,7 @@ TEST(CorrectingPoints, TakesADriftOutOfEachKind) {
                                                          {"plate_y_mm", y}});
     }
     const auto corrected = Correct(recording, model.causes, model.origin,
-                                   {mill, probes::ReadHeadSettings(Demo().Root()), nullptr});
+                                   {mill, probes::ReadHeadSettings(Demo().Root()), {}, {}, {}});
     for (std::size_t row = 0; row < 4; ++row) {
       const double lost = kDrift * (1.0 - std::exp(-recording.At("time_s")[row] / kTimeConstant));
       EXPECT_NEAR(corrected.recording.At("y_mm")[row], y[row] + lost, 1e-9) << kind << row;

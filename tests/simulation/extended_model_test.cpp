@@ -95,10 +95,10 @@ TEST(ExtendedModel, EveryCauseCanBeWrittenDown) {
   ExtendedModel model;
   model.machine = "mill";
   Trace head, linkage, shaft;
-  head.gap.resize(5, 1);
+  head.head.emplace();
   head.sensors = {"temp_table_c"};
-  linkage.angles.resize(3, 1);
-  shaft.rim.sensors = 3;
+  linkage.linkage.emplace().angles.resize(3, 1);
+  shaft.rim.emplace().sensors = 3;
   const Scene scene{{&head, &linkage, &shaft}, Eigen::Vector3d::Constant(0.06)};
   for (const Cause& cause : Causes()) {
     if (cause.objects(scene).empty()) continue;  // found row by row

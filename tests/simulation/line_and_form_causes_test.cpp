@@ -22,7 +22,7 @@ Trace Stays(Index readings, double apart) {
   Trace trace;
   trace.time = trace.clock = VectorXd::LinSpaced(7, 1.3, 19.7);
   trace.samples = VectorXd::Constant(7, static_cast<double>(readings));
-  trace.lasting = VectorXd::Constant(7, apart * static_cast<double>(readings - 1));
+  trace.duration = VectorXd::Constant(7, apart * static_cast<double>(readings - 1));
   return trace;
 }
 
@@ -94,9 +94,10 @@ TEST(TargetForm, DrawsHaveTheDeviationAndTheLengthOfTheForm) {
     }
   }
   const MatrixXd covariance = form * form.transpose();
+  const MatrixXd& spots = trace.head->spots;
   for (Index i = 0; i < covariance.rows(); ++i) {
     for (Index j = 0; j < covariance.cols(); ++j) {
-      const double along = trace.spots(0, i % trace.rows()) - trace.spots(0, j % trace.rows()),
+      const double along = spots(0, i % trace.rows()) - spots(0, j % trace.rows()),
                    across = (i / trace.rows() - j / trace.rows()) * 10e-3;
       const double expected =
           std::exp(-0.5 * (along * along + across * across) / (kLength * kLength));

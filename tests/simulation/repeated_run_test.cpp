@@ -61,9 +61,9 @@ TEST(RepeatedRun, WarmerIsEverySensor) {
 }
 
 TEST(PlannedRun, RowsWithoutAPlaceDoNotCount) {
-  auto run = CircleAt(600.0);
+  auto run = diagnosis::CircleAt(600.0);
   run.columns[1].values[3] = std::nan("");
-  const auto planned = Planned(run, DemoInstruments());
+  const auto planned = Planned(run, diagnosis::DemoInstruments());
   EXPECT_EQ(planned.At("flags")[2], 0.0);
   EXPECT_NE(planned.At("flags")[3], 0.0);
   EXPECT_EQ(planned.At("pivot_1_rad")[3], 0.0);

@@ -1,13 +1,9 @@
-// Runs of the linkage that the machine carries: RELM on its axes.
+// What kinds share that are recorded with a linkage.
 #pragma once
 
 #include "simulation/run_kind.h"
 
 namespace abbe::simulation {
-
-const RunKind& LinkageKind();
-
-// For kinds that are recorded with a linkage:
 
 // Runs on one base and under one name of the ball are of one ball (one_ball.h).
 void RefuseOtherBalls(const std::vector<RunSource>& sources, const relm::LinkageSettings& linkage);
@@ -15,7 +11,7 @@ void RefuseOtherBalls(const std::vector<RunSource>& sources, const relm::Linkage
 std::string BaseLines(const std::string& base);
 std::string BaseOf(const recording::Recording& run);
 
-// Poses of a run in a diagnosis: its time is for causes, not for rows.
-inline constexpr Eigen::Index kMostPoses = 1500;
+// Of a run in a diagnosis: its time is for causes, not for rows.
+inline constexpr Eigen::Index kMostDiagnosedPoses = 1500;
 
 }  // namespace abbe::simulation
