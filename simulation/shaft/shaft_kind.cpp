@@ -22,7 +22,7 @@ namespace {
 using recording::Recording;
 
 constexpr Eigen::Index kMostShaftRows = 6000;  // of one run: more tell no more of causes
-constexpr double kRounding = 1e-12;            // m
+constexpr double kLastDigit = 1e-12;            // m
 
 struct ShaftFacts : RunFacts {
   explicit ShaftFacts(RimRepeats of_run) : repeats(std::move(of_run)) {}
@@ -53,7 +53,7 @@ Eigen::VectorXd NoiseOf(const ShaftRun& run, const RimRepeats& repeats) {
         "repeat; record {:.0f} or more, or state u_gap_um in the header",
         run.name, repeats.turns, kLeastTurns));
   }
-  if (repeats.sd.minCoeff() > kRounding) return repeats.sd;
+  if (repeats.sd.minCoeff() > kLastDigit) return repeats.sd;
   throw InputError(fmt::format(
       "{}: a sensor repeats to its last digit in every turn; state the noise of a reading as "
       "u_gap_um in the header",

@@ -25,7 +25,7 @@ TEST(Coarseness, IsOneForMachinesOfTwoMicrometresAndFinerOnes) {
 
 TEST(Coarseness, ScalesTheLengthsOfTheAxesOnly) {
   simulation::Trace sweep;
-  sweep.gap = Eigen::MatrixXd::Ones(5, 2);
+  sweep.head.emplace().gap = Eigen::MatrixXd::Ones(5, 2);
   const simulation::Scene scene{{&sweep}, Eigen::Vector3d::Constant(0.1)};
   int lengths = 0;
   for (const Candidate& each : AllCandidates(scene, 20.0)) {
@@ -99,7 +99,7 @@ TEST(AllCandidates, KnowsNoAxisThatTheMachineLacks) {
 // A cause that stood in the list twice could be its own rival.
 TEST(AllCandidates, NamesEachCauseOnce) {
   auto sweep = TraceThatMoves("XYZ"), other = sweep;
-  sweep.gap = Eigen::MatrixXd::Ones(5, 50);
+  sweep.head.emplace().gap = Eigen::MatrixXd::Ones(5, 50);
   sweep.sensors = other.sensors = {"temp_table_c", "temp_air_c"};
   const simulation::Scene scene{{&sweep, &other}, Eigen::Vector3d::Constant(0.06)};
   std::set<std::string> names;

@@ -74,7 +74,7 @@ TEST_F(TwoRivals, HaveTheEvidenceOfTheirDensities) {
 }
 
 TEST_F(TwoRivals, OneOfThemThereOrNot) {
-  cause_b_.whole = true;
+  cause_b_.amount = simulation::Amount::kBinary;
   const VectorXd m = a_ * coefficients_a_;
   const MatrixXd I = MatrixXd::Identity(m.size(), m.size());
   EXPECT_NEAR(ExpectedEvidence(Information(), Rivals(), 0)[1], MeanLogRatio(I, b_.col(0), m),
@@ -96,7 +96,7 @@ TEST_F(TwoRivals, StayAsTheyAreWhereNothingIsAdded) {
 TEST_F(TwoRivals, HaveTheirProbabilityInTheMeanOfManyRuns) {
   constexpr int kRuns = 40000;
   cause_a_ = CauseOf(VectorXd::Ones(1));
-  cause_a_.whole = cause_b_.whole = true;
+  cause_a_.amount = cause_b_.amount = simulation::Amount::kBinary;
   const VectorXd a = 0.6 * a_.col(0), b = 0.6 * b_.col(0);
   MatrixXd both(a.size(), 2);
   both << a, b;

@@ -131,7 +131,7 @@ TEST(RunCatalogue, OffersWhatTheRunsAtHandAllow) {
 }
 
 TEST(PlannedPaths, ACircleKeepsItsRadiusAndItsFeed) {
-  const auto circle = CirclePath(
+  const auto circle = simulation::CirclePath(
       {.plane = "YZ", .centre = {1e-3, 2e-3, 3e-3}, .radius = 5e-3, .feed = 2e-3, .rows = 90},
       {"mill", 0.0, {}});
   const auto time = circle.At("time_s"), x = circle.At("x_mm"), y = circle.At("y_mm"),
