@@ -8,9 +8,10 @@
 //   largest        ASME B89.4.22: largest distance to the mean centre
 //   range          largest minus smallest distance to the mean centre
 //   two_sigma      ASME B89.4.22: 2 sqrt(sum d_i^2 / (n - 1))
-// Source: ISO 10360-12 and ASME B89.4.22, from memory of the standards. Smallest sphere: that of a
-// few points by all choices of two, three or four on its surface; points beyond it are added until
-// none is (as the active-set methods of Gaertner 1999). Validity: exact up to rounding.
+// Source: ISO 10360-12:2016 (articulated location error, L_Dia) and ASME B89.4.22-2004
+// (single-point articulation); not checked against their texts. Smallest sphere: that of a few
+// points by all choices of two, three or four on its surface; points beyond it are added until none
+// is (as the active-set methods of Gaertner 1999). Validity: exact up to rounding.
 #pragma once
 
 #include <Eigen/Core>

@@ -8,14 +8,14 @@
 // whole circle or an arc; both senses together where they are judged together.
 // Failure: InputError for fewer than three points, lists of different length, numbers that are not
 // finite, or points on a line. NumericalError when the iteration does not settle (deviations that
-// are no longer small beside the radius). Source: ISO 230-4 and ISO 12181-1 (definitions of the two
-// circles), from memory of the standards. Least squares: the squares of the radial deviations, by
-// Gauss-Newton from the algebraic circle of Kasa (1976). Minimum zone: two concentric circles of
-// smallest separation. About a centre c near the solution the distance of point i is r_i - c u_i +
-// O(|c|^2 / r), so each step is a linear programme in (c, outer, inner); it is solved exactly by
-// adding the points that its zone leaves out, and repeated about the new centre until the centre
-// rests. Validity: deviations below some percent of the radius; the zone is then the narrowest of
-// all. Law: minimum zone <= least squares.
+// are no longer small beside the radius). Source: ISO 12181-1:2011, clause 3 (reference
+// circles), and ISO 230-4:2022, clause 3; not checked against their texts. Least squares: the
+// squares of the radial deviations, by Gauss-Newton from the algebraic circle of Kasa (1976).
+// Minimum zone: two concentric circles of smallest separation. About a centre c near the solution
+// the distance of point i is r_i - c u_i + O(|c|^2 / r), so each step is a linear programme in (c,
+// outer, inner); it is solved exactly by adding the points that its zone leaves out, and repeated
+// about the new centre until the centre rests. Validity: deviations below some percent of the
+// radius; the zone is then the narrowest of all. Law: minimum zone <= least squares.
 #pragma once
 
 #include <span>
@@ -33,7 +33,7 @@ struct Circle {
 
 Circle ReferenceCircle(CircleKind kind, std::span<const double> x, std::span<const double> y);
 
-// The figures of ISO 12181-1 about a reference circle; for the minimum zone Error() is RONt.
+// The figures of ISO 12181-1:2011 about a reference circle; for the minimum zone Error() is RONt.
 struct Roundness {
   Circle circle;
   double peak = 0.0;    // largest deviation outwards

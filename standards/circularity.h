@@ -14,8 +14,9 @@
 //                  from the least-squares centre of both paths (the standard's second choice)
 //   D              mean radius, least-squares circle of both paths, minus the nominal radius
 // Failure: InputError as in standards/circle.h, with the sense named, for a radius that is not
-// positive, or when both senses are empty. Source: ISO 230-4, clause on terms, from memory of the
-// standard. Validity: the figures of the points as given: they grow with noise and the number of
+// positive, or when both senses are empty. Source: ISO 230-4:2022, clause 3 (which says circular
+// and radial error where the edition of 2005 said deviation); not checked against its text.
+// Validity: the figures of the points as given: they grow with noise and the number of
 // points. Filter first (closed_profile_filter.h) and state it, with radius, feed and plane.
 #pragma once
 

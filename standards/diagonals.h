@@ -8,8 +8,8 @@
 //   B_d   reversal: largest |forward - backward| at a target
 // Failure: InputError for fewer than two targets, lists of different length or numbers that are not
 // finite.
-// Source: ISO 230-6, from memory of the standard. Validity: good diagonals do not prove a good
-// volume: errors that cancel along all four stay unseen.
+// Source: ISO 230-6:2002, clause 3; not checked against its text. Validity: good diagonals do not
+// prove a good volume: errors that cancel along all four stay unseen.
 #pragma once
 
 #include <span>

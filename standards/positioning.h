@@ -4,8 +4,9 @@
 // x_ij = actual position - target. "up" is the approach in the positive direction, "down" the
 // negative. Units: m, everywhere. Shapes: deviations m x n, one row per target. Failure: InputError
 // for fewer than one target, fewer than two cycles, numbers of cycles that differ between targets
-// or directions, or values that are not finite. Source: ISO 230-2, clauses on definitions; formulas
-// in standards' symbols below, from memory:
+// or directions, or values that are not finite. Source: ISO 230-2:2014, clause 3, in its symbols;
+// not checked against its text, but A of four published tests, and M and the mean reversal of one,
+// come out as their authors state them (tests/apps/reduce_reference_field_test.cpp):
 //   B_i = mean_up - mean_down         B = max |B_i|         mean reversal = mean B_i
 //   R_i up = 4 s_i up                 R_i = max(2 s_i up + 2 s_i down + |B_i|, R_i up, R_i down)
 //   R = max R_i                       E = range of the directional means, both directions together

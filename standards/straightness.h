@@ -5,9 +5,10 @@
 //
 // Frames and units: as in standards/reference_line.h, m and rad. A deviation is measured - line, so
 // it is positive towards +y. Shapes: deviations in the order of the points. Failure: InputError as
-// in ReferenceLine. Source: ISO 230-1, from memory of the standard. Laws: minimum zone <= least
-// squares, and minimum zone <= end points. Validity: the figure of the points as given. It grows
-// with noise and with the number of points; average passes first and state the line.
+// in ReferenceLine. Source: ISO 230-1:2012, clause 3; not checked against its text. Laws: minimum
+// zone <= least squares, and minimum zone <= end points. Validity: the figure of the points as
+// given. It grows with noise and with the number of points; average passes first and state the
+// line.
 #pragma once
 
 #include <span>
