@@ -158,7 +158,7 @@ std::string Advice(const Problem& problem, const Linearization& at) {
                                   const Linearization& at, int passes, const std::string& trouble) {
   const NormalEquations equations(at);
   throw NumericalError(fmt::format(
-      "the fit did not settle in {} passes: the next step is {:.2g} standard uncertainties long, "
+      "the fit did not converge in {} passes: the next step is {:.2g} standard uncertainties long, "
       "parameter {} moves most, source '{}' pulls most{}; {}",
       passes, equations.Length(), layout.names[static_cast<std::size_t>(equations.MovesMost())],
       PullsMost(problem, at, equations.Step(0.0)),

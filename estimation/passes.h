@@ -6,8 +6,8 @@
 //
 // damped after Levenberg and Marquardt while a step does not lower the cost. It has converged when
 // the length is below `settled` (SolveOptions): no parameter would move by more than that share of
-// its standard uncertainty. When the passes are used up, the point is accepted if the length was ever
-// below `tolerated` or is below 0.001. Directions that neither data nor priors determine are left where they are.
+// its standard uncertainty. After the last pass the point is accepted if the length was ever below
+// `tolerated` or is below 0.001. Directions that neither data nor priors determine do not move.
 // Memory: n x n per source, for any number of rows.
 // Failure: NumericalError without convergence; it names the parameter that moves most and the
 // source with the largest gradient.

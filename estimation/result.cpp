@@ -218,7 +218,7 @@ std::string Result::Report(std::size_t most_parameters) const {
   if (status == Status::kNotRun) return WhyNotUsable() + "\n";
   std::string text = fmt::format(
       "fit: {} in {} iterations; {} rows, {} free parameters, redundancy of the data {:.1f}\n",
-      Usable() ? "settled" : "not usable", iterations, rows, names.size(), redundancy);
+      Usable() ? "converged" : "not usable", iterations, rows, names.size(), redundancy);
   fmt::format_to(std::back_inserter(text),
                  "  chi-square {:.1f} with {} degrees of freedom; condition of the scaled Jacobian "
                  "{:.3g}\n",
