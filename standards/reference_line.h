@@ -7,7 +7,7 @@
 // order of points is free. Source: ISO 230-1:2012, clause 3 (end-point, least-squares and
 // minimum-zone reference line); not checked against its text. Minimum zone: the zone's width is a
 // convex function of the slope and smallest where one of its borders lies on an edge of the convex
-// hull; the hull by Andrew's monotone chain, the edges walked in order of slope (rotating
+// hull; the hull by Andrew's monotone chain, the edges visited in order of slope (rotating
 // calipers). Exact, O(n log n). Validity: widths are measured along y, not across the line; at a
 // slope of 1 mrad the two differ by 0.5e-6 of the width.
 #pragma once

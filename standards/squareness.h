@@ -12,8 +12,8 @@
 // Source: ISO 230-1:2012, clause 3 (definition and symbols; not checked against its text); signs
 // derived and tested against rotated direction vectors.
 // Validity: to first order in the slopes (1 mrad: 1e-9 rad). The figure inherits the kind of line:
-// state it. Both lines must stand in one frame: a target that is mounted anew between the two
-// sweeps, or whose faces are not square, adds its own angle.
+// state it. Both lines must be in one frame: a target that is remounted between the two sweeps, or
+// whose faces are not square, adds its own angle.
 #pragma once
 
 #include "standards/reference_line.h"
