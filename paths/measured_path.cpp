@@ -74,7 +74,8 @@ MeasuredPath Commanded(const Recording& recording, const Rows& rows) {
                                              path.poses(), 0.0, static_cast<double>(path.poses()));
   path.feed = Values(recording, rows, "feed_mm_min", kMillimetrePerMinute, 0.0);
   path.pass = Values(recording, rows, "pass", 1.0, 1.0).cast<int>();
-  path.direction = Values(recording, rows, "direction", 1.0, kNoDirection).cast<int>();
+  path.direction =
+      Values(recording, rows, "direction", 1.0, MeasuredPath::kDirectionNotStated).cast<int>();
   return path;
 }
 
