@@ -23,6 +23,8 @@
 namespace abbe::paths {
 
 struct MeasuredPath {
+  static constexpr int kDirectionNotStated = 2;  // the column has -1, 0 and 1
+
   std::string recording;
   std::string instrument;         // "linkage", "reference"
   std::string plane;              // of the header, may be empty
@@ -38,8 +40,6 @@ struct MeasuredPath {
 
   Eigen::Index poses() const { return commanded.cols(); }
 };
-
-constexpr int kNoDirection = 2;
 
 // `p_MT` belongs to the rows `rows`, as relm::ReadAngles gives them.
 MeasuredPath LinkagePath(const recording::Recording& recording, const machine::Chain& chain,

@@ -29,7 +29,7 @@ std::vector<PartOfRecording> PartsOfRecording(const Recording& recording,
     const ReferenceRun stays = MeansOfStays(rows);
     parts.push_back({stays.points, TraceOf(recording, stays), rows.points.rows});
   } else if (recording.Kind() == "plate") {
-    for (const PlateSetUp& setup : ReadPlate(recording)) {
+    for (const PlateSetup& setup : ReadPlate(recording)) {
       parts.push_back({setup.points, TraceOf(recording, setup.points), setup.points.rows});
     }
   } else {

@@ -339,7 +339,7 @@ TEST(Problem, ResultStartsAsNotRun) {
   EXPECT_THAT(result.Report(), HasSubstr("not run"));
 }
 
-TEST(Problem, RefusesAWrongSetUp) {
+TEST(Problem, RefusesAWrongSetup) {
   Problem problem;
   const BlockId p = problem.Add(Block("p", {"x", "y"}));
   const SourceId s = problem.AddSource("s");
