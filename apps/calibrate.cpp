@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/commands.h"
+#include "apps/error_model_option.h"
 #include "apps/machine_file.h"
 #include "apps/machine_recording.h"
 #include "apps/result_file.h"
@@ -27,7 +29,7 @@ using Eigen::Index;
 struct CalibrateArguments {
   std::vector<fs::path> recordings, checks;
   fs::path machine, causes, out, json;
-  std::string model;
+  std::optional<relm::ErrorModel> model;
   std::vector<double> volume_mm;
   bool displacement = false, mapped = false, compare = false, study = false, quiet = false;
   int poses = 0;
@@ -48,9 +50,8 @@ class Calibration {
       throw InputError(fmt::format("{}: has no table [linkage]; describe the linkage there",
                                    arguments.machine.string()));
     }
-    options_.model = !arguments.model.empty() ? fusion::ErrorModelNamed(arguments.model)
-                     : arguments.mapped       ? relm::ErrorModel::kPublishedWithBearing
-                                              : relm::ErrorModel::kComplete;
+    options_.model = arguments.model.value_or(
+        arguments.mapped ? relm::ErrorModel::kPublishedWithBearing : relm::ErrorModel::kComplete);
     options_.problem.displacement = arguments.displacement;
     options_.mapped = arguments.mapped;
     options_.folds = arguments.folds;
@@ -129,7 +130,7 @@ class Calibration {
     const auto problem = simulation::MakeLinkageProblem(simulation, {run}, options_.problem);
     const auto seen = fusion::Observe(problem, simulation::SolveLinkage(problem));
     Show(fmt::format("{} poses in {:g} x {:g} x {:g} mm, model \"{}\".\n", run.poses(), mm.x(),
-                     mm.y(), mm.z(), fusion::ErrorModelName(options_.model)));
+                     mm.y(), mm.z(), relm::ErrorModelName(options_.model)));
     Show(SeenTable(seen));
   }
 
@@ -206,8 +207,7 @@ void AddCalibrate(CLI::App& program, int& exit_code) {
   command->add_option("recordings", arguments->recordings,
                       "Recordings of kind linkage or reference");
   command->add_option("--machine", arguments->machine, "Machine file")->required();
-  command->add_option("--model", arguments->model,
-                      "pivots, published, \"published with bearing\" or complete (the default)");
+  AddErrorModelOption(*command, arguments->model);
   AddCausesOption(*command, arguments->causes);
   command->add_flag("--displacement", arguments->displacement,
                     "Nothing is known of the base position");

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "apps/parameters_json.h"
-#include "fusion/calibration_file.h"
+#include "relm/error_model_name.h"
 #include "settings/unit.h"
 
 namespace abbe::apps {
@@ -82,8 +82,8 @@ std::string Published(const std::string& name) {
   if (name == "published") return "5.10 (3D), circle 5.29 (2D)";
   if (name == "published, one cell") return "circle 5.96 (2D)";
   if (name == "published, mapped") return "circle 5.22 (2D)";
-  if (name == "published with bearing") return "circle 4.19 (2D)";
-  if (name == "published with bearing, mapped") return "circle 5.02 (2D)";
+  if (name == "published-with-bearing") return "circle 4.19 (2D)";
+  if (name == "published-with-bearing, mapped") return "circle 5.02 (2D)";
   return "";
 }
 
@@ -113,7 +113,7 @@ ordered_json CalibrationJson(const fusion::CalibrationReport& report,
                       {"kind", "calibration"},
                       {"recordings", recordings},
                       {"machine", report.calibration.machine},
-                      {"model", fusion::ErrorModelName(report.calibration.model)},
+                      {"model", relm::ErrorModelName(report.calibration.model)},
                       {"displacement", report.calibration.displacement},
                       {"poses", report.residuals.size()},
                       {"before", Json(report.before)},
@@ -144,7 +144,7 @@ std::string CalibrationTable(const fusion::CalibrationReport& report,
   std::string text = fmt::format(
       "Linkage calibrated with {} poses of {} recordings, model \"{}\"{}, {} parameters free.\n\n"
       "  ball position, 3D, um                    rms       max\n",
-      report.residuals.size(), runs.size(), fusion::ErrorModelName(report.calibration.model),
+      report.residuals.size(), runs.size(), relm::ErrorModelName(report.calibration.model),
       report.calibration.displacement ? ", displacement form" : "", report.seen.parameters);
   text += Spread("nominal linkage, displacements", report.before);
   text += Spread("calibrated", report.after);

@@ -1,26 +1,20 @@
-// The option --model of the commands that evaluate the linkage.
+// The option --model of the commands that evaluate the linkage; without it `model` stays empty.
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <map>
+#include <optional>
 #include <string>
 
-#include "relm/linkage_settings.h"
+#include "relm/error_model_name.h"
 
 namespace abbe::apps {
 
-inline CLI::Option* AddErrorModelOption(CLI::App& command, relm::ErrorModel& model) {
-  using relm::ErrorModel;
-  const std::map<std::string, ErrorModel> models{
-      {"pivots", ErrorModel::kPivots},
-      {"published", ErrorModel::kPublished},
-      {"published-with-bearing", ErrorModel::kPublishedWithBearing},
-      {"complete", ErrorModel::kComplete}};
+inline CLI::Option* AddErrorModelOption(CLI::App& command, std::optional<relm::ErrorModel>& model) {
   return command
-      .add_option("--model", model,
-                  "Error model: pivots, published, published-with-bearing or complete")
-      ->option_text("NAME [complete]")
-      ->transform(CLI::CheckedTransformer(models));
+      .add_option_function<std::string>(
+          "--model", [&model](const std::string& name) { model = relm::ErrorModelNamed(name); },
+          "Error model: " + relm::ErrorModelNames())
+      ->option_text("NAME [complete]");
 }
 
 }  // namespace abbe::apps

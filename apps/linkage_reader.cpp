@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "fusion/calibration_file.h"
+#include "relm/error_model_name.h"
 #include "relm/tip_path.h"
 #include "settings/unit.h"
 
@@ -61,7 +62,7 @@ nlohmann::ordered_json LinkageReader::Data() const {
   const fusion::Calibration& calibration = calibrated_->calibration();
   nlohmann::ordered_json data{{"parameters", "calibrated"},
                               {"file", name_},
-                              {"model", fusion::ErrorModelName(calibration.model)},
+                              {"model", relm::ErrorModelName(calibration.model)},
                               {"mapped", calibration.mapped.has_value()}};
   if (std::isfinite(calibration.held_out_rms)) {
     data["held_out_rms_um"] = calibration.held_out_rms / settings::kMicrometre;
@@ -78,7 +79,7 @@ std::vector<std::string> LinkageReader::Notes() const {
   const fusion::Calibration& calibration = calibrated_->calibration();
   std::string text =
       fmt::format("the linkage is read with the calibration {}, model \"{}\"{}", name_,
-                  fusion::ErrorModelName(calibration.model), calibration.mapped ? ", mapped" : "");
+                  relm::ErrorModelName(calibration.model), calibration.mapped ? ", mapped" : "");
   if (std::isfinite(calibration.held_out_rms)) {
     text +=
         fmt::format("; held-out rms {:.2f} um", calibration.held_out_rms / settings::kMicrometre);

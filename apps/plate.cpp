@@ -26,9 +26,9 @@ struct PlateArguments {
   bool network = false, fixed_smoothness = false, quiet = false;
 };
 
-std::vector<simulation::PlateSetUp> ReadSetUps(const PlateArguments& arguments,
+std::vector<simulation::PlateSetup> ReadSetups(const PlateArguments& arguments,
                                                const machine::Machine& machine) {
-  std::vector<simulation::PlateSetUp> setups;
+  std::vector<simulation::PlateSetup> setups;
   for (const fs::path& path : arguments.recordings) {
     const recording::Recording recording = ReadRecordingOf(machine, path);
     for (auto& setup : simulation::ReadPlate(recording)) setups.push_back(std::move(setup));
@@ -38,7 +38,7 @@ std::vector<simulation::PlateSetUp> ReadSetUps(const PlateArguments& arguments,
 
 // The same machine in the document's form, which states no uncertainty.
 map::ErrorMap WithNetworks(const map::ErrorMap& map,
-                           const std::vector<simulation::PlateSetUp>& setups) {
+                           const std::vector<simulation::PlateSetup>& setups) {
   return {map.origin(),
           fusion::AsNetworks(map.model(), fusion::StationsOf(setups),
                              machine::NetworkBias::kWithBias, nullptr),
@@ -47,7 +47,7 @@ map::ErrorMap WithNetworks(const map::ErrorMap& map,
 
 int Plate(const PlateArguments& arguments) {
   const machine::Machine machine = ReadMachineOf(arguments.machine);
-  const auto setups = ReadSetUps(arguments, machine);
+  const auto setups = ReadSetups(arguments, machine);
   const machine::VolumetricModel model = fusion::UnknownMachine(machine);
   std::vector<simulation::SimulatedRun> runs;
   runs.reserve(setups.size());

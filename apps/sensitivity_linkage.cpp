@@ -54,7 +54,8 @@ void Print(const relm::LinkageSensitivity& result) {
 int RunLinkageSensitivity(const LinkageSensitivityOptions& options) {
   const MachineFile file = ReadMachineFile(options.machine);
   const relm::LinkageSettings& linkage = file.Linkage();
-  const relm::LinkageModel model = relm::MakeLinkageModel(linkage, options.model);
+  const relm::LinkageModel model =
+      relm::MakeLinkageModel(linkage, options.model.value_or(relm::ErrorModel::kComplete));
   const relm::SensitivityVolume volume = VolumeOf(options);
   const auto poses = relm::PosesInVolume(linkage, volume, options.warmth_c);
   const auto result = relm::AnalyseSensitivity(model, poses, options.run);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "relm/linkage_sensitivity.h"
@@ -10,7 +11,7 @@ namespace abbe::apps {
 
 struct LinkageSensitivityOptions {
   std::filesystem::path machine;
-  relm::ErrorModel model = relm::ErrorModel::kComplete;
+  std::optional<relm::ErrorModel> model;  // complete
   std::vector<double> size_mm{25, 25, 50};
   std::vector<double> centre_mm{0, 0, 0};
   int points = 3;

@@ -1,5 +1,5 @@
 // Time of one inversion of five readings: the closed forms of abbe, and beside them a plain scalar
-// iteration that solves the same equations. Targets: 100 ns for the document's model, 250 ns with
+// iteration that solves the same equations. Targets: 100 ns for the small-angle model, 250 ns with
 // full rotations, one core, no -march=native.
 #include "probes/head_inversion.h"
 
@@ -39,8 +39,8 @@ std::vector<ReadingSet> MakeSets(const Model& model) {
   return sets;
 }
 
-PerProbe<> Document(const HeadErrors<>& e, double d) {
-  return DocumentReadings(abbe::probes::NominalLayout(), MovingBody::kTarget, e, d);
+PerProbe<> SmallAngle(const HeadErrors<>& e, double d) {
+  return SmallAngleReadings(abbe::probes::NominalLayout(), MovingBody::kTarget, e, d);
 }
 PerProbe<> Rigid(const HeadErrors<>& e, double d) {
   return RigidReadings(LinesOf(abbe::probes::NominalLayout()), MovingBody::kTarget, e, d);
@@ -83,13 +83,13 @@ void Run(benchmark::State& state, const Model& model, const Invert& invert) {
   }
 }
 
-void DocumentClosedForm(benchmark::State& state) {
-  Run(state, Document,
-      abbe::probes::DocumentInversion(abbe::probes::NominalLayout(), MovingBody::kTarget));
+void SmallAngleClosedForm(benchmark::State& state) {
+  Run(state, SmallAngle,
+      abbe::probes::SmallAngleInversion(abbe::probes::NominalLayout(), MovingBody::kTarget));
 }
-void DocumentIteration(benchmark::State& state) {
-  Run(state, Document,
-      [](const PerProbe<>& delta, double d) { return Iterate(Document, delta, d); });
+void SmallAngleIteration(benchmark::State& state) {
+  Run(state, SmallAngle,
+      [](const PerProbe<>& delta, double d) { return Iterate(SmallAngle, delta, d); });
 }
 void RigidClosedForm(benchmark::State& state) {
   Run(state, Rigid,
@@ -99,12 +99,12 @@ void RigidIteration(benchmark::State& state) {
   Run(state, Rigid, [](const PerProbe<>& delta, double d) { return Iterate(Rigid, delta, d); });
 }
 void Simplified(benchmark::State& state) {
-  Run(state, Document,
+  Run(state, SmallAngle,
       abbe::probes::SimplifiedInversion(abbe::probes::NominalLayout(), MovingBody::kTarget));
 }
 
-BENCHMARK(DocumentClosedForm);
-BENCHMARK(DocumentIteration);
+BENCHMARK(SmallAngleClosedForm);
+BENCHMARK(SmallAngleIteration);
 BENCHMARK(RigidClosedForm);
 BENCHMARK(RigidIteration);
 BENCHMARK(Simplified);

@@ -1,9 +1,8 @@
-// A residual whose derivatives the compiler works out. The one header of this folder that shows
-// Ceres.
+// A residual with derivatives by automatic differentiation (dual numbers of Ceres).
 //
-// Background: the model is written once as a template over its number type; fed with dual numbers
-// (value plus derivatives) instead of doubles it returns exact derivatives beside the values,
-// without step sizes and without algebra.
+// Background: the model is written once as a template over its number type; evaluated with dual
+// numbers (value plus derivatives) instead of doubles it returns the values and their exact
+// derivatives, without step sizes and without algebra.
 //
 //   struct Decay {                                   // x = [amplitude rate]
 //     std::vector<double> time, reading;
@@ -18,8 +17,8 @@
 //
 // The first template argument is the number of derivatives carried at once: the number of
 // parameters where it is known and below some 30, else 8 to 16 (the model is then evaluated several
-// times). Failure: as of the model's operator(); see residual.h. Cost: each model costs about 3 s
-// of compilation. Include this from few .cpp files, never from a public header.
+// times). Failure: that of the model's operator(); see residual.h. Cost: each model costs about 3 s
+// of compilation. Include it from few .cpp files, never from a public header.
 #pragma once
 
 #include <ceres/jet.h>
@@ -75,6 +74,7 @@ class AutoDiffResidual : public Residual {
   Eigen::Index rows_;
 };
 
+// `rows`: how many values the model writes.
 template <int kAtOnce, class Model>
 std::shared_ptr<const Residual> MakeAutoDiffResidual(Model model, std::size_t rows) {
   return std::make_shared<AutoDiffResidual<Model, kAtOnce>>(std::move(model),

@@ -1,8 +1,9 @@
-// Some rows of another residual: to hold the others out.
+// A selection of the rows of another residual; the others are held out.
 //
 //   run.residual = std::make_shared<ChosenRows>(run.residual, rows);
 //
-// Shapes: the rows in the order in which they are named. Cost: that of all rows.
+// Shapes: `rows` are indices from 0 into the other residual; the result keeps their order. Cost:
+// that of all rows.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// A number that carries its derivatives: for models that work them out row by row.
+// A dual number, value and derivatives, for models that differentiate row by row.
 //
 //   DualNumber<6> x(0.3); x.v[0] = 1.0;         // seed: d/dx_0
 //   const auto y = sin(x);                       // y.a the value, y.v the derivatives

@@ -15,8 +15,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Sums are formed in this many pieces per source, whatever the number of threads, and then added in
-// order: the result is the same to the last bit.
+// Each source is summed in this many pieces, which are added in order: the result is the same to
+// the last bit for any number of threads.
 constexpr std::size_t kPieces = 8;
 
 void Clear(SourceSums& sums, Index columns) {
@@ -31,7 +31,7 @@ void Add(SourceSums& to, const SourceSums& from) {
   to.cost += from.cost;
 }
 
-// Adds the rows of one residual; its local sums are scattered to the columns it touches.
+// Adds the rows of one residual; its sums go to the columns of its own parameters.
 class Accumulator {
  public:
   explicit Accumulator(SourceSums& sums) : sums_(sums) {}

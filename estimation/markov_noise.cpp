@@ -14,7 +14,7 @@ namespace abbe::estimation {
 namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-constexpr Eigen::Index kColumnsAtOnce = 16;  // of right-hand sides that one pass over time takes
+constexpr Eigen::Index kColumnsAtOnce = 16;  // right-hand sides solved in one pass over time
 
 struct Readings {
   std::span<const double> times;
@@ -31,7 +31,7 @@ void CheckLengths(const Readings& readings) {
       static_cast<std::size_t>(readings.size()) != k) {
     throw InputError(
         fmt::format("drift fit: {} times, {} groups, {} rows of values, {} variances; give one of "
-                    "each a reading",
+                    "each per reading",
                     k, readings.groups.size(), readings.size(), readings.white.size()));
   }
 }
@@ -151,7 +151,7 @@ class DriftCovariance {
   double log_determinant_ = 0.0;  // of V
 };
 
-// A' x, A the 0/1 matrix that says which reading is of which group.
+// A' x, A the 0/1 matrix of membership: reading k, group g.
 Eigen::MatrixXd SumByGroup(const Readings& readings, const RowMatrix& x) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(readings.group_count, x.cols());
   for (Eigen::Index k = 0; k < x.rows(); ++k) {
@@ -194,9 +194,8 @@ MarkovNoiseFit FitGroupsUnderDrift(std::span<const double> times, std::span<cons
   const Eigen::LLT<Eigen::MatrixXd> information(GroupInformation(readings, covariance));
   if (information.info() != Eigen::Success) {
     throw NumericalError(
-        fmt::format("drift fit: the {} group values cannot be told from a drift of standard "
-                    "deviation {}; state "
-                    "a smaller one",
+        fmt::format("drift fit: the {} group values cannot be separated from a drift of "
+                    "standard deviation {}; state a smaller one",
                     group_count, drift_sd));
   }
   MarkovNoiseFit fit;

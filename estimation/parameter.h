@@ -1,17 +1,19 @@
-// The one description of unknown numbers: calibration, fusion, diagnosis, files and reports share
-// it.
+// Parameters of an estimation: names, nominal values, priors, estimates and uncertainties, shared
+// by calibration, fusion, diagnosis, files and reports.
 //
-// A block is a handful of parameters of one kind and unit that belong together: the lengths of the
-// links, the coefficients of one error function, the offsets of one run. A parameter is addressed
-// by its full name "block.entry", never by a position in a mask.
+// A block holds a few parameters of one kind and unit: the lengths of the links, the coefficients
+// of one error function, the offsets of one run. A parameter is addressed by its full name
+// "block.entry", never by a position in a mask.
 //
-//   ParameterBlock links{"link", {"mm", 1e-3}, {{"length_1", 0.200, 50e-6}, {"length_2", 0.180,
-//   50e-6}}}; links["length_2"].held = true;      // keeps its value, is not estimated
+//   ParameterBlock links{"link",
+//                        {"mm", 1e-3},
+//                        {{"length_1", 0.200, 50e-6}, {"length_2", 0.180, 50e-6}}};
+//   links["length_2"].held = true;      // keeps its value, is not estimated
 //   links.Values();                     // [0.200 0.180], m
 //
 // Units: SI (or any one coherent set; estimation/ knows no metrology). `unit` is for printing only.
-// Frames: none. Failure: InputError from a name that is not in the block (it lists those that are).
-// A prior is the state of knowledge before the data: a normal distribution around `nominal`.
+// Failure: InputError for a name that is not in the block; the message lists the names that are. A
+// prior is the knowledge before the data: a normal distribution around `nominal`.
 #pragma once
 
 #include <fmt/format.h>
@@ -30,7 +32,7 @@ namespace abbe::estimation {
 inline constexpr double kNoPrior = std::numeric_limits<double>::infinity();
 inline constexpr double kNoTolerance = std::numeric_limits<double>::infinity();
 
-// What a number in SI is printed in: printed = SI / si.
+// The unit in which a number in SI is printed: printed = SI / si.
 struct PrintUnit {
   std::string name;  // empty: a plain number
   double si = 1.0;
@@ -40,12 +42,12 @@ struct Parameter {
   std::string name;
   double nominal = 0.0;
   double prior_sd = kNoPrior;  // standard deviation of the prior around `nominal`
-  double value = nominal;      // before a solve the start, after it the estimate
+  double value = nominal;      // the start before a solve, the estimate after it
   // Standard uncertainty of `value` after a solve; infinite where the data and the prior do not
   // determine it, 0 where it is held, NaN before.
   double uncertainty = std::numeric_limits<double>::quiet_NaN();
-  // The size from which on an error of this parameter matters. Where there is no prior it decides
-  // when a direction counts as not seen (weak_directions.h). It does not pull the estimate.
+  // The largest error of this parameter that does not matter. Without a prior it decides when a
+  // direction counts as weak (weak_directions.h). It has no influence on the estimate.
   double tolerance = kNoTolerance;
   bool held = false;
 };

@@ -17,16 +17,16 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Far below 1: what the data hardly see may be the bottom of a curved valley, where the undamped
-// step leaves the valley and a strong damping creeps.
+// Far below 1: a poorly determined direction may follow a curved valley of the cost, where the
+// undamped step leaves the valley and a strong damping creeps.
 constexpr double kFirstDamping = 1e-10;
-constexpr double kNegligible = 1e-3;  // standard uncertainties: what is left may be left
+constexpr double kNegligible = 1e-3;  // standard uncertainties: accepted after the last pass
 constexpr double kMostDamping = 1e8;
-// A cost is a sum of many squares; two of them are equal when they agree to this.
+// Relative rounding of a cost, a sum of many squares.
 constexpr double kCostRounding = 1e-11;
-constexpr double kFarOff = 3.0;  // times the stated noise
+constexpr double kFarOff = 3.0;  // ratio of scatter to stated noise that the advice mentions
 
-// The normal equations with columns scaled to 1, ready to be solved for any damping.
+// The normal equations with columns scaled to 1, solved for any damping.
 class NormalEquations {
  public:
   explicit NormalEquations(const Linearization& at) : gradient_(at.Gradient()) {
@@ -61,7 +61,7 @@ class NormalEquations {
   // Length of the undamped step in standard uncertainties.
   double Length() const { return std::sqrt(std::max(0.0, -gradient_.dot(undamped_))); }
 
-  // The parameter that the step moves most, on the scale of its own information.
+  // The parameter with the largest step times the root of its own information.
   Index MovesMost() const {
     Index most = 0;
     double largest = -1.0;
@@ -80,7 +80,7 @@ class NormalEquations {
     return -scale_.cwiseProduct(factor.solve(scale_.cwiseProduct(gradient_)));
   }
 
-  // Where rounding hides a direction: it stays where it is.
+  // For the case that rounding hides a direction: the step along it is 0.
   void Decompose() {
     eigen_.compute(scaled_);
     along_ = -eigen_.eigenvectors().transpose() * scale_.cwiseProduct(gradient_);
@@ -92,7 +92,7 @@ class NormalEquations {
 
   VectorXd gradient_, scale_, undamped_;
   MatrixXd scaled_;
-  VectorXd along_;  // empty when the data and the priors see every direction
+  VectorXd along_;  // empty when data and priors determine every direction
   Eigen::SelfAdjointEigenSolver<MatrixXd> eigen_;
 };
 
@@ -116,15 +116,14 @@ VectorXd Moved(const Layout& layout, VectorXd x, const VectorXd& step) {
   return x;
 }
 
-// How many times its stated noise a source scatters, at least 1; less of it where a loss weighs
-// rows.
+// Ratio of the scatter of a source to its stated noise, at least 1. A robust loss lowers it.
 double Excess(const Source& source, const SourceSums& sums) {
   if (source.options.is_prior || source.rows == 0) return 1.0;
   return std::max(1.0, std::sqrt(sums.chi_square / static_cast<double>(source.rows)));
 }
 
-// What is short enough. Where the rows scatter beyond their stated noise, the uncertainties that a
-// step is measured by are too small, and a robust loss comes near its minimum slowly.
+// The largest step that counts as converged. Where the rows scatter beyond their stated noise, the
+// standard uncertainties are too small a scale, and a robust loss approaches its minimum slowly.
 double Short(const Problem& problem, const Linearization& at, double settled) {
   constexpr double kMostExcess = 10.0;
   double chi_square = 0.0, rows = 0.0;
@@ -137,7 +136,7 @@ double Short(const Problem& problem, const Linearization& at, double settled) {
   return settled * std::clamp(excess, 1.0, kMostExcess);
 }
 
-// What to do about a fit that does not settle.
+// Advice for a fit that does not converge.
 std::string Advice(const Problem& problem, const Linearization& at) {
   std::size_t worst = 0;
   double most = 0.0;
@@ -159,7 +158,7 @@ std::string Advice(const Problem& problem, const Linearization& at) {
                                   const Linearization& at, int passes, const std::string& trouble) {
   const NormalEquations equations(at);
   throw NumericalError(fmt::format(
-      "the fit did not settle in {} passes: the next step is {:.2g} standard uncertainties long, "
+      "the fit did not converge in {} passes: the next step is {:.2g} standard uncertainties long, "
       "parameter {} moves most, source '{}' pulls most{}; {}",
       passes, equations.Length(), layout.names[static_cast<std::size_t>(equations.MovesMost())],
       PullsMost(problem, at, equations.Step(0.0)),
@@ -176,7 +175,7 @@ Settled SettleByPasses(const Problem& problem, const Layout& layout, const Solve
   bool tolerable = false;
   std::string trouble;
   NormalEquations equations(now.at);
-  // One pass at least: a linear problem then is exact, however far Ceres went.
+  // One pass at least: it solves a linear problem exactly, also where Ceres stopped early.
   while (now.passes == 0 || equations.Length() > Short(problem, now.at, options.settled)) {
     tolerable |= equations.Length() <= Short(problem, now.at, options.tolerated);
     if (now.passes == options.max_iterations || damping > kMostDamping) {

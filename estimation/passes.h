@@ -1,13 +1,16 @@
-// The part of a solve that decides: steps on the normal equations until nothing is left to go.
+// The final part of a solve: Gauss-Newton steps on the normal equations until convergence.
 //
-// Each pass sums J'J and J'r over all rows (linearization.h) and takes the Gauss-Newton step
-// -(J'J)^-1 J'r, damped after Levenberg and Marquardt while a step does not lower the cost. Its
-// length is measured in standard uncertainties, sqrt(g' (J'J)^-1 g): below `settled` no parameter
-// would move by more than that share of its own. Directions that neither data nor priors see stay
-// where they are. When no pass is left, a thousandth of an uncertainty is near enough.
-// Memory: n x n per source, whatever the number of rows.
-// Failure: NumericalError when it does not settle; it names the parameter that moves most and the
-// source that pulls most.
+// Each pass sums J'J and g = J'r over all rows (linearization.h) and takes the step
+//
+//   -(J'J)^-1 g,   of length sqrt(g' (J'J)^-1 g) in standard uncertainties
+//
+// damped after Levenberg and Marquardt while a step does not lower the cost. It has converged when
+// the length is below `settled` (SolveOptions): no parameter would move by more than that share of
+// its standard uncertainty. After the last pass the point is accepted if the length was ever below
+// `tolerated` or is below 0.001. Directions that neither data nor priors determine do not move.
+// Memory: n x n per source, for any number of rows.
+// Failure: NumericalError without convergence; it names the parameter that moves most and the
+// source with the largest gradient.
 #pragma once
 
 #include <Eigen/Core>

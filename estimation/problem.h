@@ -2,12 +2,12 @@
 //
 // Finds the parameters x that minimise
 //
-//   sum over sources of sum over rows of rho(r_i(x) / sigma_i)  +  sum of ((x_j - nominal_j) /
-//   prior_j)^2
+//   sum_i rho(r_i(x) / sigma_i)  +  sum_j ((x_j - nominal_j) / prior_j)^2
 //
-// with rho(t) = t^2 unless the source has a robust loss. Every row is divided by its stated
-// standard deviation, so the minimum is a chi-square, the inverse of J'J is the covariance in the
-// parameters' own units, and "the data do not see this" has a meaning (weak_directions.h).
+// over all rows i and parameters j, with rho(t) = t^2 unless the row's source has a robust loss.
+// Every row is whitened by its stated standard deviation sigma_i, so the minimum is a chi-square,
+// the inverse of J'J is the covariance in the parameters' own units, and weak directions are
+// measured against the noise (weak_directions.h).
 //
 //   Problem problem;
 //   const BlockId line = problem.Add({"line", {"um", 1e-6}, {{"offset"}, {"slope", 0.0, 1e-3}}});
@@ -17,19 +17,24 @@
 //   fmt::print("{}", result.Report());
 //   result.Value("line.slope");  result.Uncertainty("line.slope");
 //
-// A source is a named group of rows (a run, an instrument): chi-square and redundancy are told per
-// source. `is_prior` marks a source that is knowledge, not data: smoothness, a certificate.
-// Priors of parameters are added by the problem itself, as source "prior".
-// Units: SI, those of the residual for sigma. Shapes: x is the inputs of the residual,
-// concatenated. Failure: InputError for a wrong set-up (names, sizes, deviations). NumericalError
-// from Solve when a residual or a derivative is not finite at the start or the iteration does not
-// settle; it names the source and the parameter. Parameters that nothing determines are no failure:
-// the result is then not usable and names them. Method: Ceres (Levenberg-Marquardt) while its
-// Jacobian fits in `jacobian_bytes`, then passes over the rows that keep only the n x n normal
-// equations, until what is left to go is below `settled` standard uncertainties (more by what the
-// rows scatter beyond their stated noise, up to ten times). Beyond that size it is passes alone:
-// memory does not grow with the rows; start them near the solution (solve a subsample first).
-// Validity: n up to about 1000.
+// A source is a named group of rows (a run, an instrument); the result has chi-square and
+// redundancy per source. `is_prior` marks a source that is prior knowledge, not data: smoothness, a
+// certificate.
+// The problem itself adds the priors of the parameters, as source "prior".
+//
+// Method: Ceres (Levenberg-Marquardt) while its Jacobian fits in `jacobian_bytes`, then passes over
+// the rows that keep only the n x n normal equations (passes.h). A larger problem uses the passes
+// alone: memory does not grow with the rows, but the start must be near the solution (solve a
+// subsample first). The solve has converged when the next step is shorter than `settled` standard
+// uncertainties; where the rows scatter beyond their stated noise the bound grows with the scatter,
+// at most ten times.
+// Units: SI; sigma in the unit of the residual. Shapes: the x of a residual is its inputs,
+// concatenated.
+// Failure: InputError for a wrong set-up (names, sizes, deviations). NumericalError from Solve when
+// a residual or a derivative is not finite at the start or the iteration does not converge; it
+// names the source and the parameter. Undetermined parameters are no failure: the result is then
+// not usable and names them.
+// Validity: up to about 1000 parameters.
 #pragma once
 
 #include <Eigen/Core>
@@ -78,35 +83,38 @@ struct Source {
 struct Term {
   SourceId source;
   std::shared_ptr<const Residual> residual;
-  std::vector<int> entries;            // of all entries of all blocks in order: the residual's x
+  std::vector<int> entries;            // indices into all entries of all blocks: the residual's x
   Eigen::VectorXd standard_deviation;  // 1 x 1 for all rows, or one each
   Eigen::Index first_row;              // within the source
 };
 
 struct SolveOptions {
   int max_iterations = 100;
-  int threads = 0;         // 0: all; the result does not depend on it
+  int threads = 0;         // 0: all; the result is the same for any number
   double settled = 1e-6;   // standard uncertainties
-  double tolerated = 0.0;  // the same: near enough, for a fit that settles in none of them
+  double tolerated = 0.0;  // accepted in place of `settled` after the last iteration
   std::size_t jacobian_bytes = 200'000'000;
-  bool weak_directions = true;  // look for them, and for the condition: costs several eigensystems
+  bool weak_directions = true;  // find them and the condition: costs several eigensystems
 };
 
 class Problem {
  public:
+  // Block and source names must be unique.
   BlockId Add(ParameterBlock block);
   SourceId AddSource(std::string name, const SourceOptions& options = {});
+  // Adds the rows of `residual` to `source`, with one standard deviation for all rows or one each.
   void Add(SourceId source, std::shared_ptr<const Residual> residual,
            const std::vector<Input>& inputs, double standard_deviation);
   void Add(SourceId source, std::shared_ptr<const Residual> residual,
            const std::vector<Input>& inputs, Eigen::VectorXd standard_deviations);
 
-  // `at`: where asked for, the problem made linear at the solution (linearization.h).
+  // `at`, if given, receives the problem linearised at the solution (linearization.h).
   Result Solve(const SolveOptions& options = {}, Linearization* at = nullptr) const;
 
-  // To hold, free and start parameters between solves. The entries must stay the same ones.
+  // For holding, freeing and starting parameters between solves. Entries must not be added or
+  // removed.
   ParameterBlock& Block(BlockId id) { return blocks_[static_cast<std::size_t>(id.index)]; }
-  BlockId Find(const std::string& block) const;
+  BlockId Find(const std::string& block) const;  // InputError when there is none
 
   const std::vector<ParameterBlock>& blocks() const { return blocks_; }
   const std::vector<Source>& sources() const { return sources_; }

@@ -1,9 +1,8 @@
-// What a fit makes small: the difference between what was measured and what the parameters predict.
+// The residual of a fit: predicted minus measured values, as a function of the parameters.
 //
-// A residual takes the parameters it depends on, as one vector x in the order in which they were
-// named when it was added to the problem, and gives `Rows()` numbers in SI units, and their
-// derivatives. It is not whitened: the problem divides it by the standard deviation that is stated
-// with it.
+// The input is one vector x of the parameters the residual depends on, in the order in which they
+// were given when it was added to the problem; the output is `Rows()` numbers in SI units and their
+// derivatives. It is not whitened: the problem divides it by the standard deviation stated with it.
 //
 //   class LineResidual : public Residual {           // x = [offset slope]
 //    public:
@@ -20,9 +19,9 @@
 // memory. For derivatives without algebra see autodiff_residual.h.
 // Threads: Evaluate is called from several at once. Shapes: values n x 1 and jacobian n x x.size()
 // arrive with their size set; every element must be written.
-// Failure: throw NumericalError where the parameters are outside the model's domain (out of reach,
-// singular): at the start it is reported with the source's name, later the step is taken back.
-// Values that are not finite are treated the same way.
+// Failure: Evaluate throws NumericalError where the parameters are outside the model's domain (out
+// of reach, singular): at the start Solve reports it with the source's name, later the step is
+// rejected. Values that are not finite are treated the same way.
 #pragma once
 
 #include <Eigen/Core>

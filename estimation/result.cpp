@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 
 constexpr std::size_t kMostWeakDirections = 12;
 
-// Where a parameter is: block and entry, and its column (-1: held).
+// Position of a parameter: block, entry and column (-1: held).
 struct EntryPlace {
   const ParameterBlock* block;
   std::size_t entry;
@@ -64,7 +64,7 @@ std::string FirstUndetermined(const Result& result) {
   return "a combination that rounding hides";
 }
 
-// `value` with as many decimals as its uncertainty's two digits have.
+// `value` with as many decimals as two digits of its uncertainty need.
 std::string WithDigitsOf(double value, double uncertainty) {
   if (!(uncertainty > 0.0) || !std::isfinite(uncertainty)) return fmt::format("{:.6g}", value);
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(uncertainty)));
@@ -218,7 +218,7 @@ std::string Result::Report(std::size_t most_parameters) const {
   if (status == Status::kNotRun) return WhyNotUsable() + "\n";
   std::string text = fmt::format(
       "fit: {} in {} iterations; {} rows, {} free parameters, redundancy of the data {:.1f}\n",
-      Usable() ? "settled" : "not usable", iterations, rows, names.size(), redundancy);
+      Usable() ? "converged" : "not usable", iterations, rows, names.size(), redundancy);
   fmt::format_to(std::back_inserter(text),
                  "  chi-square {:.1f} with {} degrees of freedom; condition of the scaled Jacobian "
                  "{:.3g}\n",

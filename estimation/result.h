@@ -1,4 +1,4 @@
-// What a solve found: values, their full covariance, and how far both can be believed.
+// The result of a solve: estimates, their full covariance, and the tests of both.
 //
 //   const Result result = problem.Solve();
 //   if (!result.Usable()) throw NumericalError(result.WhyNotUsable());
@@ -6,15 +6,16 @@
 //   result.Covariance("link", "base");                                           // block x block
 //   fmt::print("{}", result.Report());
 //
-// chi-square of a source: sum of (r / sigma)^2 at the solution, a row of a robust source counted
-// with its weight. Its redundancy: rows minus the parameters that these rows determine, tr(C J'J);
-// the redundancies of all sources add up to rows - parameters, and chi-square / redundancy is near
-// 1 for each source whose deviations were stated truly. Covariance: (J'J)^-1 with the priors in J
-// and the stated deviations believed; it is not multiplied by chi-square / redundancy. Where a
-// direction is seen by neither data nor prior, every parameter that takes part has uncertainty
-// infinite and its covariances are NaN: nothing is silently regularised. Where only the prior holds
-// a direction, its uncertainty is the prior's, and `weak_directions` says so. Held parameters have
-// 0. Failure: InputError from a name that is not there.
+// Chi-square of a source: sum of (r / sigma)^2 at the solution, with the weights of a robust loss.
+// Redundancy of a source: its rows minus the parameters that they determine, tr(C J'J); the
+// redundancies of all sources add up to rows - parameters, and chi-square / redundancy is near 1
+// for a source whose stated standard deviations are right.
+// Covariance: C = (J'J)^-1 with the priors among the rows of J and the standard deviations as
+// stated; it is not multiplied by chi-square / redundancy. Where neither data nor prior determine a
+// direction, every parameter in it has an infinite uncertainty and NaN covariances: nothing is
+// silently regularised. Where only the prior determines a direction, its uncertainty is the
+// prior's, and `weak_directions` lists it. Held parameters have uncertainty 0.
+// Units: SI. Failure: InputError for a name that the result does not have.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,7 +40,7 @@ struct SourceResult {
   double redundancy = 0.0;
   double chi_square = 0.0;
   double rms = 0.0;  // of r / sigma
-  // Rows beyond kOutlierAt deviations, the worst kMostOutliers of them, worst first.
+  // Rows with |r / sigma| > kOutlierAt, at most kMostOutliers of them, largest first.
   std::vector<Outlier> outliers;
   Eigen::Index outlier_count = 0;
 };
@@ -48,12 +49,12 @@ inline constexpr std::string_view kPriorSource = "prior";  // the parameters' ow
 inline constexpr double kOutlierAt = 4.0;
 inline constexpr std::size_t kMostOutliers = 1000;
 
-// Who determined a parameter.
+// What determines a parameter.
 enum class SeenBy {
-  kHeld,     // nobody, it was not estimated
-  kData,     // the data at least halved its prior variance, or there is no prior
+  kHeld,     // it was not estimated
+  kData,     // the data: they at least halve its prior variance, or it has no prior
   kPrior,    // mostly the prior
-  kNothing,  // nothing: it is part of a direction without data or prior, or beyond its tolerance
+  kNothing,  // it is part of an undetermined direction, or its uncertainty exceeds its tolerance
 };
 std::string_view Name(SeenBy seen);
 
@@ -67,8 +68,8 @@ struct Result {
   std::vector<SeenBy> seen_by;        // of the free parameters
   std::vector<SourceResult> sources;  // in the order of adding, "prior" last where there are any
   std::vector<WeakDirection> weak_directions;
-  // Of the Jacobian of the data, columns scaled to length 1; infinite when rounding hides the
-  // smallest.
+  // Condition number of the Jacobian of the data, columns scaled to length 1; infinite when
+  // rounding hides the smallest singular value.
   double condition = 0.0;
   double chi_square = 0.0;   // of all sources
   Eigen::Index rows = 0;     // of all sources, priors included
@@ -77,7 +78,7 @@ struct Result {
   int iterations = 0;
 
   bool Usable() const { return status == Status::kConverged; }
-  // One line; empty when usable.
+  // The reason in one line; empty when usable.
   std::string WhyNotUsable() const;
 
   const ParameterBlock& Block(std::string_view block) const;
@@ -89,7 +90,7 @@ struct Result {
   Eigen::MatrixXd Covariance(std::string_view block_a, std::string_view block_b) const;
   double Correlation(std::string_view full_name_a, std::string_view full_name_b) const;
 
-  // The fit in words: redundancy, chi-square of each source, parameters, weak directions.
+  // Text report: redundancy, chi-square of each source, parameters, weak directions.
   std::string Report(std::size_t most_parameters = 60) const;
 };
 

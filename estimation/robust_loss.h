@@ -1,8 +1,8 @@
-// How much a residual that is too large may pull: the loss functions of robust estimation.
+// Loss functions of robust estimation: the influence of large residuals.
 //
 // With t a residual divided by its standard deviation, an estimator minimises sum rho(t)/2 instead
-// of sum t^2/2. `Weight` = rho'(t)/(2t) is what the value counts for in the weighted mean or fit
-// that has the same solution: 1 near zero, falling beyond the tuning constant k.
+// of sum t^2/2. `Weight` = rho'(t)/(2t) is the weight of the value in the weighted mean or fit with
+// the same solution: 1 near zero, decreasing beyond the tuning constant k.
 //
 //   loss       rho(t) beyond k       weight beyond k    k for 95 % / 99 % efficiency at normal data
 //   kNone      t^2                   1                  -
@@ -10,8 +10,8 @@
 //   kCauchy    k^2 log(1 + t^2/k^2)  1 / (1 + t^2/k^2)  2.385 / 4.2  (no bend at k; any t)
 //
 // Efficiency: the variance of the mean of normal data over that of the robust mean. Huber's loss is
-// convex (one minimum) and bounds the pull of a value; Cauchy's lets the pull of a gross one go to
-// zero but may have several minima: start it near the solution.
+// convex (one minimum) and bounds the influence of a value; with Cauchy's the influence of a gross
+// error tends to zero, but there may be several minima: start it near the solution.
 // Source: Huber and Ronchetti, Robust Statistics, 2nd ed. (2009), 4.5; Holland and Welsch,
 // Communications in Statistics A6 (1977) for the Cauchy constant.
 // When not to use: with fewer than about ten values for each parameter a robust loss cannot tell

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kFewestForScale = 4;
 constexpr int kMaxIterations = 200;
-// Of a scale: far below the standard error of any sample that fits in memory.
+// Convergence, in scales: far below the standard error of any sample that fits in memory.
 constexpr double kSettled = 1e-10;
 
 struct Sample {
@@ -109,7 +109,7 @@ double ScaleAbout(const Sample& sample, double centre) {
   return ScaleOf(std::move(sizes));
 }
 
-// One reweighted mean around `centre`, written as a step so that constant data stay exact.
+// The reweighted mean minus `centre`, computed as a difference so that constant data stay exact.
 double Step(const Sample& sample, const RobustLoss& loss, double scale, double centre) {
   double sum = 0.0;
   double total = 0.0;

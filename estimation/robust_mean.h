@@ -1,18 +1,18 @@
-// The mean of a sample that may hold a few wrong values, with its standard error.
+// A robust mean: insensitive to a few outliers in the sample, with its standard error.
 //
 // Huber's M-estimate of location: the m with
 //
 //   sum_i psi((x_i - m) / (s sigma_i)) / sigma_i = 0,   psi(t) = max(-k, min(k, t))
 //
 // started at the median, s from the median absolute deviation (MAD), solved by iteratively
-// reweighted means. A value within k scales of the mean counts in full, one further away counts as
-// if it stood k scales away: no value, however wrong, pulls with more than that.
+// reweighted means. A value within k scales of the mean counts in full, one further away as if it
+// were k scales away: the influence of any outlier is bounded.
 //
 //   const RobustMean dwell = HuberMean(readings);
 //   // dwell.mean +- dwell.standard_error, dwell.outliers of dwell.count look wrong
 //
 // Tuning: k = 2.0 has the variance of the plain mean times 1.010 at normal data (efficiency 99.0 %;
-// a median has 64 %); with a share e of wrong values, all on one side and as far as they like, the
+// a median has 64 %); with a share e of outliers, all on one side and arbitrarily far away, the
 // bias is at most e k / ((1 - e)(2 Phi(k) - 1)) = 0.23 scales for e = 10 %. k = 1.345 has 95 % and
 // 0.18 scales.
 // Units: those of the values. Shapes: values and deviations of equal length n.
@@ -20,7 +20,7 @@
 // Source: Huber, Annals of Mathematical Statistics 35 (1964); standard error: Huber and Ronchetti,
 // Robust Statistics, eq. 6.5 with n/(n-1); small-sample factors of the MAD: Croux and Rousseeuw,
 // COMPSTAT 1992. Validity: independent values; below 4 values it is the plain (weighted) mean,
-// since two or three values do not say which of them is wrong. Drift: see markov_noise.h.
+// since two or three values cannot show which of them is wrong. With drift use markov_noise.h.
 #pragma once
 
 #include <cstddef>
@@ -30,9 +30,9 @@ namespace abbe::estimation {
 
 struct RobustMean {
   double mean = 0.0;
-  // Of the mean; infinite for one value whose deviation nobody stated.
+  // Of the mean; infinite for a single value without a stated deviation.
   double standard_error = 0.0;
-  // Of one value (of sigma_i = 1 where deviations are given), without what outliers do to it.
+  // Robust standard deviation of one value (for sigma_i = 1 where deviations are given).
   double scale = 0.0;
   std::size_t count = 0;
   std::size_t down_weighted = 0;  // beyond k scales
@@ -42,11 +42,12 @@ struct RobustMean {
 struct RobustMeanOptions {
   double tuning = 2.0;      // k
   double outlier_at = 4.0;  // scales; beyond it a value is counted as an outlier
-  // Where the noise is known better than this sample tells (pooled over stations): the scale of one
-  // value. 0: from the sample.
+  // The scale of one value where it is known better than from this sample (pooled over stations).
+  // 0: from the sample.
   double known_scale = 0.0;
 };
 
+// Values of equal, unknown standard deviation.
 RobustMean HuberMean(std::span<const double> values, const RobustMeanOptions& options = {});
 
 // Values of unequal standard deviation sigma_i, known up to the common factor `scale` (known_scale
@@ -56,7 +57,7 @@ RobustMean HuberMean(std::span<const double> values, std::span<const double> dev
 
 // The median absolute deviation about the median, made consistent with the standard deviation of
 // normal data, sample size included. When more than half of the values are equal (a coarse digital
-// reading) a higher quantile takes the place of the median deviation. 0 for constant data.
+// reading) a higher quantile replaces the median deviation. 0 for constant data.
 double RobustScale(std::span<const double> values);
 
 }  // namespace abbe::estimation

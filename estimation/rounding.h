@@ -1,5 +1,5 @@
-// What rounding hides in an information matrix that was summed over many rows: one measure for all
-// who ask.
+// The rank of an information matrix J'J that was summed over many rows, in the presence of
+// rounding.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -7,11 +7,11 @@
 
 namespace abbe::estimation {
 
-inline constexpr double kRounding = 1e-12;  // of a parameter's own information
+inline constexpr double kRounding = 1e-12;  // relative to a parameter's own information
 
-// Whether every direction stands out of the rounding; `scaled` is the factor of the matrix with its
-// diagonal scaled to 1. The reciprocal condition in the 1-norm is below that of the eigenvalues;
-// the factor is for its being an estimate.
+// Whether the matrix has full rank above rounding; `scaled` is the factor of the matrix with its
+// diagonal scaled to 1. The reciprocal condition in the 1-norm is smaller than that of the
+// eigenvalues; the factor 10 allows for the error of its estimate.
 inline bool EveryDirectionStandsOut(const Eigen::LLT<Eigen::MatrixXd>& scaled) {
   return scaled.info() == Eigen::Success && scaled.rcond() > 10.0 * kRounding;
 }

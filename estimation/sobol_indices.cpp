@@ -13,9 +13,9 @@
 namespace abbe::estimation {
 namespace {
 
-constexpr std::uint64_t kBlock = 64;  // draws whose sums are taken together, whoever takes them
+constexpr std::uint64_t kBlock = 64;  // draws summed together, independent of the number of threads
 
-// Sums over draws of a ratio's numerator n and of its denominator d, the variance.
+// Sums over draws of the numerator n of an index and of its denominator d, the variance.
 struct RatioSums {
   double n = 0, nn = 0, nd = 0;
 
@@ -51,7 +51,7 @@ class Scheme {
   Scheme(std::size_t inputs, std::size_t outputs, const SobolDraw& draw, const SobolModel& model)
       : inputs_(inputs), outputs_(outputs), draw_(draw), model_(model), centre_(outputs) {}
 
-  // Any constant near the mean of the outputs lowers the scatter of the first indices.
+  // Subtracting any constant near the mean of the outputs lowers the variance of the first indices.
   void Centre(std::uint64_t draws) {
     std::vector<double> x(inputs_), y(outputs_);
     for (std::uint64_t n = 0; n < draws; ++n) {
@@ -135,7 +135,7 @@ SobolResult SobolIndices(std::size_t input_count, std::size_t output_count, cons
   });
   BlockSums all(input_count);
   for (const BlockSums& block : blocks) all.Add(block);
-  if (!(all.d > 0)) throw NumericalError("Sobol indices: no output of the model scatters");
+  if (!(all.d > 0)) throw NumericalError("Sobol indices: no output of the model varies");
   SobolResult result{all.d / static_cast<double>(options.draws), {}};
   for (std::size_t i = 0; i < input_count; ++i) {
     result.inputs.push_back({all.first[i].n / all.d, Uncertainty(all.first[i], all),

@@ -1,8 +1,8 @@
-// Which inputs of a model make its output scatter: Sobol's indices by Saltelli's scheme.
+// Global sensitivity of a model to its inputs: Sobol's indices by Saltelli's scheme.
 //
-// first_i is the share of the output's variance that goes when input i is known, total_i the share
-// that stays when all others are known. Their difference is what input i does together with others;
-// the first indices add up to 1 where no two inputs work together.
+// first_i is the share of the output's variance that vanishes when input i is known, total_i the
+// share that remains when all others are known. Their difference is the interaction of input i with
+// others; without interactions the first indices add up to 1.
 //
 //   const SobolResult result = SobolIndices(3, 1,
 //       [&](std::uint64_t draw, std::span<double> x) {
@@ -17,8 +17,8 @@
 // Cost: draws x (inputs + 2) runs of the model, called from several threads at once. The result is
 // the same to the last bit for any number of threads.
 // Units: `variance` that of the outputs squared, summed over outputs. Shapes: one entry of `inputs`
-// for each input. Failure: NumericalError when an output is not finite, nothing scatters or there
-// are fewer than two draws. What the model throws passes through.
+// for each input. Failure: NumericalError when an output is not finite, no output varies or there
+// are fewer than two draws. Exceptions of the model pass through.
 // Source: first: Saltelli et al., Computer Physics Communications 181 (2010), table 2 (b); total:
 // Jansen (1999), table 2 (f) there. Standard uncertainties: of a ratio of means, first order.
 // Validity: independent inputs. An estimate may fall below 0 or above 1 by its uncertainty.

@@ -1,4 +1,4 @@
-// Problem::Solve: approach, settle, and tell what the solution is worth.
+// Problem::Solve: approach the minimum, iterate to convergence, compute covariance and tests.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// A parameter is seen by the data when they halve its prior variance.
+// The data determine a parameter when they halve its prior variance.
 constexpr double kSeenShare = 0.5;
 
 struct Information {

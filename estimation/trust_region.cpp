@@ -16,10 +16,11 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Near enough: the passes that follow take the rest in one or two steps.
+// Loose: one or two of the passes that follow do the rest.
 constexpr double kFunctionTolerance = 1e-10;
 constexpr double kStepTolerance = 1e-14;
-// Below this many multiplications the QR of the dense Jacobian is fast and the most accurate way.
+// Below this many multiplications the QR of the dense Jacobian is fast, and it is the most
+// accurate.
 constexpr double kDenseQr = 5e8;
 
 struct ArgumentPlace {
@@ -27,7 +28,7 @@ struct ArgumentPlace {
   int entry;
 };
 
-// Where each entry is.
+// Block and position of each entry, for Ceres.
 std::vector<ArgumentPlace> ArgumentPlaces(const Problem& problem) {
   std::vector<ArgumentPlace> places;
   for (std::size_t b = 0; b < problem.blocks().size(); ++b) {
@@ -38,14 +39,14 @@ std::vector<ArgumentPlace> ArgumentPlaces(const Problem& problem) {
   return places;
 }
 
-// Makes the square of a row the loss of the row: sign(t) sqrt(rho(t)), and its slope by t.
+// sign(t) sqrt(rho(t)), whose square is the loss of the row, and its derivative by t.
 std::pair<double, double> Robustify(const RobustLoss& loss, double t) {
   if (loss.kind == RobustLoss::Kind::kNone || std::abs(t) < 1e-8) return {t, 1.0};
   const double root = std::copysign(std::sqrt(loss.Rho(t)), t);
   return {root, loss.Weight(t) * t / root};
 }
 
-// A term as Ceres wants it: one Jacobian for each whole block.
+// A term as a cost function of Ceres: one Jacobian for each whole block.
 class TermCost : public ceres::CostFunction {
  public:
   TermCost(const Problem& problem, const Term& term, const std::vector<ArgumentPlace>& places,

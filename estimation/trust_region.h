@@ -1,10 +1,9 @@
-// The part of a solve that Ceres does: from a start that may be far away to near the minimum.
+// The first part of a solve, by Ceres: from a distant start to near the minimum.
 //
-// Levenberg-Marquardt with the whole Jacobian in memory, on one thread (the order of its sums would
-// else depend on the scheduler). What it finds is where passes.h takes over; whether that is a
-// minimum is decided there.
-// Shapes: x all entries of all blocks, held ones stay. Failure: an exception of a residual other
-// than NumericalError passes through; NumericalError and non-finite numbers take the step back.
+// Levenberg-Marquardt with the whole Jacobian in memory, on one thread (otherwise the order of its
+// sums would depend on the scheduler). passes.h continues from its result and tests convergence.
+// Shapes: x has all entries of all blocks; held ones do not change. Failure: NumericalError of a
+// residual and values that are not finite reject the step; other exceptions pass through.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,10 +13,10 @@
 
 namespace abbe::estimation {
 
-// Bytes of the Jacobian as Ceres stores it.
+// Size of the Jacobian in Ceres, in bytes.
 std::size_t JacobianBytes(const Problem& problem, const Layout& layout);
 
-// Moves x; returns the iterations it took.
+// Moves x; returns the number of iterations.
 int ApproachMinimum(const Problem& problem, const Layout& layout, const SolveOptions& options,
                     Eigen::VectorXd& x);
 

@@ -18,7 +18,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kUnseen = 1.0;  // lambda below which the data halve no variance
+constexpr double kUnseen = 1.0;  // lambda below which less than half of the variance is removed
 constexpr double kShownCoefficient = 0.1;
 constexpr std::size_t kMostTerms = 6;
 constexpr int kMostTurns = 50;
@@ -26,18 +26,18 @@ constexpr int kMostTurns = 50;
 MatrixXd Reference(const MatrixXd& data, const MatrixXd& prior) {
   MatrixXd reference = prior;
   VectorXd rounding = kRounding * (data.diagonal() + prior.diagonal());
-  // A parameter that appears nowhere has no scale of its own; any will do.
+  // A parameter without any information has no scale of its own; 1 is as good as any.
   for (double& r : rounding) r = r > 0.0 ? r : 1.0;
   reference.diagonal() += rounding;
   return reference;
 }
 
-// Directions v = L^-T q of the whitened space, W = L L', and what the data add to W along each.
+// Directions v = L^-T q of the whitened space, W = L L', and the information lambda along each.
 struct Spectrum {
   MatrixXd reference;
   MatrixXd whitened;  // q, orthonormal columns, lambda rising
   VectorXd lambda;
-  Index weak = 0;  // how many of the first ones have lambda < 1
+  Index weak = 0;  // the first `weak` directions have lambda < 1
   Eigen::LLT<MatrixXd> factor;
 
   MatrixXd Unwhiten(const MatrixXd& q) const { return factor.matrixU().solve(q); }
@@ -56,8 +56,8 @@ Spectrum SpectrumOf(const MatrixXd& data, MatrixXd reference) {
   return s;
 }
 
-// Turns the columns of `a` among themselves (and those of `along` with them) so that the sum of
-// fourth powers is largest: each column few large numbers.
+// Rotates the columns of `a` among themselves, and those of `along` with them, to the largest sum
+// of fourth powers (quartimax): few large numbers per column.
 void TurnToSimple(MatrixXd& a, MatrixXd& along) {
   for (int turn = 0; turn < kMostTurns; ++turn) {
     double largest = 0.0;
@@ -123,7 +123,7 @@ class ScaledInverse {
 std::string InWords(const VectorXd& coefficients, const std::vector<std::string>& names) {
   std::vector<Index> order(static_cast<std::size_t>(coefficients.size()));
   std::iota(order.begin(), order.end(), Index{0});
-  // By the two digits that are printed: equal ones stay in the order of the parameters.
+  // Compared by the two printed digits: equal ones stay in the order of the parameters.
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
     return std::round(100.0 * std::abs(coefficients[a])) >
            std::round(100.0 * std::abs(coefficients[b]));
@@ -188,7 +188,7 @@ PosteriorCovariance InvertInformation(const MatrixXd& data, const MatrixXd& prio
     return result;
   }
   const Spectrum spectrum = SpectrumOf(data, Reference(data, prior));
-  // Of the weak directions, those that the prior does not hold either.
+  // The weak directions that the prior does not determine either.
   const MatrixXd weak = spectrum.whitened.leftCols(spectrum.weak);
   MatrixXd undetermined(n, 0);
   if (spectrum.weak > 0) {

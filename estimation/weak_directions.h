@@ -1,30 +1,30 @@
-// Which combinations of parameters the data cannot see, by name.
+// Combinations of parameters that the data do not determine, by name.
 //
 // Background: D = J'J, J the Jacobian of the data whitened by the noise, is the information of the
-// data: along a direction v the data alone leave a standard deviation of 1/sqrt(v'Dv). Whether that
-// is little or much is a question of what was known or is wanted, the reference W:
+// data: along a direction v the data alone give a standard deviation of 1/sqrt(v'Dv). Whether that
+// is small is judged against a reference W, the prior knowledge or the wanted accuracy:
 //
 //   prior        the information of the priors (1 / prior_sd^2, smoothness, ...)
 //   tolerance    1 / tolerance^2 of a parameter that has one and has no prior
-//   rounding     1e-12 of the parameter's own information: below it, double precision sees nothing
+//   rounding     1e-12 of the parameter's own information: the limit of double precision
 //
-// In units of the reference, eigenvalues lambda of W^-1/2 D W^-1/2 are what the data add to what
-// was known: the variance along the direction falls to 1 / (1 + lambda) of its prior. A direction
-// with lambda < 1 is weak: the data take less than half of the variance away. The threshold is tied
-// to the noise because D is.
+// The eigenvalues lambda of W^-1/2 D W^-1/2 are the information of the data in units of the
+// reference: the variance along the direction falls to 1 / (1 + lambda) of the prior variance. A
+// direction with lambda < 1 is weak: the data remove less than half of the variance. D is whitened,
+// so the threshold follows the noise.
 //
 //   for (const WeakDirection& weak : FindWeakDirections(data, prior, tolerances, names)) {
 //     fmt::print("{}: {}\n", weak.words, weak.ratio);   // 0.71 arm.a - 0.71 arm.b: 1.00
 //   }
 //
-// Several weak directions span a space whose eigenvectors are arbitrary mixtures; they are turned
-// within it until each has few, large coefficients (quartimax), so that the words can be read.
+// Several weak directions span a space whose eigenvectors are arbitrary mixtures; they are rotated
+// within it until each has few, large coefficients (quartimax), so that they can be read.
 // Units: data and prior 1/unit^2 of the parameters; coefficients in units of each parameter's own
 // prior deviation (tolerance, rounding), of length 1. Shapes: n x n, names n.
-// Failure: none. Source: Bayesian D-optimality, e.g. Chaloner and Verdinelli, Statistical Science
-// 10 (1995); quartimax: Neuhaus and Wrigley, British J. Statistical Psychology 7 (1954). Validity:
-// normal equations in double precision: a combination that is seen 10^6 times worse than its
-// parameters one by one counts as not seen.
+// Source: Bayesian D-optimality, e.g. Chaloner and Verdinelli, Statistical Science 10 (1995);
+// quartimax: Neuhaus and Wrigley, British J. Statistical Psychology 7 (1954). Validity: normal
+// equations in double precision: a combination whose standard deviation is 10^6 times that of its
+// parameters one by one counts as undetermined.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,7 +35,7 @@ namespace abbe::estimation {
 
 struct WeakDirection {
   enum class Held { kByPrior, kByTolerance, kByNothing };
-  Held held = Held::kByNothing;  // what is left when the data say nothing
+  Held held = Held::kByNothing;  // what limits the direction without data
   Eigen::VectorXd coefficients;  // n, in units of the reference, length 1, first large one positive
   double information = 0.0;      // lambda
   double ratio = 1.0;            // posterior over prior (or tolerance) standard deviation
@@ -48,19 +48,20 @@ std::vector<WeakDirection> FindWeakDirections(const Eigen::MatrixXd& data,
                                               const Eigen::VectorXd& tolerances,
                                               const std::vector<std::string>& names);
 
-// The largest coefficients with their names, the rest counted.
+// The largest coefficients with their names, then the number of the others.
 std::string InWords(const Eigen::VectorXd& coefficients, const std::vector<std::string>& names);
 
-// The inverse of data + prior. Parameters that take part in a direction which neither sees have an
+// The inverse of data + prior, n x n. Parameters in a direction that neither determines have an
 // infinite variance and NaN covariances.
 struct PosteriorCovariance {
   Eigen::MatrixXd matrix;
-  Eigen::MatrixXd determined;  // the same without the undetermined directions: finite everywhere
+  Eigen::MatrixXd determined;  // without the undetermined directions: finite everywhere
   Eigen::Index undetermined = 0;
 };
 PosteriorCovariance InvertInformation(const Eigen::MatrixXd& data, const Eigen::MatrixXd& prior);
 
-// sqrt of the largest over the smallest eigenvalue of the information, its diagonal scaled to 1.
+// Condition number of the whitened Jacobian with columns scaled to length 1: sqrt of the largest
+// over the smallest eigenvalue of the information, its diagonal scaled to 1.
 double ScaledCondition(const Eigen::MatrixXd& data);
 
 }  // namespace abbe::estimation

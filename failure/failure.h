@@ -20,15 +20,15 @@ class InputError : public Failure {
   using Failure::Failure;
 };
 
-// A device that did not do its part. The message names the device, what it answered and what was
+// A device that failed or did not answer. The message names the device, its answer and what was
 // tried.
 class DeviceError : public Failure {
  public:
   using Failure::Failure;
 };
 
-// A computation that did not come to a usable result. The message names what did not converge and
-// the condition that was met.
+// A computation without a usable result: no convergence, or a singular problem. The message names
+// the quantity and the condition that failed.
 class NumericalError : public Failure {
  public:
   using Failure::Failure;

@@ -9,12 +9,12 @@
 #include <iterator>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include "failure/failure.h"
 #include "recording/whole_file.h"
 #include "settings/document.h"
 #include "settings/toml_text.h"
+#include "settings/unit.h"
 #include "simulation/linkage/linkage_simulation.h"
 
 namespace abbe::fusion {
@@ -23,7 +23,6 @@ namespace {
 using Eigen::Index;
 using estimation::Parameter;
 using estimation::ParameterBlock;
-using relm::ErrorModel;
 using settings::Float;
 using settings::Quoted;
 using settings::QuotedList;
@@ -31,12 +30,6 @@ using settings::Table;
 
 constexpr std::int64_t kFormat = 1;
 constexpr std::array kAxes{"x_mm", "y_mm", "z_mm"};
-constexpr std::array<std::pair<const char*, ErrorModel>, 4> kModelNames{{
-    {"pivots", ErrorModel::kPivots},
-    {"published", ErrorModel::kPublished},
-    {"published with bearing", ErrorModel::kPublishedWithBearing},
-    {"complete", ErrorModel::kComplete},
-}};
 
 template <typename Values>
 std::string Floats(const Values& values, double si) {
@@ -62,7 +55,8 @@ std::string ParameterText(const ParameterBlock& block, std::size_t i) {
 std::string MappedText(const MappedParameters& mapped) {
   std::string text = "\n[mapped]\n";
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    text += fmt::format("{} = {}\n", kAxes[axis], Floats(mapped.centres[axis], 1e-3));
+    text +=
+        fmt::format("{} = {}\n", kAxes[axis], Floats(mapped.centres[axis], settings::kMillimetre));
   }
   for (const auto& values : mapped.values) {
     text += fmt::format("[[mapped.cell]]\nvalues = {}\n", Floats(values, 1.0));
@@ -124,31 +118,15 @@ MappedParameters ReadMapped(const Table& table, Index parameters) {
 
 }  // namespace
 
-std::string ErrorModelName(ErrorModel model) {
-  for (const auto& [name, value] : kModelNames) {
-    if (value == model) return name;
-  }
-  throw InputError("calibration: unknown error model");
-}
-
-ErrorModel ErrorModelNamed(const std::string& name) {
-  std::vector<std::string> names;
-  for (const auto& [known, value] : kModelNames) {
-    if (name == known) return value;
-    names.push_back(Quoted(known));
-  }
-  throw InputError(fmt::format("\"{}\" is no error model of the linkage; write {}", name,
-                               fmt::join(names, ", ")));
-}
-
 void WriteCalibration(const Calibration& calibration, const std::filesystem::path& path) {
   std::string text = fmt::format(
       "# A calibration of the linkage, written by abbe calibrate.\nformat = {}\nmachine = {}\n"
       "model = {}\ndisplacement = {}\nmountings = {}\n",
-      kFormat, Quoted(calibration.machine), Quoted(ErrorModelName(calibration.model)),
+      kFormat, Quoted(calibration.machine), Quoted(relm::ErrorModelName(calibration.model)),
       calibration.displacement, QuotedList(calibration.mountings));
   if (std::isfinite(calibration.held_out_rms)) {
-    text += fmt::format("held_out_rms_um = {}\n", Float(calibration.held_out_rms / 1e-6));
+    text += fmt::format("held_out_rms_um = {}\n",
+                        Float(calibration.held_out_rms / settings::kMicrometre));
   }
   for (const ParameterBlock& block : calibration.blocks) {
     for (std::size_t i = 0; i < block.entries.size(); ++i) text += ParameterText(block, i);
@@ -169,7 +147,7 @@ Calibration ReadCalibration(const std::filesystem::path& path,
   }
   Calibration calibration;
   calibration.machine = root.Text("machine");
-  calibration.model = ErrorModelNamed(root.Text("model"));
+  calibration.model = relm::ErrorModelNamed(root.Text("model"));
   calibration.displacement = root.Truth("displacement", false);
   calibration.mountings = root.Texts("mountings", 0);
   if (root.Has("held_out_rms_um")) calibration.held_out_rms = root.Quantity("held_out_rms_um");

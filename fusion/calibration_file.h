@@ -3,7 +3,7 @@
 //
 //   format = 1
 //   machine = "demo-mill"
-//   model = "complete"            # "pivots", "published", "published with bearing", "complete"
+//   model = "complete"            # a name of relm/error_model_name.h
 //   displacement = false
 //   mountings = [""]
 //   held_out_rms_um = 0.74        # where poses were held out
@@ -40,10 +40,5 @@ void WriteCalibration(const Calibration& calibration, const std::filesystem::pat
 // `settings` gives the model its blocks, with units and names; values come from the file.
 Calibration ReadCalibration(const std::filesystem::path& path,
                             const relm::LinkageSettings& settings);
-
-// "complete" <-> ErrorModel::kComplete and so on: LinkageModel::name().
-std::string ErrorModelName(relm::ErrorModel model);
-// InputError that lists the names.
-relm::ErrorModel ErrorModelNamed(const std::string& name);
 
 }  // namespace abbe::fusion

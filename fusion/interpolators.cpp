@@ -19,7 +19,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 using machine::NetworkBias;
-using simulation::PlateSetUp;
+using simulation::PlateSetup;
 using simulation::SimulatedRun;
 
 constexpr double kNothing = 1e-12;         // m or rad
@@ -138,9 +138,9 @@ class Teacher {
 // The fold in which each hole is left out: the holes of each plate in order of first appearance.
 class Folds {
  public:
-  Folds(const std::vector<PlateSetUp>& setups, int folds) {
+  Folds(const std::vector<PlateSetup>& setups, int folds) {
     std::map<std::string, int> holes;
-    for (const PlateSetUp& setup : setups) {
+    for (const PlateSetup& setup : setups) {
       for (const int hole : setup.holes) {
         const auto [at, is_new] = fold_.try_emplace({setup.plate, hole}, 0);
         if (is_new) at->second = holes[setup.plate]++ % folds;
@@ -149,7 +149,7 @@ class Folds {
   }
 
   // The rows of the residual of a set-up whose holes are left out, or not, in a fold.
-  std::vector<Index> Rows(const PlateSetUp& setup, int fold, bool left_out) const {
+  std::vector<Index> Rows(const PlateSetup& setup, int fold, bool left_out) const {
     std::vector<Index> rows;
     for (std::size_t i = 0; i < setup.holes.size(); ++i) {
       if ((fold_.at({setup.plate, setup.holes[i]}) == fold) != left_out) continue;
@@ -174,10 +174,10 @@ VectorXd InputsOf(const SimulatedRun& run, const machine::VolumetricModel& model
 }
 
 double HeldOutRms(const machine::Machine& machine, const machine::VolumetricModel& model,
-                  const std::vector<PlateSetUp>& setups, const Folds& folds, int fold,
+                  const std::vector<PlateSetup>& setups, const Folds& folds, int fold,
                   const estimation::Result& fit) {
   double squares = 0.0, holes = 0.0;
-  for (const PlateSetUp& setup : setups) {
+  for (const PlateSetup& setup : setups) {
     const SimulatedRun run = simulation::SimulatePlate(model, machine.reference, setup);
     VectorXd values(run.residual->Rows());
     run.residual->Evaluate(InputsOf(run, model, fit), values, nullptr);
@@ -189,10 +189,10 @@ double HeldOutRms(const machine::Machine& machine, const machine::VolumetricMode
 }
 
 estimation::Result FitWithout(const machine::Machine& machine, double smoothness,
-                              const std::vector<PlateSetUp>& setups, const Folds& folds, int fold) {
+                              const std::vector<PlateSetup>& setups, const Folds& folds, int fold) {
   const machine::VolumetricModel model = UnknownMachine(machine);
   std::vector<SimulatedRun> runs;
-  for (const PlateSetUp& setup : setups) {
+  for (const PlateSetup& setup : setups) {
     std::vector<Index> rows = folds.Rows(setup, fold, false);
     if (rows.size() < 6) {
       throw InputError(fmt::format("{}: {} holes are left when some are held out; hold out fewer",
@@ -235,12 +235,12 @@ machine::VolumetricModel AsNetworks(const machine::VolumetricModel& model,
   return networks;
 }
 
-std::array<std::vector<double>, machine::kAxes> StationsOf(const std::vector<PlateSetUp>& setups) {
+std::array<std::vector<double>, machine::kAxes> StationsOf(const std::vector<PlateSetup>& setups) {
   constexpr double kApart = 1e-4;  // m: nearer ones are one station
   std::array<std::vector<double>, machine::kAxes> stations;
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     std::map<long, double> places;
-    for (const PlateSetUp& setup : setups) {
+    for (const PlateSetup& setup : setups) {
       for (const double at : setup.points.axes.row(axis))
         places.emplace(std::lround(at / kApart), at);
     }
@@ -255,7 +255,7 @@ std::array<std::vector<double>, machine::kAxes> StationsOf(const std::vector<Pla
 
 std::vector<InterpolatorCheck> CompareInterpolators(const machine::Machine& machine,
                                                     double smoothness,
-                                                    const std::vector<PlateSetUp>& setups,
+                                                    const std::vector<PlateSetup>& setups,
                                                     int folds) {
   std::vector<InterpolatorCheck> checks{{"b-spline"}, {"network"}, {"network with bias"}};
   const Folds split(setups, folds);

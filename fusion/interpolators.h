@@ -44,7 +44,7 @@ machine::VolumetricModel AsNetworks(const machine::VolumetricModel& model,
 
 // The axis positions of the holes; where there are many, evenly chosen ones.
 std::array<std::vector<double>, machine::kAxes> StationsOf(
-    const std::vector<simulation::PlateSetUp>& setups);
+    const std::vector<simulation::PlateSetup>& setups);
 
 struct InterpolatorCheck {
   std::string name;       // "b-spline", "network", "network with bias"
@@ -54,6 +54,6 @@ struct InterpolatorCheck {
 
 std::vector<InterpolatorCheck> CompareInterpolators(
     const machine::Machine& machine, double smoothness,
-    const std::vector<simulation::PlateSetUp>& setups, int folds);
+    const std::vector<simulation::PlateSetup>& setups, int folds);
 
 }  // namespace abbe::fusion

@@ -17,12 +17,12 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using estimation::Result;
-using simulation::PlateSetUp;
+using simulation::PlateSetup;
 
 constexpr double kAlong = 0.99;  // cosine
 
 // Where a hole is in the plate: its certificate and the form that the fit found.
-Vector2d PlaceInPlate(const PlateSetUp& setup, Index point, const Result& fit) {
+Vector2d PlaceInPlate(const PlateSetup& setup, Index point, const Result& fit) {
   const int hole = setup.holes[static_cast<std::size_t>(point)];
   Vector2d place = setup.certificate.col(point);
   if (setup.u_form.maxCoeff() > 0.0) {
@@ -39,7 +39,7 @@ struct Diagonal {
 };
 
 // Between the outermost holes along u + v (sense 1) or u - v (-1).
-Diagonal DiagonalOf(const PlateSetUp& setup, const Eigen::Matrix3Xd& places, double sense,
+Diagonal DiagonalOf(const PlateSetup& setup, const Eigen::Matrix3Xd& places, double sense,
                     Index normal, const Result& fit) {
   Diagonal diagonal;
   const Eigen::RowVectorXd along = setup.certificate.row(0) + sense * setup.certificate.row(1);
@@ -57,21 +57,21 @@ Diagonal DiagonalOf(const PlateSetUp& setup, const Eigen::Matrix3Xd& places, dou
 }
 
 // By the whitened residuals of the set-up: a hole that reads too far out shortens the stretch.
-void AddWeights(const Diagonal& diagonal, double factor, const PlateSetUp& setup, VectorXd& b) {
+void AddWeights(const Diagonal& diagonal, double factor, const PlateSetup& setup, VectorXd& b) {
   const Vector2d weight = factor * setup.u_probing / diagonal.true_length * diagonal.direction;
   b.segment<2>(2 * diagonal.to) -= weight;
   b.segment<2>(2 * diagonal.from) += weight;
 }
 
 // The squareness that one set-up tells, and its derivatives by the residuals.
-struct OfSetUp {
+struct OfSetup {
   Index normal;
   double value;
   VectorXd b;
 };
 
-std::optional<OfSetUp> SquarenessOf(const machine::VolumetricModel& square,
-                                    const Vector3d& reference, const PlateSetUp& setup,
+std::optional<OfSetup> SquarenessOf(const machine::VolumetricModel& square,
+                                    const Vector3d& reference, const PlateSetup& setup,
                                     const Result& fit) {
   const simulation::PointsOnMachine points(square, reference, setup.points);
   Index normal = 0;
@@ -81,7 +81,7 @@ std::optional<OfSetUp> SquarenessOf(const machine::VolumetricModel& square,
   const Diagonal one = DiagonalOf(setup, places, 1.0, normal, fit);
   const Diagonal other = DiagonalOf(setup, places, -1.0, normal, fit);
   const double factor = (normal == 1 ? 1.0 : -1.0) / (one.product - other.product);
-  OfSetUp found{normal, factor * (one.stretch - other.stretch),
+  OfSetup found{normal, factor * (one.stretch - other.stretch),
                 VectorXd::Zero(2 * setup.points.count())};
   AddWeights(one, factor, setup, found.b);
   AddWeights(other, -factor, setup, found.b);
@@ -114,7 +114,7 @@ VectorXd ByParameters(const simulation::SimulatedRun& run, const VectorXd& b, co
 
 std::array<DiagonalSquareness, 3> SquarenessByDiagonals(const machine::VolumetricModel& model,
                                                         const Vector3d& reference,
-                                                        const std::vector<PlateSetUp>& setups,
+                                                        const std::vector<PlateSetup>& setups,
                                                         const Result& fit) {
   machine::VolumetricModel square = model;
   square.SetSquareness(Vector3d::Zero());
@@ -122,7 +122,7 @@ std::array<DiagonalSquareness, 3> SquarenessByDiagonals(const machine::Volumetri
   std::array<double, 3> bb{};
   std::array<VectorXd, 3> Jb;
   Jb.fill(VectorXd::Zero(fit.covariance.cols()));
-  for (const PlateSetUp& setup : setups) {
+  for (const PlateSetup& setup : setups) {
     const auto here = SquarenessOf(square, reference, setup, fit);
     if (!here) continue;
     const auto k = static_cast<std::size_t>(here->normal);

@@ -40,6 +40,6 @@ struct DiagonalSquareness {
 // Of A0Z, B0Z, C0Y. `model` as fitted, `fit` with the form of the plate.
 std::array<DiagonalSquareness, 3> SquarenessByDiagonals(
     const machine::VolumetricModel& model, const Eigen::Vector3d& reference,
-    const std::vector<simulation::PlateSetUp>& setups, const estimation::Result& fit);
+    const std::vector<simulation::PlateSetup>& setups, const estimation::Result& fit);
 
 }  // namespace abbe::fusion

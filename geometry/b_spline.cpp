@@ -58,8 +58,8 @@ BSplineBasis::BSplineBasis(int degree, std::vector<double> knots)
     if (knots_[i] == knots_[i + degree + 1] ||
         (knots_[i] == knots_[i + inside] && knots_[i] > a() && knots_[i] < b())) {
       throw InputError(fmt::format(
-          "B-spline knot {} stands too often at {}: at most {} times inside, {} times at an end", i,
-          knots_[i], inside, degree + 1));
+          "B-spline knot {} repeats too often at {}: at most {} times inside, {} times at an end",
+          i, knots_[i], inside, degree + 1));
     }
   }
 }
@@ -93,7 +93,7 @@ BSplineBasis::Local BSplineBasis::At(double x, int derivative) const {
   values[degree_] = 1.0;
   for (int d = 1; d <= degree_; ++d) {
     const bool differentiate = d > degree_ - derivative;
-    double carried = 0.0;  // what function i of degree d - 1 gives to function i of degree d
+    double carried = 0.0;  // share of function i of degree d - 1 in function i of degree d
     for (int i = span - d; i <= span; ++i) {
       const double next =
           i < span ? values[degree_ - span + i + 1] : 0.0;  // function i + 1, degree d - 1

@@ -9,9 +9,9 @@
 //   const double slope = straightness.Value(0.031, 1);           // first derivative
 //
 // Units: whatever the caller uses; derivatives divide by the unit of x. Shapes: rows are 1 x size.
-// Failure: InputError for a degree outside 0 ... kMaxDegree, knots that decrease, an inner knot
-// that stands more than `degree` times, an empty interval, and for x outside [a, b]: there is no
-// extrapolation. An x that only rounding puts outside (16 eps of the ends) counts as the end.
+// Failure: InputError for a degree outside 0 ... kMaxDegree, knots that decrease, an inner knot of
+// multiplicity above `degree`, an empty interval, and for x outside [a, b]: there is no
+// extrapolation. An x beyond an end by rounding only (16 eps of the ends) counts as the end.
 // Source: de Boor, "A Practical Guide to Splines" (2001), chapters IX (14) and X (12).
 // Validity: at a knot where a derivative jumps, its value is that of the span to the right; at b
 // that of the span to the left. Degrees above about 10 lose digits.
@@ -24,10 +24,10 @@ namespace abbe::geometry {
 
 class BSplineBasis {
  public:
-  static constexpr int kMaxDegree = 15;  // lets a basis row be evaluated without the heap
+  static constexpr int kMaxDegree = 15;  // a fixed size: At() needs no heap
 
-  // `size` functions with equally spaced knots on [a, b]; the end knots stand degree + 1 times, so
-  // a spline takes its first and last coefficient as its end values. size > degree.
+  // `size` functions with equally spaced knots on [a, b]; the end knots have multiplicity degree +
+  // 1, so the first and last coefficient are the end values of a spline. size > degree.
   static BSplineBasis Uniform(int degree, double a, double b, int size);
 
   // Given knots, size + degree + 1 of them. The interval is [t_degree, t_size].
@@ -39,7 +39,7 @@ class BSplineBasis {
   double b() const { return knots_[size()]; }
   const std::vector<double>& knots() const { return knots_; }
 
-  // The functions that are not zero near x: number `first` and the `degree` after it.
+  // Values at x of the functions that are not zero there: number `first` and the `degree` after it.
   struct Local {
     int first;
     Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxDegree + 1, 1> values;
@@ -50,7 +50,7 @@ class BSplineBasis {
   Eigen::RowVectorXd Row(double x, int derivative = 0) const;
 
   // The coefficients of the straight line x (Greville's points): the averages of `degree` knots.
-  // InputError for degree 0, which holds no line.
+  // InputError for degree 0, which contains no line.
   Eigen::VectorXd LineCoefficients() const;
 
   // Points and weights that integrate products of two splines of this basis, or of their

@@ -77,7 +77,7 @@ Eigen::MatrixXd CurvatureRows(const BSplineBasis& basis) {
     }
   }
   throw NumericalError(
-      fmt::format("B-spline fit: the points crowd at too few places and determine only {} of {} "
+      fmt::format("B-spline fit: the points lie at too few places and determine only {} of {} "
                   "coefficients: spread "
                   "them, or use fewer coefficients or smoothness",
                   rank, basis.size()));
@@ -117,7 +117,7 @@ Eigen::MatrixXd LineFunctional(const BSplineBasis& basis, const BSplineFitOption
   return line;
 }
 
-// Takes that line away from the coefficients.
+// Projection that removes that line from the coefficients.
 Eigen::MatrixXd GaugeProjection(const BSplineBasis& basis, const BSplineFitOptions& options,
                                 const Eigen::MatrixXd& line) {
   Eigen::MatrixXd line_coefficients = Eigen::MatrixXd::Zero(basis.size(), 2);
@@ -130,8 +130,8 @@ Eigen::MatrixXd GaugeProjection(const BSplineBasis& basis, const BSplineFitOptio
 
 struct Solution {
   Eigen::VectorXd coefficients;
-  // U with U U' = (rows' rows)^-1, and the points' own weighted rows times U: the noise of the
-  // points reaches the coefficients as U seen'.
+  // U U' = (rows' rows)^-1, and seen = (the weighted rows of the points alone) * U. The covariance
+  // of the coefficients is U seen' seen U' times the variance of unit weight.
   Eigen::MatrixXd U, seen;
 };
 
@@ -196,7 +196,8 @@ BSplineFit FitBSpline(const BSplineBasis& basis, const Eigen::VectorXd& x, const
 double BSplineFit::StandardUncertainty(double x, int derivative) const {
   if (covariance.size() == 0) {
     throw NumericalError(
-        "B-spline fit: as many coefficients as points tell no uncertainty: give weights");
+        "B-spline fit: as many coefficients as points leave no redundancy, so the uncertainty is "
+        "unknown: give weights");
   }
   const Eigen::RowVectorXd row = spline.basis().Row(x, derivative);
   return std::sqrt(row * covariance * row.transpose());

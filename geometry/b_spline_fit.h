@@ -1,10 +1,11 @@
-// The B-spline that fits measured points best, with its covariance.
+// Least-squares B-spline through measured points, with its covariance.
 //
 //   minimise  sum_k w_k (y_k - s(x_k))^2 + smoothness * integral over [a, b] of s''(x)^2 dx
 //
-// and then, if asked for, remove what the points cannot or should not tell (the gauge): the line
-// through the end values, the least-squares line, or the value at one place. The removal is an
-// exact projection of the coefficients: a straight line is itself a spline.
+// The gauge, if one is chosen, is removed afterwards: the line through the end values, the
+// least-squares line, or the value at one place, which the points do not determine or which belongs
+// to another error. The removal is an exact projection of the coefficients, for a straight line is
+// itself a spline.
 //
 //   const auto fit = FitBSpline(BSplineBasis::Uniform(3, 0.0, 0.06, 12), x, y,
 //                               {.gauge = Gauge::kEndPointLine});
@@ -44,12 +45,12 @@ struct BSplineFitOptions {
 
 struct BSplineFit {
   BSpline spline;
-  // Of the coefficients. Without weights the variance of a point is estimated from the residuals;
-  // 0 x 0 when there is no redundancy to do so.
+  // m x m, of the coefficients. Without weights the variance of a point is estimated from the
+  // residuals; 0 x 0 when there is no redundancy.
   Eigen::MatrixXd covariance;
   double residual_rms;          // of y_k - fit, not weighted
   double effective_parameters;  // trace of the hat matrix: m without smoothness, fewer with it
-  // What the gauge took away: the points are near spline + removed_offset + removed_slope * x.
+  // The removed gauge: the points are near spline + removed_offset + removed_slope * x.
   double removed_offset;
   double removed_slope;
 
@@ -60,7 +61,7 @@ struct BSplineFit {
 BSplineFit FitBSpline(const BSplineBasis& basis, const Eigen::VectorXd& x, const Eigen::VectorXd& y,
                       const BSplineFitOptions& options = {});
 
-// The matrix K of the smoothness: coefficients' K coefficients = integral of s''^2 over [a, b].
+// The m x m matrix K of the smoothness: c' K c = integral of s''^2 over [a, b], c the coefficients.
 Eigen::MatrixXd SmoothnessMatrix(const BSplineBasis& basis);
 
 }  // namespace abbe::geometry

@@ -9,8 +9,8 @@
 // Validity: any angle for the exact functions; SmallRotation neglects |angles|^2 / 2, that is
 // 0.5e-6 at 1 mrad, and is not orthogonal.
 //
-// Every function takes any scalar that Eigen takes, in particular ceres::Jet: the derivatives are
-// right at zero angle too, where a plain sqrt would divide by zero.
+// Every function accepts any scalar of Eigen, in particular ceres::Jet: the derivatives are right
+// at zero angle too, where a plain sqrt would divide by zero.
 #pragma once
 
 #include <Eigen/Core>

@@ -11,9 +11,9 @@
 // Failure: none; a value that is not finite passes through.
 // Source: homogeneous transforms, e.g. Craig, "Introduction to Robotics", chapter 2; the error
 // transform is the T of the five-probe head paper without its travel d, with the sign of its -EBX
-// entry restored. Validity: Inverse() transposes R, so it is exact for a rotation; for a
-// SmallErrorTransform, which is no rotation, it neglects |angles|^2: solve with Matrix() where that
-// matters.
+// entry restored.
+// Validity: Inverse() transposes R, so it is exact for a rotation; for a SmallErrorTransform, which
+// is not a rotation, it neglects |angles|^2: solve with Matrix() where that matters.
 #pragma once
 
 #include <Eigen/Core>
@@ -63,7 +63,8 @@ Transform<T> SmallErrorTransform(const ErrorVector<T>& errors) {
   return {SmallRotation<T>(errors.template tail<3>()), errors.template head<3>()};
 }
 
-// The same with the full rotation exp([EAX EBX ECX]), which knows no order of the three angles.
+// The same with the full rotation exp([EAX EBX ECX]), which does not depend on an order of the
+// angles.
 template <typename T>
 Transform<T> ErrorTransform(const ErrorVector<T>& errors) {
   return {ExpRotation<T>(errors.template tail<3>()), errors.template head<3>()};

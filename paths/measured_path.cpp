@@ -18,8 +18,6 @@ using recording::Recording;
 using Rows = std::vector<std::size_t>;
 using Column = std::optional<std::span<const double>>;
 
-constexpr double kMillimetrePerMinute = settings::kMillimetre / 60.0;
-
 std::string PositionName(int axis) { return fmt::format("{}_mm", "xyz"[axis]); }
 std::string ReferenceName(int axis) { return fmt::format("ref_{}_mm", "xyz"[axis]); }
 
@@ -72,9 +70,10 @@ MeasuredPath Commanded(const Recording& recording, const Rows& rows) {
   path.time = recording.Find("time_s") ? Values(recording, rows, "time_s", 1.0, 0.0)
                                        : Eigen::VectorXd::LinSpaced(
                                              path.poses(), 0.0, static_cast<double>(path.poses()));
-  path.feed = Values(recording, rows, "feed_mm_min", kMillimetrePerMinute, 0.0);
+  path.feed = Values(recording, rows, "feed_mm_min", settings::kMillimetrePerMinute, 0.0);
   path.pass = Values(recording, rows, "pass", 1.0, 1.0).cast<int>();
-  path.direction = Values(recording, rows, "direction", 1.0, kNoDirection).cast<int>();
+  path.direction =
+      Values(recording, rows, "direction", 1.0, MeasuredPath::kDirectionNotStated).cast<int>();
   return path;
 }
 

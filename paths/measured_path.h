@@ -25,6 +25,8 @@ namespace abbe::paths {
 inline constexpr const char* kByLinkage = "linkage";
 
 struct MeasuredPath {
+  static constexpr int kDirectionNotStated = 2;  // the column has -1, 0 and 1
+
   std::string recording;
   std::string instrument;         // kByLinkage, "reference"
   std::string plane;              // of the header, may be empty
@@ -40,8 +42,6 @@ struct MeasuredPath {
 
   Eigen::Index poses() const { return commanded.cols(); }
 };
-
-constexpr int kNoDirection = 2;
 
 // `p_MT` belongs to the rows `rows`, as relm::ReadAngles gives them.
 MeasuredPath LinkagePath(const recording::Recording& recording, const machine::Chain& chain,

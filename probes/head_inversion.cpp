@@ -81,10 +81,11 @@ SimplifiedInversion::SimplifiedInversion(const HeadLayout<>& layout, MovingBody 
       travels_(moving == MovingBody::kTarget ? 1.0 : 0.0),
       inverse_span_(1 / SideSpan(layout)) {}
 
-DocumentInversion::DocumentInversion(const HeadLayout<>& layout, MovingBody moving)
+SmallAngleInversion::SmallAngleInversion(const HeadLayout<>& layout, MovingBody moving)
     : layout_(layout), moving_(moving), top_(layout), linear_(layout, moving) {}
 
-HeadErrors<> DocumentInversion::operator()(const PerProbe<>& readings, double d, double exx) const {
+HeadErrors<> SmallAngleInversion::operator()(const PerProbe<>& readings, double d,
+                                             double exx) const {
   const HeadErrors<> e =
       moving_ == MovingBody::kHead ? linear_(readings, d, exx) : MovingTarget(readings, d, exx);
   if (!(std::abs(e.eax) + std::abs(e.ebx) + std::abs(e.ecx) < 1)) RefuseReadings(readings, d);
@@ -95,8 +96,8 @@ HeadErrors<> DocumentInversion::operator()(const PerProbe<>& readings, double d,
 // With the slopes of the top surface p = (EBX + EAX ECX) / (1 + ECX^2) along -u and
 // q = (EAX - EBX ECX) / (1 + ECX^2) along s, EAX = q + p ECX and EBX = p - q ECX. Put into the
 // difference E - D of the side readings, a quadratic in ECX alone remains.
-HeadErrors<> DocumentInversion::MovingTarget(const PerProbe<>& readings, double d,
-                                             double exx) const {
+HeadErrors<> SmallAngleInversion::MovingTarget(const PerProbe<>& readings, double d,
+                                               double exx) const {
   const auto [slope_u, q] = top_(readings);
   const double p = -slope_u;
   const auto& [side_d, side_e] = layout_.side;

@@ -1,12 +1,12 @@
 // From five readings to the five errors of the swept axis.
 //
-//   const DocumentInversion invert(layout, MovingBody::kTarget);
+//   const SmallAngleInversion invert(layout, MovingBody::kTarget);
 //   const HeadErrors<> errors = invert(readings, d);
 //
 // Three inversions, each for both bodies that may move. Frames, units, signs and the order of the
 // readings are those of head_model.h; `exx` is the positioning error where it is known.
 //   SimplifiedInversion  first order in the errors: the published equations, for any layout;
-//   DocumentInversion    exact for DocumentReadings;
+//   SmallAngleInversion    exact for SmallAngleReadings;
 //   RigidInversion       exact for RigidReadings, for any measuring lines.
 // The exact ones are closed forms, not iterations: three readings fix the top plane, two more the
 // side plane, and what remains is a quadratic in the yaw (document) or the rotation of two known
@@ -67,9 +67,9 @@ class SimplifiedInversion {
   double inverse_span_;  // 1/m: of the side probes along u
 };
 
-class DocumentInversion {
+class SmallAngleInversion {
  public:
-  DocumentInversion(const HeadLayout<>& layout, MovingBody moving);
+  SmallAngleInversion(const HeadLayout<>& layout, MovingBody moving);
   HeadErrors<> operator()(const PerProbe<>& readings, double d, double exx = 0) const;
 
  private:
@@ -78,7 +78,7 @@ class DocumentInversion {
   HeadLayout<> layout_;
   MovingBody moving_;
   TopPlane top_;
-  SimplifiedInversion linear_;  // exact for a moving head: there the document's model is linear
+  SimplifiedInversion linear_;  // exact for a moving head: there the small-angle model is linear
 };
 
 class RigidInversion {

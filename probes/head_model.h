@@ -6,7 +6,7 @@
 // nearer. Signs: d > 0 when the moving body goes towards +u; angles follow the right-hand rule.
 //
 // Two models, each for both bodies that may move:
-//   DocumentReadings  the source's model: the pose of the moved body is d plus the small-angle
+//   SmallAngleReadings  the source's model: the pose of the moved body is d plus the small-angle
 //                     matrix I + [EAX EBX ECX]x, which is solved exactly but is no rotation;
 //   RigidReadings     the moved body turns by the full rotation exp([EAX EBX ECX]x), which knows no
 //                     order of the three angles; the plane of the target is cut by the measuring
@@ -43,7 +43,7 @@ struct HeadErrors {
 
 // Equation 2, with EZX before the fraction: the top surface under a probe at (x, y), target moving.
 template <typename T>
-T DocumentTop(const HeadErrors<T>& e, const T& x, const T& y, const T& d) {
+T SmallAngleTop(const HeadErrors<T>& e, const T& x, const T& y, const T& d) {
   const T lever = d - x + e.exx;
   const T scale = T(1) / (T(1) + e.ecx * e.ecx);
   return e.ezx + scale * (e.eax * (y - e.eyx + lever * e.ecx) +  //
@@ -52,7 +52,7 @@ T DocumentTop(const HeadErrors<T>& e, const T& x, const T& y, const T& d) {
 
 // Equations 6 and 7: the side surface under a probe at (x, z), target moving.
 template <typename T>
-T DocumentSide(const HeadErrors<T>& e, const T& x, const T& z, const T& d) {
+T SmallAngleSide(const HeadErrors<T>& e, const T& x, const T& z, const T& d) {
   const T lever = d - x + e.exx;
   const T scale = T(1) / (T(1) + e.ebx * e.ebx);
   return e.eyx + scale * (e.eax * (e.ezx - z + lever * e.ebx) -  //
@@ -60,17 +60,17 @@ T DocumentSide(const HeadErrors<T>& e, const T& x, const T& z, const T& d) {
 }
 
 template <typename T>
-PerProbe<T> DocumentReadings(const HeadLayout<T>& layout, MovingBody moving, const HeadErrors<T>& e,
-                             const T& d) {
+PerProbe<T> SmallAngleReadings(const HeadLayout<T>& layout, MovingBody moving,
+                               const HeadErrors<T>& e, const T& d) {
   PerProbe<T> delta;
   for (std::size_t i = 0; i < kTopProbes; ++i) {
     const auto& [x, y] = layout.top[i];
-    delta[i] = moving == MovingBody::kTarget ? DocumentTop(e, x, y, d)
+    delta[i] = moving == MovingBody::kTarget ? SmallAngleTop(e, x, y, d)
                                              : T(-(e.ezx + y * e.eax - x * e.ebx));
   }
   for (std::size_t i = 0; i < kSideProbes; ++i) {
     const auto& [x, z] = layout.side[i];
-    delta[kTopProbes + i] = moving == MovingBody::kTarget ? DocumentSide(e, x, z, d)
+    delta[kTopProbes + i] = moving == MovingBody::kTarget ? SmallAngleSide(e, x, z, d)
                                                           : T(-(e.eyx - z * e.eax + x * e.ecx));
   }
   return delta;

@@ -45,7 +45,7 @@ MeasuringLines<T> InstalledLines(const HeadLayout<T>& layout, const Installation
   return lines;
 }
 
-// The layout of the installed head for the document's model, to first order.
+// The layout of the installed head for the small-angle model, to first order.
 template <typename T>
 HeadLayout<T> InstalledLayout(const HeadLayout<T>& layout, const Installation<T>& i) {
   HeadLayout<T> installed = layout;

@@ -126,12 +126,12 @@ void EvaluateWith(Simulation simulation, Draws& draws, const Invert& invert) {
   const HeadLayout<> nominal = NominalLayout();
   if (simulation == Simulation::kOne) {
     Evaluate(draws, [nominal, invert](std::size_t, const HeadErrors<>& e, double d) {
-      return invert(nominal, DocumentReadings(nominal, MovingBody::kTarget, e, d), d);
+      return invert(nominal, SmallAngleReadings(nominal, MovingBody::kTarget, e, d), d);
     });
   } else {
     Evaluate(draws, [&](std::size_t i, const HeadErrors<>& e, double d) {
       const auto layout = InstalledLayout(DrawnLayout(nominal, draws, i), kInstallation);
-      return invert(layout, DocumentReadings(layout, MovingBody::kTarget, e, d), d);
+      return invert(layout, SmallAngleReadings(layout, MovingBody::kTarget, e, d), d);
     });
   }
 }
@@ -145,13 +145,13 @@ void EvaluateBlock(const SimulationOptions& options, Draws& draws) {
         return simplified(readings, d);
       });
     case Inversion::kExact:
-      return with([exact = DocumentInversion(NominalLayout(), MovingBody::kTarget)](
+      return with([exact = SmallAngleInversion(NominalLayout(), MovingBody::kTarget)](
                       const HeadLayout<>&, const PerProbe<>& readings, double d) {
         return exact(readings, d);
       });
     case Inversion::kCalibrated:
       return with([](const HeadLayout<>& layout, const PerProbe<>& readings, double d) {
-        return DocumentInversion(layout, MovingBody::kTarget)(readings, d);
+        return SmallAngleInversion(layout, MovingBody::kTarget)(readings, d);
       });
   }
 }

@@ -4,7 +4,7 @@
 //       RunSimulation({.simulation = Simulation::kOne, .inversion = Inversion::kSimplified});
 //   errors[kEcx].worst;  // rad
 //
-// A draw: EAX, EBX, ECX uniform in +-1 mrad, EYX, EZX uniform in +-50 um; DocumentReadings of the
+// A draw: EAX, EBX, ECX uniform in +-1 mrad, EYX, EZX uniform in +-50 um; SmallAngleReadings of the
 // nominal layout with a moving target; an inversion; error = estimated - true. Draw i stands at
 // station i mod 61 of the travel, so 61 draws in a row are one run of the source. EXX = 0.
 //   kOne  d = 0 ... 60 mm, the head as drawn;
@@ -33,8 +33,8 @@ enum class Simulation { kOne, kTwo };
 
 enum class Inversion {
   kSimplified,  // the source's, first order
-  kExact,       // DocumentInversion for the nominal layout
-  kCalibrated,  // DocumentInversion for the layout as it really stands; in kOne the same as kExact
+  kExact,       // SmallAngleInversion for the nominal layout
+  kCalibrated,  // SmallAngleInversion for the layout as it really stands; in kOne the same as kExact
 };
 
 struct SimulationOptions {

@@ -144,7 +144,7 @@ LinkageModel CompleteErrorModel(const LinkageSettings& settings) {
   AddGeometry(settings, pivots, ball, model);
   AddEncoders(settings, pivots, model);
   AddPhysics(settings, pivots, model);
-  return model.Build("complete");
+  return model.Build(ErrorModelName(ErrorModel::kComplete));
 }
 
 }  // namespace abbe::relm

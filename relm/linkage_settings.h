@@ -18,6 +18,7 @@
 
 #include "geometry/transform.h"
 #include "machine/chain.h"
+#include "relm/error_model_name.h"
 #include "relm/linkage_model.h"
 #include "relm/pivot_linkage.h"
 #include "relm/serial_chain.h"
@@ -71,8 +72,7 @@ LinkageSettings ReadLinkageSettings(const settings::Table& root);
 // Where the ball of a perfect machine stands in M.
 Eigen::Vector3d NominalTip(const machine::Chain& chain, const Eigen::Vector3d& axis_positions);
 
-// The error models; see error_models.h for their parameters.
-enum class ErrorModel { kPivots, kPublished, kPublishedWithBearing, kComplete };
+// The parameters of each model: error_models.h. InputError when `settings` lack what it needs.
 LinkageModel MakeLinkageModel(const LinkageSettings& settings, ErrorModel model);
 
 }  // namespace abbe::relm

@@ -15,6 +15,7 @@
 
 #include "relm/linkage_model.h"
 #include "relm/linkage_settings.h"
+#include "settings/unit.h"
 
 namespace abbe::relm {
 
@@ -40,9 +41,9 @@ class ModelBuilder {
   std::vector<estimation::ParameterBlock> blocks_;
 };
 
-inline const estimation::PrintUnit kMicroradians{"urad", 1e-6};
-inline const estimation::PrintUnit kMicrometres{"um", 1e-6};
-inline const estimation::PrintUnit kMillimetres{"mm", 1e-3};
+inline const estimation::PrintUnit kMicroradians{"urad", settings::kMicroradian};
+inline const estimation::PrintUnit kMicrometres{"um", settings::kMicrometre};
+inline const estimation::PrintUnit kMillimetres{"mm", settings::kMillimetre};
 inline const estimation::PrintUnit kPartsPerMillionPerKelvin{"ppm/degC", 1e-6};
 
 std::string PivotName(Eigen::Index joint);  // "pivot_1" for joint 0

@@ -47,7 +47,7 @@ LinkageModel PivotErrorModel(const LinkageSettings& settings) {
   model.Entry("pivot_1", sd.encoder_offset, {.motion = pivot_1});
   model.Entry("pivot_2", sd.encoder_offset, {.motion = pivot_2});
   model.Entry("pivot_3", sd.encoder_offset, {.motion = pivot_3});
-  return model.Build("pivots");
+  return model.Build(ErrorModelName(ErrorModel::kPivots));
 }
 
 }  // namespace abbe::relm

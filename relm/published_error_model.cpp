@@ -147,7 +147,8 @@ LinkageModel PublishedErrorModel(const LinkageSettings& settings, bool with_bear
   const Motions motions = AddMotions(settings, placed, model.motions);
   AddGeometry(settings, motions, model);
   if (with_bearing) AddBearing(settings, placed, motions, model);
-  return model.Build(with_bearing ? "published with bearing" : "published");
+  return model.Build(
+      ErrorModelName(with_bearing ? ErrorModel::kPublishedWithBearing : ErrorModel::kPublished));
 }
 
 }  // namespace abbe::relm

@@ -23,7 +23,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFast = 600.0 * 1e-3 / 60.0, kSlow = 120.0 * 1e-3 / 60.0;  // m/s
+constexpr double kFast = 600.0 * settings::kMillimetrePerMinute;
+constexpr double kSlow = 120.0 * settings::kMillimetrePerMinute;
 constexpr double kPause = 30.0;            // s, between two recordings
 constexpr double kWarming = 3600.0;        // s, before the repeat
 constexpr double kWarmer = 3.0;            // K

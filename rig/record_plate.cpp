@@ -101,7 +101,7 @@ class PlateMaker {
   }
 
   void Measure(std::size_t number) {
-    const PlateSetUp& setup = program_.setups[number];
+    const PlateSetup& setup = program_.setups[number];
     const int holes = program_.holes * program_.holes;
     const std::uint64_t first = number * static_cast<std::uint64_t>(3 * holes + 6);
     Matrix3d R;
@@ -141,7 +141,7 @@ class PlateMaker {
 
 }  // namespace
 
-std::vector<PlateSetUp> FiveSetUps(double stylus) {
+std::vector<PlateSetup> FiveSetups(double stylus) {
   return {{{0, 1}, {0.0, 0.0, -stylus}},
           {{0, 2}, {0.0, stylus, 0.0}},
           {{0, 2}, {0.0, -stylus, 0.0}},

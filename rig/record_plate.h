@@ -19,16 +19,16 @@
 
 namespace abbe::rig {
 
-struct PlateSetUp {
+struct PlateSetup {
   std::array<int, 2> directions;  // axis of M along plate_x and plate_y: 0, 1, 2
   Eigen::Vector3d tool;           // m: where the probe stands in M with all axes at zero
 };
 
 // The plate once in XY, twice in XZ and twice in YZ, each of these with the stylus to either side.
-std::vector<PlateSetUp> FiveSetUps(double stylus = 0.05);
+std::vector<PlateSetup> FiveSetups(double stylus = 0.05);
 
 struct PlateProgram {
-  std::vector<PlateSetUp> setups = FiveSetUps();
+  std::vector<PlateSetup> setups = FiveSetups();
   int holes = 7;              // along either side; the side is 0.9 of the shortest travel
   double u_form = 0.5e-6;     // m: of the place of one hole in each direction
   double u_scale = 1e-6;      // relative

@@ -21,7 +21,7 @@ struct Document::State {
   std::string name;
   toml::table root;
   std::map<std::string, AskedKey> asked;
-  // Real table path -> keys that were asked for by name, and keys that Named() gave.
+  // Real table path -> keys requested by name, and keys returned by Named().
   std::map<std::string, std::set<std::string, std::less<>>> known;
   std::map<std::string, std::set<std::string, std::less<>>> named;
 };
@@ -47,7 +47,7 @@ double AsNumber(const toml::node& node) {
   return node.as_floating_point()->get();
 }
 
-// What a message quotes from a file may hold line ends: a message is one line.
+// Text quoted from a file may contain line ends; a message is one line.
 std::string OneLine(std::string text) {
   for (char& letter : text) {
     if (static_cast<unsigned char>(letter) < ' ' || letter == '\x7f') letter = ' ';

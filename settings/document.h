@@ -1,6 +1,6 @@
-// Strict reading of TOML: every key is asked for by name, converted to SI by the unit in its name,
-// and checked; a key that nobody asked for is an error that names the nearest known key and the
-// line.
+// Strict reading of TOML: the program requests every key by name, converts it to SI by the unit in
+// the name and checks it. A key that was never requested is an error; the message names the line
+// and the nearest known key.
 //
 //   const auto document = settings::Document::Read("machine.toml");
 //   const settings::Table head = document.Root().Child("head");
@@ -22,7 +22,7 @@
 
 namespace abbe::settings {
 
-// What a number may be, in the unit of the key. Without a fallback the key is required.
+// Bounds and fallback of a number, in the unit of the key. Without a fallback the key is required.
 struct NumberRule {
   std::optional<double> fallback{};
   std::optional<double> above{};     // value > above
@@ -30,7 +30,7 @@ struct NumberRule {
   std::optional<double> at_most{};   // value <= at_most
 };
 
-// One key that a reader asked for, for the documentation and its test.
+// One requested key, for the documentation and its test.
 struct AskedKey {
   std::string type;      // "number", "text", "truth", "numbers", "texts", "table", "tables"
   std::string unit;      // as in Unit::name
@@ -49,8 +49,8 @@ class Document {
   Table Root() const;
 
   const std::string& name() const;
-  // Everything that was asked for so far, by dotted path; elements of arrays of tables and of
-  // named collections read "[]".
+  // All keys requested so far, by dotted path; "[]" stands for an element of an array of tables or
+  // of a named collection.
   const std::map<std::string, AskedKey>& asked() const;
 
  private:
@@ -86,16 +86,16 @@ class Table {
       std::string_view key, std::size_t size,
       const std::optional<std::vector<std::string>>& fallback = {}) const;
 
-  // A table below this one; an absent table reads as an empty one, so that its keys take their
-  // fallbacks or say that they are missing.
+  // A table below this one. An absent table reads as an empty one: its keys take their fallbacks,
+  // and a required key is reported as missing.
   Table Child(std::string_view key) const;
   // An array of tables; empty when absent.
   std::vector<Table> Children(std::string_view key) const;
-  // Every table below this one that has a name of the user's choice, e.g. the devices. Keys that
-  // were asked for by name before are not among them.
+  // Every table below this one whose name the user chooses, e.g. the devices. Keys requested by
+  // name before are left out.
   std::vector<Table> Named() const;
 
-  // Throws when this table (not the tables below it) holds a key that was not asked for.
+  // Throws when this table (not the tables below it) holds a key that was not requested.
   void RefuseUnknown() const;
 
   // The last part of the path: the name of a Named() table.

@@ -1,4 +1,4 @@
-// What the user probably meant: the known word with the fewest edits from the one that was written.
+// Spelling suggestion: the known word with the fewest edits from the one that was written.
 #pragma once
 
 #include <string>

@@ -9,7 +9,7 @@ namespace abbe::settings {
 
 namespace {
 
-// Bytes of the character that `text` begins with; 0 when it is no UTF-8.
+// Number of bytes of the first character of `text`; 0 when it is not valid UTF-8.
 std::size_t CharacterSize(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);

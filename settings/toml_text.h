@@ -1,4 +1,4 @@
-// What a writer of TOML files puts behind the "=".
+// Text of TOML keys and values, for the programs that write TOML files.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace abbe::settings {
 
-// A text in quotes; blanks for characters that TOML does not allow there, and question marks for
-// bytes that are no UTF-8.
+// A text in quotes; control characters, which TOML does not allow there, become blanks, and bytes
+// that are not UTF-8 become question marks.
 std::string Quoted(std::string_view text);
 
 // Whether all of it is UTF-8.
 bool IsUtf8(std::string_view text);
 
-// A key of a table: as it is where TOML allows that, else in quotes.
+// A key of a table: bare where TOML allows it, else in quotes.
 std::string Key(std::string_view name);
 
 // A float, in the shortest form that reads back the same.
@@ -23,7 +23,7 @@ std::string Float(double value);
 
 // "[1.0, 2.5]"
 std::string Floats(std::span<const double> values);
-// The same of a vector that has data() and size().
+// The same for a vector with data() and size().
 template <typename Vector>
 std::string Floats(const Vector& values) {
   return Floats(std::span<const double>(values.data(), static_cast<std::size_t>(values.size())));

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-// Longer endings first.
+// The first match counts, so longer endings come first.
 constexpr std::array<std::pair<std::string_view, Unit>, 25> kEndings{{
     {"_ppm_per_c", {"ppm/degC", 1e-6}},
     {"_nm_per_mm2", {"nm/mm^2", 1e-3}},

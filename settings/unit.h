@@ -11,19 +11,18 @@ inline constexpr double kMicrometre = 1e-6;
 inline constexpr double kNanometre = 1e-9;
 inline constexpr double kMicroradian = 1e-6;
 inline constexpr double kMillimetrePerMinute = kMillimetre / 60.0;
-inline constexpr double kMicro = 1e-6;  // of either: a table that has both
+inline constexpr double kMicro = 1e-6;  // um or urad: for a table with both
 
 struct Unit {
   std::string_view name;  // as printed: "um", "mm/min"; empty for a plain number
   double si;              // value in SI = value in this unit * si (temperatures stay in degC)
 };
 
-// The unit that the end of `name` says: "probe_a_um" -> {"um", 1e-6}; a name without a known ending
-// is a plain number. The longest ending wins ("feed_mm_min" is mm/min, not minutes).
+// The unit in the ending of `name`: "probe_a_um" -> {"um", 1e-6}; a name without a known ending is
+// a plain number. The longest ending wins ("feed_mm_min" is mm/min, not minutes).
 Unit UnitOf(std::string_view name);
 
-// What stands before that end: "time_constant_s" -> "time_constant"; a plain number is its own
-// stem.
+// `name` without that ending: "time_constant_s" -> "time_constant"; a plain number keeps its name.
 std::string_view StemOf(std::string_view name);
 
 }  // namespace abbe::settings

@@ -195,7 +195,7 @@ ExtendedModel ReadExtendedModel(const std::filesystem::path& path, const CauseOb
 std::string ExtendedModelText(const ExtendedModel& model) {
   std::string text = fmt::format(
       "# What the simulation of this machine lacked, found by abbe diagnose. Give it to other\n"
-      "# commands by --causes; to remove a cause delete its table. docs/diagnose.md has the keys.\n"
+      "# commands by --causes; to remove a cause delete its table. Keys: docs/extended-model.md.\n"
       "extended_model = {}\nmachine = {}\n",
       kFormat, Quoted(model.machine));
   if (model.origin.started != 0.0) {

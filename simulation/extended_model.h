@@ -1,6 +1,6 @@
 // What a diagnosis found, as a file that every other command takes: the causes that the simulation
 // of a machine lacked, with their sizes. A person may edit it; a table that is deleted is a cause
-// that is gone. docs/diagnose.md describes the keys.
+// that is gone. docs/extended-model.md describes the keys.
 //
 //   const ExtendedModel model = ReadExtendedModel("mill.causes.toml", {"demo-mill", true, 3});
 //   Correct(recording, model.causes, ...);               // simulation/correction.h

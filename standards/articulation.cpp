@@ -35,7 +35,7 @@ bool Holds(const Sphere& sphere, const Points& points, double tolerance) {
   return true;
 }
 
-// Of at most five points: all choices of one to four of them on the surface.
+// Smallest sphere of at most five points: all choices of one to four of them on the surface.
 Sphere SmallSphere(const Points& points, double tolerance, Points& on_surface) {
   Sphere best{Eigen::Vector3d::Zero(), std::numeric_limits<double>::infinity()};
   for (unsigned choice = 1; choice < (1U << points.size()); ++choice) {
@@ -58,7 +58,7 @@ Sphere SmallSphere(const Points& points, double tolerance, Points& on_surface) {
 Sphere SmallestEnclosingSphere(const Eigen::Matrix3Xd& p) {
   if (p.cols() < 1 || !p.allFinite()) {
     throw InputError(fmt::format(
-        "smallest sphere of {} points: give finite numbers for one at least", p.cols()));
+        "smallest sphere of {} points: give at least one, with finite numbers", p.cols()));
   }
   constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
   constexpr int kMaxRounds = 10000;
@@ -83,8 +83,8 @@ Sphere SmallestEnclosingSphere(const Eigen::Matrix3Xd& p) {
 Articulation EvaluateArticulation(const Eigen::Matrix3Xd& p) {
   if (p.cols() < 2 || !p.allFinite()) {
     throw InputError(fmt::format(
-        "articulation of {} poses: two at least are needed, each with finite numbers; five are the "
-        "standard's",
+        "articulation of {} poses: at least two are needed, each with finite numbers; the "
+        "standard asks for five",
         p.cols()));
   }
   Articulation figures;

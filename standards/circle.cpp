@@ -13,13 +13,13 @@ namespace abbe::standards {
 namespace {
 
 constexpr int kMaxSteps = 50;
-// Of the radius: a centre that moves less has settled.
+// Convergence of the centre, relative to the radius.
 constexpr double kSettled = 1e-13;
 
 void CheckPoints(std::span<const double> x, std::span<const double> y) {
   if (x.size() != y.size() || x.size() < 3) {
     throw InputError(
-        fmt::format("circle through {} x and {} y: give both coordinates of three points at least",
+        fmt::format("circle through {} x and {} y: give both coordinates of at least three points",
                     x.size(), y.size()));
   }
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -38,12 +38,12 @@ double Mean(std::span<const double> values) {
 
 [[noreturn]] void ThrowLine(std::size_t n) {
   throw InputError(
-      fmt::format("the {} points stand on a line or in one place: no circle; check which columns "
-                  "hold the plane of the path",
+      fmt::format("the {} points lie on a line or in one place and fix no circle; check which "
+                  "columns hold the plane of the path",
                   n));
 }
 
-// Of x^2 + y^2 + a x + b y + c = 0 by linear least squares, about the mean of the points.
+// The circle x^2 + y^2 + a x + b y + c = 0 by linear least squares, about the mean of the points.
 Circle AlgebraicCircle(std::span<const double> x, std::span<const double> y) {
   const double mx = Mean(x), my = Mean(y);
   Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
@@ -55,7 +55,7 @@ Circle AlgebraicCircle(std::span<const double> x, std::span<const double> y) {
     b += p * p.squaredNorm() / 2.0;
     square += p.squaredNorm();
   }
-  constexpr double kFlat = 1e-20;  // of the larger extent: what rounding leaves of a line
+  constexpr double kFlat = 1e-20;  // squared ratio of the extents: rounding of points on a line
   if (!(A.determinant() > kFlat * A.trace() * A.trace())) ThrowLine(x.size());
   const Eigen::Vector2d c = A.inverse() * b;
   return {mx + c.x(), my + c.y(),
@@ -84,7 +84,7 @@ Circle LeastSquaresCircle(std::span<const double> x, std::span<const double> y) 
     if (StepLeastSquares(x, y, circle) <= kSettled * circle.radius) return circle;
   }
   throw NumericalError(fmt::format(
-      "least-squares circle of {} points: the centre did not settle in {} steps; is the path a "
+      "least-squares circle of {} points: the centre did not converge in {} steps; is the path a "
       "circle?",
       x.size(), kMaxSteps));
 }
@@ -103,8 +103,8 @@ Circle MinimumZoneCircle(std::span<const double> x, std::span<const double> y) {
     if (std::hypot(zone.x, zone.y) <= kSettled * circle.radius) return circle;
   }
   throw NumericalError(
-      fmt::format("minimum-zone circle of {} points: the centre did not settle in {} steps; are "
-                  "the deviations small beside the radius?",
+      fmt::format("minimum-zone circle of {} points: the centre did not converge in {} steps; "
+                  "are the deviations small compared with the radius?",
                   x.size(), kMaxSteps));
 }
 

@@ -5,17 +5,17 @@
 //
 // Frames: x and y are the two coordinates of the plane, in any origin. A deviation is the distance
 // to the centre minus the radius: positive outside. Units: m. Shapes: n points, in any order, of a
-// whole circle or an arc; both senses together where they are judged together.
+// whole circle or an arc; points of both senses may be evaluated together.
 // Failure: InputError for fewer than three points, lists of different length, numbers that are not
-// finite, or points on a line. NumericalError when the iteration does not settle (deviations that
-// are no longer small beside the radius). Source: ISO 230-4 and ISO 12181-1 (definitions of the two
-// circles), from memory of the standards. Least squares: the squares of the radial deviations, by
-// Gauss-Newton from the algebraic circle of Kasa (1976). Minimum zone: two concentric circles of
-// smallest separation. About a centre c near the solution the distance of point i is r_i - c u_i +
-// O(|c|^2 / r), so each step is a linear programme in (c, outer, inner); it is solved exactly by
-// adding the points that its zone leaves out, and repeated about the new centre until the centre
-// rests. Validity: deviations below some percent of the radius; the zone is then the narrowest of
-// all. Law: minimum zone <= least squares.
+// finite, or points on a line. NumericalError when the iteration does not converge (deviations that
+// are not small compared with the radius). Source: ISO 12181-1:2011, clause 3 (reference circles),
+// and ISO 230-4:2022, clause 3; not checked against their texts. Least squares: the squares of the
+// radial deviations, by Gauss-Newton from the algebraic circle of Kasa (1976). Minimum zone: two
+// concentric circles of smallest separation. About a centre c near the solution the distance of
+// point i is r_i - c u_i + O(|c|^2 / r), so each step is a linear programme in (c, outer, inner);
+// it is solved exactly by adding the points outside its zone, and repeated about the new centre
+// until the centre converges. Validity: deviations below a few percent of the radius; the zone is
+// then the global minimum. Law: minimum zone <= least squares.
 #pragma once
 
 #include <span>
@@ -28,12 +28,12 @@ enum class CircleKind { kLeastSquares, kMinimumZone };
 struct Circle {
   double x = 0.0;
   double y = 0.0;
-  double radius = 0.0;  // minimum zone: the middle of the zone
+  double radius = 0.0;  // minimum zone: mean of the two circles
 };
 
 Circle ReferenceCircle(CircleKind kind, std::span<const double> x, std::span<const double> y);
 
-// The figures of ISO 12181-1 about a reference circle; for the minimum zone Error() is RONt.
+// The figures of ISO 12181-1:2011 about a reference circle; for the minimum zone Error() is RONt.
 struct Roundness {
   Circle circle;
   double peak = 0.0;    // largest deviation outwards

@@ -12,7 +12,7 @@ constexpr double kPi = std::numbers::pi;
 
 double Sign(double value) { return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0; }
 
-// The angle since the axis whose extremes stand at `extreme` and half a turn on last turned back.
+// The angle since the last reversal of the axis whose extremes are at `extreme` and `extreme` + pi.
 double SinceReversal(const CirclePoint& at, double extreme) {
   const double turned = at.sense * (at.angle - extreme);
   return turned - kPi * std::floor(turned / kPi);
@@ -20,7 +20,7 @@ double SinceReversal(const CirclePoint& at, double extreme) {
 
 double Spike(double since, double width) { return since / width * std::exp(1.0 - since / width); }
 
-// Two waves of an axis at `position(t)`, which moves the radius by `along(t)`.
+// Cosine and sine of the cyclic error of an axis at `position`; `along` projects it on the radius.
 void AddCyclic(char axis, double pitch, const std::function<double(const CirclePoint&)>& position,
                double (*along)(double), std::vector<Signature>& signatures) {
   for (const auto& [name, wave] :

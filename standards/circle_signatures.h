@@ -1,10 +1,10 @@
-// What each cause of error does to the radius of a circle: the columns of the joint fit.
+// Signatures of error causes in the radius of a circle: the columns of the joint fit.
 //
 // A circle of radius R in the plane of axes (first, second), t the angle from first towards second,
-// d = +1 counter-clockwise (t grows) and -1 clockwise, v the feed. The radial deviation of one unit
-// of each cause:
+// d = +1 counter-clockwise (t grows) and -1 clockwise, v the feed. The radial deviation for an
+// amount 1 of each cause:
 //
-//   centre first, second      cos t, sin t                    the set-up, no error of the machine
+//   centre first, second      cos t, sin t                    set-up, not an error of the machine
 //   scale first, second       R cos^2 t, R sin^2 t            relative; same in both senses
 //   squareness                -(R/2) sin 2t                   rad; > 0: more than 90 degrees from
 //                                                             +first to +second
@@ -19,10 +19,10 @@
 //                                                             turned, w the width; outwards
 //
 // Units: SI. Source: derived from position errors dx, dy by radial = dx cos t + dy sin t, to first
-// order; bow as h(1 - (x/R)^2) is the same signature beside `centre`. Validity: errors small beside
-// R. A trap: unequal backlash leaks d 0.424 (b_first - b_second) into sin 2t, with the sense
-// behaviour of servo mismatch; fit all causes together, both senses and two feeds at least.
-// Adding a cause: one line of the table in circle_signatures.cpp.
+// order. A bow written as h(1 - (x/R)^2) has the same signature, up to `centre`. Validity: errors
+// small compared with R. Caution: unequal backlash leaks d 0.424 (b_first - b_second) into sin 2t,
+// with the sense behaviour of servo mismatch; fit all causes together, both senses and two feeds at
+// least. Adding a cause: one line of the table in circle_signatures.cpp.
 #pragma once
 
 #include <functional>
@@ -43,15 +43,15 @@ struct Signature {
   std::string cause;   // "backlash"
   std::string object;  // an axis "X", a pair "XY", an error function "EYX"
   std::string unit;    // SI, of the amount: "m", "rad", "s", "s2", "1"
-  double usual;        // an amount that would be large for a machine tool; infinite: any
-  std::function<double(const CirclePoint&)> radial;  // m for an amount of one
+  double usual;        // a large amount for a machine tool; infinite: no bound
+  std::function<double(const CirclePoint&)> radial;  // m, for an amount 1
 };
 
 struct SignatureOptions {
   char first = 'X', second = 'Y';
   double first_centre = 0.0, second_centre = 0.0;  // m: axis positions of the circle's centre
-  std::map<char, double> pitch;                    // m: of cyclic errors, by axis; none: not fitted
-  double spike_width = 0.07;                       // rad, w
+  std::map<char, double> pitch;  // m: of cyclic errors, by axis; absent: not fitted
+  double spike_width = 0.07;     // rad, w
 };
 
 std::vector<Signature> CircleSignatures(const SignatureOptions& options);

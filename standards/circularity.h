@@ -6,7 +6,7 @@
 // Frames: x and y are the coordinates of the measured path in the plane of the test, from the
 // nominal centre (the set-up centre). Counter-clockwise turns the first axis of the plane towards
 // the second. Units: m. Shapes: the points of each sense, any number of turns; one sense may be
-// absent (empty), and with it what needs both.
+// absent (empty); figures that need both are then absent.
 //   G(cw), G(ccw)  circular deviation: separation of the two concentric circles that enclose the
 //                  path, minimum zone (G) and about the least-squares centre (G_ls)
 //   G(b)           the same of both paths together
@@ -14,9 +14,10 @@
 //                  from the least-squares centre of both paths (the standard's second choice)
 //   D              mean radius, least-squares circle of both paths, minus the nominal radius
 // Failure: InputError as in standards/circle.h, with the sense named, for a radius that is not
-// positive, or when both senses are empty. Source: ISO 230-4, clause on terms, from memory of the
-// standard. Validity: the figures of the points as given: they grow with noise and the number of
-// points. Filter first (closed_profile_filter.h) and state it, with radius, feed and plane.
+// positive, or when both senses are empty. Source: ISO 230-4:2022, clause 3 (error, where the
+// edition of 2005 said deviation); not checked against its text. Validity: the figures of the
+// points as given: they grow with noise and the number of points. Filter first
+// (closed_profile_filter.h) and state it, with radius, feed and plane.
 #pragma once
 
 #include <optional>

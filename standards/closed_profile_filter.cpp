@@ -13,7 +13,7 @@ namespace abbe::standards {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-// Of a w, the width of the bell: beyond it a weight is below 1e-14.
+// In units of a w, the width of the weight function: beyond it a weight is below 1e-14.
 constexpr double kReach = 3.3;
 
 struct Reading {
@@ -41,9 +41,8 @@ std::vector<double> FilterClosedProfile(std::span<const double> angles,
                                         std::span<const double> values, double cutoff) {
   if (angles.size() != values.size() || !(cutoff > 0.0)) {
     throw InputError(
-        fmt::format("filter of {} angles and {} values at {} undulations a turn: give lists of one "
-                    "length and a "
-                    "cutoff above 0",
+        fmt::format("filter of {} angles and {} values at {} undulations per turn: give lists of "
+                    "equal length and a cutoff above 0",
                     angles.size(), values.size(), cutoff));
   }
   const std::vector<Reading> readings = Sorted(angles, values);

@@ -1,5 +1,5 @@
-// The coverage factor of every expanded uncertainty that is not stated otherwise: U95 = 2 u, as the
-// GUM suggests for normal errors (95.45 %).
+// The coverage factor of expanded uncertainties unless stated otherwise: U95 = 2 u, as the GUM
+// (ISO/IEC Guide 98-3:2008, 6.3.3) suggests for normal errors (95.45 %).
 #pragma once
 
 namespace abbe::standards {

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 using Vector5d = Eigen::Matrix<double, 5, 1>;
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 
-// Deviations d and their derivatives J by centre, tilt and radius, summed up.
+// Sums of the deviations d and of their derivatives J by centre, tilt and radius.
 struct Linearized {
   Matrix5d JtJ = Matrix5d::Zero();
   Vector5d Jtd = Vector5d::Zero();
@@ -24,7 +24,7 @@ struct Linearized {
 
 // The distance of a point is |out|, out = arm - a (a . arm), with the unit vector a of the axis
 // through the foot. Along o = out / |out|, which is across a, the axis moves with its tilt t by
-// da/dt = e / |(t, 1)| less what is along a: the distance by -o_e (a . arm) / |(t, 1)|.
+// da/dt = e / |(t, 1)| minus its component along a, and the distance by -o_e (a . arm) / |(t, 1)|.
 Linearized LinearizedAt(const Cylindricity& fit, double height, const Eigen::Matrix3Xd& points) {
   const Vector3d along(fit.tilt.x(), fit.tilt.y(), 1.0);
   const double length = along.norm();
@@ -46,7 +46,7 @@ Linearized LinearizedAt(const Cylindricity& fit, double height, const Eigen::Mat
   return sums;
 }
 
-// Of Gauss and Newton, in parameters of one size. Its own rounding is taken up by the next step.
+// The Gauss-Newton step, with parameters scaled to one size. The next step removes its rounding.
 Vector5d StepOf(const Linearized& at) {
   constexpr double kIndependent = 1e-12;  // squared sine of a column to the others
   const Vector5d size = at.JtJ.diagonal().cwiseSqrt();
@@ -54,7 +54,7 @@ Vector5d StepOf(const Linearized& at) {
   const Eigen::LDLT<Matrix5d> factors(scale.asDiagonal() * at.JtJ * scale.asDiagonal());
   const bool is_flat = size[2] + size[3] < 1e-9 * (size[0] + size[1]);  // m: heights within 1 nm
   if (is_flat || !scale.allFinite() || !(factors.vectorD().minCoeff() > kIndependent)) {
-    throw InputError("the points fix no cylinder: spread them in height and angle");
+    throw InputError("the points do not determine a cylinder: spread them in height and angle");
   }
   return -scale.cwiseProduct(factors.solve(scale.cwiseProduct(at.Jtd)));
 }
@@ -82,7 +82,7 @@ Cylindricity EvaluateCylindricity(const Eigen::Matrix3Xd& points) {
     }
   }
   throw NumericalError(
-      "the least-squares cylinder did not settle; are the points near a cylinder along z?");
+      "the least-squares cylinder did not converge; are the points near a cylinder along z?");
 }
 
 }  // namespace abbe::standards

@@ -1,13 +1,13 @@
 // Cylindricity about the least-squares cylinder.
 //
-// Frames: the axis runs near +z; x and y from any point near it. A deviation is the distance to the
+// Frames: the axis is near +z; x and y from any origin near it. A deviation is the distance to the
 // axis minus the radius, positive outside. Units: m. Shapes: points in columns, 3 x n.
-// Failure: InputError for fewer than six points, points that fix no cylinder, numbers that are not
-// finite; NumericalError when the iteration does not settle.
-// Source: ISO 12180-1 (definition), from memory of the standard; Gauss-Newton on the place and tilt
-// of the axis and the radius, until they rest at the least squares to rounding. Validity: an axis
-// within some degrees of z. Cylindricity is the minimum zone in the standard; about the
-// least-squares cylinder it is somewhat larger.
+// Failure: InputError for fewer than six points, points that do not determine a cylinder, numbers
+// that are not finite; NumericalError when the iteration does not converge.
+// Source: ISO 12180-1:2011, clause 3 (definition; not checked against its text); Gauss-Newton in
+// the place and tilt of the axis and the radius, converged to rounding. Validity: an axis within a
+// few degrees of z. Cylindricity is the minimum zone in the standard; about the least-squares
+// cylinder the figure is somewhat larger.
 #pragma once
 
 #include <Eigen/Core>

@@ -10,7 +10,7 @@ namespace abbe::standards {
 DiagonalFigures EvaluateDiagonal(const DiagonalRuns& runs) {
   if (runs.forward.size() < 2 ||
       (!runs.backward.empty() && runs.backward.size() != runs.forward.size())) {
-    throw InputError("a diagonal needs two targets or more, the same in both directions");
+    throw InputError("a diagonal needs at least two targets, the same in both directions");
   }
   std::vector<double> all = runs.forward;
   all.insert(all.end(), runs.backward.begin(), runs.backward.end());

@@ -61,7 +61,7 @@ HarmonicFit FitHarmonics(std::span<const double> angles, std::span<const double>
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
   if (qr.rank() < A.cols()) {
     throw NumericalError(fmt::format(
-        "harmonics up to order {}: the {} angles do not tell them apart; measure whole turns or "
+        "harmonics up to order {}: the {} angles do not separate them; measure whole turns or "
         "ask for fewer",
         highest, n));
   }

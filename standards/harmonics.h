@@ -5,14 +5,14 @@
 //
 //   value(t) = mean + sum over n = 1 .. highest of c_n cos(n t) + s_n sin(n t)
 //
-// Order 1 of a radius is an eccentricity, 2 an oval, 3 and more are lobes. Units: angles in rad,
-// all else in the unit of the values. Shapes: lists of one length, any order and spacing, any
-// number of turns. `u` is the standard uncertainty of a coefficient if the residuals are
-// independent; residuals of neighbouring readings seldom are. Failure: InputError for lists of
-// different length, values that are not finite, or fewer readings than coefficients; NumericalError
-// when the angles do not tell the coefficients apart (an arc that is too short for the order).
+// For a radius, order 1 is an eccentricity, 2 an ellipse, 3 and more are lobes. Units: angles in
+// rad, all else in the unit of the values. Shapes: lists of equal length, any order and spacing,
+// any number of turns. `u` is the standard uncertainty of a coefficient for independent residuals;
+// those of neighbouring readings often are not. Failure: InputError for lists of different length,
+// values that are not finite, or fewer readings than coefficients; NumericalError when the angles
+// do not separate the coefficients (an arc that is too short for the order).
 // Source: linear least squares. Validity: readings at equal spacing give the discrete Fourier
-// transform; elsewhere orders above `highest` leak into those below.
+// transform; otherwise orders above `highest` leak into those below.
 #pragma once
 
 #include <cmath>

@@ -16,10 +16,10 @@ namespace abbe::standards {
 namespace {
 
 constexpr int kMaxRounds = 1000;
-// Of the largest radius: what a distance may be beyond the zone by rounding.
+// Relative to the largest radius: how far a point may be outside the zone by rounding.
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
 
-// How far the point is from the shifted centre, to first order.
+// Distance of the point from the shifted centre, to first order.
 double Distance(const Annulus& zone, const AnnulusPoint& point) {
   return point.r - zone.x * point.u - zone.y * point.v;
 }
@@ -46,7 +46,7 @@ std::optional<Annulus> ZoneThrough(const std::array<AnnulusPoint, 4>& points, in
   return Annulus{solution[0], solution[1], solution[2], solution[3]};
 }
 
-// Every choice of `count` of the first `n` numbers, one after the other.
+// Steps to the next choice of choice.size() of the numbers below n; false after the last.
 bool NextChoice(std::vector<std::size_t>& choice, std::size_t n) {
   const std::size_t count = choice.size();
   for (std::size_t i = count; i-- > 0;) {

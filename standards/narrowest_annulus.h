@@ -4,10 +4,11 @@
 //   minimise outer - inner   with   inner <= r_i - (x u_i + y v_i) <= outer   for all points i
 //
 // Units: r, x, y, outer, inner in m; (u, v) is the unit vector from the old centre to the point.
-// Method: solve the programme for a few points (all vertices of its feasible set), add the points
-// furthest beyond the zone, drop those it does not touch, until none is beyond it. Each round makes
-// the zone wider, so it ends. Failure: NumericalError when it does not end in `kMaxRounds` or when
-// all points stand in one direction. Validity: exact up to rounding; O(n) a round, some ten rounds.
+// Method: active set. Solve the programme for a few points (all vertices of its feasible set), add
+// the points furthest outside the zone and drop those that do not touch it, until none is outside.
+// Each round widens the zone, so the method ends. Failure: NumericalError when it does not end in
+// `kMaxRounds` rounds or all points lie in one direction. Validity: exact up to rounding; O(n) per
+// round, about ten rounds.
 #pragma once
 
 #include <span>

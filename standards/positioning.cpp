@@ -13,11 +13,11 @@ namespace {
 
 void Check(const std::vector<TargetDeviations>& targets) {
   if (targets.empty())
-    throw InputError("ISO 230-2: no target: give the deviations of one target at least");
+    throw InputError("ISO 230-2: no target: give the deviations of at least one target");
   const std::size_t cycles = targets.front().up.size();
   if (cycles < 2) {
     throw InputError(
-        fmt::format("ISO 230-2: {} cycle at target {:g} mm upwards: measure two at least", cycles,
+        fmt::format("ISO 230-2: {} cycle at target {:g} mm upwards: measure at least two", cycles,
                     targets.front().target * 1e3));
   }
   for (const TargetDeviations& target : targets) {
@@ -68,7 +68,7 @@ TargetFigures Evaluate(const TargetDeviations& target) {
   return figures;
 }
 
-// Highest minus lowest of what was included.
+// The range, highest minus lowest, of the included values.
 struct Range {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();

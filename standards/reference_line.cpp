@@ -19,8 +19,8 @@ struct Point {
 std::vector<Point> SortedPoints(std::span<const double> x, std::span<const double> y) {
   if (x.size() != y.size() || x.size() < 2) {
     throw InputError(
-        fmt::format("reference line of {} positions and {} deviations: give one of each for two "
-                    "points at least",
+        fmt::format("reference line of {} positions and {} deviations: give one of each for at "
+                    "least two points",
                     x.size(), y.size()));
   }
   std::vector<Point> points(x.size());

@@ -4,10 +4,10 @@
 // Units: x and y in m, slope in rad (its tangent, at machine-tool slopes the same). Shapes: n
 // values each. Failure: InputError for fewer than two points, lists of different length, values
 // that are not finite, or two points at the same x (average the passes of a station first). The
-// order of points is free. Source: ISO 230-1 on straightness deviation (end-point, least-squares
-// and minimum-zone reference line), from memory of the standard. Minimum zone: the zone's width is
-// a convex function of the slope and smallest where one of its borders lies on an edge of the
-// convex hull; the hull by Andrew's monotone chain, the edges walked in order of slope (rotating
+// order of points is free. Source: ISO 230-1:2012, clause 3 (end-point, least-squares and
+// minimum-zone reference line); not checked against its text. Minimum zone: the zone's width is a
+// convex function of the slope and smallest where one of its borders lies on an edge of the convex
+// hull; the hull by Andrew's monotone chain, the edges visited in order of slope (rotating
 // calipers). Exact, O(n log n). Validity: widths are measured along y, not across the line; at a
 // slope of 1 mrad the two differ by 0.5e-6 of the width.
 #pragma once

@@ -9,11 +9,11 @@
 //   B0Z > 0: Z leans towards +X (the angle from +Z to +X is less than 90 degrees);
 //   A0Z > 0: Z leans towards -Y (the angle from +Y to +Z is more than 90 degrees).
 // Units: slopes and result in rad. Failure: none.
-// Source: ISO 230-1 (definition and symbols), from memory of the standard; signs derived and tested
-// against rotated direction vectors.
+// Source: ISO 230-1:2012, clause 3 (definition and symbols; not checked against its text); signs
+// derived and tested against rotated direction vectors.
 // Validity: to first order in the slopes (1 mrad: 1e-9 rad). The figure inherits the kind of line:
-// state it. Both lines must stand in one frame: a target that is mounted anew between the two
-// sweeps, or whose faces are not square, adds its own angle.
+// state it. Both lines must be in one frame: a target that is remounted between the two sweeps, or
+// whose faces are not square, adds its own angle.
 #pragma once
 
 #include "standards/reference_line.h"

@@ -1,9 +1,9 @@
-// The coverage factor for 95 % where the standard uncertainty itself comes from few degrees of
-// freedom: the quantile 0.975 of Student's t (GUM, G.3.2).
+// The coverage factor for 95 % when the standard uncertainty has few degrees of freedom: the
+// quantile 0.975 of Student's t (GUM, G.3.2).
 //
 //   const double U95 = StudentCoverage(3.0) * u;      // 3.18 u
 //
-// Infinitely many degrees of freedom: 1.96. Without any the factor is infinite.
+// 1.96 for infinite degrees of freedom; infinite for none.
 #pragma once
 
 namespace abbe::standards {

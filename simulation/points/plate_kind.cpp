@@ -18,7 +18,7 @@ class PlateRuns : public RunKind {
   std::vector<SimulatedRun> ForMap(const RunSource& source, const machine::VolumetricModel& model,
                                    const Instruments& on) const override {
     std::vector<SimulatedRun> runs;
-    for (const PlateSetUp& setup : ReadPlate(source.whole())) {
+    for (const PlateSetup& setup : ReadPlate(source.whole())) {
       runs.push_back(SimulatePlate(model, on.machine.reference, setup));
     }
     return runs;
@@ -27,7 +27,7 @@ class PlateRuns : public RunKind {
   PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel& model,
                        const Instruments& on, const FactsByRun&) const override {
     PreparedRuns prepared;
-    for (const PlateSetUp& setup : ReadPlate(recording)) {
+    for (const PlateSetup& setup : ReadPlate(recording)) {
       prepared.runs.push_back(
           {SimulatePlate(model, on.machine.reference, setup), TraceOf(recording, setup.points)});
     }
@@ -38,7 +38,7 @@ class PlateRuns : public RunKind {
   Correction Correct(const Recording& recording, const std::vector<ModelledCause>& causes,
                      const Origin& origin, const Instruments& on) const override {
     std::vector<PartOfPoints> parts;
-    for (const PlateSetUp& setup : ReadPlate(recording)) {
+    for (const PlateSetup& setup : ReadPlate(recording)) {
       parts.push_back({setup.points, TraceOf(recording, setup.points), setup.points.rows});
     }
     return CorrectPoints(recording, std::move(parts), causes, origin, on);

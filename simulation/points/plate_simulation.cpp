@@ -74,7 +74,7 @@ Vector3d ToolOf(const recording::Recording& recording, int setup, std::size_t ro
                   recording.name, row + 1, setup, setup));
 }
 
-void RefuseLine(const PlateSetUp& setup) {
+void RefuseLine(const PlateSetup& setup) {
   const Eigen::Matrix2Xd centred =
       setup.certificate.colwise() - setup.certificate.rowwise().mean().eval();
   const Matrix2d spread = centred * centred.transpose() / static_cast<double>(centred.cols());
@@ -86,8 +86,8 @@ void RefuseLine(const PlateSetUp& setup) {
 }
 
 // The part of a plate that was measured in one set-up.
-PlateSetUp Subset(const PlateSetUp& all, const std::vector<Index>& of) {
-  PlateSetUp part = all;
+PlateSetup Subset(const PlateSetup& all, const std::vector<Index>& of) {
+  PlateSetup part = all;
   const auto n = static_cast<Index>(of.size());
   part.points.axes = all.points.axes(Eigen::all, of);
   part.certificate = all.certificate(Eigen::all, of);
@@ -102,7 +102,7 @@ PlateSetUp Subset(const PlateSetUp& all, const std::vector<Index>& of) {
   return part;
 }
 
-estimation::ParameterBlock FormOf(const PlateSetUp& setup, std::size_t point) {
+estimation::ParameterBlock FormOf(const PlateSetup& setup, std::size_t point) {
   const double u = setup.u_form[static_cast<Index>(point)];
   estimation::ParameterBlock block(HoleBlock(setup, setup.holes[point]), {"um", 1e-6}, {});
   for (const char* direction : {"u", "v"}) {
@@ -115,7 +115,7 @@ estimation::ParameterBlock FormOf(const PlateSetUp& setup, std::size_t point) {
 // x: machine, u, v, turn, scale where it is free, then the form of each hole where it is free.
 class PlateResidual : public Responsive {
  public:
-  PlateResidual(PointsOnMachine points, PlateSetUp setup, std::vector<Index> form)
+  PlateResidual(PointsOnMachine points, PlateSetup setup, std::vector<Index> form)
       : points_(std::move(points)),
         setup_(std::move(setup)),
         form_(std::move(form)),
@@ -163,7 +163,7 @@ class PlateResidual : public Responsive {
 
  private:
   PointsOnMachine points_;
-  PlateSetUp setup_;
+  PlateSetup setup_;
   std::vector<Index> form_;  // of each point: which of the free holes it is
   bool scaled_;
   geometry::Transform<double> X_PM_;
@@ -171,13 +171,13 @@ class PlateResidual : public Responsive {
 
 }  // namespace
 
-std::string HoleBlock(const PlateSetUp& setup, int hole) {
+std::string HoleBlock(const PlateSetup& setup, int hole) {
   return fmt::format("plate_hole {} {}", setup.plate, hole);
 }
 
-std::vector<PlateSetUp> ReadPlate(const recording::Recording& recording) {
+std::vector<PlateSetup> ReadPlate(const recording::Recording& recording) {
   recording::RefuseOtherKind(recording, "plate", "abbe fuse takes it together with plates");
-  PlateSetUp all;
+  PlateSetup all;
   all.points = ReadMachinePoints(recording);
   all.plate = recording.HeaderText("plate").value_or(recording.name);
   all.u_probing = Probing(recording);
@@ -199,9 +199,9 @@ std::vector<PlateSetUp> ReadPlate(const recording::Recording& recording) {
     if (!rows.contains(number)) order.push_back(number);
     rows[number].push_back(i);
   }
-  std::vector<PlateSetUp> setups;
+  std::vector<PlateSetup> setups;
   for (const int number : order) {
-    PlateSetUp& part = setups.emplace_back(Subset(all, rows[number]));
+    PlateSetup& part = setups.emplace_back(Subset(all, rows[number]));
     part.points.tool = ToolOf(recording, number, part.points.rows.front());
     part.points.name = fmt::format("{} set-up {}", recording.name, number);
     RefuseLine(part);
@@ -209,7 +209,7 @@ std::vector<PlateSetUp> ReadPlate(const recording::Recording& recording) {
   return setups;
 }
 
-geometry::Transform<double> PlatePose(const PointsOnMachine& points, const PlateSetUp& setup) {
+geometry::Transform<double> PlatePose(const PointsOnMachine& points, const PlateSetup& setup) {
   const Matrix3Xd places = points.Places(VectorXd::Zero(points.parameters()));
   Matrix3Xd plate = Matrix3Xd::Zero(3, places.cols());
   plate.topRows<2>() = setup.certificate;
@@ -229,7 +229,7 @@ geometry::Transform<double> PlatePose(const PointsOnMachine& points, const Plate
 }
 
 SimulatedRun SimulatePlate(const machine::VolumetricModel& model, const Vector3d& reference,
-                           const PlateSetUp& setup) {
+                           const PlateSetup& setup) {
   SimulatedRun simulated{setup.points.name, "plate", model.Blocks(), nullptr,
                          estimation::RobustLoss::None()};
   auto& blocks = simulated.blocks;

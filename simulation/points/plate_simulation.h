@@ -1,6 +1,6 @@
 // What a run of a hole plate should read: where the tool point is when a hole centre is found.
 //
-//   for (const PlateSetUp& setup : ReadPlate(recording)) {
+//   for (const PlateSetup& setup : ReadPlate(recording)) {
 //     runs.push_back(SimulatePlate(model, reference, setup));
 //   }
 //
@@ -40,7 +40,7 @@
 
 namespace abbe::simulation {
 
-struct PlateSetUp {
+struct PlateSetup {
   MachinePoints points;  // `name` is that of the recording with the number of the set-up
   std::string plate;
   std::vector<int> holes;        // of each point: its number
@@ -51,16 +51,16 @@ struct PlateSetUp {
 };
 
 // In the order of first appearance.
-std::vector<PlateSetUp> ReadPlate(const recording::Recording& recording);
+std::vector<PlateSetup> ReadPlate(const recording::Recording& recording);
 
 // The block of the form of a hole.
-std::string HoleBlock(const PlateSetUp& setup, int hole);
+std::string HoleBlock(const PlateSetup& setup, int hole);
 
 // X_MP: where the plate lies on a machine without errors.
-geometry::Transform<double> PlatePose(const PointsOnMachine& points, const PlateSetUp& setup);
+geometry::Transform<double> PlatePose(const PointsOnMachine& points, const PlateSetup& setup);
 
 // Rows u, v of the first point, then of the second, ... `reference`: the machine's, m, in M.
 SimulatedRun SimulatePlate(const machine::VolumetricModel& model, const Eigen::Vector3d& reference,
-                           const PlateSetUp& setup);
+                           const PlateSetup& setup);
 
 }  // namespace abbe::simulation

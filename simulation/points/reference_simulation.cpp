@@ -22,7 +22,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kSetUp = 10e-3;  // rad: how well an instrument is aligned by hand
+constexpr double kAlignment = 10e-3;  // rad: how well an instrument is aligned by hand
 
 std::vector<Index> AxesShown(const ReferenceRun& run) {
   std::vector<Index> shown;
@@ -122,8 +122,8 @@ void RefuseNoNoise(const ReferenceRun& run) {
                   run.points.name));
 }
 
-estimation::ParameterBlock SetUp(const std::string& name, const estimation::PrintUnit& unit,
-                                 const std::array<const char*, 3>& entries, double prior_sd) {
+estimation::ParameterBlock SetupBlock(const std::string& name, const estimation::PrintUnit& unit,
+                                      const std::array<const char*, 3>& entries, double prior_sd) {
   estimation::ParameterBlock block(name, unit, {});
   for (const char* entry : entries) block.entries.push_back({.name = entry, .prior_sd = prior_sd});
   return block;
@@ -137,9 +137,9 @@ SimulatedRun SimulateReference(const machine::VolumetricModel& model, const Vect
   SimulatedRun simulated{
       run.points.name, "reference", {}, nullptr, estimation::RobustLoss::Huber(kPullsNoMore)};
   simulated.blocks = {
-      SetUp("reference_place " + run.points.name, {"um", 1e-6}, {"x", "y", "z"},
-            estimation::kNoPrior),
-      SetUp("reference_turn " + run.points.name, {"urad", 1e-6}, {"a", "b", "c"}, kSetUp)};
+      SetupBlock("reference_place " + run.points.name, {"um", 1e-6}, {"x", "y", "z"},
+                 estimation::kNoPrior),
+      SetupBlock("reference_turn " + run.points.name, {"urad", 1e-6}, {"a", "b", "c"}, kAlignment)};
   // A direction that the instrument does not show has no place.
   for (std::size_t axis = 0; axis < run.shown.size(); ++axis) {
     simulated.blocks[0].entries[axis].held = !run.shown[axis];

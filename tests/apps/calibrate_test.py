@@ -117,7 +117,7 @@ class Calibrate(unittest.TestCase):
         self.assertIn("two balls", self.refusal(one, other))
 
     def test_cube_of_the_document_leaves_combinations_unseen_and_names_them(self):
-        result, text = self.result(self.record(n=(7, 7, 12)), "--model", "published with bearing")
+        result, text = self.result(self.record(n=(7, 7, 12)), "--model", "published-with-bearing")
         self.assertEqual(result["combinations"], 30)  # 24 and the base
         unseen = [entry["words"] for entry in result["unseen"]]
         self.assertEqual(result["combinations_seen"] + len(unseen), 30)
@@ -129,8 +129,8 @@ class Calibrate(unittest.TestCase):
         self.assertGreater(result["before"]["rms_um"], 50)
 
     def test_cube_of_the_document_is_reported_before_it_is_measured(self):
-        measured, _ = self.result(self.record(n=(7, 7, 12)), "--model", "published with bearing")
-        run = self.run_program("--model", "published with bearing", "--volume", "25,25,50")
+        measured, _ = self.result(self.record(n=(7, 7, 12)), "--model", "published-with-bearing")
+        run = self.run_program("--model", "published-with-bearing", "--volume", "25,25,50")
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertIn("588 poses in 25 x 25 x 50 mm", run.stdout)
         seen = int(run.stdout.split("The data see ")[1].split(" of 30 ")[0])

@@ -318,7 +318,7 @@ Problem Runaway(double standard_deviation) {
 TEST(Problem, SaysWhatDoesNotSettle) {
   const Problem problem = Runaway(1e-12);
   const std::string words = Words<NumericalError>([&] { problem.Solve({.max_iterations = 5}); });
-  EXPECT_THAT(words, HasSubstr("did not settle in 5 passes"));
+  EXPECT_THAT(words, HasSubstr("did not converge in 5 passes"));
   EXPECT_THAT(words, HasSubstr("parameter p.x moves most, source 'runaway' pulls most"));
   EXPECT_THAT(words, HasSubstr("the rows of 'runaway' scatter at least"));
 }
@@ -339,7 +339,7 @@ TEST(Problem, ResultStartsAsNotRun) {
   EXPECT_THAT(result.Report(), HasSubstr("not run"));
 }
 
-TEST(Problem, RefusesAWrongSetUp) {
+TEST(Problem, RefusesAWrongSetup) {
   Problem problem;
   const BlockId p = problem.Add(Block("p", {"x", "y"}));
   const SourceId s = problem.AddSource("s");

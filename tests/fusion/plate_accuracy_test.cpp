@@ -21,7 +21,7 @@ namespace abbe::fusion {
 namespace plate_accuracy_test {
 
 using Eigen::VectorXd;
-using simulation::PlateSetUp;
+using simulation::PlateSetup;
 
 constexpr double kCoverage = 1.96;
 constexpr int kMotionErrors = machine::kAxes * machine::kMotions;
@@ -36,14 +36,14 @@ double TrueError(const rig::World& world, int error, double position) {
 }
 
 struct Measured {
-  std::vector<PlateSetUp> setups;
+  std::vector<PlateSetup> setups;
   FuseReport report;
 };
 
 Measured Measure(const Campaign& campaign, const rig::PlateProgram& program = {}) {
   auto setups = simulation::ReadPlate(rig::RecordPlate(campaign.rig.world(), program));
   std::vector<simulation::SimulatedRun> runs;
-  for (const PlateSetUp& setup : setups) {
+  for (const PlateSetup& setup : setups) {
     runs.push_back(simulation::SimulatePlate(campaign.model, campaign.reference, setup));
   }
   FuseReport report = Fuse(campaign.machine, runs, {.choose_smoothness = false});
@@ -109,7 +109,7 @@ class PlateOfRig : public testing::Test {
 };
 
 // Of every one of the 21 the data know more than the tolerances do.
-TEST_F(PlateOfRig, FiveSetUpsDetermineAll21Errors) {
+TEST_F(PlateOfRig, FiveSetupsDetermineAll21Errors) {
   for (const FunctionSeen& seen : All().report.functions) {
     EXPECT_THAT(seen.determined_by, testing::ElementsAre("plate")) << seen.name;
   }
@@ -117,8 +117,8 @@ TEST_F(PlateOfRig, FiveSetUpsDetermineAll21Errors) {
   EXPECT_EQ(All().report.contradicting, -1);
 }
 
-TEST_F(PlateOfRig, OneSetUpLeavesTheThirdAxisToThePrior) {
-  const auto program = rig::PlateProgram{.setups = {rig::FiveSetUps().front()}};
+TEST_F(PlateOfRig, OneSetupLeavesTheThirdAxisToThePrior) {
+  const auto program = rig::PlateProgram{.setups = {rig::FiveSetups().front()}};
   const FuseReport report = Measure(World(), program).report;
   for (const FunctionSeen& seen : report.functions) {
     if (!seen.name.ends_with("Z")) continue;
@@ -127,7 +127,7 @@ TEST_F(PlateOfRig, OneSetUpLeavesTheThirdAxisToThePrior) {
   EXPECT_THAT(report.functions[0].determined_by, testing::ElementsAre("plate"));
 }
 
-TEST_F(PlateOfRig, ASetUpThatMovedIsNamed) {
+TEST_F(PlateOfRig, ASetupThatMovedIsNamed) {
   auto recording = rig::RecordPlate(World().rig.world(), {});
   // Half of the third set-up was measured after the plate had slipped by 50 um.
   for (std::size_t row = 0; row < recording.rows(); ++row) {
@@ -135,7 +135,7 @@ TEST_F(PlateOfRig, ASetUpThatMovedIsNamed) {
     recording.columns[1].values[row] += 0.05;
   }
   std::vector<simulation::SimulatedRun> runs;
-  for (const PlateSetUp& setup : simulation::ReadPlate(recording)) {
+  for (const PlateSetup& setup : simulation::ReadPlate(recording)) {
     runs.push_back(simulation::SimulatePlate(World().model, World().reference, setup));
   }
   const FuseReport report = Fuse(World().machine, runs, {.choose_smoothness = false});
@@ -159,10 +159,10 @@ TEST_F(PlateOfRig, ASpecimenIsMeasuredBetterAfterwards) {
 
 // What is left of the holes where each plate is laid by least squares on axes that do not err: rms
 // in the plane. The axes read where the table went, so against the plate where they carry it.
-double OfRigidPlates(const std::vector<PlateSetUp>& setups) {
+double OfRigidPlates(const std::vector<PlateSetup>& setups) {
   double squares = 0.0, holes = 0.0;
   for (std::size_t i = 0; i < setups.size(); ++i) {
-    const auto [u, v] = rig::FiveSetUps()[i].directions;
+    const auto [u, v] = rig::FiveSetups()[i].directions;
     Eigen::Matrix2Xd seen(2, setups[i].points.count());
     seen.row(0) = (u == 2 ? 1.0 : -1.0) * setups[i].points.axes.row(u);
     seen.row(1) = (v == 2 ? 1.0 : -1.0) * setups[i].points.axes.row(v);

@@ -60,7 +60,7 @@ class PlugPlate : public testing::Test {
         {});
   }
 
-  std::vector<simulation::PlateSetUp> setups_;
+  std::vector<simulation::PlateSetup> setups_;
   std::unique_ptr<machine::Machine> machine_;
 };
 

@@ -67,13 +67,13 @@ TEST(Progression, OfBoelensInKind) {
   EXPECT_GT(median["nominal"], 100e-6);
   EXPECT_LT(median["published"], median["nominal"] / 20.0);
   // Circle with bearings 4.19 um after 5.29 um.
-  EXPECT_LT(median["published with bearing"], 4.19 / 5.29 * median["published"]);
+  EXPECT_LT(median["published-with-bearing"], 4.19 / 5.29 * median["published"]);
   // Mapped 5.22 um after 5.96 um with the parameters of one centre.
   EXPECT_LT(median["published, mapped"], 5.22 / 5.96 * median["published, one cell"]);
   // Mapped with bearings 5.02 um after 5.22 um without.
-  EXPECT_LT(median["published with bearing, mapped"], 5.02 / 5.22 * median["published, mapped"]);
+  EXPECT_LT(median["published-with-bearing, mapped"], 5.02 / 5.22 * median["published, mapped"]);
   // Beyond the document: a model that leaves nothing out beats every mapped one.
-  EXPECT_LT(median["complete"], median["published with bearing, mapped"]);
+  EXPECT_LT(median["complete"], median["published-with-bearing, mapped"]);
   EXPECT_LT(median["complete"], median["complete, mapped"]);
 }
 

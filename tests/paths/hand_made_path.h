@@ -24,7 +24,7 @@ inline MeasuredPath HandMade(const std::vector<Eigen::Vector3d>& commanded, cons
   path.time = Eigen::VectorXd::LinSpaced(n, 0.0, 0.01 * static_cast<double>(n - 1));
   path.feed = Eigen::VectorXd::Constant(n, 1e-3);
   path.pass = Eigen::VectorXi::Ones(n);
-  path.direction = Eigen::VectorXi::Constant(n, kNoDirection);
+  path.direction = Eigen::VectorXi::Constant(n, MeasuredPath::kDirectionNotStated);
   for (Eigen::Index i = 0; i < n; ++i) {
     path.rows.push_back(static_cast<std::size_t>(i));
     path.commanded.col(i) = commanded[static_cast<std::size_t>(i)];

@@ -50,7 +50,7 @@ TEST(SimplifiedInversion, OfAMovingHeadHasNoLever) {
 TEST(SimplifiedInversion, MistakesTheLeverWhereTheOtherBodyMoves) {
   const HeadLayout<> layout = NominalLayout();
   const PerProbe<> delta =
-      DocumentReadings(layout, MovingBody::kHead, HeadErrors<>{.ebx = 100e-6}, 60e-3);
+      SmallAngleReadings(layout, MovingBody::kHead, HeadErrors<>{.ebx = 100e-6}, 60e-3);
   const HeadErrors<> wrong = SimplifiedInversion(layout, MovingBody::kTarget)(delta, 60e-3);
   EXPECT_NEAR(wrong.ezx, 6e-6, 1e-12);
 }
@@ -77,7 +77,7 @@ TEST(SimplifiedInversion, IsOffByTheProductsOfSecondOrder) {
   for (const Expected& row : table) {
     for (const double d : {0.0, 60e-3}) {
       const PerProbe<> delta = row.rigid ? RigidReadings(LinesOf(layout), row.moving, e, d)
-                                         : DocumentReadings(layout, row.moving, e, d);
+                                         : SmallAngleReadings(layout, row.moving, e, d);
       const HeadErrors<> found = SimplifiedInversion(layout, row.moving)(delta, d);
       constexpr double kThirdOrder = 4e-9;  // rad: a few products of three angles of 1 mrad
       EXPECT_NEAR(found.eax - e.eax, row.off.eax, kThirdOrder);
@@ -110,7 +110,7 @@ TEST(HeadInversion, RefusesTopProbesOnALine) {
   layout.top[0] = {0, 3e-3};
   for (const MovingBody moving : {MovingBody::kTarget, MovingBody::kHead}) {
     EXPECT_THROW(SimplifiedInversion(layout, moving), InputError);
-    EXPECT_THROW(DocumentInversion(layout, moving), InputError);
+    EXPECT_THROW(SmallAngleInversion(layout, moving), InputError);
     EXPECT_THROW(RigidInversion(LinesOf(layout), moving), InputError);
   }
 }
@@ -120,7 +120,7 @@ TEST(HeadInversion, RefusesSideProbesAtOnePlaceAlongTheSweep) {
   layout.side[1] = {0, 30e-3};
   for (const MovingBody moving : {MovingBody::kTarget, MovingBody::kHead}) {
     EXPECT_THROW(SimplifiedInversion(layout, moving), InputError);
-    EXPECT_THROW(DocumentInversion(layout, moving), InputError);
+    EXPECT_THROW(SmallAngleInversion(layout, moving), InputError);
     EXPECT_THROW(RigidInversion(LinesOf(layout), moving), InputError);
   }
   layout.side[1] = layout.side[0];
@@ -130,17 +130,17 @@ TEST(HeadInversion, RefusesSideProbesAtOnePlaceAlongTheSweep) {
 TEST(HeadInversion, RefusesReadingsThatNoSmallMotionGives) {
   const HeadLayout<> layout = NominalLayout();
   for (const MovingBody moving : {MovingBody::kTarget, MovingBody::kHead}) {
-    const DocumentInversion document(layout, moving);
+    const SmallAngleInversion small_angle(layout, moving);
     const RigidInversion rigid(LinesOf(layout), moving);
     for (std::size_t k = 0; k < kProbes; ++k) {
       for (const double value : {kNan, kInf, -kInf, 1.0}) {  // 1 m over an arm of 10 mm
         PerProbe<> delta{};
         delta[k] = value;
-        EXPECT_THROW(document(delta, 0.01), NumericalError) << k << ' ' << value;
+        EXPECT_THROW(small_angle(delta, 0.01), NumericalError) << k << ' ' << value;
         EXPECT_THROW(rigid(delta, 0.01), NumericalError) << k << ' ' << value;
       }
     }
-    EXPECT_THROW(document({}, kNan), NumericalError);
+    EXPECT_THROW(small_angle({}, kNan), NumericalError);
   }
 }
 

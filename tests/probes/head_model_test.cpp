@@ -29,7 +29,7 @@ HeadErrors<> RandomErrors(std::uint64_t i, double scale = 1) {
 }
 
 // The source's T, with the sign of its -EBX entry.
-Eigen::Matrix4<long double> DocumentT(const HeadErrors<>& e, double d) {
+Eigen::Matrix4<long double> SmallAngleT(const HeadErrors<>& e, double d) {
   Eigen::Matrix4<long double> T;
   T << 1, -e.ecx, e.ebx, static_cast<long double>(d) + e.exx,  //
       e.ecx, 1, -e.eax, e.eyx,                                 //
@@ -46,13 +46,13 @@ double OnSurface(const Eigen::Matrix4<long double>& T, int normal, double x, dou
   return static_cast<double>(-(row[0] * x + row[known] * other + row[3]) / row[normal]);
 }
 
-TEST(DocumentModel, IsTheSurfaceOfTheTransformedTarget) {
+TEST(SmallAngleModel, IsTheSurfaceOfTheTransformedTarget) {
   const HeadLayout<> layout = NominalLayout();
   for (std::uint64_t i = 0; i < 1000; ++i) {
     const HeadErrors<> e = RandomErrors(i);
     const double d = kTravel * static_cast<double>(i) / 1000;
-    const auto T = DocumentT(e, d);
-    const PerProbe<> delta = DocumentReadings(layout, MovingBody::kTarget, e, d);
+    const auto T = SmallAngleT(e, d);
+    const PerProbe<> delta = SmallAngleReadings(layout, MovingBody::kTarget, e, d);
     // A reading is a sum of some ten terms, the largest about angle * d.
     const double rounding = 16 * kEps * 1e-3 * kTravel;
     for (std::size_t k = 0; k < kTopProbes; ++k) {
@@ -65,12 +65,12 @@ TEST(DocumentModel, IsTheSurfaceOfTheTransformedTarget) {
 }
 
 // Where the moved head's probe, carried by T, meets the surface of the standing target.
-TEST(DocumentModel, OfAMovingHeadIsTheHeightOfTheTransformedProbes) {
+TEST(SmallAngleModel, OfAMovingHeadIsTheHeightOfTheTransformedProbes) {
   const HeadLayout<> layout = NominalLayout();
   for (std::uint64_t i = 0; i < 200; ++i) {
     const HeadErrors<> e = RandomErrors(i);
-    const auto T = DocumentT(e, 0.03);
-    const PerProbe<> delta = DocumentReadings(layout, MovingBody::kHead, e, 0.03);
+    const auto T = SmallAngleT(e, 0.03);
+    const PerProbe<> delta = SmallAngleReadings(layout, MovingBody::kHead, e, 0.03);
     const double rounding = 16 * kEps * 100e-6;
     const auto [u, s] = layout.top[1];
     EXPECT_NEAR(delta[1], static_cast<double>(-(T * Eigen::Vector4<long double>(u, s, 0, 1))[2]),
@@ -134,11 +134,11 @@ TEST(HeadModel, HasTheSignsOfTheFirstOrderTable) {
     const HeadErrors<> e{kStep * f.eax, kStep * f.ebx, kStep * f.ecx,
                          kStep * f.eyx, kStep * f.ezx, kStep * f.exx};
     for (const MovingBody moving : {MovingBody::kTarget, MovingBody::kHead}) {
-      const PerProbe<> document = DocumentReadings(layout, moving, e, d);
+      const PerProbe<> small_angle = SmallAngleReadings(layout, moving, e, d);
       const PerProbe<> rigid = RigidReadings(LinesOf(layout), moving, e, d);
       const PerProbe<>& expected = moving == MovingBody::kTarget ? sign.target : sign.head;
       for (std::size_t k = 0; k < kProbes; ++k) {
-        EXPECT_NEAR(document[k] / kStep, expected[k], 1e-6) << sign.name << " probe " << k;
+        EXPECT_NEAR(small_angle[k] / kStep, expected[k], 1e-6) << sign.name << " probe " << k;
         EXPECT_NEAR(rigid[k] / kStep, expected[k], 1e-6) << sign.name << " probe " << k;
       }
     }
@@ -150,10 +150,10 @@ double LargestDifference(double scale, MovingBody moving) {
   double largest = 0;
   for (std::uint64_t i = 0; i < 500; ++i) {
     const HeadErrors<> e = RandomErrors(i, scale);
-    const PerProbe<> document = DocumentReadings(layout, moving, e, kTravel);
+    const PerProbe<> small_angle = SmallAngleReadings(layout, moving, e, kTravel);
     const PerProbe<> rigid = RigidReadings(LinesOf(layout), moving, e, kTravel);
     for (std::size_t k = 0; k < kProbes; ++k) {
-      largest = std::max(largest, std::abs(document[k] - rigid[k]));
+      largest = std::max(largest, std::abs(small_angle[k] - rigid[k]));
     }
   }
   return largest;

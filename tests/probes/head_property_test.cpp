@@ -46,14 +46,14 @@ void AssertNear(const HeadErrors<>& found, const HeadErrors<>& e, double angle, 
   RC_ASSERT(found.exx == e.exx);
 }
 
-RC_GTEST_PROP(HeadProperty, TheDocumentInversionLeavesOnlyRounding, ()) {
+RC_GTEST_PROP(HeadProperty, TheSmallAngleInversionLeavesOnlyRounding, ()) {
   const HeadLayout<> layout = AnyLayout();
   const MovingBody moving = AnyBody();
   const HeadErrors<> e = AnyErrors(20e-3, 1e-3);
   const double d = In(-0.06, 0.06);
-  const PerProbe<> delta = DocumentReadings(layout, moving, e, d);
+  const PerProbe<> delta = SmallAngleReadings(layout, moving, e, d);
   // A head that moves does not see exx.
-  AssertNear(DocumentInversion(layout, moving)(delta, d, e.exx), e, kAngleRounding,
+  AssertNear(SmallAngleInversion(layout, moving)(delta, d, e.exx), e, kAngleRounding,
              kAngleRounding * kReach);
 }
 

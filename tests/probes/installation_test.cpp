@@ -121,7 +121,7 @@ TEST(Installation, AgreesWithEquations16To20) {
   for (std::uint64_t k = 0; k < 300; ++k) {
     const Case c = RandomCase(k);
     const auto layout = InstalledLayout(Manufactured(c.alpha), c.i);
-    const PerProbe<> delta = DocumentReadings(layout, MovingBody::kTarget, c.e, c.d);
+    const PerProbe<> delta = SmallAngleReadings(layout, MovingBody::kTarget, c.e, c.d);
     const double rounding = 16 * kEps * 1e-3 * 60e-3;
     EXPECT_NEAR(delta[0], Equation16(c, kRadius, kArm), rounding);
     EXPECT_NEAR(delta[1], Equation17(c, kRadius, kArm), rounding);
@@ -143,7 +143,7 @@ TEST(Installation, AgreesWithTheSourcesMatrices) {
     const Eigen::RowVector4d row = (T.inverse() * I).row(2);
     const HeadLayout<> made = Manufactured(c.alpha);
     const PerProbe<> delta =
-        DocumentReadings(InstalledLayout(made, c.i), MovingBody::kTarget, c.e, c.d);
+        SmallAngleReadings(InstalledLayout(made, c.i), MovingBody::kTarget, c.e, c.d);
     for (std::size_t n = 0; n < kTopProbes; ++n) {
       const double height = -(row[0] * made.top[n].u + row[1] * made.top[n].s + row[3]) / row[2];
       EXPECT_NEAR(delta[n], height, 32 * kEps * 60e-3);

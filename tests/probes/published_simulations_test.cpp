@@ -32,15 +32,15 @@ constexpr double kArm = 10e-3, kSideHeight = 20e-3;  // m: l, l''
 const double kEyxSecondOrder =
     std::hypot(kAngleStd * kLengthStd, 2 * kSideHeight * kAngleStd * kAngleStd);
 
-TEST(SimulationOne, HasTheDocumentsFigures) {
+TEST(SimulationOne, HasThePapersFigures) {
   const auto e = RunSimulation({.simulation = Simulation::kOne, .draws = kDraws});
-  EXPECT_LT(WorstAngle(e), 1.01e-6);    // the document's 1e-6; third order adds 0.2 %
+  EXPECT_LT(WorstAngle(e), 1.01e-6);    // the paper's 1e-6; third order adds 0.2 %
   EXPECT_GT(WorstAngle(e), 0.95e-6);    // 60 000 products come within 5 % of their largest
   EXPECT_LT(e[kEyx].worst, 0.0902e-6);  // 1 mrad 50 um + 2 * 20 mm (1 mrad)^2
   EXPECT_NEAR(e[kEyx].worst, 0.086e-6, 0.012e-6);  // extremes of 20 000 draws vary by 10 %
   EXPECT_LT(e[kEzx].worst, 0.0501e-6);
   EXPECT_NEAR(e[kEyx].std, 0.021e-6, 0.0005e-6);
-  for (std::size_t c = 0; c < kPublishedComponents; ++c) {  // zero mean, as the document finds
+  for (std::size_t c = 0; c < kPublishedComponents; ++c) {  // zero mean, as the paper finds
     EXPECT_LT(std::abs(e[c].mean), 4 * e[c].std / std::sqrt(kDraws)) << kComponentNames[c];
   }
 }
@@ -57,8 +57,8 @@ TEST(SimulationOne, HasTheStandardDeviationsOfSecondOrder) {
   EXPECT_NEAR(e[kEzx].std / (kAngleStd * kLengthStd), 1, scatter);
 }
 
-// The document plots one run of 61 stations: +-0.06 um.
-TEST(SimulationOne, StaysNearTheDocumentsFigureInASingleRun) {
+// The paper plots one run of 61 stations: +-0.06 um.
+TEST(SimulationOne, StaysNearThePapersFigureInASingleRun) {
   double mean = 0;
   constexpr int kRuns = 200;
   for (int seed = 0; seed < kRuns; ++seed) {
@@ -66,14 +66,14 @@ TEST(SimulationOne, StaysNearTheDocumentsFigureInASingleRun) {
         WorstTranslation(RunSimulation({.draws = 61, .seed = static_cast<std::uint64_t>(seed)})) /
         kRuns;
   }
-  EXPECT_NEAR(mean, 0.06e-6, 0.006e-6);  // the document's figure has one digit
+  EXPECT_NEAR(mean, 0.06e-6, 0.006e-6);  // the paper's figure has one digit
 }
 
-TEST(SimulationTwo, HasTheDocumentsFigures) {
+TEST(SimulationTwo, HasThePapersFigures) {
   const auto e = RunSimulation({.simulation = Simulation::kTwo, .draws = kDraws});
   EXPECT_NEAR(WorstAngle(e), 5e-6, 0.6e-6);
   EXPECT_NEAR(WorstTranslation(e), 0.26e-6, 0.03e-6);
-  EXPECT_LT(WorstAngle(e), 1.5e-5);  // the document's bounds
+  EXPECT_LT(WorstAngle(e), 1.5e-5);  // the paper's bounds
   EXPECT_LT(WorstTranslation(e), 0.6e-6);
 }
 

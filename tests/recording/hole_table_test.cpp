@@ -35,7 +35,7 @@ class HoleTable : public testing::Test {
 
 const std::string kNames = "   Meas X   Meas Y\tNom X   Nom Y   Err X\r\n";
 
-TEST_F(HoleTable, BecomesAPlateOfOneSetUp) {
+TEST_F(HoleTable, BecomesAPlateOfOneSetup) {
   const Recording plate = ReadText(
       "Plug Plate: 7\r\n\r\n" + kNames + " 1.5 -2.25  1.4 -2.2  .1\r\n\r\n3 4 5 6 7\r\n", 3.0);
   EXPECT_EQ(plate.Kind(), "plate");

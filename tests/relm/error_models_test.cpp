@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <set>
+#include <string>
 
 #include "failure/failure.h"
 #include "linkage_by_matrices.h"
@@ -42,7 +44,7 @@ const std::vector<Case>& Cases() {
       {"pivots", ErrorModel::kPivots, PivotTipByMatrices<double>, PivotTipByMatrices<Jet>},
       {"published", ErrorModel::kPublished, PublishedTipByMatrices<double>,
        PublishedTipByMatrices<Jet>},
-      {"published with bearing", ErrorModel::kPublishedWithBearing, PublishedTipByMatrices<double>,
+      {"published-with-bearing", ErrorModel::kPublishedWithBearing, PublishedTipByMatrices<double>,
        PublishedTipByMatrices<Jet>},
       {"complete", ErrorModel::kComplete, CompleteTipByMatrices<double>,
        CompleteTipByMatrices<Jet>}};
@@ -65,7 +67,7 @@ class EveryErrorModel : public ::testing::TestWithParam<Case> {
 INSTANTIATE_TEST_SUITE_P(Relm, EveryErrorModel, ::testing::ValuesIn(Cases()),
                          [](const auto& param) {
                            std::string name = param.param.name;
-                           std::replace(name.begin(), name.end(), ' ', '_');
+                           std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
 
@@ -85,6 +87,22 @@ VectorXd AnyErrors(const LinkageModel& model, std::uint64_t draw, double times =
     }
   }
   return x;
+}
+
+TEST_P(EveryErrorModel, IsFoundByItsName) {
+  std::string name = GetParam().name;
+  EXPECT_EQ(ErrorModelName(GetParam().model), name);
+  EXPECT_EQ(ErrorModelNamed(name), GetParam().model);
+  std::replace(name.begin(), name.end(), '-', ' ');  // a file of an earlier version
+  EXPECT_EQ(ErrorModelNamed(name), GetParam().model);
+}
+
+TEST(ErrorModelNamed, ListsTheNamesForAnotherText) {
+  for (const char* text : {"", "best", "Complete", "published_with_bearing"}) {
+    EXPECT_THAT([&] { ErrorModelNamed(text); },
+                ::testing::ThrowsMessage<InputError>(
+                    HasSubstr("pivots, published, published-with-bearing, complete")));
+  }
 }
 
 TEST_P(EveryErrorModel, WithNominalParametersIsTheNominalLinkage) {

@@ -48,7 +48,7 @@ TEST(PlateCampaign, AScaleErrorOfAnAxisShowsInItsDirection) {
 }
 
 // The form belongs to the plate: with nothing else wrong, two set-ups in two runs show the same.
-TEST(PlateCampaign, TheFormIsTheSameInEverySetUpAndRun) {
+TEST(PlateCampaign, TheFormIsTheSameInEverySetupAndRun) {
   const World world(PerfectRig(), 4);
   PlateProgram program = Exact();
   program.u_form = 100e-6;

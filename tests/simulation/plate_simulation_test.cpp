@@ -98,7 +98,7 @@ TEST(PlateSimulation, ReadsWhatTheClosedFormsOfHaAndKhanhSay) {
     const machine::VolumetricModel model = Bridge(seed);
     for (const auto& [first, second] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
       const Written written = PlateOn(model, first, second, {0.02, -0.03, -0.1});
-      const PlateSetUp setup = ReadPlate(written.recording).at(0);
+      const PlateSetup setup = ReadPlate(written.recording).at(0);
       const SimulatedRun run = SimulatePlate(model, Vector3d::Zero(), setup);
       // How the plate really lies, from where the simulation starts.
       const PointsOnMachine points(model, Vector3d::Zero(), setup.points);
@@ -143,7 +143,7 @@ TEST_F(BadPlate, OfAHoleInTwoPlaces) {
       "row 3");
 }
 
-TEST_F(BadPlate, OfAnUnknownSetUp) {
+TEST_F(BadPlate, OfAnUnknownSetup) {
   Column("setup")[24] = 6;
   Refuses("plate.csv: row 25: the header knows no set-up 6; add [setup.6]");
 }

@@ -169,7 +169,7 @@ TEST_F(Response, OfLengthsIsThatOfItsParameters) {
 
 TEST_F(Response, OfAPlateIsThatOfItsParameters) {
   const auto recording = rig::RecordPlate(campaign.rig.world(), {.holes = 3});
-  for (const PlateSetUp& setup : ReadPlate(recording)) {
+  for (const PlateSetup& setup : ReadPlate(recording)) {
     const SimulatedRun run = SimulatePlate(campaign.model, campaign.reference, setup);
     const Trace trace = TraceOf(recording, setup.points);
     const VectorXd x = StartOf(run).array() + 1e-5;

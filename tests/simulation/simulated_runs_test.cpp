@@ -74,7 +74,7 @@ TEST(SimulatedRuns, HaveTrueDerivatives) {
   ExpectTrueDerivatives(World().Linkage(World().LinkageRecording(2)));
   ExpectTrueDerivatives(World().Length('Y'));
   ExpectTrueDerivatives(Reference());
-  for (const PlateSetUp& setup : ReadPlate(rig::RecordPlate(World().rig.world(), {.holes = 3}))) {
+  for (const PlateSetup& setup : ReadPlate(rig::RecordPlate(World().rig.world(), {.holes = 3}))) {
     ExpectTrueDerivatives(SimulatePlate(World().model, World().reference, setup));
   }
 }
