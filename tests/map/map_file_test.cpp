@@ -89,7 +89,7 @@ TEST_F(BrokenMap, IsRefusedWithFileLineAndKey) {
   ExpectHas(With("coefficients = [", "coefficients = [nan, "), "bad.toml:");
   ExpectHas(With("rows = [\n", "rows = [ nan,\n"), "covariance.rows");
   ExpectHas(With("reference = [", "reference = [nan, "), "reference");
-  ExpectHas(With("form = \"b-spline\"", "form = \"bspline\""), "no form of an error function");
+  ExpectHas(With("form = \"b-spline\"", "form = \"bspline\""), "not a form of an error function");
   ExpectHas(With("name = \"EYX\"", "name = \"EXX\""), "EXX stands twice");
   ExpectHas(With("name = \"EYX\"", "name = \"EQX\""), "no error motion");
   ExpectHas(With("from = \"", "from = \"my "), "no source");

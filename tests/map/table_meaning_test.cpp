@@ -230,7 +230,7 @@ TEST(TableMeaning, AsksForTheChainAndTheCount) {
   };
   ExpectHas(refused(""), "nothing says which way X counts");
   ExpectHas(refused(""), "--positive");
-  ExpectHas(refused("table"), "\"table\" is no way to count an axis");
+  ExpectHas(refused("table"), "\"table\" is not a way to count an axis");
   ExpectHas(refused("tool tool"), "one each for X, Y and Z");
   EXPECT_EQ(
       ReadAnyMap(folder / "f.csv", kColumn, "tool carriage tool").model().chain().PositiveText(),
