@@ -10,7 +10,7 @@
 namespace abbe::map {
 namespace {
 
-// The covariance is used as given: an asymmetry beyond rounding is a mistake of its maker.
+// Relative asymmetry of a covariance that rounding explains; a larger one is a mistake.
 constexpr double kAsymmetry = 1e-9;
 
 void RefuseBadCovariance(const Eigen::MatrixXd& cov, const std::vector<std::string>& names) {

@@ -51,7 +51,7 @@ void PutNumbers(hid_t file, const char* name, const std::vector<hsize_t>& shape,
   recording::ThrowWriteFailure(path.string(), "nothing was written");
 }
 
-// What a file holds, by name.
+// The content of a file, by name.
 struct Held {
   std::map<std::string, std::string> texts;
   std::map<std::string, std::vector<double>> numbers;
@@ -68,7 +68,7 @@ void SendNumbers(hid_t file, const std::string& name, int rank, const std::strin
   sender.Send('V', std::span<const double>(values));
 }
 
-// In a child: the numbers of each data set behind its name, a text behind its name.
+// Runs in the child: sends each name and then its numbers or its text.
 void SendAll(const std::string& file_name, const recording::Hdf5Sender& sender) {
   const Handle properties = recording::FileProperties();
   const Handle file(H5Fopen(file_name.c_str(), H5F_ACC_RDONLY, properties.id()), H5Fclose);
@@ -161,7 +161,7 @@ GridFile ReadHdf5Grid(const std::filesystem::path& path) {
   const auto& tool_mm = held.numbers["tool_mm"];
   const auto& temperature = held.numbers["temperature_c"];
   if (tool_mm.size() != 3 || temperature.size() != 1) {
-    throw InputError(path.string() + ": tool_mm or temperature_c has another size");
+    throw InputError(path.string() + ": tool_mm or temperature_c has a wrong size");
   }
   FileHeader header;
   header.machine = held.texts["machine"];

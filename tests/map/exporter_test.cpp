@@ -242,7 +242,7 @@ TEST_F(BrokenExport, IsRefusedWithItsLine) {
   ExpectHas(Refusal("X EXY\n", ReadIsg), "EXY does not belong");
   ExpectHas(Refusal("[EXX]\nGridpoints = {\n0 0\n", ReadEtalon), "cut off");
   ExpectHas(Refusal("[EXX]\nVALUE = 3\n", ReadEtalon), "bad.txt:2: expected Gridpoints");
-  ExpectHas(Refusal("[C0Y]\nVALUE = 3\n[C0Y]\n", ReadEtalon), "bad.txt:3: C0Y stands twice");
+  ExpectHas(Refusal("[C0Y]\nVALUE = 3\n[C0Y]\n", ReadEtalon), "bad.txt:3: C0Y is given twice");
   ExpectHas(Refusal("[EXX]\nGridpoints = {\n0 0 0\n}\n", ReadEtalon), "bad.txt:3");
 }
 

@@ -78,7 +78,8 @@ TEST(TableMeaning, CountedAsTheToolGoesPlusIsTheToolTowardsPlus) {
   FormatNamed("etalon").write(map, options, folder / "a.etalon");
   const ForeignTables file(ReadWhole(folder / "a.etalon"));
   ASSERT_EQ(file.sign().size(), 3u);
-  EXPECT_NE(file.sign()[2].find("the tool stands towards + in the workpiece"), std::string::npos);
+  EXPECT_NE(file.sign()[2].find("the tool is displaced towards + in the workpiece"),
+            std::string::npos);
   // At the origin of the other axes the arms are those of X alone, and the tool is in its origin.
   const Vector3d place(0.02, 0.0, 0.0);
   const Vector3d error = map.Error(place, Vector3d::Zero());
