@@ -114,7 +114,7 @@ int Convert(const ConvertOptions& options) {
   if (std::filesystem::is_regular_file(options.to) && !recording::OverwritingIsForced()) {
     throw InputError(
         fmt::format("{}: exists already, and nothing recorded is overwritten; choose another name, "
-                    "or say --force",
+                    "or add --force",
                     options.to.string()));
   }
   const recording::Recording recording = ReadAny(options);

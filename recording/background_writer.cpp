@@ -26,7 +26,7 @@ BackgroundWriter::~BackgroundWriter() {
   try {
     Close();
   } catch (const std::exception&) {
-    // Close() is there for whoever wants to know.
+    // A caller that needs the error calls Close().
   }
 }
 

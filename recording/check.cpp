@@ -48,9 +48,9 @@ const std::vector<KindRule>& KindRules() {
   return rules;
 }
 
-// What a value of a column that abbe knows may be, besides finite.
+// Allowed values of a column that abbe knows, besides finite.
 struct ValueRule {
-  std::string_view begin, end;  // of the column's name; equal to the name when it stands alone
+  std::string_view begin, end;  // of the column's name; both are the whole name for a single column
   bool (*allows)(double);
   std::string_view wanted;
 };
@@ -103,8 +103,8 @@ void CheckTime(std::span<const double> time, std::size_t first_row, const Places
     }
     if (time[i] < before) {
       Refuse(places.Row(first_row + i), "time_s",
-             fmt::format("goes back from {} to {}; rows must stand in the order of their time",
-                         before, time[i]));
+             fmt::format("goes back from {} to {}; rows must be in the order of time", before,
+                         time[i]));
     }
     before = time[i];
   }

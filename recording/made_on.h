@@ -1,4 +1,4 @@
-// On which machine a recording was made.
+// The check that a recording was made on a given machine.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace abbe::recording {
 
-// InputError when the header names another machine than this one; a header may name none.
+// InputError when the header names a machine other than `machine`; it need not name one.
 void RefuseOtherMachine(const Recording& recording, const std::string& machine);
 
 }  // namespace abbe::recording

@@ -40,15 +40,15 @@ std::string_view NextWord(std::string_view& line) {
   return word;
 }
 
-// Whether `text` is written as `form`, in which 0 stands for any digit.
+// Whether `text` matches `form`, in which 0 is any digit.
 bool IsWritten(std::string_view text, std::string_view form) {
   return std::equal(text.begin(), text.end(), form.begin(), form.end(),
                     [](char is, char as) { return as == '0' ? is >= '0' && is <= '9' : is == as; });
 }
 
-// "2023-02-08" and "14:21:15.970781" since 1970 of the same clock.
+// The time since 1970, on the same clock, of "2023-02-08" and "14:21:15.970781".
 std::optional<Nanoseconds> Moment(std::string_view date, std::string_view time) {
-  constexpr int kFirstYear = 1970, kLastYear = 2200;  // which nanoseconds can count
+  constexpr int kFirstYear = 1970, kLastYear = 2200;  // the range of nanoseconds in 64 bits
   constexpr std::string_view kSeconds = "00:00:00";
   const std::string_view decimals = time.substr(std::min(time.size(), kSeconds.size()));
   if (!IsWritten(date, "0000-00-00") || !IsWritten(time.substr(0, kSeconds.size()), kSeconds) ||
@@ -99,7 +99,7 @@ class LogReader {
         spoke_(columns.size(), false) {
     if (columns.empty()) {
       throw InputError(
-          fmt::format("{}: the log of a monitor does not say what its channels are; name them as "
+          fmt::format("{}: the log of a monitor has no quantities and units; name the channels as "
                       "columns with their units, for example shaft_deg=CHANNEL",
                       path_));
     }
@@ -124,14 +124,14 @@ class LogReader {
     if (line.date == "***") return;
     if (!line.moment) {
       throw InputError(fmt::format(
-          "{}:{}: no moment after \"{}\"; a line of a monitor is channel, date, time, value", path_,
-          number, line.channel));
+          "{}:{}: no date and time after \"{}\"; a line of a monitor is channel, date, time, value",
+          path_, number, line.channel));
     }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       if (columns_[i].channel != line.channel) continue;
       const auto value = Parse<double>(line.value);
       if (!value || !std::isfinite(*value)) {
-        throw InputError(fmt::format("{}:{}: \"{}\" of {} is no number; leave the channel out",
+        throw InputError(fmt::format("{}:{}: \"{}\" of {} is not a number; leave the channel out",
                                      path_, number, line.value, line.channel));
       }
       if (moments_.empty() || *line.moment < moments_.begin()->first) {

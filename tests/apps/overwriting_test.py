@@ -67,7 +67,7 @@ class OverwritingTest(ProgramCase):
         self.run_in("reduce", "sX.csv", "--machine", "mill.toml", "--json", "out/x.json")
         for line, saying in (("report out --out sX.csv", "nothing recorded is overwritten"),
                              ("report out --out out/x.json", "holds JSON, but a page"),
-                             ("report out --out mill.toml", "holds settings of yours")):
+                             ("report out --out mill.toml", "holds your settings")):
             self.refused(line, saying)
 
     def test_its_own_kind_and_force(self):
