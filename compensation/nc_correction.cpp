@@ -37,7 +37,7 @@ bool IsKnownM(int code_times_10) {
           code_times_10 == 490 || code_times_10 == 600);
 }
 
-// Words that a corrected move is written without: its own.
+// Words that the corrected move replaces.
 bool IsOfMove(const NcWord& word) {
   return (word.letter >= 'X' && word.letter <= 'Z') || (word.letter >= 'I' && word.letter <= 'K') ||
          word.letter == 'R' || IsMotionWord(word);
@@ -55,20 +55,21 @@ std::string_view WhyNot(int code_times_10) {
     case 431:
     case 432:
       return "a tool length offset changes the tool vector; program the tool point and give its "
-             "place with --tool";
+             "position with --tool";
     case 930:
       return "inverse time feed depends on the length of the line, which is split; use G94";
     default:
-      return "it cannot be corrected; take it out or replace it";
+      return "it cannot be corrected; remove or replace it";
   }
 }
 
-// Between words, not at the start of a line.
+// A blank between words, none at the start of a line.
 void AppendBlank(std::string& out) {
   if (!out.empty() && out.back() != '\n') out += ' ';
 }
 
-// `units` of 10^-decimals, e.g. 12500000 with 6 decimals as "12.5". From the last digit on.
+// `units` of 10^-decimals, e.g. 12500000 with 6 decimals as "12.5". Written from the last digit
+// backwards.
 void AppendFixed(std::int64_t units, int decimals, std::string& out) {
   std::array<char, 32> text;
   char* const end = text.data() + text.size();
@@ -164,7 +165,7 @@ NcCorrection::Asked NcCorrection::Understand() {
       case 'X':
       case 'Y':
       case 'Z':
-        if (asked.axes[word.letter - 'X']) RefuseLine(counts_.lines, "an axis stands twice");
+        if (asked.axes[word.letter - 'X']) RefuseLine(counts_.lines, "an axis is given twice");
         asked.axes[word.letter - 'X'] = word.value;
         break;
       case 'I':
@@ -190,17 +191,15 @@ NcCorrection::Asked NcCorrection::Understand() {
         break;
       case 'M':
         if (!IsKnownM(CodeTimes10(word))) {
-          RefuseLine(counts_.lines,
-                     fmt::format("{} is not supported: what it does to the machine is "
-                                 "not known; take it out",
-                                 word.text));
+          RefuseLine(counts_.lines, fmt::format("{} is not supported: its effect on the machine is "
+                                                "unknown; remove it",
+                                                word.text));
         }
         break;
       default:
-        RefuseLine(counts_.lines,
-                   fmt::format("{} is not supported: it cannot be corrected; take it "
-                               "out",
-                               word.text));
+        RefuseLine(counts_.lines, fmt::format("{} is not supported: it cannot be corrected; "
+                                              "remove it",
+                                              word.text));
     }
   }
   const auto has_any = [](const auto& values) {
@@ -246,7 +245,7 @@ Arc NcCorrection::ArcOf(const Asked& asked) const {
   const bool has_centre =
       asked.centre[static_cast<std::size_t>(u)] || asked.centre[static_cast<std::size_t>(v)];
   if (has_centre == asked.radius.has_value()) {
-    RefuseLine(counts_.lines, "an arc takes I, J, K or R, and one of both");
+    RefuseLine(counts_.lines, "an arc takes either I, J, K or R");
   }
   if (asked.radius) {
     arc.radius = unit * *asked.radius;
@@ -266,8 +265,8 @@ void NcCorrection::MustReach(const Vector3d& wanted) const {
   static_cast<void>(corrector_.Command(wanted + options_.work_offset));
 }
 
-// Ends and extremes are looked at before a path is divided: a slip of a unit would be a thousand
-// times as many points.
+// Ends and extremes are checked before a path is divided: a wrong unit would
+// make a thousand times as many points.
 void NcCorrection::Divide(const Asked& asked, const Vector3d& target) {
   points_.clear();
   if (motion_ == 0) {
@@ -317,7 +316,7 @@ void NcCorrection::Move(const Asked& asked, std::string& out) {
   const bool is_known = is_known_[0] && is_known_[1] && is_known_[2];
   if (!is_known || (!was_known && motion_ != 0)) {
     RefuseLine(counts_.lines,
-               "moves while it is not known where the machine stands; begin with G0 to "
+               "moves while the position of the machine is unknown; begin with G0 to "
                "X, Y and Z in G90, or give the start with --start x,y,z");
   }
   Assume();
@@ -335,7 +334,7 @@ void NcCorrection::Move(const Asked& asked, std::string& out) {
     motion_out_ = motion;
   }
   for (const Vector3d& point : points_) WritePoint(point, out);
-  out.pop_back();  // what acts after the move, and what ends the line
+  out.pop_back();  // words that act after the move, and the end of the line
   for (const NcWord& word : words_) {
     if (!IsStop(word) && !word.text.starts_with(';')) continue;
     out += ' ';
@@ -349,8 +348,8 @@ void NcCorrection::Finish() const {
   if (is_open_ && !counts_.has_end) {
     RefuseLine(
         counts_.lines,
-        "the program begins with % and ends with neither %, M2 nor M30: it was cut; fetch it "
-        "whole");
+        "the program begins with % and ends with neither %, M2 nor M30: it is truncated; fetch "
+        "it again");
   }
 }
 

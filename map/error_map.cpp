@@ -75,7 +75,7 @@ Eigen::Matrix3d ErrorMap::Covariance(const Eigen::Vector3d& position,
                                      const Eigen::Vector3d& p_TQ) const {
   if (!StatesUncertainty()) {
     throw InputError("the map of " + origin_.machine +
-                     " states no uncertainty; fuse the runs anew for one that does");
+                     " has no uncertainty; fuse the runs again to get one");
   }
   const Eigen::Matrix3Xd J = model_.Linearize(position, p_TQ).J_error_parameters;
   return J * cov_pp_ * J.transpose();
