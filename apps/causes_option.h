@@ -1,5 +1,5 @@
-// The option --causes: an extended model (abbe diagnose -o) whose causes are taken out of
-// the recordings before a command evaluates them.
+// The option --causes: an extended model (abbe diagnose -o) whose causes are corrected in the
+// recordings before a command evaluates them.
 //
 //   CauseCorrection causes(path, file, kForMaps);
 //   const recording::Recording corrected = causes.Take(recording);
@@ -20,22 +20,23 @@ namespace abbe::apps {
 
 CLI::Option* AddCausesOption(CLI::App& command, std::filesystem::path& path);
 
-// Which seats of causes a command takes out.
+// The seats (simulation/causes/cause.h) of the causes that a command corrects.
 using Seats = std::vector<simulation::Seat>;
-// What the machine itself does is to be measured.
+// For measuring the machine: its own errors stay.
 inline const Seats kForMeasuring{simulation::Seat::kInstrument};
-// A map holds and corrects what is a function of position.
+// For a map, which contains the errors that are functions of position.
 inline const Seats kForMaps{simulation::Seat::kInstrument, simulation::Seat::kMotion};
-// The machine is the reference.
+// For calibrating, where the machine is the reference.
 inline const Seats kForCalibrating{simulation::Seat::kInstrument, simulation::Seat::kMotion,
                                    simulation::Seat::kMap};
 
 class CauseCorrection {
  public:
-  // An empty path takes nothing out.
+  // An empty path corrects nothing.
   CauseCorrection(const std::filesystem::path& path, const MachineFile& file, const Seats& taken);
 
   bool Active() const { return !name_.empty(); }
+  // Returns the corrected recording and adds its changes to Line() and Data().
   recording::Recording Take(recording::Recording recording);
 
   const std::vector<simulation::ModelledCause>& taken() const { return taken_; }
@@ -55,14 +56,14 @@ class CauseCorrection {
   simulation::Changes changes_;
 };
 
-// Of the commands that take a map: what it does not hold, along a path.
+// For the commands that use a map: the displacement along a path by causes that are not in the map.
 class PathCauses {
  public:
-  // An empty path: nothing.
+  // An empty path: no displacement.
   PathCauses(const std::filesystem::path& path, const std::string& machine, double feed_mm_min);
 
   bool Active() const { return !name_.empty(); }
-  // m, of the axes; 3 x points.
+  // The displacement of the axes at the points of a path, m; 3 x points.
   Eigen::Matrix3Xd Beside(const Eigen::Matrix3Xd& path) const;
   std::vector<std::string> Names() const;
   std::string Line() const;
@@ -70,7 +71,7 @@ class PathCauses {
  private:
   std::string name_;
   double feed_ = 0.0;                                     // m/s
-  std::vector<simulation::ModelledCause> causes_, left_;  // left: follow time or a temperature
+  std::vector<simulation::ModelledCause> causes_, left_;  // left_: depend on time or a temperature
 };
 
 void AddPathCauses(CLI::App& command, std::filesystem::path& path, double& feed_mm_min);

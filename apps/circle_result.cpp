@@ -23,7 +23,7 @@ using paths::CirclePoint;
 using paths::CircleRun;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr int kProfilePoints = 360;  // of the profile in the result, one a degree
+constexpr int kProfilePoints = 360;  // of the profile in the result, one per degree
 
 double Um(double metres) { return metres / settings::kMicrometre; }
 double Mm(double metres) { return metres / settings::kMillimetre; }
@@ -41,8 +41,8 @@ ordered_json HarmonicData(const std::optional<standards::HarmonicFit>& fit) {
   return list;
 }
 
-// Means over a degree each, about `centre`: radius minus nominal, what the causes explain of it,
-// and the third coordinate.
+// Means over one degree each, about `centre`: radius minus nominal, its part that the
+// causes explain, and the third coordinate.
 ordered_json Profile(const CircleRun& run, int sense, const standards::Circle& centre,
                      const std::vector<double>* residuals) {
   std::vector<double> radial(kProfilePoints), explained(kProfilePoints), axial(kProfilePoints),
@@ -145,9 +145,8 @@ std::string CauseTable(const fusion::CircleCauses& causes) {
                     std::abs(one.value) > standards::kCoverage * one.u ? " *" : "");
   }
   text += fmt::format(
-      "  rms of the radius {:.2f} um, smooth errors of no cause {:.2f} um, unexplained {:.2f} um; "
-      "* "
-      "beyond its U95\n",
+      "  rms of the radius {:.2f} um, smooth errors without a cause {:.2f} um, unexplained {:.2f} "
+      "um; * beyond its U95\n",
       Um(causes.rms_before), Um(causes.rms_smooth), Um(causes.rms_after));
   return text;
 }

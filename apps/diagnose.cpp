@@ -1,4 +1,4 @@
-// abbe diagnose: what the simulation gets wrong, and why.
+// abbe diagnose: finds the causes of the residuals of a simulation.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -36,7 +36,7 @@ struct DiagnoseArguments {
   bool plan = false, quiet = false;
 };
 
-// A file without [devices] is enough for runs with a reference, for an arm, and for a shaft.
+// A file without [devices] is sufficient for runs with a reference, for an arm, and for a shaft.
 diagnosis::Setup SetupOf(const fs::path& machine) {
   const auto document = settings::Document::Read(machine);
   if (!document.Root().Has("devices")) {
@@ -73,14 +73,14 @@ nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
 diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
                               const std::vector<recording::Recording>& recordings,
                               const std::vector<diagnosis::Candidate>& causes) {
-  // How well an arm is known where it was not fitted is worth a figure also without a cause.
+  // The error of an arm in held-out poses is reported also without a cause.
   if (causes.empty() && !campaign.HasArms()) return {};
   try {
     return diagnosis::HoldOut(campaign, recordings, causes);
   } catch (const NumericalError& error) {
     fmt::print(stderr,
-               "abbe: the gain on data held out is not known, half of the runs are not "
-               "enough for a fit: {}\n",
+               "abbe: the gain on held-out data is unknown, because half of the runs do not "
+               "suffice for a fit: {}\n",
                error.what());
     return {};
   }
@@ -134,18 +134,18 @@ int Diagnose(const DiagnoseArguments& arguments) {
 void AddDiagnose(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<DiagnoseArguments>();
   CLI::App* command = program.add_subcommand(
-      "diagnose", "What the simulation of the runs gets wrong, and which cause explains it");
+      "diagnose", "Finds the causes of what the simulation of the runs does not explain");
   command->add_option("recordings", arguments->recordings,
                       "Recordings of one machine: sweep, dwell, gap-steps, linkage, reference, "
                       "length, plate, shaft");
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   auto* out = command->add_option(
       "-o,--out", arguments->out,
-      "Extended model (TOML) with what was found, for --causes of other commands");
+      "Extended model (TOML) with the causes found, for --causes of other commands");
   command->add_option("--json", arguments->json, "File for the result as data");
   auto* plan = command->add_flag("--plan", arguments->plan,
-                                 "Before measuring: which causes runs on the paths of these "
-                                 "recordings would show, from which size on");
+                                 "Before measuring: the causes that runs on the paths of these "
+                                 "recordings would show, and from which size on");
   command
       ->add_option(
           "--campaign", arguments->campaign,

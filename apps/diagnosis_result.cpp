@@ -44,7 +44,7 @@ std::vector<Told> ParametersOf(const Score& score) {
   return told;
 }
 
-// What a finding is worth; none of what was found row by row, and where nothing was held out.
+// The gain by a finding; none for findings in single rows, or if nothing was held out.
 std::optional<HeldOutGain::Without> WorthOf(std::size_t finding, const Diagnosis& diagnosis,
                                             const HeldOutGain& gain) {
   const auto is_modelled = [](const Finding& each) { return diagnosis::IsModelled(each); };
@@ -114,8 +114,8 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
                   words.what, words.shows, words.check, words.remedy);
   if (const auto without = WorthOf(which, diagnosis, gain)) {
     text += fmt::format(
-        "  gain         rms {:.3f} of the stated noise without it, {:.3f} with it; in rows held "
-        "out {:.3f} and {:.3f}\n",
+        "  gain         rms {:.3f} of the stated noise without it, {:.3f} with it; in held-out "
+        "rows {:.3f} and {:.3f}\n",
         without->seen, gain.seen, without->held, gain.after);
   }
   for (const auto& rival : finding.rivals) {
@@ -123,15 +123,15 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
         fmt::format("  or {}, probability {:.3f}\n", NameOf(rival.candidate), rival.probability);
   }
   if (finding.next_run) {
-    text += fmt::format("  to tell them apart: {}; the right one is then expected at {:.3f}\n",
+    text += fmt::format("  to separate them: {}; expected probability of the right one {:.3f}\n",
                         finding.next_run->text, finding.next_run->expected_probability);
   } else if (!finding.rivals.empty()) {
-    text += "  no run that abbe knows of would tell them apart\n";
+    text += "  no run known to abbe would separate them\n";
   }
   return text;
 }
 
-// Of a line at a shaft, by which form, bearing, teeth and shaking can be told apart.
+// The period of a spectral line at a shaft, which separates form, bearing, teeth and vibration.
 std::string PeriodText(const Leftover& leftover) {
   if (leftover.period == 0.0 || !leftover.object.starts_with("sensor_")) return "";
   if (leftover.variable != "shaft") return fmt::format(", every {:.3g} s,", leftover.period);
@@ -141,11 +141,11 @@ std::string PeriodText(const Leftover& leftover) {
 bool IsOfAnInterval(const Leftover& leftover) { return leftover.to > leftover.from; }
 
 std::string WhatItDoes(const Leftover& leftover) {
-  if (leftover.variable == diagnosis::kScatter) return "scatters beyond what is stated";
-  if (leftover.variable == diagnosis::kMemory) return "goes on from one reading to the next";
+  if (leftover.variable == diagnosis::kScatter) return "scatters beyond its stated noise";
+  if (leftover.variable == diagnosis::kMemory) return "is correlated from one reading to the next";
   if (IsOfAnInterval(leftover)) {
     const auto unit = diagnosis::UnitOf(leftover.variable);
-    return fmt::format("stands apart where {} is {:.4g} to {:.4g} {},", leftover.variable,
+    return fmt::format("is offset where {} is {:.4g} to {:.4g} {},", leftover.variable,
                        leftover.from / unit.si, leftover.to / unit.si, unit.name);
   }
   return fmt::format("varies with {}{}", leftover.variable, PeriodText(leftover));
@@ -236,14 +236,14 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const HeldOutGain& gain) 
 
 std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
   std::string text =
-      fmt::format("verdict: {}\nchi-square per row {:.3f}, with what was found {:.3f}\n",
+      fmt::format("verdict: {}\nchi-square per row {:.3f}, with the causes found {:.3f}\n",
                   Name(diagnosis.verdict), diagnosis.chi_before, diagnosis.chi_after);
   for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
     text += FindingText(i, diagnosis, gain);
   }
   if (gain.rows > 0) {
     text += fmt::format(
-        "\nheld out: {} rows, rms {:.3f} of the stated noise without what was found, {:.3f} with "
+        "\nheld out: {} rows, rms {:.3f} of the stated noise without the causes found, {:.3f} with "
         "it\n",
         gain.rows, gain.before, gain.after);
   }
@@ -257,7 +257,7 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
   }
   for (const Leftover& leftover : diagnosis.leftovers) {
     text +=
-        fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause does that\n",
+        fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause explains it\n",
                     leftover.object, WhatItDoes(leftover), leftover.amplitude / leftover.unit.si,
                     leftover.unit.name, leftover.p_value);
   }

@@ -1,4 +1,4 @@
-// abbe fuse: from all recordings of a machine to one error map.
+// abbe fuse: one error map from all recordings of a machine.
 #include <fmt/format.h>
 
 #include <array>
@@ -107,7 +107,8 @@ class RunReader {
     }
   }
 
-  // A single run is not read for it.
+  // InputError unless all linkage runs have one ball, compared by samples; a single run is not
+  // read.
   void RefuseOtherBall(const recording::Recording& head, const simulation::LinkageParts& parts) {
     constexpr Eigen::Index kMost = 4096, kSample = 1024;
     linkages_.emplace_back(recording::Recording{head.name, head.header, {}, {}}, parts);
@@ -126,7 +127,7 @@ class RunReader {
   const machine::Machine& machine_;
   machine::VolumetricModel model_;
   std::vector<std::pair<recording::Recording, simulation::LinkageParts>> linkages_;
-  std::size_t compared_ = 0;  // of them
+  std::size_t compared_ = 0;  // of linkages_
   simulation::OneBall ball_;
 };
 
@@ -134,7 +135,7 @@ struct MapChange {
   double rms, largest;  // m
 };
 
-// Over a grid of the volume.
+// Rms and largest change over a grid of the volume.
 MapChange ChangeOf(const map::ErrorMap& before, const map::ErrorMap& after) {
   const Eigen::Vector3d& tool = after.origin().tool;
   const std::array<Eigen::Index, 3> points{11, 11, 11};
@@ -145,7 +146,7 @@ MapChange ChangeOf(const map::ErrorMap& before, const map::ErrorMap& after) {
   return {std::sqrt(change.squaredNorm() / static_cast<double>(change.size())), change.maxCoeff()};
 }
 
-// Recordings as they were read, causes and all, may fit no map.
+// Nothing when no map fits, which uncorrected recordings may cause.
 std::optional<fusion::FuseReport> FuseIfItFits(const machine::Machine& machine,
                                                const std::vector<SimulatedRun>& runs,
                                                bool choose_smoothness) {
@@ -156,7 +157,7 @@ std::optional<fusion::FuseReport> FuseIfItFits(const machine::Machine& machine,
   }
 }
 
-// What the machine does beside its map, one line each.
+// The causes that the map does not contain, one line each.
 std::string NotInMap(const std::vector<simulation::ModelledCause>& causes) {
   std::string text;
   for (const auto& cause : causes) {
@@ -172,7 +173,7 @@ std::string NotInMap(const std::vector<simulation::ModelledCause>& causes) {
   return text;
 }
 
-// Rows that come twice would count twice.
+// A recording given twice would count twice.
 void RefuseTwice(const std::vector<fs::path>& recordings) {
   std::set<fs::path> seen;
   for (const fs::path& path : recordings) {
@@ -210,9 +211,8 @@ int Fuse(const FuseArguments& arguments) {
     if (const auto without = FuseIfItFits(machine, as_read, !arguments.fixed_smoothness)) {
       const MapChange change = ChangeOf(without->map, report.map);
       json["map_change_um"] = {{"rms", 1e6 * change.rms}, {"largest", 1e6 * change.largest}};
-      text +=
-          fmt::format("the map is another than without them by {:.2f} um rms, {:.2f} um at most\n",
-                      1e6 * change.rms, 1e6 * change.largest);
+      text += fmt::format("without them the map would differ by {:.2f} um rms, {:.2f} um at most\n",
+                          1e6 * change.rms, 1e6 * change.largest);
     } else {
       text += "without them no map fits the recordings\n";
     }

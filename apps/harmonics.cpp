@@ -30,8 +30,8 @@ struct HarmonicsArguments {
   bool quiet = false;
 };
 
-// How the readings of a column are printed, and how keys of the result end that hold them: lengths
-// in um, angles in urad, all else as the column has it (a voltage in V, "_v").
+// The printed unit of a column, and the ending of its keys in the result: lengths in um, angles in
+// urad, all else in the unit of the column (a voltage in V, "_v").
 struct Printed {
   std::string unit, ending;
   double si;
@@ -49,7 +49,7 @@ Printed PrintedOf(const std::string& column) {
   return {std::string(unit.name), column.substr(settings::StemOf(column).size()), unit.si};
 }
 
-// What a fit without any harmonic, and one with all, leave of readings in later time.
+// Rms of later readings about a fit of the earlier ones, without harmonics and with all of them.
 struct HeldOut {
   double without, with;
 };

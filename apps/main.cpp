@@ -1,4 +1,4 @@
-// The program: adds the subcommands, runs the one that was asked for, maps failures to exit codes.
+// The program: adds the subcommands, runs the requested one, maps failures to exit codes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 
 namespace {
 
-// A word in the place of the subcommand that is none.
+// InputError for an unknown subcommand.
 void RefuseUnknown(const CLI::App& program, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   std::vector<std::string> known;
@@ -31,7 +31,7 @@ void RefuseUnknown(const CLI::App& program, int argc, char** argv) {
                                      argv[1], abbe::settings::NearestWord(argv[1], known)));
 }
 
-// The innermost command that was given, as it is typed.
+// The innermost subcommand on the command line, as typed.
 struct Given {
   const CLI::App* command;
   std::string typed;
@@ -46,7 +46,7 @@ Given CommandOf(const CLI::App& program) {
   return given;
 }
 
-// The first word that looks like an option and is none of this command, with the nearest that is.
+// The message for the first unknown option, with the nearest known one; empty if there is none.
 std::string UnknownOption(const Given& given, int argc, char** argv) {
   std::vector<std::string> known{"help"};
   std::vector<const CLI::App*> groups = given.command->get_subcommands(
@@ -68,7 +68,7 @@ std::string UnknownOption(const Given& given, int argc, char** argv) {
   return "";
 }
 
-// What is wrong with the words: an option that is none, or CLI11's message.
+// The error in the command line: an unknown option, or the message of CLI11.
 std::string UsageOf(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
   const Given given = CommandOf(program);
   std::string wrong = UnknownOption(given, argc, argv);
@@ -81,14 +81,14 @@ int Report(const std::exception& failure, int exit_code) {
   return exit_code;
 }
 
-// Of a size that no memory holds: std::bad_alloc, or std::length_error of a container.
+// Out of memory: std::bad_alloc, or std::length_error of a container.
 int ReportMemory() {
-  return Report(abbe::InputError("out of memory: what was asked for is larger than this computer "
-                                 "can hold; ask for fewer points, draws or rows"),
+  return Report(abbe::InputError("out of memory: the request is larger than the memory of this "
+                                 "computer; ask for fewer points, draws or rows"),
                 abbe::apps::kBadInput);
 }
 
-// What was printed may not have reached its file: 3 then, else `exit_code`.
+// 3 if standard output could not be written, else `exit_code`.
 int Printed(int exit_code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
   const std::string why = std::strerror(errno);
@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
   int exit_code = kDone;
   for (const AddCommand add : kCommands) add(program, exit_code);
   GuardOutputs(program);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a disk that is full
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is reported like a full disk
   try {
     RefuseUnknown(program, argc, argv);
     program.parse(argc, argv);

@@ -210,7 +210,7 @@ class CorrectTest(unittest.TestCase):
         done = self.correct(machine, "cmm.csv", "--out", self.folder / "causes.csv", "--feed-mm-min", "600",
                             "--causes", self.folder / "causes.toml")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("beside the map, from causes.toml: nothing; left out, for a path has no time and no "
+        self.assertIn("in addition to the map, from causes.toml: nothing; left out, because a path has no time and no "
                       "temperature: vibration:X, warm-up-drift:Y", done.stdout)
         self.assertEqual((self.folder / "causes.csv").read_text(), (self.folder / "plain.csv").read_text())
 

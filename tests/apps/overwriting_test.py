@@ -144,7 +144,7 @@ class OverwritingTest(ProgramCase):
     def test_sizes_are_bounded(self):
         record = "rig record --machine mill.toml --out new.csv "
         for line, saying in (("export map.toml --format csv --points 2000 --out new.csv", "take fewer"),
-                             ("export map.toml --format csv --points=-5 --out new.csv", "2 points or more"),
+                             ("export map.toml --format csv --points=-5 --out new.csv", "at least 2 points"),
                              (record + "--course circle --feed 1e-9", "take a higher feed"),
                              (record + "--course cube --points 1000,1000,1000", "take fewer"),
                              (record + "--course cube --dwell 1e300", "take a higher feed"),
