@@ -107,7 +107,7 @@ class ScaledInverse {
       : scale_(total.diagonal().cwiseSqrt().cwiseInverse()),
         factor_(scale_.asDiagonal() * total * scale_.asDiagonal()) {}
 
-  bool certain() const { return EveryDirectionStandsOut(factor_); }
+  bool certain() const { return HasFullRank(factor_); }
   MatrixXd Inverse() const {
     const MatrixXd inverse = scale_.asDiagonal() * factor_.solve(MatrixXd(scale_.asDiagonal()));
     return 0.5 * (inverse + inverse.transpose());
