@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "estimation/parameter.h"
 #include "settings/unit.h"
 #include "standards/circle.h"
 #include "standards/coverage.h"
@@ -115,12 +116,7 @@ ordered_json RunData(const CircleRun& run, const CircleFigures& figures,
   return data;
 }
 
-struct Shown {
-  const char* unit;
-  double si;
-};
-
-Shown ShownUnit(const std::string& unit) {
+estimation::PrintUnit DisplayUnit(const std::string& unit) {
   if (unit == "m") return {"um", 1e-6};
   if (unit == "rad") return {"urad", 1e-6};
   if (unit == "s") return {"us", 1e-6};
@@ -132,16 +128,16 @@ std::string CauseTable(const fusion::CircleCauses& causes) {
   std::string text = fmt::format("  {:<28}{:>12}{:>10}{:>7}{:>16}\n", "cause", "value", "U95",
                                  "unit", "on the radius");
   for (const fusion::CauseEstimate& one : causes.causes) {
-    const Shown shown = ShownUnit(one.unit);
+    const estimation::PrintUnit shown = DisplayUnit(one.unit);
     const std::string name = one.cause + " " + one.object;
     if (!one.seen) {
       text += fmt::format("  {:<28}{:>12}{:>10.2f}{:>7}{:>16}\n", name, "not seen",
-                          standards::kCoverage * one.u / shown.si, shown.unit, "-");
+                          standards::kCoverage * one.u / shown.si, shown.name, "-");
       continue;
     }
     text +=
         fmt::format("  {:<28}{:>12.2f}{:>10.2f}{:>7}{:>13.2f} um{}\n", name, one.value / shown.si,
-                    standards::kCoverage * one.u / shown.si, shown.unit, Um(one.effect),
+                    standards::kCoverage * one.u / shown.si, shown.name, Um(one.effect),
                     std::abs(one.value) > standards::kCoverage * one.u ? " *" : "");
   }
   text += fmt::format(

@@ -27,21 +27,21 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kEvidenceShown = 8;
 
-struct Told {
+struct NamedValue {
   std::string name;
   double value, u95;
 };
 
 // The parameters of a finding in their own units.
-std::vector<Told> ParametersOf(const Score& score) {
+std::vector<NamedValue> ParametersOf(const Score& score) {
   const simulation::ModelledCause found = diagnosis::FoundCause(score);
-  std::vector<Told> told;
+  std::vector<NamedValue> values;
   for (std::size_t i = 0; i < found.cause->keys.size(); ++i) {
     const auto& key = found.cause->keys[i];
     const auto at = static_cast<Index>(i);
-    told.push_back({key.name, found.values[at] / key.unit, found.u95[at] / key.unit});
+    values.push_back({key.name, found.values[at] / key.unit, found.u95[at] / key.unit});
   }
-  return told;
+  return values;
 }
 
 // The gain by a finding; none for findings in single rows, or if nothing was held out.
@@ -63,7 +63,7 @@ ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const He
                     {"object", object},
                     {"probability", finding.probability},
                     {"log_evidence", finding.score.log_evidence}};
-  for (const Told& each : ParametersOf(finding.score)) {
+  for (const NamedValue& each : ParametersOf(finding.score)) {
     ordered_json parameter = KeyJson(each.name);
     parameter.update({{"value", each.value}, {"u95", each.u95}});
     json["parameters"].push_back(parameter);
@@ -105,7 +105,7 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
   const Finding& finding = diagnosis.findings[which];
   std::string text = fmt::format("\n{}, probability {:.3f}\n", NameOf(finding.score.candidate),
                                  finding.probability);
-  for (const Told& each : ParametersOf(finding.score)) {
+  for (const NamedValue& each : ParametersOf(finding.score)) {
     text += fmt::format("  {:<28}{:>12.4g} +- {:.2g}\n", each.name, each.value, each.u95);
   }
   const auto& words = finding.score.candidate.cause->words;

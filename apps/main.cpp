@@ -32,26 +32,26 @@ void RefuseUnknown(const CLI::App& program, int argc, char** argv) {
 }
 
 // The innermost subcommand on the command line, as typed.
-struct Given {
+struct ActiveCommand {
   const CLI::App* command;
   std::string typed;
 };
 
-Given CommandOf(const CLI::App& program) {
-  Given given{&program, "abbe"};
-  while (!given.command->get_subcommands().empty()) {
-    given.command = given.command->get_subcommands().front();
-    given.typed += " " + given.command->get_name();
+ActiveCommand CommandOf(const CLI::App& program) {
+  ActiveCommand active{&program, "abbe"};
+  while (!active.command->get_subcommands().empty()) {
+    active.command = active.command->get_subcommands().front();
+    active.typed += " " + active.command->get_name();
   }
-  return given;
+  return active;
 }
 
 // The message for the first unknown option, with the nearest known one; empty if there is none.
-std::string UnknownOption(const Given& given, int argc, char** argv) {
+std::string UnknownOption(const ActiveCommand& active, int argc, char** argv) {
   std::vector<std::string> known{"help"};
-  std::vector<const CLI::App*> groups = given.command->get_subcommands(
+  std::vector<const CLI::App*> groups = active.command->get_subcommands(
       [](const CLI::App* group) { return group->get_name().empty(); });
-  groups.push_back(given.command);
+  groups.push_back(active.command);
   for (const CLI::App* group : groups) {
     for (const CLI::Option* option : group->get_options()) {
       for (const std::string& name : option->get_lnames()) known.push_back(name);
@@ -62,7 +62,7 @@ std::string UnknownOption(const Given& given, int argc, char** argv) {
     if (!word.starts_with("--") || word.size() == 2) continue;
     const std::string name = word.substr(2, word.find('=') - 2);
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    return fmt::format("--{}: {} has no such option; did you mean --{}?", name, given.typed,
+    return fmt::format("--{}: {} has no such option; did you mean --{}?", name, active.typed,
                        abbe::settings::NearestWord(name, known));
   }
   return "";
@@ -70,10 +70,10 @@ std::string UnknownOption(const Given& given, int argc, char** argv) {
 
 // The error in the command line: an unknown option, or the message of CLI11.
 std::string UsageOf(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
-  const Given given = CommandOf(program);
-  std::string wrong = UnknownOption(given, argc, argv);
+  const ActiveCommand active = CommandOf(program);
+  std::string wrong = UnknownOption(active, argc, argv);
   if (wrong.empty()) wrong = std::string(error.what());
-  return fmt::format("{}; see {} --help", wrong.substr(0, wrong.find('\n')), given.typed);
+  return fmt::format("{}; see {} --help", wrong.substr(0, wrong.find('\n')), active.typed);
 }
 
 int Report(const std::exception& failure, int exit_code) {
@@ -89,7 +89,7 @@ int ReportMemory() {
 }
 
 // 3 if standard output could not be written, else `exit_code`.
-int Printed(int exit_code) {
+int FlushOutput(int exit_code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
   const std::string why = std::strerror(errno);
   return Report(abbe::DeviceError(fmt::format(
@@ -134,5 +134,5 @@ int main(int argc, char** argv) {
   } catch (const std::exception& failure) {
     return Report(failure, kNumericsFailed);
   }
-  return Printed(exit_code);
+  return FlushOutput(exit_code);
 }

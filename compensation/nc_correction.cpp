@@ -109,7 +109,7 @@ NcCorrection::NcCorrection(const Corrector& corrector, const NcOptions& options)
   is_known_.fill(true);
 }
 
-void NcCorrection::TakeG(const NcWord& word, Asked& asked) {
+void NcCorrection::TakeG(const NcWord& word, Block& block) {
   const int code = CodeTimes10(word);
   switch (code) {
     case 0:
@@ -122,7 +122,7 @@ void NcCorrection::TakeG(const NcWord& word, Asked& asked) {
       motion_ = -1;
       return;
     case 40:
-      asked.dwells = true;
+      block.dwells = true;
       return;
     case 170:
     case 180:
@@ -157,27 +157,27 @@ void NcCorrection::TakeG(const NcWord& word, Asked& asked) {
   }
 }
 
-NcCorrection::Asked NcCorrection::Understand() {
-  Asked asked;
+NcCorrection::Block NcCorrection::Understand() {
+  Block block;
   bool has_tolerance = false;
   for (const NcWord& word : words_) {
     switch (word.letter) {
       case 'X':
       case 'Y':
       case 'Z':
-        if (asked.axes[word.letter - 'X']) RefuseLine(counts_.lines, "an axis is given twice");
-        asked.axes[word.letter - 'X'] = word.value;
+        if (block.axes[word.letter - 'X']) RefuseLine(counts_.lines, "an axis is given twice");
+        block.axes[word.letter - 'X'] = word.value;
         break;
       case 'I':
       case 'J':
       case 'K':
-        asked.centre[word.letter - 'I'] = word.value;
+        block.centre[word.letter - 'I'] = word.value;
         break;
       case 'R':
-        asked.radius = word.value;
+        block.radius = word.value;
         break;
       case 'P':
-        asked.has_p = true;
+        block.has_p = true;
         break;
       case '(':
       case 'N':
@@ -187,7 +187,7 @@ NcCorrection::Asked NcCorrection::Understand() {
         break;
       case 'G':
         has_tolerance = has_tolerance || CodeTimes10(word) == 640;
-        TakeG(word, asked);
+        TakeG(word, block);
         break;
       case 'M':
         if (!IsKnownM(CodeTimes10(word))) {
@@ -205,54 +205,54 @@ NcCorrection::Asked NcCorrection::Understand() {
   const auto has_any = [](const auto& values) {
     return std::any_of(values.begin(), values.end(), [](const auto& v) { return v.has_value(); });
   };
-  asked.is_move = has_any(asked.axes) || (motion_ >= 2 && has_any(asked.centre));
-  if (asked.has_p && !asked.dwells && !has_tolerance)
+  block.is_move = has_any(block.axes) || (motion_ >= 2 && has_any(block.centre));
+  if (block.has_p && !block.dwells && !has_tolerance)
     RefuseLine(counts_.lines, "P is not supported here");
-  RefuseLooseWords(asked);
-  return asked;
+  RefuseLooseWords(block);
+  return block;
 }
 
-void NcCorrection::RefuseLooseWords(const Asked& asked) {
-  const bool has_centre = asked.centre[0] || asked.centre[1] || asked.centre[2];
-  if (asked.is_move && asked.dwells) RefuseLine(counts_.lines, "a dwell together with a move");
-  if (asked.is_move && motion_ < 0) {
+void NcCorrection::RefuseLooseWords(const Block& block) {
+  const bool has_centre = block.centre[0] || block.centre[1] || block.centre[2];
+  if (block.is_move && block.dwells) RefuseLine(counts_.lines, "a dwell together with a move");
+  if (block.is_move && motion_ < 0) {
     RefuseLine(counts_.lines, "axis words without G0, G1, G2 or G3 in force");
   }
-  if ((has_centre || asked.radius) && (motion_ < 2 || !asked.is_move)) {
+  if ((has_centre || block.radius) && (motion_ < 2 || !block.is_move)) {
     RefuseLine(counts_.lines, "I, J, K and R belong to an arc");
   }
 }
 
-Vector3d NcCorrection::Target(const Asked& asked) {
+Vector3d NcCorrection::Target(const Block& block) {
   const double unit = is_inch_ ? kInch : kMillimetre;
   Vector3d target = place_;
   for (int k = 0; k < 3; ++k) {
     const auto at = static_cast<std::size_t>(k);
-    if (!asked.axes[at]) continue;
-    target[k] = unit * *asked.axes[at] + (is_relative_ ? place_[k] : 0.0);
+    if (!block.axes[at]) continue;
+    target[k] = unit * *block.axes[at] + (is_relative_ ? place_[k] : 0.0);
     if (!is_relative_) is_known_[at] = true;
   }
   return target;
 }
 
-Arc NcCorrection::ArcOf(const Asked& asked) const {
+Arc NcCorrection::ArcOf(const Block& block) const {
   const double unit = is_inch_ ? kInch : kMillimetre;
   Arc arc{plane_, motion_ == 2, place_, {}};
   const auto [u, v, w] = AxesOfPlane(plane_);
-  if (asked.centre[static_cast<std::size_t>(w)]) {
+  if (block.centre[static_cast<std::size_t>(w)]) {
     RefuseLine(counts_.lines, fmt::format("{} does not belong to an arc in G{}", "IJK"[w], plane_));
   }
   const bool has_centre =
-      asked.centre[static_cast<std::size_t>(u)] || asked.centre[static_cast<std::size_t>(v)];
-  if (has_centre == asked.radius.has_value()) {
+      block.centre[static_cast<std::size_t>(u)] || block.centre[static_cast<std::size_t>(v)];
+  if (has_centre == block.radius.has_value()) {
     RefuseLine(counts_.lines, "an arc takes either I, J, K or R");
   }
-  if (asked.radius) {
-    arc.radius = unit * *asked.radius;
+  if (block.radius) {
+    arc.radius = unit * *block.radius;
     return arc;
   }
   for (const int k : {u, v}) {
-    const auto& given = asked.centre[static_cast<std::size_t>(k)];
+    const auto& given = block.centre[static_cast<std::size_t>(k)];
     if (centre_is_absolute_ && !given) {
       RefuseLine(counts_.lines, "an arc in G90.1 takes both coordinates of its centre");
     }
@@ -267,7 +267,7 @@ void NcCorrection::MustReach(const Vector3d& wanted) const {
 
 // Ends and extremes are checked before a path is divided: a wrong unit would
 // make a thousand times as many points.
-void NcCorrection::Divide(const Asked& asked, const Vector3d& target) {
+void NcCorrection::Divide(const Block& block, const Vector3d& target) {
   points_.clear();
   if (motion_ == 0) {
     points_.push_back(target);
@@ -275,7 +275,7 @@ void NcCorrection::Divide(const Asked& asked, const Vector3d& target) {
     if (!((target - place_).norm() <= options_.limits.length)) MustReach(target);
     AddLine(place_, target, options_.limits, counts_.lines, points_);
   } else {
-    const Arc arc = ArcOf(asked);
+    const Arc arc = ArcOf(block);
     for (const Vector3d& point : Extremes(place_, target, arc, counts_.lines)) MustReach(point);
     AddArc(place_, target, arc, options_.limits, counts_.lines, points_);
   }
@@ -310,9 +310,9 @@ void NcCorrection::WritePoint(const Vector3d& wanted, std::string& out) {
   ++counts_.corrected;
 }
 
-void NcCorrection::Move(const Asked& asked, std::string& out) {
+void NcCorrection::Move(const Block& block, std::string& out) {
   const bool was_known = is_known_[0] && is_known_[1] && is_known_[2];
-  const Vector3d target = Target(asked);
+  const Vector3d target = Target(block);
   const bool is_known = is_known_[0] && is_known_[1] && is_known_[2];
   if (!is_known || (!was_known && motion_ != 0)) {
     RefuseLine(counts_.lines,
@@ -320,7 +320,7 @@ void NcCorrection::Move(const Asked& asked, std::string& out) {
                "X, Y and Z in G90, or give the start with --start x,y,z");
   }
   Assume();
-  Divide(asked, target);
+  Divide(block, target);
   place_ = target;
   for (const NcWord& word : words_) {
     if (IsOfMove(word) || IsStop(word) || word.text.starts_with(';')) continue;
@@ -361,8 +361,8 @@ void NcCorrection::Take(std::string_view line, std::string& out) {
   if (is_percent && counts_.lines == 1) is_open_ = true;
   const bool is_last = std::any_of(words_.begin(), words_.end(), IsProgramEnd);
   counts_.has_end = counts_.has_end || is_last || (is_percent && counts_.lines > 1);
-  const Asked asked = Understand();
-  if (!asked.is_move) {
+  const Block block = Understand();
+  if (!block.is_move) {
     for (const NcWord& word : words_) {
       if (IsMotionWord(word)) motion_out_ = CodeTimes10(word) / 10;
       if (word.letter == 'G' && CodeTimes10(word) == 800) motion_out_ = -1;
@@ -371,7 +371,7 @@ void NcCorrection::Take(std::string_view line, std::string& out) {
     return;
   }
   try {
-    Move(asked, out);
+    Move(block, out);
   } catch (const InputError& failure) {
     const std::string_view what = failure.what();
     if (what.starts_with("line ")) throw;

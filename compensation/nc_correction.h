@@ -66,21 +66,21 @@ class NcCorrection {
 
  private:
   // The words of a block that are not copied.
-  struct Asked {
+  struct Block {
     std::array<std::optional<double>, 3> axes, centre;  // as written
     std::optional<double> radius;
     bool dwells = false, has_p = false, is_move = false;
   };
 
-  Asked Understand();
-  void TakeG(const NcWord& word, Asked& asked);
-  void RefuseLooseWords(const Asked& asked);
-  Eigen::Vector3d Target(const Asked& asked);
-  Arc ArcOf(const Asked& asked) const;
+  Block Understand();
+  void TakeG(const NcWord& word, Block& block);
+  void RefuseLooseWords(const Block& block);
+  Eigen::Vector3d Target(const Block& block);
+  Arc ArcOf(const Block& block) const;
   void MustReach(const Eigen::Vector3d& wanted) const;
-  void Divide(const Asked& asked, const Eigen::Vector3d& target);
+  void Divide(const Block& block, const Eigen::Vector3d& target);
   void Assume();
-  void Move(const Asked& asked, std::string& out);
+  void Move(const Block& block, std::string& out);
   void WritePoint(const Eigen::Vector3d& wanted, std::string& out);
 
   const Corrector& corrector_;

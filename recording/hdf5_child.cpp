@@ -134,12 +134,12 @@ void Fork(Child& child) {
 }
 
 // Ends the child on every way out of the reading.
-class Ending {
+class ChildGuard {
  public:
-  Ending(pid_t child, int pipe) : child_(child), pipe_(pipe) {}
-  ~Ending() { End(); }
-  Ending(const Ending&) = delete;
-  Ending& operator=(const Ending&) = delete;
+  ChildGuard(pid_t child, int pipe) : child_(child), pipe_(pipe) {}
+  ~ChildGuard() { End(); }
+  ChildGuard(const ChildGuard&) = delete;
+  ChildGuard& operator=(const ChildGuard&) = delete;
 
   // Kills it unless it has ended; returns its exit status.
   int End() {
@@ -228,7 +228,7 @@ void ReadInChild(const std::filesystem::path& path,
   if (pipe2(child.pipe, O_CLOEXEC) != 0) throw InputError(name + ": too many open files");
   Fork(child);
   close(child.pipe[1]);
-  Ending ending(child.id, child.pipe[0]);
+  ChildGuard ending(child.id, child.pipe[0]);
   if (child.id < 0) throw InputError(name + ": no process to read it in; close other programs");
   const auto receive = [&, patience = kSecondsOfClock * static_cast<int>(child.seconds)](
                            void* to, std::size_t count) {
