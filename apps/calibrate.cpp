@@ -120,7 +120,7 @@ class Calibration {
     if (!arguments_.json.empty()) WriteResult(json, arguments_.json);
   }
 
-  // Of poses in a box, before anything is measured.
+  // Plans poses in a box, before anything is measured.
   void WhatIsSeen() {
     const auto simulation = Simulation();
     const Eigen::Vector3d mm(arguments_.volume_mm.data());

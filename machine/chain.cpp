@@ -113,7 +113,7 @@ void Chain::ReadPositive(std::string_view words, std::string_view how) {
   if (read.empty() && workpiece_axes_.empty()) return;
   if (read.empty()) {
     throw InputError(fmt::format(
-        "nothing says which way {} counts, which carries the workpiece; {}: tool, where the "
+        "it is not stated which way {} counts, which carries the workpiece; {}: tool, where the "
         "number rises as the tool goes towards + against the workpiece (ISO 841), or carriage, "
         "where it rises as the workpiece goes towards +",
         workpiece_axes_.front(), how));

@@ -27,7 +27,7 @@
 
 namespace abbe::map {
 
-// What determined an error; beyond the prior it names the best of the runs that saw it.
+// The source of an error: the prior, or the kind of run that determines it best.
 enum class Source { kPrior, kSweep, kLinkage, kReference, kPlate, kLength };
 inline constexpr std::array<std::string_view, 6> kSourceNames = {"prior",     "sweep", "linkage",
                                                                  "reference", "plate", "length"};

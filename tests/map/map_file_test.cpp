@@ -98,7 +98,7 @@ TEST_F(BrokenMap, IsRefusedWithFileLineAndKey) {
   ExpectHas(With("x = [0.0, 0.06]", "x = [0.06, 0.06]"), "first below the last");
   ExpectHas(With("machine =", "colour = 3\nmachine ="), "colour");
   ExpectHas(With("positive = \"carriage carriage tool\"\n", ""),
-            "positive: nothing says which way X counts");
+            "positive: it is not stated which way X counts");
   ExpectHas(With("\"EXX.c0\", ", ""), "covariance.names");
 }
 

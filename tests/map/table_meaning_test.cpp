@@ -229,7 +229,7 @@ TEST(TableMeaning, AsksForTheChainAndTheCount) {
   const auto refused = [&](const char* positive) {
     return MessageOf<InputError>([&] { ReadAnyMap(folder / "f.csv", kColumn, positive); });
   };
-  ExpectHas(refused(""), "nothing says which way X counts");
+  ExpectHas(refused(""), "it is not stated which way X counts");
   ExpectHas(refused(""), "--positive");
   ExpectHas(refused("table"), "\"table\" is not a way to count an axis");
   ExpectHas(refused("tool tool"), "one each for X, Y and Z");
