@@ -25,7 +25,9 @@ nlohmann::ordered_json ComparisonJson(const std::vector<fusion::ComparedModel>& 
 // With the published figures of Boelens (2006) for the rows that he has.
 std::string ComparisonTable(const std::vector<fusion::ComparedModel>& rows);
 
+// The uncertainty left by calibrations of different numbers of poses; `reading_noise` in m.
 std::string EnoughTable(const std::vector<fusion::EnoughRow>& rows, double reading_noise);
+// The uncertainty left by calibrations in different volumes.
 std::string VolumeTable(const std::vector<fusion::VolumeRow>& rows);
 
 }  // namespace abbe::apps

@@ -18,6 +18,7 @@
 
 namespace abbe::apps {
 
+// Adds the option --causes to a command.
 CLI::Option* AddCausesOption(CLI::App& command, std::filesystem::path& path);
 
 // The seats (simulation/causes/cause.h) of the causes that a command corrects.
@@ -74,6 +75,7 @@ class PathCauses {
   std::vector<simulation::ModelledCause> causes_, left_;  // left_: depend on time or a temperature
 };
 
+// Adds the options --causes and --feed-mm-min to a command.
 void AddPathCauses(CLI::App& command, std::filesystem::path& path, double& feed_mm_min);
 
 }  // namespace abbe::apps

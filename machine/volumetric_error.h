@@ -112,6 +112,7 @@ Eigen::Vector3<T> ToolInWork(const Chain& chain, const Eigen::Vector3<T>& positi
   return X_MW.Inverse() * (ToolPose<T>(chain, position, errors) * p_TQ);
 }
 
+// The error of p_WQ, actual - nominal.
 template <typename T>
 Eigen::Vector3<T> VolumetricError(const Chain& chain, const Eigen::Vector3<T>& position,
                                   const Eigen::Vector3<T>& p_TQ, const MotionErrors<T>& errors) {

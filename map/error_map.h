@@ -34,6 +34,7 @@ inline constexpr std::array<std::string_view, 6> kSourceNames = {"prior",     "s
 
 // The 21 errors: 18 motions in the order of error_motion.h, then A0Z, B0Z, C0Y.
 inline constexpr int kErrors = machine::kAxes * machine::kMotions + 3;
+// "EXX" ... "C0Y"; InputError for a number outside 0 ... kErrors - 1.
 std::string ErrorName(int error);
 // The number of an error; -1 for an unknown name.
 int ErrorNamed(std::string_view name);

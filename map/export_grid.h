@@ -33,6 +33,7 @@ GridAxis AxisOfPositions(const std::vector<double>& positions, const std::string
 // The positions of an axis in mm, as in the files.
 std::vector<double> Millimetres(const GridAxis& axis);
 
+// Each writer returns the files written.
 Format::Paths WriteCsvGrid(const ErrorMap& map, const ExportOptions& options,
                            const std::filesystem::path& path);
 Format::Paths WriteJsonGrid(const ErrorMap& map, const ExportOptions& options,
@@ -42,6 +43,8 @@ Format::Paths WriteHdf5Grid(const ErrorMap& map, const ExportOptions& options,
 Format::Paths WriteVtkGrid(const ErrorMap& map, const ExportOptions& options,
                            const std::filesystem::path& path);
 
+// The readers of the same formats: the grid, or its interpolated error for the exporter's
+// comparison.
 GridFile ReadCsvGrid(const std::filesystem::path& file);
 GridFile ReadJsonGrid(const std::filesystem::path& file);
 GridFile ReadHdf5Grid(const std::filesystem::path& file);

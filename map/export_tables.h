@@ -29,6 +29,8 @@
 
 namespace abbe::map {
 
+// For each format: a writer that returns the files written, a reader of the tables, and the error
+// of the tables for the exporter's comparison.
 Format::Paths WriteIsg(const ErrorMap& map, const ExportOptions& options,
                        const std::filesystem::path& path);
 AxisTables ReadIsg(const std::filesystem::path& file);

@@ -52,6 +52,7 @@ struct Export {
   Discrepancy discrepancy;
 };
 
+// Writes the map, reads the files back and compares them with the map.
 Export ExportMap(const ErrorMap& map, const Format& format, const ExportOptions& options,
                  const std::filesystem::path& path);
 

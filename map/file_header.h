@@ -25,8 +25,8 @@ namespace abbe::map {
 
 struct FileHeader {
   std::string machine;
-  std::string chain;     // empty: not stated
-  std::string positive;  // sign of X, Y, Z (chain.h); empty: not stated
+  std::string chain;                               // empty: not stated
+  std::string positive;                            // sign of X, Y, Z (chain.h); empty: not stated
   Eigen::Vector3d tool = Eigen::Vector3d::Zero();  // p_TQ, m
   double temperature = 20.0;                       // degC
   std::string scale = "prior only";
@@ -34,6 +34,7 @@ struct FileHeader {
   friend bool operator==(const FileHeader&, const FileHeader&) = default;
 };
 
+// The header of a map exported for the tool p_TQ.
 FileHeader HeaderOf(const ErrorMap& map, const Eigen::Vector3d& p_TQ);
 // The comment lines of the header; `sign`: the lines "sign = ...".
 std::string HeaderText(const FileHeader& header, std::string_view mark,

@@ -53,6 +53,7 @@ class MapGrid {
   Eigen::Vector3d first_, per_step_;
 };
 
+// The map at `counts` points along X, Y and Z, over the whole travels.
 MapGrid SampleGrid(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
                    const std::array<Eigen::Index, 3>& counts);
 

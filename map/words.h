@@ -17,6 +17,7 @@ std::string_view Trimmed(std::string_view text);
 std::vector<std::string_view> WordsOf(std::string_view text);
 std::vector<std::string_view> PartsOf(std::string_view text, char separator);
 
+// Finite numbers only, with a decimal point.
 double NumberOf(std::string_view word, std::string_view where);
 std::vector<double> NumbersOf(std::string_view text, std::string_view where);
 

@@ -16,11 +16,13 @@
 
 namespace abbe::recording {
 
+// The numbers of the valid rows of this block, and whether there is one.
 std::vector<std::size_t> GoodRows(const Recording& recording);
 bool HasGoodRow(const Recording& recording);
 // Throws the InputError of GoodRows; `rows`: number of rows of the whole recording.
 [[noreturn]] void RefuseNoGoodRow(const Recording& recording, std::size_t rows);
 
+// The values of a column in these rows, in SI units.
 std::vector<double> ValuesOf(const Recording& recording, const std::string& column,
                              const std::vector<std::size_t>& rows);
 

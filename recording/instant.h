@@ -8,6 +8,7 @@ namespace abbe::recording {
 
 // Nothing for a text of another form.
 std::optional<double> SecondsOf(const std::string& instant);
+// The text of an instant, in whole seconds.
 std::string InstantText(double seconds);
 // The current instant.
 std::string UtcNow();

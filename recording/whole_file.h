@@ -25,6 +25,7 @@ struct Overwriting {
   std::vector<std::filesystem::path> inputs;  // of the command
   bool force = false;
 };
+// Not thread-safe: call it before any file is written.
 void SetOverwriting(Overwriting overwriting);
 bool OverwritingIsForced();
 
