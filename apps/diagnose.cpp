@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 struct DiagnoseArguments {
   std::vector<fs::path> recordings;
   fs::path machine, out, json;
-  std::string campaign;  // to plan
+  std::string campaign;  // of the plan
   bool plan = false, quiet = false;
 };
 

@@ -59,7 +59,7 @@ Source SourceOf(recording::Recording recording) {
   return {*shared, [shared](const auto& use) { use(*shared); }, [shared] { return *shared; }};
 }
 
-// Every recording with the simulation of its kind.
+// Reads every recording and simulates it according to its kind.
 class RunReader {
  public:
   explicit RunReader(const MachineFile& file)

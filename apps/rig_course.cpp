@@ -67,7 +67,7 @@ rig::Course FromFile(const CourseRequest& request, double feed) {
 
 double RadiusOf(const CourseRequest& request) { return 0.5 * SizeOf(request, {40.0}).front(); }
 
-// Keys of the recording that a course adds.
+// The header keys that a course adds to its recording.
 std::string KeysOf(const CourseRequest& request) {
   if (request.course != "circle") return "";
   return fmt::format("radius_mm = {:.9g}\n", RadiusOf(request) / settings::kMillimetre);

@@ -100,7 +100,7 @@ VectorXd ToleranceInformation(const MatrixXd& prior, const VectorXd& tolerances)
   return information;
 }
 
-// A positive matrix factored with its diagonal scaled to 1.
+// A positive definite matrix, factored with its diagonal scaled to 1.
 class ScaledInverse {
  public:
   explicit ScaledInverse(const MatrixXd& total)

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kAllFlags = kStale | kOutOfRange | kDeviceError | kInterpolated | kClockJump;
 
-// Each inner list is satisfied by any one of its names.
+// One of the names of each inner list is required.
 using Required = std::vector<std::vector<std::string>>;
 
 struct KindRule {
@@ -93,7 +93,7 @@ const ValueRule* RuleOf(std::string_view name) {
   throw InputError(fmt::format("{}: {}: {}", place, what, message));
 }
 
-// `before`: the time of the row before the first; then that of the last one.
+// `before`: in, the time of the row before the block; out, that of its last row.
 void CheckTime(std::span<const double> time, std::size_t first_row, const Places& places,
                double& before) {
   for (std::size_t i = 0; i < time.size(); ++i) {

@@ -158,7 +158,7 @@ void ReadCsv(const std::filesystem::path& path, std::size_t rows,
   const std::size_t at_most = rows <= kBlockRows ? rows : lines.CountLineEnds();
   for (Column& column : block.columns) column.values.reserve(at_most);
   const RowParser parser(block, places);
-  std::size_t blank = 0, before = 0;  // line; rows of the blocks before
+  std::size_t blank = 0, before = 0;  // a blank line; rows of earlier blocks
   while (const auto line = lines.Next()) {
     if (!lines.complete()) {
       block.warnings.push_back(

@@ -41,7 +41,7 @@ const toml::node* Find(const toml::table* table, std::string_view key) {
   return table == nullptr ? nullptr : table->get(key);
 }
 
-// A whole number is a number, however large.
+// An integer of any size is accepted as a number.
 double AsNumber(const toml::node& node) {
   if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
   return node.as_floating_point()->get();
