@@ -1,4 +1,4 @@
-// abbe calibrate: from recordings of the linkage to its parameters; or the plan of one.
+// abbe calibrate: the parameters of the linkage from its recordings, or the plan of a calibration.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ struct CalibrateArguments {
 };
 
 constexpr std::array<Index, 10> kCounts{6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
-const Eigen::Vector3i kCubePoints(7, 7, 12);  // Boelens (2006), his cube
+const Eigen::Vector3i kCubePoints(7, 7, 12);  // the cube of Boelens (2006)
 constexpr int kPlanPoints = 9;                // along each side of the travel, to choose from
 
 class Calibration {
@@ -121,7 +121,7 @@ class Calibration {
     if (!arguments_.json.empty()) WriteResult(json, arguments_.json);
   }
 
-  // Of poses in a box, before anything is measured.
+  // Plans poses in a box, before anything is measured.
   void WhatIsSeen() {
     const auto simulation = Simulation();
     const Eigen::Vector3d mm(arguments_.volume_mm.data());
@@ -134,7 +134,7 @@ class Calibration {
     Show(SeenTable(seen));
   }
 
-  // The poses of one recording that make the best calibration.
+  // Chooses the poses of one recording that give the best calibration.
   void KeepBest(std::vector<simulation::LinkageRun>& runs) {
     if (runs.size() != 1) {
       throw InputError(fmt::format("--poses chooses from one recording, {} given", runs.size()));

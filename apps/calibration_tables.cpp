@@ -18,7 +18,7 @@ using nlohmann::ordered_json;
 using settings::kMicro;
 constexpr double kMilli = 1e-3;
 constexpr std::size_t kMostOutliers = 10;
-constexpr double kNoticed = 1.5;  // residuals over noise that a person should hear of
+constexpr double kNoticed = 1.5;  // residuals over stated noise: above it the table has a warning
 
 ordered_json Json(const fusion::Distances& distances) {
   return {{"rms_um", distances.rms / kMicro}, {"max_um", distances.max / kMicro}};
@@ -65,7 +65,7 @@ std::string Outliers(const fusion::CalibrationReport& report,
                      const std::vector<simulation::LinkageRun>& runs) {
   if (report.outliers.empty()) return "";
   std::string text =
-      fmt::format("\n{} poses lie far off and hardly count:\n", report.outliers.size());
+      fmt::format("\n{} poses are outliers and have little weight:\n", report.outliers.size());
   for (std::size_t i = 0; i < std::min(kMostOutliers, report.outliers.size()); ++i) {
     const auto& outlier = report.outliers[i];
     text +=
@@ -87,7 +87,7 @@ std::string Published(const std::string& name) {
   return "";
 }
 
-// Micrometres in a column; a dash where there is no number.
+// Micrometres in a column; a dash if there is no number.
 std::string Cell(double metres, int width) {
   const std::string text = std::isfinite(metres) ? fmt::format("{:.3f}", metres / kMicro) : "-";
   return fmt::format("{:>{}}", text, width);
@@ -157,7 +157,7 @@ std::string CalibrationTable(const fusion::CalibrationReport& report,
   if (report.excess > kNoticed) {
     text += fmt::format(
         "\nThe residuals are {:.1f} times the stated noise: the reference or the model is worse "
-        "than [linkage.noise] says, and the uncertainties are too small by about that.\n",
+        "than [linkage.noise], and the uncertainties are too small by about this factor.\n",
         report.excess);
   }
   for (const auto& run : runs) {
@@ -176,7 +176,7 @@ std::string SeenTable(const fusion::Observability& seen) {
       "amplification index {:.3g}.\n",
       seen.rank, seen.parameters, seen.condition, seen.noise_amplification);
   if (seen.unseen.empty()) return text;
-  text += "Not seen (in units of the priors; the share of the prior's deviation that is left):\n";
+  text += "Not seen (in units of the priors; remaining share of the prior standard deviation):\n";
   for (const auto& weak : seen.unseen) {
     text += fmt::format("  {:4.0f} %  {}\n", 100.0 * weak.ratio, weak.words);
   }
@@ -223,14 +223,14 @@ std::string EnoughTable(const std::vector<fusion::EnoughRow>& rows, double readi
       "Uncertainty that the calibration leaves in ball positions (3D rms, um); a reading alone has "
       "{:.3f}.\n{:>8}{:>12}{:>12}\n",
       reading_noise / kMicro, "poses", "chosen", "evenly");
-  bool told = false;
+  bool is_shown = false;
   for (const auto& row : rows) {
-    text += fmt::format("{:>8}{:>12.3f}{:>12.3f}{}\n", row.poses, row.tip_rms / kMicro,
-                        row.even_rms / kMicro,
-                        row.enough && !told ? "  enough: adds less than 10 % to a reading" : "");
-    told = told || row.enough;
+    text += fmt::format(
+        "{:>8}{:>12.3f}{:>12.3f}{}\n", row.poses, row.tip_rms / kMicro, row.even_rms / kMicro,
+        row.enough && !is_shown ? "  enough: adds less than 10 % to a reading" : "");
+    is_shown = is_shown || row.enough;
   }
-  if (!told) text += "None of these is enough; use more poses or a better reference.\n";
+  if (!is_shown) text += "None of these is sufficient; use more poses or a better reference.\n";
   return text;
 }
 

@@ -1,5 +1,5 @@
-// `abbe calibrate`: what it found, as data and as tables for people. SI in the data unless the name
-// says otherwise; tables end in a newline.
+// The result of `abbe calibrate` as data and as tables for people. Data in SI unless the key has a
+// unit; tables end in a newline.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -18,14 +18,16 @@ nlohmann::ordered_json CalibrationJson(const fusion::CalibrationReport& report,
 std::string CalibrationTable(const fusion::CalibrationReport& report,
                              const std::vector<simulation::LinkageRun>& runs);
 
-// How many combinations the data see, and in words which they do not.
+// The number of combinations of parameters that the data determine, and the others in words.
 std::string SeenTable(const fusion::Observability& seen);
 
 nlohmann::ordered_json ComparisonJson(const std::vector<fusion::ComparedModel>& rows);
-// With the figures that Boelens (2006) gives, where he has the row.
+// With the published figures of Boelens (2006) for the rows that he has.
 std::string ComparisonTable(const std::vector<fusion::ComparedModel>& rows);
 
+// The uncertainty left by calibrations of different numbers of poses; `reading_noise` in m.
 std::string EnoughTable(const std::vector<fusion::EnoughRow>& rows, double reading_noise);
+// The uncertainty left by calibrations in different volumes.
 std::string VolumeTable(const std::vector<fusion::VolumeRow>& rows);
 
 }  // namespace abbe::apps

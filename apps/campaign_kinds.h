@@ -1,4 +1,4 @@
-// The campaigns that a user can name.
+// The campaigns of the virtual rig by their names on the command line.
 #pragma once
 
 #include <map>

@@ -44,8 +44,8 @@ nlohmann::ordered_json ChangeJson(const Change& change) {
   return {{"rms", change.rms() / kMicro}, {"largest", change.largest / kMicro}};
 }
 
-// What a correction of recordings can do something about: parameters of the head cannot be taken
-// out of gaps, and those of the machine stay in its map.
+// Whether recordings can be corrected for the cause: parameters of the head cannot be removed from
+// gaps, and those of the machine stay in its map.
 bool Takes(const ModelledCause& cause) {
   return cause.cause->columns || cause.object.kind() == simulation::Object::Kind::kPivot ||
          cause.object.kind() == simulation::Object::Kind::kLink;
@@ -55,8 +55,8 @@ bool Takes(const ModelledCause& cause) {
 
 CLI::Option* AddCausesOption(CLI::App& command, std::filesystem::path& path) {
   return command.add_option("--causes", path,
-                            "Extended model (abbe diagnose -o): its causes are taken out "
-                            "of the recordings first");
+                            "Extended model (abbe diagnose -o): the recordings are corrected "
+                            "for its causes first");
 }
 
 CauseCorrection::CauseCorrection(const std::filesystem::path& path, const MachineFile& file,
@@ -101,7 +101,7 @@ std::string CauseCorrection::Line() const {
 PathCauses::PathCauses(const std::filesystem::path& path, const std::string& machine,
                        double feed_mm_min)
     : feed_(feed_mm_min * settings::UnitOf("_mm_min").si) {
-  constexpr Eigen::Index kAnyLinkage = 9;  // pivots: a map does not know it
+  constexpr Eigen::Index kAnyLinkage = 9;  // pivots: a map has no linkage
   if (path.empty()) return;
   name_ = path.filename().string();
   for (auto& cause : simulation::ReadExtendedModel(path, {machine, true, kAnyLinkage}).causes) {
@@ -118,10 +118,10 @@ std::vector<std::string> PathCauses::Names() const { return NamesOf(causes_); }
 
 std::string PathCauses::Line() const {
   std::string line =
-      fmt::format("beside the map, from {}: {}", name_,
+      fmt::format("in addition to the map, from {}: {}", name_,
                   causes_.empty() ? "nothing" : fmt::format("{}", fmt::join(Names(), ", ")));
   if (!left_.empty()) {
-    line += fmt::format("; left out, for a path has no time and no temperature: {}",
+    line += fmt::format("; left out, because a path has no time and no temperature: {}",
                         fmt::join(NamesOf(left_), ", "));
   }
   return line;
@@ -129,10 +129,10 @@ std::string PathCauses::Line() const {
 
 void AddPathCauses(CLI::App& command, std::filesystem::path& path, double& feed_mm_min) {
   command.add_option("--causes", path,
-                     "Extended model (abbe diagnose -o): what the machine does beside its map");
+                     "Extended model (abbe diagnose -o): errors of the machine that its map lacks");
   command
       .add_option("--feed-mm-min", feed_mm_min,
-                  "With --causes: the feed, for what lags (0: standing at each point)")
+                  "With --causes: the feed, for lag (0: at standstill at each point)")
       ->check(CLI::NonNegativeNumber);
 }
 

@@ -1,5 +1,5 @@
-// The option --causes: an extended model (abbe diagnose -o) whose causes are taken out of
-// the recordings before a command evaluates them.
+// The option --causes: an extended model (abbe diagnose -o) whose causes are corrected in the
+// recordings before a command evaluates them.
 //
 //   CauseCorrection causes(path, file, kForMaps);
 //   const recording::Recording corrected = causes.Take(recording);
@@ -18,6 +18,7 @@
 
 namespace abbe::apps {
 
+// Adds the option --causes to a command.
 CLI::Option* AddCausesOption(CLI::App& command, std::filesystem::path& path);
 
 // Which seats of causes a command takes out.
@@ -39,6 +40,7 @@ class CauseCorrection {
                   const Corrections& taken);
 
   bool Active() const { return !name_.empty(); }
+  // Returns the corrected recording and adds its changes to Line() and Data().
   recording::Recording Take(recording::Recording recording);
 
   const std::vector<simulation::ModelledCause>& taken() const { return taken_; }
@@ -56,14 +58,14 @@ class CauseCorrection {
   simulation::Changes changes_;
 };
 
-// Of the commands that take a map: what it does not hold, along a path.
+// For the commands that use a map: the displacement along a path by causes that are not in the map.
 class PathCauses {
  public:
-  // An empty path: nothing.
+  // An empty path: no displacement.
   PathCauses(const std::filesystem::path& path, const std::string& machine, double feed_mm_min);
 
   bool Active() const { return !name_.empty(); }
-  // m, of the axes; 3 x points.
+  // The displacement of the axes at the points of a path, m; 3 x points.
   Eigen::Matrix3Xd Beside(const Eigen::Matrix3Xd& path) const;
   std::vector<std::string> Names() const;
   std::string Line() const;
@@ -71,9 +73,10 @@ class PathCauses {
  private:
   std::string name_;
   double feed_ = 0.0;                                     // m/s
-  std::vector<simulation::ModelledCause> causes_, left_;  // left: follow time or a temperature
+  std::vector<simulation::ModelledCause> causes_, left_;  // left_: depend on time or a temperature
 };
 
+// Adds the options --causes and --feed-mm-min to a command.
 void AddPathCauses(CLI::App& command, std::filesystem::path& path, double& feed_mm_min);
 
 }  // namespace abbe::apps

@@ -28,7 +28,7 @@ struct CircleCommand {
   bool quiet = false;
 };
 
-constexpr double kSameRadius = 0.01;  // of the radius: lag makes a fast circle smaller
+constexpr double kSameRadius = 0.01;  // of the radius: lag reduces a fast circle
 
 fusion::CauseOptions CausesOf(const CircleCommand& command) {
   fusion::CauseOptions options;
@@ -48,7 +48,7 @@ fusion::CauseOptions CausesOf(const CircleCommand& command) {
 
 using Runs = std::vector<paths::CircleRun>;
 
-// Runs of one instrument, plane and radius together; the linkage first.
+// Groups the runs by instrument, plane and radius; the linkage first.
 std::vector<Runs> Grouped(Runs&& all) {
   std::vector<Runs> groups;
   for (paths::CircleRun& run : all) {
@@ -62,7 +62,7 @@ std::vector<Runs> Grouped(Runs&& all) {
   return groups;
 }
 
-// The runs of one circle, evaluated. `shifted`: of each error of the calibration.
+// Evaluates the runs of one circle. `shifted`: the runs with each error of the calibration.
 Circle Evaluate(Runs runs, const std::vector<const Runs*>& shifted, const MeasuredPaths& paths,
                 const CircleCommand& command) {
   Circle circle{std::move(runs), {}, {}, {}, command.filter};
@@ -108,22 +108,22 @@ std::vector<Circle> Circles(const MeasuredPaths& paths, const CircleCommand& com
   return circles;
 }
 
-// Those of the paths, and why figures are missing.
+// The notes of the paths, and the reasons for missing figures.
 std::vector<std::string> NotesOf(const MeasuredPaths& paths, const std::vector<Circle>& circles) {
   std::vector<std::string> notes = paths.notes;
   for (const Circle& circle : circles) {
     const paths::CircleRun& run = circle.runs.front();
     if (run.is_programmed) continue;
     notes.push_back(fmt::format(
-        "{}: does not say the programmed radius, so there are no F max, F min and D of ISO 230-4: "
-        "the circle of its x_mm, y_mm, z_mm ({:.6g} mm) may be that of scales, which lag makes "
-        "smaller; write radius_mm into its header, or give --radius",
+        "{}: does not state the programmed radius, so there are no F max, F min and D of ISO "
+        "230-4: the circle of its x_mm, y_mm, z_mm ({:.6g} mm) may be that of scales, which lag "
+        "reduces; write radius_mm into its header, or give --radius",
         run.recordings.front(), run.radius / settings::kMillimetre));
   }
   return notes;
 }
 
-// The figures of the first run stand at the top too, for scripts.
+// The figures of the first run are at the top level too, for scripts.
 nlohmann::ordered_json Result(const MeasuredPaths& paths, const std::vector<Circle>& circles,
                               const std::vector<std::string>& notes) {
   nlohmann::ordered_json result = ResultHead("circle", paths);
@@ -140,7 +140,7 @@ nlohmann::ordered_json Result(const MeasuredPaths& paths, const std::vector<Circ
   return result;
 }
 
-// Whether a circle is worse than --limit: G(b), or G where one sense was measured.
+// Whether a circle is beyond --limit: G(b), or G if only one sense was measured.
 bool BeyondLimit(const std::vector<Circle>& circles, double limit) {
   return std::ranges::any_of(circles, [limit](const Circle& circle) {
     return std::ranges::any_of(circle.figures, [limit](const paths::CircleFigures& figures) {
@@ -180,18 +180,18 @@ void AddCircle(CLI::App& program, int& exit_code) {
       "circle", "Circular test: ISO 230-4 figures and their causes, by linkage and reference");
   AddPathSources(*command, options->sources);
   command->add_option("--plane", options->plane,
-                      "Two axes, the first turning towards the second: XY, YZ, ZX (default: where "
-                      "the commanded path lies)");
+                      "Two axes, the first turning towards the second: XY, YZ, ZX (default: the "
+                      "plane of the commanded path)");
   command
       ->add_option("--radius", options->radius_mm,
                    "Programmed radius, mm (default: radius_mm of the header)")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--filter", options->filter,
-                   "Cutoff of the Gaussian filter of the figures, undulations a turn")
+                   "Cutoff of the Gaussian filter of the figures, undulations per turn")
       ->check(CLI::PositiveNumber);
   command->add_option("--pitch", options->pitches,
-                      "Axis and pitch in mm of cyclic errors to look for: --pitch X=5");
+                      "Axis and pitch in mm of cyclic errors to fit: --pitch X=5");
   command->add_option("--spike", options->spike_deg, "Width of reversal spikes, degrees")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

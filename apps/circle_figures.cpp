@@ -12,11 +12,11 @@ using paths::CircleRun;
 
 namespace {
 
-constexpr std::uint64_t kCopies = 12;    // of the noise: what it does is known to 20 %
-const double kDoubles = std::sqrt(3.0);  // noise of this size added to 1 makes 2
+constexpr std::uint64_t kCopies = 12;    // of the noise: its effect is estimated to 20 %
+const double kDoubles = std::sqrt(3.0);  // noise of this size added to 1 gives 2, in squares
 
-// Figures of the standard need the programmed radius; without it there are others of their own
-// names, about the circle of the recorded positions.
+// Figures of the standard need the programmed radius; without it others, with names of their own,
+// use the circle of the recorded positions.
 Figure Programmed(const CircleFigures& figures, const Figure& value) {
   return figures.is_programmed ? value : Figure();
 }
@@ -49,11 +49,11 @@ const std::array<CircleFigure, 17> kCircleFigures{{
      [](const CircleFigures& f) { return Programmed(f, f.iso.F_min_ls); }},
     {"D_um", "D mean bidirectional radial deviation",
      [](const CircleFigures& f) { return Programmed(f, f.iso.D); }},
-    {"largest_beyond_recorded_um", "largest radius less the recorded one",
+    {"largest_beyond_recorded_um", "largest radius minus the recorded one",
      [](const CircleFigures& f) { return Recorded(f, f.iso.F_max); }},
-    {"smallest_beyond_recorded_um", "smallest radius less the recorded one",
+    {"smallest_beyond_recorded_um", "smallest radius minus the recorded one",
      [](const CircleFigures& f) { return Recorded(f, f.iso.F_min); }},
-    {"mean_beyond_recorded_um", "mean radius less the recorded one",
+    {"mean_beyond_recorded_um", "mean radius minus the recorded one",
      [](const CircleFigures& f) { return Recorded(f, f.iso.D); }},
     {"rms_ccw_um", "harmonics left out (ccw), rms",
      [](const CircleFigures& f) { return f.ccw ? Figure(f.ccw->rms) : Figure(); }},
@@ -86,7 +86,7 @@ FigureUncertainties UncertaintiesOf(const CircleRun& run,
   }
   FigureUncertainties u;
   for (std::size_t i = 0; i < u.size(); ++i) {
-    if (std::string_view(kCircleFigures[i].key).starts_with("rms")) continue;  // is noise itself
+    if (std::string_view(kCircleFigures[i].key).starts_with("rms")) continue;  // noise itself
     u[i] = {std::sqrt(squares[i].calibration), std::sqrt(squares[i].noise)};
   }
   return u;

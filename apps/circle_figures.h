@@ -1,13 +1,13 @@
-// The figures of a circle by name, and how well each is known.
+// The figures of a circle by name, with their standard uncertainties.
 //
 //   const FigureUncertainties u = UncertaintiesOf(run, shifted, figures, options);
 //   u[i].calibration, u[i].noise        // of kCircleFigures[i], standard uncertainties, m
 //
-// `calibration` comes from what the calibration of the linkage leaves open: `shifted` holds the run
-// as it would be with each independent error of it, and the squares of what they change add up.
-// `noise` is what twice the reading noise would change (paths/circle_noise.h), so it holds the
-// scatter of a figure and by how much noise makes it too large. Lack of fit of the linkage's model
-// is not in it. Units: m. Failure: that of paths::EvaluateCircle.
+// `calibration` is the uncertainty from the calibration of the linkage: `shifted` holds the run
+// with each independent error of the calibration, and their changes of a figure add up in squares.
+// `noise` is the rms change of a figure when the reading noise is doubled (paths/circle_noise.h):
+// it contains the scatter of the figure and its bias by noise. Lack of fit of the linkage model is
+// not included. Units: m. Failure: that of paths::EvaluateCircle.
 #pragma once
 
 #include <array>

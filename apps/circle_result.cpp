@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "estimation/parameter.h"
 #include "settings/unit.h"
 #include "standards/circle.h"
 #include "standards/coverage.h"
@@ -23,7 +24,7 @@ using paths::CirclePoint;
 using paths::CircleRun;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr int kProfilePoints = 360;  // of the profile in the result, one a degree
+constexpr int kProfilePoints = 360;  // of the profile in the result, one per degree
 
 double Um(double metres) { return metres / settings::kMicrometre; }
 double Mm(double metres) { return metres / settings::kMillimetre; }
@@ -41,8 +42,8 @@ ordered_json HarmonicData(const std::optional<standards::HarmonicFit>& fit) {
   return list;
 }
 
-// Means over a degree each, about `centre`: radius minus nominal, what the causes explain of it,
-// and the third coordinate.
+// Means over one degree each, about `centre`: radius minus nominal, its part that the
+// causes explain, and the third coordinate.
 ordered_json Profile(const CircleRun& run, int sense, const standards::Circle& centre,
                      const std::vector<double>* residuals) {
   std::vector<double> radial(kProfilePoints), explained(kProfilePoints), axial(kProfilePoints),
@@ -115,12 +116,7 @@ ordered_json RunData(const CircleRun& run, const CircleFigures& figures,
   return data;
 }
 
-struct Shown {
-  const char* unit;
-  double si;
-};
-
-Shown ShownUnit(const std::string& unit) {
+estimation::PrintUnit DisplayUnit(const std::string& unit) {
   if (unit == "m") return {"um", 1e-6};
   if (unit == "rad") return {"urad", 1e-6};
   if (unit == "s") return {"us", 1e-6};
@@ -132,22 +128,21 @@ std::string CauseTable(const fusion::CircleCauses& causes) {
   std::string text = fmt::format("  {:<28}{:>12}{:>10}{:>7}{:>16}\n", "cause", "value", "U95",
                                  "unit", "on the radius");
   for (const fusion::CauseEstimate& one : causes.causes) {
-    const Shown shown = ShownUnit(one.unit);
+    const estimation::PrintUnit shown = DisplayUnit(one.unit);
     const std::string name = one.cause + " " + one.object;
     if (!one.seen) {
       text += fmt::format("  {:<28}{:>12}{:>10.2f}{:>7}{:>16}\n", name, "not seen",
-                          standards::kCoverage * one.u / shown.si, shown.unit, "-");
+                          standards::kCoverage * one.u / shown.si, shown.name, "-");
       continue;
     }
     text +=
         fmt::format("  {:<28}{:>12.2f}{:>10.2f}{:>7}{:>13.2f} um{}\n", name, one.value / shown.si,
-                    standards::kCoverage * one.u / shown.si, shown.unit, Um(one.effect),
+                    standards::kCoverage * one.u / shown.si, shown.name, Um(one.effect),
                     std::abs(one.value) > standards::kCoverage * one.u ? " *" : "");
   }
   text += fmt::format(
-      "  rms of the radius {:.2f} um, smooth errors of no cause {:.2f} um, unexplained {:.2f} um; "
-      "* "
-      "beyond its U95\n",
+      "  rms of the radius {:.2f} um, smooth errors without a cause {:.2f} um, unexplained {:.2f} "
+      "um; * beyond its U95\n",
       Um(causes.rms_before), Um(causes.rms_smooth), Um(causes.rms_after));
   return text;
 }

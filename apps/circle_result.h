@@ -1,6 +1,4 @@
-// `abbe circle`: what the evaluation of circles found, as data and as a table.
-//
-// The keys of the data are listed in docs/circle.md.
+// The result of `abbe circle` as data and as a table. docs/circle.md lists the keys of the data.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,14 +11,14 @@
 
 namespace abbe::apps {
 
-// All runs of one instrument, plane and radius: one feed each, and the causes of all together.
+// All runs of one instrument, plane and radius, one feed each, and their causes by one joint fit.
 struct Circle {
   std::vector<paths::CircleRun> runs;
-  // Of each run.
+  // One for each run:
   std::vector<paths::CircleFigures> figures;
   std::vector<FigureUncertainties> uncertainties;
   std::optional<fusion::CircleCauses> causes;
-  double cutoff = 0.0;  // of the filter of the figures; 0: none
+  double cutoff = 0.0;  // of the filter, undulations per turn; 0: none
 };
 
 nlohmann::ordered_json CircleJson(const Circle& circle);

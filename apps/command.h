@@ -1,6 +1,6 @@
-// How a subcommand joins the program: one file apps/NAME.cpp that defines AddNAME, one declaration
-// and one line of the table here. AddNAME adds the subcommand with its options and an example in
-// its footer, and gives it a callback that parses, calls the library, prints and sets the exit
+// The interface of a subcommand: one file apps/NAME.cpp that defines AddNAME, one declaration and
+// one line of the table in commands.h. AddNAME adds the subcommand with its options and an example
+// in its footer, and gives it a callback that parses, calls the library, prints and sets the exit
 // code; failures are thrown and mapped to exit codes in main.cpp.
 //
 //   void AddConvert(CLI::App& program, int& exit_code) {
@@ -16,8 +16,7 @@
 
 namespace abbe::apps {
 
-// 0 done; 1 done, but a requirement that the user set is not met; 2 bad input; 3 device; 4
-// numerics.
+// Exit codes: done; done, but a requirement of the user is not met; bad input; device; numerics.
 inline constexpr int kDone = 0;
 inline constexpr int kRequirementNotMet = 1;
 inline constexpr int kBadInput = 2;

@@ -1,4 +1,4 @@
-// abbe convert: a recording from one form of file to another, and files of others into recordings.
+// abbe convert: recordings between the two file forms, and import of files of other programs.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -36,7 +36,7 @@ struct ConvertOptions {
 
 bool IsLog(const std::filesystem::path& path) { return path.extension() == ".log"; }
 
-// The encoders that a log of CAN traffic is about.
+// The encoders of a log of CAN traffic.
 const hal::CanopenSettings& EncodersOf(const MachineFile& file, const std::string& device) {
   const auto& all = file.devices.canopen;
   if (device.empty() && all.size() == 1) return all.front();
@@ -46,16 +46,15 @@ const hal::CanopenSettings& EncodersOf(const MachineFile& file, const std::strin
   throw InputError(fmt::format(
       "{}: {}", file.document.name(),
       all.empty() ? "has no device with transport = \"canopen\"; describe the encoders of the log"
-      : device.empty() ? "has several devices on CAN; say with --device which the log is about"
+      : device.empty() ? "has several devices on CAN; choose that of the log with --device"
                        : fmt::format("has no device \"{}\" on CAN; correct --device", device)));
 }
 
 MachineFile MachineOf(const ConvertOptions& options) {
   if (!options.machine.empty()) return ReadMachineFile(options.machine);
-  throw InputError(
-      options.from.string() +
-      ": a log of CAN traffic does not say what its counts mean; give the machine file "
-      "with --machine");
+  throw InputError(options.from.string() +
+                   ": a log of CAN traffic has counts without units; give the machine file "
+                   "with --machine");
 }
 
 std::pair<std::string, std::string> SplitAt(const std::string& option, const std::string& text,
@@ -114,7 +113,7 @@ int Convert(const ConvertOptions& options) {
   if (std::filesystem::is_regular_file(options.to) && !recording::OverwritingIsForced()) {
     throw InputError(
         fmt::format("{}: exists already, and nothing recorded is overwritten; choose another name, "
-                    "or say --force",
+                    "or add --force",
                     options.to.string()));
   }
   const recording::Recording recording = ReadAny(options);
@@ -141,11 +140,11 @@ void AddConvert(CLI::App& program, int& exit_code) {
   command->add_option("to", options->to, "The new recording (.csv, .h5, .hdf5), or log (.log)")
       ->required();
   command->add_option("--machine", options->machine, "Logs: the machine file with the encoders");
-  command->add_option("--device", options->device, "Logs: the device, where several are on CAN");
+  command->add_option("--device", options->device, "Logs: the device, if there are several on CAN");
   command
       ->add_option("--column", options->columns,
                    "Logs of a monitor, tables in CSV: NAME=CHANNEL, the name with its unit; may be "
-                   "repeated. Of a table also a sum, deg=counts*0.00549+3 or z_mm=a+b")
+                   "repeated. For a table also a sum, deg=counts*0.00549+3 or z_mm=a+b")
       ->allow_extra_args(false);
   command
       ->add_option("--columns", options->names,
@@ -153,17 +152,19 @@ void AddConvert(CLI::App& program, int& exit_code) {
                    "between; - leaves one out")
       ->delimiter(',');
   command
-      ->add_option("--sensor-deg", options->sensor_degrees,
-                   "Logs of a monitor at a turning shaft: where gap_1, gap_2, ... stand round it, "
-                   "with commas between")
+      ->add_option(
+          "--sensor-deg", options->sensor_degrees,
+          "Logs of a monitor at a turning shaft: the angles of gap_1, gap_2, ... round it, "
+          "with commas between")
       ->delimiter(',');
   command
       ->add_option("--where", options->where,
-                   "Tables in CSV: COLUMN=VALUE, the rows that say so; may be repeated")
+                   "Tables in CSV: COLUMN=VALUE, only rows with this value; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--kind", options->kind, "Tables in CSV: the kind of the recording (linkage)")
       ->default_val("linkage");
-  command->add_option("--axis", options->import.axis, "The axis of a table that does not say (X)")
+  command
+      ->add_option("--axis", options->import.axis, "The axis of a table that does not name it (X)")
       ->check(CLI::IsMember({"X", "Y", "Z"}));
   command
       ->add_option("--probing-um", options->import.u_probing_um,

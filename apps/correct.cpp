@@ -1,4 +1,4 @@
-// abbe correct: measured coordinates, or an NC program, corrected by an error map.
+// abbe correct: correction of measured coordinates or an NC program by an error map.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -37,7 +37,7 @@ struct CorrectCommand {
   bool quiet = false;
 };
 
-// How far a line of commands may stray from the corrected line where its length is not given.
+// Largest deviation of a line of commands from the corrected line, if its length is not given.
 constexpr double kLineTolerance = 0.1e-6;
 constexpr std::size_t kBuffer = 1 << 20;
 constexpr std::size_t kLongestLine = 1 << 16;
@@ -83,8 +83,8 @@ void CorrectCsv(const CorrectCommand& options, const map::ErrorMap& map,
   if (causes.Active()) fmt::print("{}\n", causes.Line());
 }
 
-// The lines of a program, one after the other. InputError for what cannot be read to its end and
-// for what is empty: what is left of a program is no program.
+// Reads a program line by line. InputError if it cannot be read to its end or is empty: part of a
+// program must not be corrected.
 class ProgramLines {
  public:
   explicit ProgramLines(const std::filesystem::path& path)
@@ -120,7 +120,7 @@ class ProgramLines {
   std::size_t lines_ = 0;
 };
 
-// `step` of the correction, with the file in its failures.
+// Runs a step of the correction and adds the file to its failures.
 template <typename Step>
 void InFile(const CorrectCommand& options, Step step) {
   try {
@@ -154,14 +154,16 @@ std::vector<std::string> AssumedIn(const compensation::NcCounts& counts) {
   return assumed;
 }
 
-// A control may be set otherwise than assumed when it starts the program.
+// The control may be in other modes than assumed when it starts the program.
 void Warn(const CorrectCommand& options, const compensation::NcCounts& counts) {
   if (!counts.assumed.empty()) {
-    fmt::print(stderr, "abbe: {}: assumed, for it does not say: {}; write it into the program\n",
-               options.from.string(), fmt::join(AssumedIn(counts), ", "));
+    fmt::print(
+        stderr,
+        "abbe: {}: assumed, because it does not state them: {}; write them into the program\n",
+        options.from.string(), fmt::join(AssumedIn(counts), ", "));
   }
   if (!counts.has_end) {
-    fmt::print(stderr, "abbe: {}: ends with neither M2, M30 nor %; is it whole?\n",
+    fmt::print(stderr, "abbe: {}: ends with neither M2, M30 nor %; is it complete?\n",
                options.from.string());
   }
 }
@@ -232,7 +234,7 @@ void AddCorrect(CLI::App& program, int& exit_code) {
       ->expected(3);
   command
       ->add_option("--start", options->start_mm,
-                   "Programs: where the machine stands at the start, x,y,z in mm of the program")
+                   "Programs: position of the machine at the start, x,y,z in mm of the program")
       ->delimiter(',')
       ->expected(3);
   command
@@ -244,7 +246,7 @@ void AddCorrect(CLI::App& program, int& exit_code) {
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--length-mm", options->length_mm,
-                   "Longest line (so that it strays from the map by at most 0.1 um)")
+                   "Longest line (default: for a deviation of at most 0.1 um from the map)")
       ->check(CLI::PositiveNumber);
   command->add_option("--json", options->json, "What was corrected, as data");
   command->add_flag("--quiet", options->quiet, "Print nothing but warnings");

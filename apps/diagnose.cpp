@@ -1,4 +1,4 @@
-// abbe diagnose: what the simulation gets wrong, and why.
+// abbe diagnose: finds the causes of the residuals of a simulation.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 struct DiagnoseArguments {
   std::vector<fs::path> recordings;
   fs::path machine, out, json;
-  std::string campaign;  // to plan
+  std::string campaign;  // of the plan
   bool plan = false, quiet = false;
 };
 
@@ -67,8 +67,8 @@ diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
     return diagnosis::HoldOut(campaign, recordings, causes);
   } catch (const NumericalError& error) {
     fmt::print(stderr,
-               "abbe: the gain on data held out is not known, half of the runs are not "
-               "enough for a fit: {}\n",
+               "abbe: the gain on held-out data is unknown, because half of the runs do not "
+               "suffice for a fit: {}\n",
                error.what());
     return {};
   }
@@ -114,18 +114,18 @@ int Diagnose(const DiagnoseArguments& arguments) {
 void AddDiagnose(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<DiagnoseArguments>();
   CLI::App* command = program.add_subcommand(
-      "diagnose", "What the simulation of the runs gets wrong, and which cause explains it");
+      "diagnose", "Finds the causes of what the simulation of the runs does not explain");
   command->add_option("recordings", arguments->recordings,
                       "Recordings of one machine: sweep, dwell, gap-steps, linkage, reference, "
                       "length, plate, shaft");
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   auto* out = command->add_option(
       "-o,--out", arguments->out,
-      "Extended model (TOML) with what was found, for --causes of other commands");
+      "Extended model (TOML) with the causes found, for --causes of other commands");
   command->add_option("--json", arguments->json, "File for the result as data");
   auto* plan = command->add_flag("--plan", arguments->plan,
-                                 "Before measuring: which causes runs on the paths of these "
-                                 "recordings would show, from which size on");
+                                 "Before measuring: the causes that runs on the paths of these "
+                                 "recordings would show, and from which size on");
   command
       ->add_option(
           "--campaign", arguments->campaign,

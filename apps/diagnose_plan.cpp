@@ -17,7 +17,7 @@
 namespace abbe::apps {
 namespace {
 
-constexpr std::uint64_t kSeed = 1, kStream = 0x91A7;  // of the machine that is drawn
+constexpr std::uint64_t kSeed = 1, kStream = 0x91A7;  // of the drawn machine
 
 std::vector<recording::Recording> PathsOf(const PlanArguments& arguments, const MachineFile& file) {
   std::vector<recording::Recording> paths;

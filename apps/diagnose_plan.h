@@ -1,4 +1,4 @@
-// `abbe diagnose --plan`: which causes runs would show before they are made.
+// `abbe diagnose --plan`: the causes that planned runs would show.
 #pragma once
 
 #include <filesystem>
@@ -8,13 +8,13 @@
 namespace abbe::apps {
 
 struct PlanArguments {
-  std::vector<std::filesystem::path> recordings;  // their paths count, not their readings
-  std::string campaign;                           // of the rig; empty: none
+  std::vector<std::filesystem::path> recordings;  // their paths are used, not their readings
+  std::string campaign;                           // of the virtual rig; empty: none
   std::filesystem::path machine, json;
   bool quiet = false;
 };
 
-// The exit code. InputError when there is nothing to plan with.
+// Returns the exit code. InputError without recordings and campaign.
 int DiagnosePlan(const PlanArguments& arguments);
 
 }  // namespace abbe::apps

@@ -27,24 +27,24 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kEvidenceShown = 8;
 
-struct Told {
+struct NamedValue {
   std::string name;
   double value, u95;
 };
 
 // The parameters of a finding in their own units.
-std::vector<Told> ParametersOf(const Score& score) {
+std::vector<NamedValue> ParametersOf(const Score& score) {
   const simulation::ModelledCause found = diagnosis::FoundCause(score);
-  std::vector<Told> told;
+  std::vector<NamedValue> values;
   for (std::size_t i = 0; i < found.cause->keys.size(); ++i) {
     const auto& key = found.cause->keys[i];
     const auto at = static_cast<Index>(i);
-    told.push_back({key.name, found.values[at] / key.unit, found.u95[at] / key.unit});
+    values.push_back({key.name, found.values[at] / key.unit, found.u95[at] / key.unit});
   }
-  return told;
+  return values;
 }
 
-// What a finding is worth; none of what was found row by row, and where nothing was held out.
+// The gain by a finding; none for findings in single rows, or if nothing was held out.
 std::optional<HeldOutGain::Without> WorthOf(std::size_t finding, const Diagnosis& diagnosis,
                                             const HeldOutGain& gain) {
   const auto is_modelled = [](const Finding& each) { return diagnosis::IsModelled(each); };
@@ -63,7 +63,7 @@ ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const He
                     {"object", object.part()},
                     {"probability", finding.probability},
                     {"log_evidence", finding.score.log_evidence}};
-  for (const Told& each : ParametersOf(finding.score)) {
+  for (const NamedValue& each : ParametersOf(finding.score)) {
     ordered_json parameter = KeyJson(each.name);
     parameter.update({{"value", each.value}, {"u95", each.u95}});
     json["parameters"].push_back(parameter);
@@ -107,7 +107,7 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
   const Finding& finding = diagnosis.findings[which];
   std::string text = fmt::format("\n{}, probability {:.3f}\n", NameOf(finding.score.candidate),
                                  finding.probability);
-  for (const Told& each : ParametersOf(finding.score)) {
+  for (const NamedValue& each : ParametersOf(finding.score)) {
     text += fmt::format("  {:<28}{:>12.4g} +- {:.2g}\n", each.name, each.value, each.u95);
   }
   const auto& words = finding.score.candidate.cause->words;
@@ -116,8 +116,8 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
                   words.what, words.shows, words.check, words.remedy);
   if (const auto without = WorthOf(which, diagnosis, gain)) {
     text += fmt::format(
-        "  gain         rms {:.3f} of the stated noise without it, {:.3f} with it; in rows held "
-        "out {:.3f} and {:.3f}\n",
+        "  gain         rms {:.3f} of the stated noise without it, {:.3f} with it; in held-out "
+        "rows {:.3f} and {:.3f}\n",
         without->seen, gain.seen, without->held, gain.after);
   }
   for (const auto& rival : finding.rivals) {
@@ -125,15 +125,15 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
         fmt::format("  or {}, probability {:.3f}\n", NameOf(rival.candidate), rival.probability);
   }
   if (finding.next_run) {
-    text += fmt::format("  to tell them apart: {}; the right one is then expected at {:.3f}\n",
+    text += fmt::format("  to separate them: {}; expected probability of the right one {:.3f}\n",
                         finding.next_run->text, finding.next_run->expected_probability);
   } else if (!finding.rivals.empty()) {
-    text += "  no run that abbe knows of would tell them apart\n";
+    text += "  no run known to abbe would separate them\n";
   }
   return text;
 }
 
-// Of a line at a shaft, by which form, bearing, teeth and shaking can be told apart.
+// The period of a spectral line at a shaft, which separates form, bearing, teeth and vibration.
 std::string PeriodText(const Leftover& leftover) {
   if (leftover.period == 0.0 || !leftover.object.starts_with("sensor_")) return "";
   if (leftover.variable != "shaft") return fmt::format(", every {:.3g} s,", leftover.period);
@@ -143,11 +143,11 @@ std::string PeriodText(const Leftover& leftover) {
 bool IsOfAnInterval(const Leftover& leftover) { return leftover.to > leftover.from; }
 
 std::string WhatItDoes(const Leftover& leftover) {
-  if (leftover.variable == diagnosis::kScatter) return "scatters beyond what is stated";
-  if (leftover.variable == diagnosis::kMemory) return "goes on from one reading to the next";
+  if (leftover.variable == diagnosis::kScatter) return "scatters beyond its stated noise";
+  if (leftover.variable == diagnosis::kMemory) return "is correlated from one reading to the next";
   if (IsOfAnInterval(leftover)) {
     const auto unit = diagnosis::UnitOf(leftover.variable);
-    return fmt::format("stands apart where {} is {:.4g} to {:.4g} {},", leftover.variable,
+    return fmt::format("is offset where {} is {:.4g} to {:.4g} {},", leftover.variable,
                        leftover.from / unit.si, leftover.to / unit.si, unit.name);
   }
   return fmt::format("varies with {}{}", leftover.variable, PeriodText(leftover));
@@ -237,14 +237,14 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const HeldOutGain& gain) 
 
 std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
   std::string text =
-      fmt::format("verdict: {}\nchi-square per row {:.3f}, with what was found {:.3f}\n",
+      fmt::format("verdict: {}\nchi-square per row {:.3f}, with the causes found {:.3f}\n",
                   Name(diagnosis.verdict), diagnosis.chi_before, diagnosis.chi_after);
   for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
     text += FindingText(i, diagnosis, gain);
   }
   if (gain.rows > 0) {
     text += fmt::format(
-        "\nheld out: {} rows, rms {:.3f} of the stated noise without what was found, {:.3f} with "
+        "\nheld out: {} rows, rms {:.3f} of the stated noise without the causes found, {:.3f} with "
         "it\n",
         gain.rows, gain.before, gain.after);
   }
@@ -258,7 +258,7 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
   }
   for (const Leftover& leftover : diagnosis.leftovers) {
     text +=
-        fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause does that\n",
+        fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause explains it\n",
                     leftover.object, WhatItDoes(leftover), leftover.amplitude / leftover.unit.si,
                     leftover.unit.name, leftover.p_value);
   }

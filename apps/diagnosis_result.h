@@ -1,4 +1,4 @@
-// `abbe diagnose`: what it found, as data (docs/diagnose.md) and in words.
+// The result of `abbe diagnose` as data (docs/diagnose.md) and as text.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,8 +11,7 @@ namespace abbe::apps {
 
 // "thermal-growth:X (temp_table_c)".
 std::string NameOf(const diagnosis::Candidate& candidate);
-// Of a cause's key: its name, the quantity and the unit that it says: "time_constant_s", "time
-// constant", "s".
+// A key of a cause as name, quantity and unit: "time_constant_s", "time constant", "s".
 nlohmann::ordered_json KeyJson(const std::string& name);
 
 nlohmann::ordered_json DiagnosisJson(const diagnosis::Diagnosis& diagnosis,

@@ -1,4 +1,5 @@
-// abbe export: an error map in the formats of others, with what each cannot carry.
+// abbe export: an error map in the formats of other programs, and what each format cannot
+// represent.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -56,8 +57,8 @@ int RunExport(const ExportCommand& options) {
   for (const char axis : {'X', 'Y', 'Z'}) {
     if (map.model().chain().Text().find(axis) != std::string::npos) continue;
     throw InputError(
-        fmt::format("{}: the machine has no axis {}; formats of others hold a volume, "
-                    "of X, Y and Z",
+        fmt::format("{}: the machine has no axis {}; the formats need a volume of X, Y "
+                    "and Z",
                     options.map.path.string(), axis));
   }
   std::filesystem::path out = options.out;

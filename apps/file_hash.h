@@ -1,4 +1,4 @@
-// The SHA-256 of a file: by it data is known again, whatever it is called.
+// The SHA-256 of a file, which identifies data independently of the file name.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// abbe fuse: from all recordings of a machine to one error map.
+// abbe fuse: one error map from all recordings of a machine.
 #include <fmt/format.h>
 
 #include <array>
@@ -58,7 +58,7 @@ struct MapChange {
   double rms, largest;  // m
 };
 
-// Over a grid of the volume.
+// Rms and largest change over a grid of the volume.
 MapChange ChangeOf(const map::ErrorMap& before, const map::ErrorMap& after) {
   const Eigen::Vector3d& tool = after.origin().tool;
   const std::array<Eigen::Index, 3> points{11, 11, 11};
@@ -81,7 +81,7 @@ std::optional<fusion::FuseReport> FuseIfItFits(const simulation::Instruments& in
   }
 }
 
-// What the machine does beside its map, one line each.
+// The causes that the map does not contain, one line each.
 std::string NotInMap(const std::vector<simulation::ModelledCause>& causes) {
   std::string text;
   for (const auto& cause : causes) {
@@ -97,7 +97,7 @@ std::string NotInMap(const std::vector<simulation::ModelledCause>& causes) {
   return text;
 }
 
-// Rows that come twice would count twice.
+// A recording given twice would count twice.
 void RefuseTwice(const std::vector<fs::path>& recordings) {
   std::set<fs::path> seen;
   for (const fs::path& path : recordings) {
@@ -133,9 +133,8 @@ int Fuse(const FuseArguments& arguments) {
     if (const auto without = FuseIfItFits(instruments, sources, !arguments.fixed_smoothness)) {
       const MapChange change = ChangeOf(without->map, report.map);
       json["map_change_um"] = {{"rms", 1e6 * change.rms}, {"largest", 1e6 * change.largest}};
-      text +=
-          fmt::format("the map is another than without them by {:.2f} um rms, {:.2f} um at most\n",
-                      1e6 * change.rms, 1e6 * change.largest);
+      text += fmt::format("without them the map would differ by {:.2f} um rms, {:.2f} um at most\n",
+                          1e6 * change.rms, 1e6 * change.largest);
     } else {
       text += "without them no map fits the recordings\n";
     }

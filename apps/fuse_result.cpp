@@ -26,7 +26,7 @@ std::string ScaleText(const fusion::ScaleSeen& scale) {
       scale.calibrated ? "calibrated" : "PRIOR ONLY; give a run of kind length");
 }
 
-// What nothing measured, loudly.
+// The error functions that no run determines.
 std::vector<std::string> PriorOnly(const fusion::FuseReport& report) {
   std::vector<std::string> names;
   for (const auto& function : report.functions) {
@@ -35,7 +35,7 @@ std::vector<std::string> PriorOnly(const fusion::FuseReport& report) {
   return names;
 }
 
-// Runs whose rows are nowhere near what the simulation makes of the machine file.
+// Runs with residuals far beyond their stated noise.
 std::vector<std::string> Misfits(const fusion::FuseReport& report) {
   std::vector<std::string> names;
   for (const auto& source : report.fit.sources) {
@@ -54,7 +54,7 @@ std::string RunTable(const fusion::FuseReport& report,
     text += fmt::format(
         "{:<32}{:<11}{:>7}{:>13.3f}{:>22}\n", source.name, runs[i].kind, source.rows,
         source.redundancy > 0.0 ? source.chi_square / source.redundancy : 0.0,
-        report.runs[i].directions == 0 ? "nobody else saw it"
+        report.runs[i].directions == 0 ? "no other run sees it"
                                        : fmt::format("{:.2g}", report.runs[i].probability));
   }
   for (const std::string& name : Misfits(report)) {
@@ -163,7 +163,7 @@ std::string FuseTable(const fusion::FuseReport& report,
   }
   if (const auto names = PriorOnly(report); !names.empty()) {
     text += fmt::format(
-        "\nPRIOR ONLY: no run determines {}; the map knows of them what the machine file says.\n",
+        "\nPRIOR ONLY: no run determines {}; the map has the prior of the machine file for them.\n",
         fmt::join(names, ", "));
   }
   return text + RunsText(report, runs) + HoldoutTable(report);

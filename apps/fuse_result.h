@@ -1,5 +1,5 @@
-// `abbe fuse`: what it found, as data and as tables for people. SI in the data unless the name says
-// otherwise; tables end in a newline.
+// The result of `abbe fuse` as data and as tables for people. Data in SI unless the key has a unit;
+// tables end in a newline.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,6 +15,7 @@ nlohmann::ordered_json FuseJson(const fusion::FuseReport& report,
 // The scale and, one line each, the runs.
 std::string RunsText(const fusion::FuseReport& report,
                      const std::vector<simulation::SimulatedRun>& runs);
+// The kinds of runs that determine an error function; "prior only" if none does.
 std::string DeterminedBy(const fusion::FunctionSeen& function);
 std::string FuseTable(const fusion::FuseReport& report,
                       const std::vector<simulation::SimulatedRun>& runs);

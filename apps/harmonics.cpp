@@ -30,14 +30,14 @@ struct HarmonicsArguments {
   bool quiet = false;
 };
 
-// How the readings of a column are printed, and how keys of the result end that hold them: lengths
-// in um, angles in urad, all else as the column has it (a voltage in V, "_v").
-struct Printed {
+// The printed unit of a column, and the ending of its keys in the result: lengths in um, angles in
+// urad, all else in the unit of the column (a voltage in V, "_v").
+struct ColumnUnit {
   std::string unit, ending;
   double si;
 };
 
-Printed PrintedOf(const std::string& column) {
+ColumnUnit ColumnUnitOf(const std::string& column) {
   const settings::Unit unit = settings::UnitOf(column);
   for (const char* const ending : {"_mm", "_um", "_nm", "_m"}) {
     if (unit.name == settings::UnitOf(ending).name) return {"um", "_um", settings::kMicrometre};
@@ -49,7 +49,7 @@ Printed PrintedOf(const std::string& column) {
   return {std::string(unit.name), column.substr(settings::StemOf(column).size()), unit.si};
 }
 
-// What a fit without any harmonic, and one with all, leave of readings in later time.
+// Rms of later readings about a fit of the earlier ones, without harmonics and with all of them.
 struct HeldOut {
   double without, with;
 };
@@ -66,9 +66,9 @@ HeldOut SecondHalf(const paths::ShaftReadings& shaft, const std::vector<int>& or
 
 ordered_json ChannelJson(const std::string& column, const paths::ShaftReadings& shaft,
                          const std::vector<int>& orders) {
-  const Printed printed = PrintedOf(column);
-  const auto key = [&](const char* what) { return what + printed.ending; };
-  const auto value = [&](double si) { return si / printed.si; };
+  const ColumnUnit column_unit = ColumnUnitOf(column);
+  const auto key = [&](const char* what) { return what + column_unit.ending; };
+  const auto value = [&](double si) { return si / column_unit.si; };
   const BearingHarmonics fit = fusion::FitBearing(shaft.angle, shaft.value, orders);
   const HeldOut held_out = SecondHalf(shaft, orders);
   ordered_json harmonics = ordered_json::array();
@@ -83,7 +83,7 @@ ordered_json ChannelJson(const std::string& column, const paths::ShaftReadings& 
                          {key("u"), value(fit.result.Uncertainty(entry("sin")))}});
   }
   return {{"column", column},
-          {"unit", printed.unit},
+          {"unit", column_unit.unit},
           {"readings", shaft.value.size()},
           {key("mean"), value(fit.result.Value("mean.gap"))},
           {"harmonics", harmonics},
@@ -94,7 +94,7 @@ ordered_json ChannelJson(const std::string& column, const paths::ShaftReadings& 
 
 std::string ChannelTable(const ordered_json& channel) {
   const std::string unit = channel["unit"].get<std::string>();
-  const std::string ending = PrintedOf(channel["column"].get<std::string>()).ending;
+  const std::string ending = ColumnUnitOf(channel["column"].get<std::string>()).ending;
   const auto number = [&](const ordered_json& of, const char* what) {
     return of[what + ending].get<double>();
   };

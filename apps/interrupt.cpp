@@ -20,7 +20,7 @@ void Interrupt(int signal) {
 const std::atomic<bool>& InterruptFlag() {
   static const bool installed = [] {
     struct sigaction action {};
-    action.sa_handler = Interrupt;  // no SA_RESTART: waiting calls return and look at the flag
+    action.sa_handler = Interrupt;  // no SA_RESTART: blocking calls return, and the flag is checked
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
     return true;

@@ -1,4 +1,4 @@
-// A clean end on Ctrl-C and SIGTERM: long work looks at a flag between its steps.
+// A clean end on Ctrl-C and SIGTERM: long work checks a flag between its steps.
 #pragma once
 
 #include <atomic>

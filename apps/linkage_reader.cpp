@@ -88,8 +88,8 @@ std::vector<std::string> LinkageReader::Notes() const {
   for (const Run& run : runs_) {
     if (std::ranges::count(calibration.mountings, run.mounting) > 0) continue;
     notes.push_back(fmt::format(
-        "{}: the calibration knows no mounting \"{}\" of the base: displacements hold, the "
-        "set-up centre and positions do not",
+        "{}: the calibration has no mounting \"{}\" of the base: displacements are valid, the "
+        "set-up centre and positions are not",
         run.recording, run.mounting));
   }
   return notes;

@@ -1,9 +1,9 @@
-// From recordings of the linkage to paths of its ball, by a calibration or by the nominal
-// parameters of the machine file.
+// Paths of the ball from recordings of the linkage, with the parameters of a calibration or the
+// nominal ones of the machine file.
 //
 //   LinkageReader reader(ReadMachineFile(machine), calibration);
 //   const paths::MeasuredPath path = reader.Path(recording);
-//   reader.IndependentErrors()     // [error][path]: 3 x poses, m, as large as its uncertainty
+//   reader.IndependentErrors()     // [error][path]: 3 x poses, m, for one standard deviation
 //
 // Frames: axis coordinates, as in paths/measured_path.h. Failure: InputError for a machine file
 // without a linkage, or a calibration of another machine or linkage.
@@ -23,17 +23,17 @@ namespace abbe::apps {
 
 class LinkageReader {
  public:
-  // No calibration: empty.
+  // `calibration` empty: nominal parameters.
   LinkageReader(MachineFile file, const std::filesystem::path& calibration);
 
   const machine::Machine& machine() const { return file_.sweep_setup.machine; }
 
   paths::MeasuredPath Path(const recording::Recording& recording);
-  // Of all paths so far: what the uncertainty of the calibration does to them, one independent
-  // error after the other, largest first. Empty without a calibration.
+  // The displacement of all paths so far by each independent error of the calibration, as large as
+  // its standard deviation, largest first. Empty without a calibration.
   std::vector<std::vector<Eigen::Matrix3Xd>> IndependentErrors() const;
 
-  // How the linkage was read, for the result and in words.
+  // The parameters used, for the result and as notes.
   nlohmann::ordered_json Data() const;
   std::vector<std::string> Notes() const;
 

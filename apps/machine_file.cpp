@@ -41,9 +41,10 @@ MachineFile ReadMachineFile(const std::filesystem::path& path) {
     const std::string name(1, axis);
     if (!sweep.Has(name)) continue;
     if (file.sweep_setup.machine.chain.Text().find(axis) == std::string::npos) {
-      throw sweep.Error(name, fmt::format("is no axis of the chain {}; add it there, or remove the "
-                                          "table",
-                                          file.sweep_setup.machine.chain.Text()));
+      throw sweep.Error(name,
+                        fmt::format("is not an axis of the chain {}; add it there, or remove the "
+                                    "table",
+                                    file.sweep_setup.machine.chain.Text()));
     }
     file.sweep_plans[axis] = hal::ReadSweepPlan(sweep, axis);
   }

@@ -1,5 +1,5 @@
-// The machine file as a whole: every folder reads its own table, and a key that nobody knows is
-// refused, whatever the command needs of the file.
+// The whole machine file: every folder reads its own table, and an unknown key is refused
+// even if the command does not need it.
 #pragma once
 
 #include <filesystem>
@@ -17,9 +17,9 @@ namespace abbe::apps {
 struct MachineFile {
   settings::Document document;
   probes::SweepSetup sweep_setup;
-  hal::DevicesSettings devices;                  // none where the file has no table [devices]
-  std::map<char, hal::SweepPlan> sweep_plans;    // by axis, of the tables [sweep.X] that are there
-  std::optional<relm::LinkageSettings> linkage;  // of the table [linkage], if it is there
+  hal::DevicesSettings devices;                  // none if the file has no table [devices]
+  std::map<char, hal::SweepPlan> sweep_plans;    // by axis, one for each table [sweep.X]
+  std::optional<relm::LinkageSettings> linkage;  // of the table [linkage], if any
 
   // InputError naming the file when it has no [sweep.AXIS].
   const hal::SweepPlan& SweepPlanOf(char axis) const;
@@ -32,13 +32,12 @@ struct MachineFile {
 // InputError with file, line and key.
 MachineFile ReadMachineFile(const std::filesystem::path& path);
 
-// The machine alone: its file may be one without [devices], which then holds nothing but the
-// machine.
+// Reads the machine only. Its file may lack [devices]; it then contains nothing but the machine.
 machine::Machine ReadMachineOf(const std::filesystem::path& path);
 
-// A machine as far as its file describes it without [devices], which may be missing: its axes, a
-// linkage, a linkage alone (an arm before an instrument) or a name alone (a shaft), which need no
-// `chain` and no [axis].
+// A machine from a file that needs no [devices]: axes with or without a linkage,
+// only a linkage (an arm with a reference instrument), or only a name (a shaft). The
+// last two need no `chain` and no [axis].
 struct MachineAlone {
   machine::Machine machine;
   std::optional<relm::LinkageSettings> linkage;

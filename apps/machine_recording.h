@@ -1,4 +1,4 @@
-// A recording for a command that has read a machine file: made on that machine, its warnings shown.
+// Recordings for a command with a machine file: checked to be of that machine, warnings printed.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,16 @@
 
 namespace abbe::apps {
 
-// Any recording, its warnings on standard error. Failure: that of recording/recording_file.h.
+// Reads any recording and prints its warnings on standard error. Failure: that of
+// recording/recording_file.h.
 recording::Recording ReadWithWarnings(const std::filesystem::path& path);
 
-// The same; InputError when the recording names another machine, and those of
-// recording/recording_file.h.
+// The same; also InputError when the recording names another machine.
 recording::Recording ReadRecordingOf(const machine::Machine& machine,
                                      const std::filesystem::path& path);
 
-// The same without its rows, and its blocks, as often as wanted; warnings come with the first time.
+// The recording without rows, and its blocks, which can be read repeatedly;
+// warnings are printed with the first reading.
 recording::Recording ReadHeadOf(const machine::Machine& machine, const std::filesystem::path& path);
 recording::Blocks BlocksOf(const std::filesystem::path& path);
 

@@ -1,4 +1,4 @@
-// The program: adds the subcommands, runs the one that was asked for, maps failures to exit codes.
+// The program: adds the subcommands, runs the requested one, maps failures to exit codes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 
 namespace {
 
-// A word in the place of the subcommand that is none.
+// InputError for an unknown subcommand.
 void RefuseUnknown(const CLI::App& program, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   std::vector<std::string> known;
@@ -31,27 +31,27 @@ void RefuseUnknown(const CLI::App& program, int argc, char** argv) {
                                      argv[1], abbe::settings::NearestWord(argv[1], known)));
 }
 
-// The innermost command that was given, as it is typed.
-struct Given {
+// The innermost subcommand on the command line, as typed.
+struct ActiveCommand {
   const CLI::App* command;
   std::string typed;
 };
 
-Given CommandOf(const CLI::App& program) {
-  Given given{&program, "abbe"};
-  while (!given.command->get_subcommands().empty()) {
-    given.command = given.command->get_subcommands().front();
-    given.typed += " " + given.command->get_name();
+ActiveCommand CommandOf(const CLI::App& program) {
+  ActiveCommand active{&program, "abbe"};
+  while (!active.command->get_subcommands().empty()) {
+    active.command = active.command->get_subcommands().front();
+    active.typed += " " + active.command->get_name();
   }
-  return given;
+  return active;
 }
 
-// The first word that looks like an option and is none of this command, with the nearest that is.
-std::string UnknownOption(const Given& given, int argc, char** argv) {
+// The message for the first unknown option, with the nearest known one; empty if there is none.
+std::string UnknownOption(const ActiveCommand& active, int argc, char** argv) {
   std::vector<std::string> known{"help"};
-  std::vector<const CLI::App*> groups = given.command->get_subcommands(
+  std::vector<const CLI::App*> groups = active.command->get_subcommands(
       [](const CLI::App* group) { return group->get_name().empty(); });
-  groups.push_back(given.command);
+  groups.push_back(active.command);
   for (const CLI::App* group : groups) {
     for (const CLI::Option* option : group->get_options()) {
       for (const std::string& name : option->get_lnames()) known.push_back(name);
@@ -62,18 +62,18 @@ std::string UnknownOption(const Given& given, int argc, char** argv) {
     if (!word.starts_with("--") || word.size() == 2) continue;
     const std::string name = word.substr(2, word.find('=') - 2);
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    return fmt::format("--{}: {} has no such option; did you mean --{}?", name, given.typed,
+    return fmt::format("--{}: {} has no such option; did you mean --{}?", name, active.typed,
                        abbe::settings::NearestWord(name, known));
   }
   return "";
 }
 
-// What is wrong with the words: an option that is none, or CLI11's message.
+// The error in the command line: an unknown option, or the message of CLI11.
 std::string UsageOf(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
-  const Given given = CommandOf(program);
-  std::string wrong = UnknownOption(given, argc, argv);
+  const ActiveCommand active = CommandOf(program);
+  std::string wrong = UnknownOption(active, argc, argv);
   if (wrong.empty()) wrong = std::string(error.what());
-  return fmt::format("{}; see {} --help", wrong.substr(0, wrong.find('\n')), given.typed);
+  return fmt::format("{}; see {} --help", wrong.substr(0, wrong.find('\n')), active.typed);
 }
 
 int Report(const std::exception& failure, int exit_code) {
@@ -81,15 +81,15 @@ int Report(const std::exception& failure, int exit_code) {
   return exit_code;
 }
 
-// Of a size that no memory holds: std::bad_alloc, or std::length_error of a container.
+// Out of memory: std::bad_alloc, or std::length_error of a container.
 int ReportMemory() {
-  return Report(abbe::InputError("out of memory: what was asked for is larger than this computer "
-                                 "can hold; ask for fewer points, draws or rows"),
+  return Report(abbe::InputError("out of memory: the request is larger than the memory of this "
+                                 "computer; ask for fewer points, draws or rows"),
                 abbe::apps::kBadInput);
 }
 
-// What was printed may not have reached its file: 3 then, else `exit_code`.
-int Printed(int exit_code) {
+// 3 if standard output could not be written, else `exit_code`.
+int FlushOutput(int exit_code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
   const std::string why = std::strerror(errno);
   return Report(abbe::DeviceError(fmt::format(
@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
   int exit_code = kDone;
   for (const AddCommand add : kCommands) add(program, exit_code);
   GuardOutputs(program);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a disk that is full
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is reported like a full disk
   try {
     RefuseUnknown(program, argc, argv);
     program.parse(argc, argv);
@@ -134,5 +134,5 @@ int main(int argc, char** argv) {
   } catch (const std::exception& failure) {
     return Report(failure, kNumericsFailed);
   }
-  return Printed(exit_code);
+  return FlushOutput(exit_code);
 }

@@ -15,7 +15,7 @@ using nlohmann::ordered_json;
 constexpr Index kGridPoints = 11;      // along each axis
 constexpr Index kFunctionPoints = 61;  // of each error function
 
-// To a picometre or picoradian: more would only make the file large.
+// Rounded to a picometre or picoradian, to keep the file small.
 double Short(double value) { return std::round(value * 1e12) * 1e-12; }
 
 // x runs fastest, then y, then z.
@@ -77,7 +77,7 @@ ordered_json MapJson(const map::ErrorMap& map) {
   for (const double at : map.origin().tool) json["tool"].push_back(at);
   for (const double sign : map.model().chain().ToolSenses()) json["signs"].push_back(sign);
   json["temperature_c"] = map.origin().temperature;
-  // A machine that lacks an axis has no volume.
+  // A machine without one of the axes has no volume.
   const auto& travels = map.model().travels();
   if (std::all_of(travels.begin(), travels.end(),
                   [](const machine::Travel& travel) { return travel.last > travel.first; })) {

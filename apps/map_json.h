@@ -8,7 +8,7 @@
 
 namespace abbe::apps {
 
-// For the tool point of the measurement. A map that states no uncertainty has no "u".
+// For the tool point of the measurement. A map without uncertainty has no "u".
 nlohmann::ordered_json MapJson(const map::ErrorMap& map);
 
 }  // namespace abbe::apps

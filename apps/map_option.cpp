@@ -10,11 +10,10 @@ namespace abbe::apps {
 void MapOption::AddTo(CLI::App& command) {
   command.add_option("map", path, "The error map: map.toml of abbe fuse, an ISG or an Etalon file")
       ->required();
-  command.add_option("--chain", chain,
-                     "For an imported map that does not say it: \"[w X Y b Z t]\"");
+  command.add_option("--chain", chain, "For an imported map without its chain: \"[w X Y b Z t]\"");
   command.add_option(
       "--positive", positive,
-      "For an imported map that does not say how its axes count: tool (ISO 841) or carriage, one "
+      "For an imported map without the sign of its axes: tool (ISO 841) or carriage, one "
       "word for all or one each for X, Y and Z");
   command
       .add_option("--tool", tool_mm,
@@ -48,7 +47,7 @@ std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given) {
   double product = 1.0;
   for (const Eigen::Index each : points) {
     if (each < 2) {
-      throw InputError(fmt::format("--points {}: an axis needs 2 points or more", each));
+      throw InputError(fmt::format("--points {}: an axis needs at least 2 points", each));
     }
     product *= static_cast<double>(each);
   }

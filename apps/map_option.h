@@ -1,4 +1,4 @@
-// How the commands that use a map are told which, and for what tool.
+// The options of the commands that use a map: the map and the tool.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -18,16 +18,17 @@ struct MapOption {
   std::vector<double> tool_mm;  // empty: the tool of the measurement
 
   void AddTo(CLI::App& command);
-  // Prints that the scale is the prior's where it is, on standard error.
+  // Warns on standard error if the scale of the map is that of the prior.
   map::ErrorMap Read() const;
   // p_TQ, m.
   Eigen::Vector3d Tool(const map::ErrorMap& map) const;
 };
 
-// "--points 31" or "--points 31,11,21": of X, Y, Z.
+// "--points 31" or "--points 31,11,21": points along X, Y, Z. InputError for another number of
+// numbers, fewer than 2 points or too many.
 std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given);
 
-// Three lengths in mm as an option gives them, in m.
+// Three lengths in mm from an option, in m.
 Eigen::Vector3d VectorOf(const std::vector<double>& mm);
 
 }  // namespace abbe::apps

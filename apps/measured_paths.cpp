@@ -13,14 +13,14 @@ namespace {
 
 using recording::Recording;
 
-// The machine file of a reference alone needs no linkage.
+// With a reference only, the machine file needs no linkage.
 struct Machine {
   explicit Machine(const PathSources& sources) : calibration(sources.calibration) {
     if (!sources.machine.empty()) {
       file = ReadMachineFile(sources.machine);
       causes.emplace(sources.causes, *file, kForMeasuring);
     } else if (!sources.causes.empty()) {
-      throw InputError("--causes needs the machine that they are of; add --machine FILE");
+      throw InputError("--causes needs the machine file; add --machine FILE");
     }
   }
 
@@ -69,7 +69,7 @@ void AddPathSources(CLI::App& command, PathSources& sources) {
       ->required();
   command.add_option("--machine", sources.machine, "Machine file; the linkage needs it");
   command.add_option("--calibration", sources.calibration,
-                     "What abbe calibrate wrote (default: nominal parameters)");
+                     "Calibration file of abbe calibrate (default: nominal parameters)");
   AddCausesOption(command, sources.causes);
 }
 

@@ -1,5 +1,5 @@
-// `abbe circle` and `abbe path`: recordings of the linkage or of a reference become paths in axis
-// coordinates, one list an instrument.
+// For `abbe circle` and `abbe path`: paths in axis coordinates from recordings of the linkage or of
+// a reference, one list per instrument.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -19,22 +19,22 @@ struct PathSources {
   std::filesystem::path machine, calibration, causes;
 };
 
-// The arguments that both commands take.
+// The arguments of both commands.
 void AddPathSources(CLI::App& command, PathSources& sources);
 
 struct MeasuredPaths {
   std::vector<paths::MeasuredPath> linkage, reference;
-  // How each independent error of the calibration moves the paths of the linkage, as large as its
-  // standard deviation: [error][path], 3 x poses, m.
+  // The displacement of the paths of the linkage by each independent error of the calibration, as
+  // large as its standard deviation: [error][path], 3 x poses, m.
   std::vector<std::vector<Eigen::Matrix3Xd>> errors;
   std::optional<machine::Machine> machine;  // of the machine file
-  // What a result begins with, but for its command.
+  // The head of a result, without its command.
   nlohmann::ordered_json head = nlohmann::ordered_json::object();
   std::vector<std::string> notes;
 
-  // Those of the linkage, then those of the reference.
+  // The paths of the linkage, then those of the reference.
   std::vector<paths::MeasuredPath> All() const;
-  // The same as they would be with an error of the calibration.
+  // The same with one error of the calibration added.
   std::vector<paths::MeasuredPath> WithError(std::size_t error) const;
 };
 
@@ -44,7 +44,7 @@ struct MeasuredPaths {
 // machine file of another machine.
 MeasuredPaths ReadMeasuredPaths(const PathSources& sources);
 
-// What results of both commands begin with.
+// The head of the results of both commands.
 nlohmann::ordered_json ResultHead(const std::string& command, const MeasuredPaths& paths);
 
 }  // namespace abbe::apps

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of all commands, as they name what they write.
+// The options of all commands that name an output.
 constexpr std::array<std::string_view, 5> kOutputs{"--out", "--json", "--truth", "--ready-file",
                                                    "to"};
 
@@ -49,7 +49,7 @@ void AddForce(CLI::App& command, const std::shared_ptr<bool>& force) {
   const auto options = command.get_options();
   if (std::any_of(options.begin(), options.end(),
                   [](const auto* each) { return IsOutput(*each); })) {
-    command.add_flag("--force", *force, "Write over whatever is there");
+    command.add_flag("--force", *force, "Overwrite existing files");
   }
   for (CLI::App* below : command.get_subcommands({})) AddForce(*below, force);
 }

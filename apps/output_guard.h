@@ -1,14 +1,14 @@
-// What a command may write over: decided for all commands at once, before any of them works.
+// Protection of files against overwriting, for all commands, before any of them starts.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace abbe::apps {
 
-// Gives every command that writes a file the flag --force, and lets `program` look, when its words
-// are understood, whether one of its outputs would destroy an input or a recording: InputError.
-// What any other word names and is there counts as an input. Another kind of file than is written
-// is refused later, by recording/whole_file.h.
+// Adds the flag --force to every command that writes a file. After parsing, `program`
+// throws InputError if an output would overwrite an input or a recording; every
+// existing file named by another option is an input. recording/whole_file.h later
+// refuses to overwrite a file of another kind.
 void GuardOutputs(CLI::App& program);
 
 }  // namespace abbe::apps

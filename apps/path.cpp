@@ -1,4 +1,4 @@
-// abbe path: tests along other paths than circles, by the linkage or a reference.
+// abbe path: tests on paths other than circles, by the linkage or a reference.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,10 +33,10 @@ std::vector<paths::CapGauge> Gauges(const PathCommand& command) {
   std::vector<paths::CapGauge> gauges;
   for (const std::string& text : command.gauges) {
     if (text.size() < 3 || text[1] != '=' || text[0] < 'X' || text[0] > 'Z') {
-      throw InputError(
-          fmt::format("--gauge {}: give the axis and the column that grows along it, for example "
-                      "--gauge X=probe_d_um, or --gauge X=-probe_d_um for one that falls",
-                      text));
+      throw InputError(fmt::format(
+          "--gauge {}: give the axis and the column that increases along it, for example "
+          "--gauge X=probe_d_um, or --gauge X=-probe_d_um for one that decreases",
+          text));
     }
     const bool falls = text[2] == '-';
     gauges.push_back({text[0], falls ? -1.0 : 1.0, text.substr(falls ? 3 : 2)});
@@ -56,7 +56,7 @@ void RefuseMotion(const paths::MeasuredPath& path) {
       path.recording, moved.maxCoeff() / settings::kMillimetre));
 }
 
-// One pose each: the mean of the rows of a pass, or each row where all passes are one.
+// One pose per pass, the mean of its rows; with a single pass one pose per row.
 Eigen::Matrix3Xd Poses(const paths::MeasuredPath& path) {
   std::map<int, std::vector<Eigen::Index>> passes;
   for (Eigen::Index i = 0; i < path.poses(); ++i) passes[path.pass[i]].push_back(i);
@@ -74,7 +74,7 @@ TestResult Deviation(const paths::MeasuredPath& path, const Eigen::Matrix3Xd& no
                          paths::DeviationFrom(path, {nominal, true}));
 }
 
-// The figures of a test with, for a path that is followed, its deviation in space.
+// The figures of a test and, if the path is followed, its deviation in space.
 TestResult Evaluate(const PathCommand& command, const paths::MeasuredPath& path) {
   if (command.test == "articulation") {
     RefuseMotion(path);
@@ -132,7 +132,8 @@ class PathTests {
   }
 
  private:
-  // By gauges or a reference; with a calibration by the linkage beside the reference.
+  // Measured by gauges or a reference; with a calibration, by the linkage relative to the
+  // reference.
   void Cap() {
     const bool linkage = !command_.sources.calibration.empty();
     const MeasuredPaths paths = linkage ? ReadMeasuredPaths(command_.sources) : MeasuredPaths{};
@@ -189,7 +190,7 @@ void AddPath(CLI::App& program, int& exit_code) {
       ->required();
   command->add_option("--gauge", options->gauges,
                       "cap: axis and column of a gauge on the cap, X=probe_d_um (default: the "
-                      "reference columns; with --calibration the linkage beside them)");
+                      "reference columns; with --calibration the linkage relative to them)");
   command->add_option("-o,--out", options->out, "Folder for the result (RECORDING_TEST.json)");
   command->add_option("--json", options->json, "File for the result");
   command->add_flag("--quiet", options->quiet, "No table");

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr Eigen::Index kShownPoses = 1000;  // of a path in the result: enough for a figure
+constexpr Eigen::Index kShownPoses = 1000;  // of a path in the result: sufficient for a figure
 
 double Um(double metres) { return metres / settings::kMicrometre; }
 double Mm(double metres) { return metres / settings::kMillimetre; }
@@ -28,7 +28,7 @@ std::string U95OfCap(const paths::CapDisplacement& one) {
                        : "-";
 }
 
-// Every so many columns, in SI.
+// At most kShownPoses columns, evenly chosen, in SI.
 ordered_json Rows(const Eigen::Matrix3Xd& p, int row) {
   ordered_json list = ordered_json::array();
   const Eigen::Index step = 1 + (p.cols() - 1) / kShownPoses;

@@ -1,7 +1,5 @@
-// `abbe path`: what the path tests found, as data and as a table.
-//
-// The keys of the data are listed in docs/circle.md. A result holds the figures of one test, for
-// each recording and instrument.
+// The result of `abbe path` as data and as a table: the figures of one test, for each recording and
+// instrument. docs/circle.md lists the keys of the data.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -24,7 +22,7 @@ struct TestResult {
 
 TestResult SteppingResult(const std::vector<paths::SteppingLine>& lines);
 TestResult SquareResult(const paths::SquareFigures& figures);
-// Of the same path as it was measured, and aligned with the commanded one.
+// The same path as measured, and aligned with the commanded one.
 TestResult DeviationResult(const paths::PathDeviation& raw, const paths::PathDeviation& aligned);
 TestResult CapResult(const std::vector<paths::CapDisplacement>& displacements);
 TestResult ArticulationResult(const standards::Articulation& figures);

@@ -40,7 +40,7 @@ void AddCalibrationUncertainty(const std::vector<TestResult>& shifted, TestResul
     u[pointer] = std::sqrt(squares);
   }
   if (u.empty()) return;
-  std::map<std::string, double> most;  // of all entries of a list
+  std::map<std::string, double> most;  // the largest of the entries of a list
   for (const auto& [pointer, value] : u.items()) {
     static const std::regex kIndex("/[0-9]+"), kSlash("/");
     const std::string name =

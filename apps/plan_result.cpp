@@ -19,7 +19,7 @@ using diagnosis::PlannedCause;
 using Eigen::Index;
 using nlohmann::ordered_json;
 
-// A key that follows the size of the cause, in its own unit.
+// A key proportional to the size of the cause, in its own unit.
 struct Size {
   std::string name;
   double plausible, seen;
@@ -42,7 +42,7 @@ std::string RowsOf(const PlannedCause& planned) {
   const std::string name = NameOf(planned.candidate);
   const std::vector<Size> sizes = SizesOf(planned);
   if (sizes.empty()) {
-    return fmt::format("{:<38}{:<42}{:>10.1f} sd\n", name, "there or not", planned.visible);
+    return fmt::format("{:<38}{:<42}{:>10.1f} sd\n", name, "present or absent", planned.visible);
   }
   std::string rows;
   for (const Size& size : sizes) {
@@ -54,10 +54,10 @@ std::string RowsOf(const PlannedCause& planned) {
   return rows;
 }
 
-// Causes of which each is like another one of them.
+// A group of causes, each of which is similar to another one of the group.
 struct ConfusedCauses {
   std::set<std::size_t> causes;
-  double cosine = 1.0;  // the smallest of two that are alike
+  double cosine = 1.0;  // the smallest of a similar pair
 };
 
 std::vector<ConfusedCauses> GroupsOf(const Plan& plan) {
@@ -132,7 +132,7 @@ std::string PlanText(const Plan& plan) {
     text += fmt::format("\nWould not be seen at their usual size: {}\n", fmt::join(hidden, ", "));
   }
   if (!plan.standing.empty()) {
-    text += fmt::format("\nWould not be seen, for one of the two axes never moves: {}\n",
+    text += fmt::format("\nWould not be seen, because one of the two axes never moves: {}\n",
                         fmt::join(plan.standing, ", "));
   }
   for (const ConfusedCauses& group : GroupsOf(plan)) {
@@ -140,7 +140,7 @@ std::string PlanText(const Plan& plan) {
     for (const std::size_t cause : group.causes) {
       names.push_back(NameOf(plan.causes[cause].candidate));
     }
-    text += fmt::format("\nCannot be told apart (cosine {:.3f}): {}\n", group.cosine,
+    text += fmt::format("\nCannot be separated (cosine {:.3f}): {}\n", group.cosine,
                         fmt::join(names, ", "));
   }
   return text;

@@ -1,4 +1,4 @@
-// `abbe diagnose --plan`: what runs would show, as data (docs/diagnose.md) and in words.
+// The result of `abbe diagnose --plan` as data (docs/diagnose.md) and as text.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// abbe plate: from recordings of a hole plate to the 21 errors of the machine.
+// abbe plate: the 21 errors of the machine from recordings of a hole plate.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -36,7 +36,7 @@ std::vector<simulation::PlateSetup> ReadSetups(const PlateArguments& arguments,
   return setups;
 }
 
-// The same machine in the document's form, which states no uncertainty.
+// The same machine with the networks of the paper, which have no uncertainty.
 map::ErrorMap WithNetworks(const map::ErrorMap& map,
                            const std::vector<simulation::PlateSetup>& setups) {
   return {map.origin(),
@@ -86,7 +86,7 @@ void AddPlate(CLI::App& program, int& exit_code) {
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   command
       ->add_option("--holdout", arguments->holdout,
-                   "Leave out every K-th hole in turn and compare what predicts it")
+                   "Leave out every K-th hole in turn and compare the predictions of it")
       ->check(CLI::Range(2, 100));
   command->add_option("--specimen", arguments->specimen,
                       "Recording of kind length: measured before and after correction");

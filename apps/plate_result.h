@@ -1,5 +1,5 @@
-// `abbe plate`: what it found, as data and as tables for people. SI in the data unless the name
-// says otherwise; tables end in a newline.
+// The result of `abbe plate` as data and as tables for people. Data in SI unless the
+// key has a unit; tables end in a newline.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct PlateResult {
   std::vector<simulation::SimulatedRun> runs;
   std::array<fusion::DiagonalSquareness, 3> diagonals;
   std::vector<fusion::InterpolatorCheck> interpolators;  // empty: nothing was held out
-  std::vector<fusion::SpecimenLength> specimen;          // empty: none was given
+  std::vector<fusion::SpecimenLength> specimen;          // empty: none given
 };
 
 // The keys of `abbe fuse`, and those of docs/plate.md.

@@ -1,5 +1,4 @@
-// What the channels of a machine file can read, from what the file says of the machine and its
-// probes.
+// The plausible ranges of the channels of a machine file, from its machine and probes.
 #pragma once
 
 #include <vector>
@@ -9,8 +8,9 @@
 
 namespace abbe::apps {
 
-// x_mm, y_mm, z_mm: machine/plausible_position.h. probe_a_um to probe_e_um: 0 to the probe's range
-// is good; a range beyond that still is what an amplifier may show that sees no target.
+// x_mm, y_mm, z_mm: machine/plausible_position.h. probe_a_um to probe_e_um: valid from
+// 0 to the range of the probe, possible from minus the range to twice the range, which
+// an amplifier may show without a target.
 std::vector<hal::PlausibleChannel> PlausibleChannels(const MachineFile& file);
 
 }  // namespace abbe::apps

@@ -1,5 +1,5 @@
-// How far a long job is: a bar with the time left on a terminal, a plain line every tenth
-// elsewhere. Written to standard error, so that standard output stays data.
+// The progress of a long job: a bar with the remaining time on a terminal, else a plain line every
+// tenth. Written to standard error, so that standard output has data only.
 #pragma once
 
 #include <chrono>
@@ -9,15 +9,15 @@ namespace abbe::apps {
 
 class Progress {
  public:
-  // `title` stands before the bar. A quiet progress prints nothing.
+  // `title` is printed before the bar. Prints nothing if quiet.
   Progress(std::string title, bool quiet);
   // Ends the bar's line.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // `done` of `total` steps are done; `note` says what is going on now ("station 12.000 mm, pass 2
-  // up"). A bar is redrawn at most ten times a second.
+  // `done` of `total` steps are done; `note` is the current step ("station 12.000 mm, pass 2 up").
+  // A bar is redrawn at most ten times a second.
   void Show(std::size_t done, std::size_t total, const std::string& note);
 
  private:

@@ -1,10 +1,11 @@
-// Who measured with what: the title of a report has it.
+// The operator and the serial numbers of a measurement, for the title of a report.
 //
-//   [protocol]                              # in the machine file, and so in the header of a
-//   recording operator = "A. Smith" serial = "mill 4711, head P-12"
+//   [protocol]                     # in the machine file and in the header of a recording
+//   operator = "A. Smith"
+//   serial = "mill 4711, head P-12"
 //
-// A recorder writes the table of the machine file into the header, with the operator of its command
-// line; a result takes it from the header. Both keys may be absent: nothing depends on them.
+// A recorder copies the table of the machine file into the header, with the operator of its command
+// line; a result copies it from the header. Both keys are optional.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -19,14 +20,14 @@ struct Protocol {
   std::string operator_name, serial;  // empty: not stated
 };
 
-// InputError with file, line and key for what is no text.
+// InputError with file, line and key for a value that is not a text.
 Protocol ReadProtocol(const settings::Table& root);
 
-// The table, with `operator_name` instead of the file's if there is one; empty where nothing is
+// The table as TOML; a non-empty `operator_name` replaces that of the file. Empty if nothing is
 // stated.
 std::string ProtocolText(const settings::Document& machine, const std::string& operator_name);
 
-// What the header of the recording states, as result["protocol"]; what stands there already stays.
+// Adds the table of the header as result["protocol"]; existing entries are kept.
 void AddProtocol(const recording::Recording& recording, nlohmann::ordered_json& result);
 
 }  // namespace abbe::apps

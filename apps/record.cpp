@@ -1,5 +1,4 @@
-// `abbe record`: what all devices of the machine file say, for a while, in one recording on one
-// clock.
+// `abbe record`: records all devices of the machine file for a time, on one clock.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,7 +36,7 @@ struct RecordCommand {
   bool quiet = false;
 };
 
-// Leaves the devices that were asked for.
+// Keeps the requested devices only.
 void Select(const RecordCommand& options, hal::DevicesSettings& devices) {
   if (options.devices.empty()) return;
   std::set<std::string> unknown(options.devices.begin(), options.devices.end());
@@ -48,7 +47,7 @@ void Select(const RecordCommand& options, hal::DevicesSettings& devices) {
   std::erase_if(devices.devices, unwanted);
   std::erase_if(devices.canopen, unwanted);
   if (unknown.empty()) return;
-  throw InputError(fmt::format("--devices: {} has no table [devices.{}]; name one that it has",
+  throw InputError(fmt::format("--devices: {} has no table [devices.{}]; name one of its devices",
                                options.machine, *unknown.begin()));
 }
 
@@ -71,7 +70,7 @@ void RequireForOptions(const RecordCommand& options, const hal::OpenedDevices& d
 
 hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile& file) {
   hal::SteadyClock clock(options.clock_speed);
-  bool opened = false;  // what fails before that is thrown
+  bool opened = false;  // an earlier failure is thrown
   const hal::OpenedDevices devices =
       hal::OpenDevices(file.devices, clock, hal::Presence::kRequired, [&](const std::string& line) {
         if (opened) fmt::print(stderr, "abbe: {}\n", line);
@@ -137,19 +136,20 @@ void AddRecord(CLI::App& program, int& exit_code) {
   command->add_option("-o,--out", options->out, "the new recording (.csv, .h5, .hdf5)")->required();
   command->add_option("--operator", options->operator_name,
                       "who measures (default: [protocol] of the machine file)");
-  command->add_option("--seconds", options->seconds, "for so long (default: until Ctrl-C)")
+  command->add_option("--seconds", options->seconds, "duration in s (default: until Ctrl-C)")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--clock-speed", options->clock_speed,
-                   "for a virtual machine that runs this much faster")
+                   "for a virtual machine that runs faster by this factor")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--devices", options->devices,
                    "only these tables [devices.NAME] (default: all): --devices machine,linkage")
       ->delimiter(',');
   command
-      ->add_option("--start", options->program,
-                   "write this number to the machine's cycle_start register when all answer")
+      ->add_option(
+          "--start", options->program,
+          "write this number to the machine's cycle_start register when all devices answer")
       ->check(CLI::Range(1, 65535));
   command->add_flag("--passes-only", options->passes_only,
                     "no rows while the channel `pass` is 0: the way to the path and back");

@@ -1,4 +1,4 @@
-// abbe reduce: from recordings to results.
+// abbe reduce: results from recordings.
 #include <fmt/format.h>
 
 #include <filesystem>

@@ -17,14 +17,14 @@ namespace {
 using nlohmann::ordered_json;
 using recording::Recording;
 
-// The axis that the header names, else the only one with a reference column: 'x', 'y' or 'z'.
+// The axis in the header, else the only one with a reference column: 'x', 'y' or 'z'.
 char AxisOf(const Recording& recording) {
   const std::optional<std::string> named = recording.HeaderText("axis");
   if (named) {
     if (*named == "X" || *named == "Y" || *named == "Z")
       return static_cast<char>((*named)[0] - 'A' + 'a');
     throw InputError(
-        fmt::format("{}: axis = \"{}\": positioning is judged along one axis, X, Y or Z",
+        fmt::format("{}: axis = \"{}\": positioning is evaluated along one axis, X, Y or Z",
                     recording.name, *named));
   }
   std::string found;
@@ -33,7 +33,7 @@ char AxisOf(const Recording& recording) {
   }
   if (found.size() == 1) return found[0];
   throw InputError(
-      fmt::format("{}: {} reference columns: say in the header which axis moves, axis = \"X\"",
+      fmt::format("{}: {} reference columns: name the moving axis in the header, axis = \"X\"",
                   recording.name, found.size()));
 }
 
@@ -169,7 +169,7 @@ std::string ReferenceTable(const ordered_json& result) {
   text += fmt::format("{:<34} {:10.2f}\n", "mean reversal (up - down)",
                       um(figures, "mean_reversal_um"));
   if (const auto left_out = figures["left_out_rows"].get<std::size_t>(); left_out > 0) {
-    text += fmt::format("{} rows with a flag were left out\n", left_out);
+    text += fmt::format("{} flagged rows were left out\n", left_out);
   }
   if (figures["cycles"].get<int>() < 5)
     text += "fewer than the five cycles that ISO 230-2 asks for\n";

@@ -28,7 +28,7 @@ ordered_json UncertainData(const probes::Uncertain& quantity) {
   return {{"value", quantity.value}, {"u", quantity.u}};
 }
 
-// A station in mm to its third decimal, without a sign when that is zero.
+// A station in mm with three decimals; no sign if it rounds to zero.
 double Shown(double station) { return std::round(station * 1e6) / 1e3 + 0.0; }
 
 std::string_view UnitOf(const ComponentResult& c) { return c.component.angle() ? "rad" : "m"; }
@@ -60,7 +60,7 @@ ordered_json LineData(const LineFigure& figure) {
   return {{"slope", figure.line.slope}, {"offset", figure.line.offset}};
 }
 
-// Adds what one component came to.
+// Adds the result of one component.
 void AddComponent(const ComponentResult& c, ordered_json& data) {
   const std::string& name = c.component.name;
   data["errors"][name] = ErrorData(c);
@@ -117,7 +117,7 @@ ordered_json NoiseData(const probes::NoiseFigures& noise) {
   return data;
 }
 
-// The mean reversal "0.31 +- 0.12", with a star where it is beyond chance.
+// The mean reversal "0.31 +- 0.12", with a star if it is significant.
 std::string Cell(const std::optional<probes::Reversal>& reversal, double coverage) {
   if (!reversal) return "-";
   const double expanded = coverage * reversal->mean.u;

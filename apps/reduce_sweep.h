@@ -1,6 +1,6 @@
-// `abbe reduce` and `abbe sweep`: what the reduction of a sweep found, as data and as a table.
+// The result of the reduction of a sweep (`abbe reduce`, `abbe sweep`) as data and as a table.
 //
-// The keys of the data are listed in docs/sweep.md; SI units, numbers that are not finite are null.
+// docs/sweep.md lists the keys of the data. SI units; numbers that are not finite are null.
 #pragma once
 
 #include <nlohmann/json.hpp>

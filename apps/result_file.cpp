@@ -16,7 +16,7 @@ void WriteText(const std::string& text, const std::filesystem::path& path) {
 }
 
 void WriteResult(const nlohmann::ordered_json& result, const std::filesystem::path& path) {
-  // A name of a user may hold bytes that are no UTF-8: they are replaced, JSON has none.
+  // JSON is UTF-8: invalid bytes, as in a file name, are replaced.
   WriteText(result.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n', path);
 }
 
@@ -31,7 +31,7 @@ nlohmann::ordered_json ReadResult(const std::filesystem::path& path) {
   } catch (const nlohmann::json::parse_error& failure) {
     throw InputError(fmt::format("{}: not valid JSON at byte {}", path.string(), failure.byte));
   } catch (const nlohmann::json::out_of_range& failure) {
-    throw InputError(fmt::format("{}: holds a number that fits no double; write it anew ({})",
+    throw InputError(fmt::format("{}: contains a number that is out of range; write it again ({})",
                                  path.string(), failure.what()));
   }
 }

@@ -1,4 +1,4 @@
-// Results as data: one JSON object a file.
+// Results as data: one JSON object per file.
 #pragma once
 
 #include <filesystem>
@@ -7,10 +7,10 @@
 
 namespace abbe::apps {
 
-// Writes a text, as recording/whole_file.h has it. Missing folders are made.
+// Writes a text by recording/whole_file.h. Missing folders are created.
 void WriteText(const std::string& text, const std::filesystem::path& path);
 
-// The same with `result` (indented, numbers in shortest round-trip form).
+// Writes `result` as indented JSON, numbers in shortest round-trip form.
 void WriteResult(const nlohmann::ordered_json& result, const std::filesystem::path& path);
 
 // InputError when the file cannot be read or is not JSON.

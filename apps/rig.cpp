@@ -1,4 +1,4 @@
-// abbe rig: serves the virtual rig; records a sweep or a course of it directly.
+// abbe rig: serves the virtual rig, or records a sweep or a course of it directly.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -52,7 +52,7 @@ struct RigOptions {
   std::vector<std::filesystem::path> results;
 };
 
-// The world, with the devices of the same file.
+// The simulated world and the devices of the same file.
 struct Rig {
   explicit Rig(const RigOptions& options)
       : document(settings::Document::Read(options.machine)),
@@ -65,7 +65,7 @@ struct Rig {
     WriteTruth(options, world.hidden());
   }
 
-  // What --hide says; instants that it leaves open lie in the first ten minutes.
+  // The effects of --hide; instants that it does not give are drawn in the first ten minutes.
   static rig::HiddenEffects Hidden(const rig::CampaignMachine& machine, const RigOptions& options) {
     rig::HiddenEffects hidden = HiddenOf(machine, options);
     rig::SetInTime(hidden, {{0.0, 600.0, true, true}});
@@ -107,7 +107,7 @@ rig::ServerOptions PlaceToListen(const Rig& rig, const RigOptions& options) {
   return server;
 }
 
-// Makes the link that a client opens; a link of an earlier rig is replaced, a file never.
+// Makes the symbolic link that a client opens; it replaces a link of an earlier rig, never a file.
 std::string ServeRtu(rig::RegisterServer& server, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) {
@@ -129,7 +129,7 @@ void WriteReadyFile(const std::filesystem::path& path, int port) {
   WriteText(fmt::format("{}\n", port), path);
 }
 
-// The machine of the rig with its program, on the wires that were asked for.
+// The machine of the rig with its program, on the requested interfaces.
 class Served {
  public:
   Served(const Rig& rig, const RigOptions& options)
@@ -191,7 +191,7 @@ class Served {
     const int program = course ? rig::kCourseProgram : rig::AxisNumber(options.start.front());
     if (machine_.Start(program) == rig::StartOutcome::kStarted) return;
     throw InputError(
-        course ? "--start course: which one? Add --course circle, or another"
+        course ? "--start course: no course given; add --course circle or another"
                : fmt::format("--start {}: no sweep of this axis is programmed in {}; add a table "
                              "[sweep.{}]",
                              options.start, options.machine, options.start));
@@ -223,7 +223,7 @@ int Serve(const RigOptions& options) {
   return kDone;
 }
 
-// An interferometer over the whole travel of an axis, the others in the middle of theirs.
+// An interferometer over the whole travel of an axis, the other axes in the middle.
 recording::Recording RecordLine(const Rig& rig, char axis) {
   constexpr int kSteps = 12;
   rig::LengthProgram program{.axis = axis, .count = kSteps};
@@ -277,8 +277,8 @@ int Record(const RigOptions& options) {
                     (options.length.empty() ? 0 : 1) + (options.plate ? 1 : 0);
   if (kinds != 1) {
     throw InputError(
-        "rig record: say what to record: a sweep by --axis X, a path of the linkage by --course "
-        "circle, calibrated lengths by --length X, a hole plate by --plate, or a whole "
+        "rig record: nothing to record; give a sweep by --axis X, a path of the linkage by "
+        "--course circle, calibrated lengths by --length X, a hole plate by --plate, or a whole "
         "--campaign standard");
   }
   recording::Write(Recorded(Rig(options), options), options.out);
@@ -288,12 +288,12 @@ int Record(const RigOptions& options) {
 
 void AddWorldOptions(CLI::App* command, RigOptions& options) {
   command->add_option("--machine", options.machine, "Machine file (TOML)");
-  command->add_option("--seed", options.seed, "Which machine of the population")
+  command->add_option("--seed", options.seed, "Seed: the machine drawn from the population")
       ->capture_default_str();
-  command->add_option("--truth", options.truth, "Write what the rig knows (JSON)");
+  command->add_option("--truth", options.truth, "Write the truth of the rig (JSON)");
   command->add_option("--hide", options.hide,
-                      "An effect that only the rig knows, CAUSE:object=OBJECT[:key=value...]; "
-                      "again for another (docs/virtual-rig.md)");
+                      "A hidden effect, CAUSE:object=OBJECT[:key=value...]; may be repeated "
+                      "(docs/virtual-rig.md)");
 }
 
 }  // namespace
@@ -306,7 +306,7 @@ void AddRig(CLI::App& program, int& exit_code) {
   rig->add_option("--port", options->port,
                   "TCP port, 0 for a free one (default: the machine file's)")
       ->check(CLI::Range(0, 65535));
-  rig->add_option("--speed", options->speed, "Simulated seconds in a second")
+  rig->add_option("--speed", options->speed, "Simulated seconds per second")
       ->check(CLI::Range(1e-3, 1e4))
       ->capture_default_str();
   rig->add_option("--rtu", options->rtu,
@@ -332,7 +332,7 @@ void AddRig(CLI::App& program, int& exit_code) {
       rig->add_subcommand("record", "Write the recording of a sweep or a course directly");
   AddWorldOptions(record, *options);
   record->get_option("--machine")->required();
-  record->add_option("--axis", options->axis, "Of the probe head: sweep X, Y or Z")->check(axis);
+  record->add_option("--axis", options->axis, "Sweep X, Y or Z with the probe head")->check(axis);
   record->add_option("--length", options->length, "Calibrated lengths along X, Y or Z")
       ->check(axis);
   record
@@ -340,14 +340,16 @@ void AddRig(CLI::App& program, int& exit_code) {
                    "A whole campaign into the folder --out: minimal, standard or full")
       ->check(CLI::IsMember(CampaignKinds()))
       ->excludes("--axis", "--length");
-  record->add_flag("--reduced", options->reduced, "Fewer stations, places and rows in a campaign");
+  record->add_flag("--reduced", options->reduced,
+                   "Fewer stations, positions and rows in a campaign");
   record->add_flag("--plate", options->plate, "A hole plate in five set-ups");
-  record->add_option("--mounting", options->mounting, "For the header of a sweep");
+  record->add_option("--mounting", options->mounting,
+                     "Name of the set-up, for the header of a sweep");
   AddCourseOptions(*record, options->course);
   AddRecordingOptions(*record, options->course);
   record->add_option("--out", options->out, "Recording (.csv, .h5), or the campaign's folder")
       ->required();
-  record->add_option("--rate", options->rate, "Rows in a second")->capture_default_str();
+  record->add_option("--rate", options->rate, "Rows per second")->capture_default_str();
   record->footer(
       "Example: abbe rig record --machine machines/demo_mill.toml --axis X --out x.csv\n"
       "Example: abbe rig record --machine machines/demo_mill.toml --course circle --reference "
@@ -356,8 +358,8 @@ void AddRig(CLI::App& program, int& exit_code) {
       "--hide backlash:object=X:width_um=6 --truth truth.json --out campaign");
   record->callback([options, &exit_code] { exit_code = Record(*options); });
 
-  CLI::App* compare = rig->add_subcommand("compare", "How near results came to the truth");
-  compare->add_option("truth", options->truth_to_compare, "What --truth wrote")->required();
+  CLI::App* compare = rig->add_subcommand("compare", "Compares results with the truth");
+  compare->add_option("truth", options->truth_to_compare, "File of --truth")->required();
   compare->add_option("results", options->results, "JSON of sweeps or of a diagnosis")->required();
   compare->footer("Example: abbe rig compare out/rig_truth.json out/sweep_X.json");
   compare->callback([options, &exit_code] {

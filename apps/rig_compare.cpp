@@ -31,7 +31,7 @@ void PrintSweep(const nlohmann::ordered_json& truth, const nlohmann::ordered_jso
 void PrintDiagnosis(const nlohmann::ordered_json& truth, const nlohmann::ordered_json& result,
                     const std::string& path) {
   const rig::FindingsComparison comparison = rig::CompareFindings(truth, result, path);
-  fmt::print("diagnosis against what is hidden in seed {}: {} ({})\n",
+  fmt::print("diagnosis against the hidden effects of seed {}: {} ({})\n",
              truth.value("seed", std::uint64_t{0}), result.value("verdict", "?"), path);
   if (comparison.hidden.empty()) fmt::print("  nothing is hidden\n");
   for (const rig::EffectComparison& effect : comparison.hidden) {
@@ -49,11 +49,11 @@ void PrintDiagnosis(const nlohmann::ordered_json& truth, const nlohmann::ordered
   }
   const auto rms = [&](const char* chi_square) { return std::sqrt(result.value(chi_square, 0.0)); };
   fmt::print(
-      "  measured less simulated: {:.2f} of the stated noise before, {:.2f} after in all rows",
+      "  measured minus simulated: {:.2f} of the stated noise before, {:.2f} after in all rows",
       rms("chi2_per_row_before"), rms("chi2_per_row_after"));
   if (const auto held = result.find("heldout"); held != result.end()) {
-    fmt::print("; {:.2f} before, {:.2f} after in rows that were held out",
-               held->value("rms_before", 0.0), held->value("rms_after", 0.0));
+    fmt::print("; {:.2f} before, {:.2f} after in held-out rows", held->value("rms_before", 0.0),
+               held->value("rms_after", 0.0));
   }
   fmt::print("\n");
 }

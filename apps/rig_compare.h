@@ -1,4 +1,4 @@
-// abbe rig compare: how near results came to what the rig knows.
+// abbe rig compare: comparison of results with the truth of the rig.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace abbe::apps {
 
-// Prints each result, the JSON of a sweep or of a diagnosis, beside the truth. The exit code.
+// Prints each result, the JSON of a sweep or of a diagnosis, with the truth. Returns the exit code.
 int CompareWithTruth(const std::filesystem::path& truth,
                      const std::vector<std::filesystem::path>& results);
 

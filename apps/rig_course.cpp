@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 constexpr double kMillimetreAMinute = 1e-3 / 60.0;
 constexpr int kMostPlaces = 1'000'000;
 
-// The size of a course in m: its own, or `usual` in mm. One number stands for all.
+// The size of a course in m: as given, or `usual` in mm. One number applies to all.
 std::vector<double> SizeOf(const CourseRequest& request, const std::vector<double>& usual) {
   std::vector<double> size = request.size_mm.empty() ? usual : request.size_mm;
   if (size.size() == 1) size.assign(usual.size(), size.front());
@@ -49,7 +49,7 @@ Vector3d CentreOf(const CourseRequest& request, const rig::RigSettings& machine)
   return centre;
 }
 
-// "ZX" is the plane across Y.
+// The axis normal to a plane: 'Y' for "ZX".
 char NormalOf(const std::string& plane) { return plane == "XY" ? 'Z' : plane == "YZ" ? 'X' : 'Y'; }
 
 rig::Course FromFile(const CourseRequest& request, double feed) {
@@ -67,7 +67,7 @@ rig::Course FromFile(const CourseRequest& request, double feed) {
 
 double RadiusOf(const CourseRequest& request) { return 0.5 * SizeOf(request, {40.0}).front(); }
 
-// Keys of the recording that a course adds.
+// The header keys that a course adds to its recording.
 std::string KeysOf(const CourseRequest& request) {
   if (request.course != "circle") return "";
   return fmt::format("radius_mm = {:.9g}\n", RadiusOf(request) / settings::kMillimetre);
@@ -81,7 +81,7 @@ rig::Course Planned(const CourseRequest& request, const rig::RigSettings& machin
     const std::vector<double> size = SizeOf(request, {25.0, 25.0, 50.0});
     const std::vector<int> points = PointsOf(request, {7, 7, 12});
     if (1.0 * points[0] * points[1] * points[2] > kMostPlaces) {
-      throw InputError(fmt::format("--points {},{},{}: makes more than {} places; take fewer",
+      throw InputError(fmt::format("--points {},{},{}: makes more than {} positions; take fewer",
                                    points[0], points[1], points[2], kMostPlaces));
     }
     return rig::DwellCourse(
@@ -113,7 +113,7 @@ void RefuseBeyondTravels(const rig::Course& course, const rig::RigSettings& mach
       const auto [first, last] = machine.travels[static_cast<std::size_t>(axis)];
       if (point[axis] >= first - kRounding && point[axis] <= last + kRounding) continue;
       throw InputError(fmt::format(
-          "--course {}: goes to {} {:g} mm, beyond the travel of {:g} to {:g} mm in {}; choose "
+          "--course {}: reaches {} {:g} mm, beyond the travel of {:g} to {:g} mm in {}; choose "
           "another --size or --centre",
           name, static_cast<char>('X' + axis), 1e3 * point[axis], 1e3 * first, 1e3 * last,
           machine.name));
@@ -134,8 +134,9 @@ rig::Course CourseOf(const CourseRequest& request, const rig::RigSettings& machi
 }
 
 void AddCourseOptions(CLI::App& command, CourseRequest& request) {
-  command.add_option("--course", request.course,
-                     "Of the linkage: cube, circle, stepping, square, or a CSV file of points");
+  command.add_option(
+      "--course", request.course,
+      "Path under the linkage: cube, circle, stepping, square, or a CSV file of points");
   command.add_option("--centre", request.centre_mm, "X,Y,Z in mm (default: middle of the travels)")
       ->delimiter(',')
       ->expected(3);
@@ -148,33 +149,33 @@ void AddCourseOptions(CLI::App& command, CourseRequest& request) {
       ->check(CLI::PositiveNumber);
   command
       .add_option("--points", request.points,
-                  "Of the cube along each axis (7,7,12), or of a stepping line (6)")
+                  "Points of the cube along each axis (7,7,12), or of a stepping line (6)")
       ->delimiter(',')
       ->expected(1, 3)
       ->check(CLI::Range(2, 1000));
-  command.add_option("--plane", request.plane, "Of the circle or the square")
+  command.add_option("--plane", request.plane, "Plane of the circle or the square")
       ->check(CLI::IsMember({"XY", "YZ", "ZX"}))
       ->capture_default_str();
   command.add_option("--feed", request.feed_mm_min, "mm/min")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command.add_option("--dwell", request.dwell_s, "At each place of cube or stepping, s")
+  command.add_option("--dwell", request.dwell_s, "Dwell at each position of cube or stepping, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command.add_option("--passes", request.passes, "Of circle or square, in each sense")
+  command.add_option("--passes", request.passes, "Passes of circle or square, in each sense")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command.add_option("--cap-force", request.cap_force_n, "Of the magnet in the tool cap, N")
+  command.add_option("--cap-force", request.cap_force_n, "Force of the magnet in the tool cap, N")
       ->check(CLI::PositiveNumber);
 }
 
 void AddRecordingOptions(CLI::App& command, CourseRequest& request) {
-  command.add_option("--kind", request.kind, "Linkage or grid encoder")
+  command.add_option("--kind", request.kind, "Instrument: linkage, or grid encoder (reference)")
       ->check(CLI::IsMember({"linkage", "reference"}))
       ->capture_default_str();
   command.add_flag("--reference", request.reference,
-                   "The grid encoder beside the linkage, in one recording");
-  command.add_option("--run", request.run, "Another number gives other noise")
+                   "Record the grid encoder too, in the same recording");
+  command.add_option("--run", request.run, "Number of the run; each has its own noise")
       ->capture_default_str();
 }
 

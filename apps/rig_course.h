@@ -1,9 +1,9 @@
-// `abbe rig --course`, `abbe rig record --course`: which path the machine under the linkage runs,
-// from the command line.
+// The course of `abbe rig --course` and `abbe rig record --course` from the command line: the
+// path of the machine under the linkage.
 //
-// A course is the name of a standard one or a file that paths/nominal_path.h reads. Without a centre
-// it lies in the middle of the travels. Failure: InputError in one line for an unknown course, a
-// size that does not fit it, a place beyond a travel or out of the linkage's reach.
+// A course is the name of a standard one or a file for paths/nominal_path.h. Its default centre is
+// the middle of the travels. Failure: InputError in one line for an unknown course, a wrong size, a
+// position outside a travel or out of the reach of the linkage.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -25,11 +25,11 @@ struct CourseRequest {
   int passes = 1;
   std::string kind = "linkage";
   bool reference = false;
-  double cap_force_n = 0.0;  // 0: that of the machine file
+  double cap_force_n = 0.0;  // N; 0: that of the machine file
   std::uint64_t run = 1;
 };
 
-// What describes the path, and what a recording of it holds.
+// The options of the path, and those of its recording.
 void AddCourseOptions(CLI::App& command, CourseRequest& request);
 void AddRecordingOptions(CLI::App& command, CourseRequest& request);
 

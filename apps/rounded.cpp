@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMost = 9;  // decimals
 
-// Of 0.0996, which rounds to 0.10, two and not three.
+// 0.0996 rounds to 0.10: two decimals, not three.
 int DecimalsOf(double U, int fallback) {
   if (!(U > 0.0) || !std::isfinite(U)) return fallback;
   const double rounded = std::stod(fmt::format("{:.1e}", U));

@@ -1,5 +1,5 @@
-// abbe sensitivity: Monte Carlo of an instrument: the head's published simulations by name, the
-// linkage by its machine file.
+// abbe sensitivity: Monte Carlo of an instrument: the published simulations of the head by
+// name, or the linkage of a machine file.
 #include <fmt/format.h>
 
 #include <array>
@@ -38,7 +38,7 @@ struct NamedInversion {
 constexpr std::array<NamedInversion, 3> kInversions{{
     {Inversion::kSimplified, "components", "simplified inversion, nominal layout"},
     {Inversion::kExact, "exact", "exact inversion, nominal layout"},
-    {Inversion::kCalibrated, "calibrated", "exact inversion, layout as it really stands"},
+    {Inversion::kCalibrated, "calibrated", "exact inversion, true layout"},
 }};
 
 nlohmann::ordered_json ToJson(const SimulationErrors& errors) {
@@ -79,7 +79,7 @@ int RunSensitivity(SensitivityOptions options) {
     result[named.key] = ToJson(errors);
   }
   if (options.run.simulation == probes::Simulation::kOne) {
-    fmt::print("\nThe published translation is that of one run of 61 draws.\n");
+    fmt::print("\nThe published translation is from a single run of 61 draws.\n");
   }
   if (!options.json.empty()) WriteResult(result, options.json);
   return kDone;
@@ -92,7 +92,7 @@ void AddLinkageOptions(CLI::App& command, CLI::Option* linkage,
       ->expected(3)
       ->capture_default_str()
       ->needs(linkage);
-  command.add_option("--centre", options.centre_mm, "Its centre in the machine, mm")
+  command.add_option("--centre", options.centre_mm, "Centre of the volume in the machine, mm")
       ->expected(3)
       ->capture_default_str()
       ->needs(linkage);
@@ -100,7 +100,9 @@ void AddLinkageOptions(CLI::App& command, CLI::Option* linkage,
       ->check(CLI::Range(1, 50))
       ->capture_default_str()
       ->needs(linkage);
-  command.add_option("--warmth", options.warmth_c, "Links warmer than their reference by, degC")
+  command
+      .add_option("--warmth", options.warmth_c,
+                  "Temperature of the links above their reference, degC")
       ->capture_default_str()
       ->needs(linkage);
   command
@@ -129,10 +131,11 @@ void AddSensitivity(CLI::App& program, int& exit_code) {
   auto* instrument = command->add_option_group("instrument")->require_option(1);
   instrument
       ->add_option("--simulation", options->simulation,
-                   "Of the head. I: the inversion alone; II: also a head out of place")
+                   "Simulation of the head. I: the inversion only; II: also a misplaced head")
       ->check(CLI::IsMember({"I", "II"}));
-  auto* linkage = instrument->add_option("--linkage", options->linkage.machine,
-                                         "Of the linkage in this machine file: tolerances to tip");
+  auto* linkage =
+      instrument->add_option("--linkage", options->linkage.machine,
+                             "Linkage of this machine file: from tolerances to the tip");
   AddLinkageOptions(*command, linkage, options->linkage);
   command->add_option("--draws", options->draws, "Number of draws (head 20000, linkage 2048)")
       ->check(CLI::Range(1, 1'000'000'000));

@@ -27,13 +27,13 @@ nlohmann::ordered_json ToJson(const relm::ParameterSensitivity& parameter) {
       {"total", parameter.share.total}, {"total_uncertainty", parameter.share.total_uncertainty}};
 }
 
-// "12.34 +-0.56", in percent; no minus before a zero.
+// "12.34 +-0.56", in percent; no minus sign before a zero.
 std::string Share(double value, double uncertainty) {
   const double percent = std::round(1e4 * value) / 100 + 0.0;
   return fmt::format("{:.2f} +-{:4.2f}", percent, 100 * uncertainty);
 }
 
-// The largest first.
+// Sorted, largest first.
 void Print(const relm::LinkageSensitivity& result) {
   auto parameters = result.parameters;
   std::stable_sort(parameters.begin(), parameters.end(),

@@ -1,4 +1,4 @@
-// The linkage's half of abbe sensitivity.
+// abbe sensitivity for the linkage.
 #pragma once
 
 #include <filesystem>

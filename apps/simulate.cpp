@@ -1,4 +1,4 @@
-// abbe simulate: what a machine with the errors of a map makes of a test piece.
+// abbe simulate: the figures of a test piece made on a machine with the errors of a map.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -90,7 +90,7 @@ int Simulate(const SimulateCommand& options) {
 void AddSimulate(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<SimulateCommand>();
   CLI::App* command = program.add_subcommand(
-      "simulate", "What a machine with the errors of a map makes of a test piece");
+      "simulate", "Figures of a test piece made on a machine with the errors of a map");
   options->map.AddTo(*command);
   command
       ->add_option("--test", options->test,
@@ -99,13 +99,14 @@ void AddSimulate(CLI::App& program, int& exit_code) {
   command->add_option("--path", options->path, "freeform: a table with x_mm, y_mm, z_mm");
   command
       ->add_option("--radius-mm", options->radius_mm,
-                   "Of the circle and the cylinder, half the square's side (0.39 of a travel)")
+                   "Radius of circle and cylinder, half the side of the square (0.39 of a travel)")
       ->check(CLI::PositiveNumber);
   AddPathCauses(*command, options->causes, options->feed_mm_min);
   command->add_flag("--corrected", options->corrected,
-                    "Also what remains when the map corrects: the map's own uncertainty");
-  command->add_option("--draws", options->draws, "Machines drawn for that (200)");
-  command->add_option("--seed", options->seed, "Of the draws (1)");
+                    "Also the figures after correction by the map: its own uncertainty");
+  command->add_option("--draws", options->draws,
+                      "With --corrected: number of drawn machines (200)");
+  command->add_option("--seed", options->seed, "Seed of the draws (1)");
   command->add_option("--json", options->json, "The figures as data");
   command->add_flag("--quiet", options->quiet, "Print nothing but warnings");
   command->footer("Example: abbe simulate out/map.toml --test circle --corrected");

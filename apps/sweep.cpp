@@ -1,5 +1,5 @@
-// `abbe sweep`: measures one axis with the head, records every row, reduces, prints and writes the
-// result.
+// `abbe sweep`: measures one axis with the head, records every row, and
+// reduces, prints and writes the result.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -25,7 +25,7 @@
 namespace abbe::apps {
 namespace {
 
-constexpr int kFirstReadings = 50;  // that are judged before anything moves
+constexpr int kFirstReadings = 50;  // checked before anything moves
 
 struct SweepCommand {
   std::string axis;
@@ -76,9 +76,9 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
                          const hal::SweepPlan& plan, const std::filesystem::path& path) {
   hal::SteadyClock clock(options.clock_speed);
   const bool operator_asks = options.prompt;
-  bool opened = false;  // what fails before that is thrown
+  bool opened = false;  // an earlier failure is thrown
   hal::DevicesSettings wanted = file.devices;
-  wanted.canopen.clear();  // the linkage does not hang on the machine while the head does
+  wanted.canopen.clear();  // the linkage is not mounted together with the head
   const hal::OpenedDevices devices =
       hal::OpenDevices(wanted, clock, hal::Presence::kRequired, [&](const std::string& line) {
         if (opened) fmt::print(stderr, "abbe: {}\n", line);
@@ -116,11 +116,11 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
   return hal::RecordSweep(source, plan, clock, *writer, sweep);
 }
 
-// What ended the sweep before its last visit, with what to do; the recording is kept in any case.
+// Reports why the sweep ended early and what to do; the recording is kept in any case.
 void RefuseUnfinished(const hal::SweepOutcome& outcome, const std::filesystem::path& path) {
   if (outcome.end == hal::SweepEnd::kComplete) return;
-  const std::string kept = fmt::format(
-      "{} rows are kept in {}; `abbe reduce` evaluates what is there", outcome.rows, path.string());
+  const std::string kept = fmt::format("{} rows are kept in {}; `abbe reduce` evaluates them",
+                                       outcome.rows, path.string());
   if (outcome.end == hal::SweepEnd::kStopped) {
     throw DeviceError(fmt::format("interrupted after {:.0f} s: {}", outcome.seconds, kept));
   }
@@ -195,7 +195,7 @@ void AddSweep(CLI::App& program, int& exit_code) {
   command->add_flag("--prompt", options->prompt, "ask the operator to move to each station");
   command
       ->add_option("--clock-speed", options->clock_speed,
-                   "for a virtual machine that runs this much faster")
+                   "for a virtual machine that runs faster by this factor")
       ->check(CLI::PositiveNumber);
   command->add_flag("--quiet", options->quiet, "print nothing but problems");
   command->footer("Example: abbe sweep --axis X --machine mill.toml --out measured");

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// m. The last step leaves the change times the slope of the error, 1e-3 and less: 1e-15.
+// m: the change in a step. The rest is the change times the slope of the error (<= 1e-3): 1e-15.
 constexpr double kSettled = 1e-12;
 constexpr int kMostSteps = 50;
 
@@ -40,9 +40,9 @@ Vector3d Corrector::InTravels(const Vector3d& position) const {
     const machine::Travel& limit = limits_[static_cast<std::size_t>(axis)];
     if (!(position[axis] >= limit.first && position[axis] <= limit.last)) {
       throw InputError(fmt::format(
-          "{0} = {1:.9g} mm lies beyond the soft limits, {2:.9g} to {3:.9g} mm; keep away from the "
-          "end of the travel, or state the control's own as limit_mm in [axis.{0}] of the machine "
-          "file",
+          "{0} = {1:.9g} mm is beyond the soft limits, {2:.9g} to {3:.9g} mm; keep away from the "
+          "end of the travel, or state the limits of the control as limit_mm in [axis.{0}] of the "
+          "machine file",
           "XYZ"[axis], 1e3 * position[axis], 1e3 * limit.first, 1e3 * limit.last));
     }
     inside[axis] = std::clamp(position[axis], travel.first, travel.last);

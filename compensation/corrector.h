@@ -1,27 +1,26 @@
-// What to command so that the tool gets where it should, and where it was when it was commanded
-// somewhere.
+// The correction of positions by an error map: the command that brings the tool to a wanted
+// position, and the position that a command produces.
 //
 //   const Corrector corrector(map, p_TQ);
 //   const Eigen::Vector3d command = corrector.Command(wanted);
 //   corrector.Made(command) == wanted                               // to rounding
 //
-// Frames: positions are axis positions [X Y Z] as commanded and read off the scales. What holds is
-// the place of the tool in the workpiece: `wanted` is where the axes of a perfect machine would
-// stand for it. An axis that carries the workpiece moves the tool the other way, so its correction
-// has the other sign (ToolSense, machine/chain.h):
+// Frames: positions are axis positions [X Y Z] as commanded and read from the scales; a position of
+// the tool in the workpiece is given by the axis positions of a perfect machine for it. The error E
+// is in W, so the correction of an axis has the sign of its ToolSense (machine/chain.h):
 //
 //   Made(c) = c + S E(c)        Command(d): c = d - S E(c), by fixed point      S = diag(signs)
 //
-// KeepZero(z): a zero that was touched off with the tool at the axis positions z already stands
-// where the tool was, S E(z) from where the axes say; S E(z) is taken off everywhere, so that
-// Command(z) = z and all else is corrected against that place.
-// At the ends of the travels a command may lie a little beyond, as far as the soft limits; the
-// errors there are taken as those at the end.
+// KeepZero(z): a zero that was touched off at the axis positions z already contains the error of
+// the tool there, S E(z). It is subtracted everywhere, so that Command(z) = z and all other
+// positions are corrected relative to it.
+// A command may exceed the travels as far as the soft limits; the errors there are those at the end
+// of the travel.
 //
-// Units: m. Failure: InputError where `wanted` lies outside the travels, or a position or the
-// command that is needed beyond the soft limits; NumericalError for a map whose errors grow as fast
-// as the position, which has no inverse. Source: Ha and Khanh (2011) take the first step of the
-// iteration, X - E(X); it leaves the error times its slope, 0.01 um for 100 um that grow by 100
+// Units: m. Failure: InputError when `wanted` is outside the travels, or a position or the
+// command is beyond the soft limits; NumericalError for a map whose errors grow as fast as the
+// position, which has no inverse. Source: Ha and Khanh (2011) take the first step of the
+// iteration, X - E(X); it neglects the error times its slope, 0.01 um for 100 um that grow by 100
 // um/m. Validity: slopes of the error well below 1.
 #pragma once
 
@@ -55,7 +54,7 @@ class Corrector {
   Eigen::Vector3d Offset(const Eigen::Vector3d& position) const {
     return signs_.cwiseProduct(field_.Error(InTravels(position), p_TQ_)) - at_zero_;
   }
-  // The position, or the end of a travel that it lies a little beyond.
+  // The position, or the end of the travel if it is between there and the soft limit.
   Eigen::Vector3d InTravels(const Eigen::Vector3d& position) const;
 
   machine::VolumetricField field_;
@@ -64,9 +63,12 @@ class Corrector {
   Eigen::Vector3d p_TQ_, signs_, at_zero_ = Eigen::Vector3d::Zero();
 };
 
-// The length over which a straight line of commands between two corrected points strays from the
-// corrected line by at most `tolerance`, m: sqrt(8 tolerance / curvature), with the largest
-// curvature of the correction along the axes and the diagonals of the volume.
+// The length of a straight line of commands between two corrected points that deviates from the
+// corrected line by at most `tolerance`, m:
+//
+//   length = sqrt(8 tolerance / curvature)
+//
+// with the largest curvature of the correction along the axes and the diagonals of the volume.
 double LineLength(const Corrector& corrector, const machine::VolumetricModel& model,
                   double tolerance);
 

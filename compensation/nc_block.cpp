@@ -58,9 +58,9 @@ void ReadBlock(std::string_view line, std::size_t line_number, std::vector<NcWor
     double value = 0.0;
     const auto [end, error] = std::from_chars(line.data() + begin + sign, line.data() + line.size(),
                                               value, std::chars_format::fixed);
-    if (error != std::errc() || !std::isfinite(value)) {  // "Xnan" and "Xinf" are numbers to it
+    if (error != std::errc() || !std::isfinite(value)) {  // from_chars accepts "nan" and "inf"
       RefuseLine(line_number,
-                 fmt::format("\"{}\" is no letter with a number", line.substr(at, 10)));
+                 fmt::format("\"{}\" is not a letter with a number", line.substr(at, 10)));
     }
     const auto stop = static_cast<std::size_t>(end - line.data());
     words.push_back({letter, value, line.substr(at, stop - at)});

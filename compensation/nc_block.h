@@ -3,8 +3,8 @@
 //   N20 G1 X10.5 F100 (down)    ->  N 20, G 1, X 10.5, F 100, comment "(down)"
 //
 // Numbers are as written, in the program's units, and finite. Failure: InputError with the line for
-// what is no word: parameters, expressions, O words, the block-delete slash, a comment without end.
-// Validity: blocks of letter-number words; nothing here knows what a word means.
+// other syntax: parameters, expressions, O words, the block-delete slash, a comment without end.
+// Validity: blocks of letter-number words; the meaning of the words is not checked here.
 #pragma once
 
 #include <string>
@@ -14,19 +14,19 @@
 namespace abbe::compensation {
 
 struct NcWord {
-  char letter;            // upper case; '(' for a comment, up to and with its end
-  double value;           // of a comment 0
+  char letter;            // upper case; '(' for a comment
+  double value;           // 0 for a comment
   std::string_view text;  // as written
 };
 
-// Fills `words`, which keeps its memory from line to line. "%" alone is a block without words.
+// Fills `words`, whose memory is reused from line to line. "%" alone is a block without words.
 void ReadBlock(std::string_view line, std::size_t line_number, std::vector<NcWord>& words);
 
-// Ten times the code of a G or M word, which has one decimal at most: 901 of G90.1; -1 for what is
-// no such code.
+// Ten times the code of a G or M word, which has at most one decimal: 901 for G90.1; -1 if it is
+// not such a code.
 int CodeTimes10(const NcWord& word);
 
-// "line 12: what; advice" as a failure.
+// Throws InputError "line 12: what".
 [[noreturn]] void RefuseLine(std::size_t line_number, const std::string& what);
 
 }  // namespace abbe::compensation

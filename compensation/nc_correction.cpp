@@ -37,7 +37,7 @@ bool IsKnownM(int code_times_10) {
           code_times_10 == 490 || code_times_10 == 600);
 }
 
-// Words that a corrected move is written without: its own.
+// Words that the corrected move replaces.
 bool IsOfMove(const NcWord& word) {
   return (word.letter >= 'X' && word.letter <= 'Z') || (word.letter >= 'I' && word.letter <= 'K') ||
          word.letter == 'R' || IsMotionWord(word);
@@ -55,20 +55,21 @@ std::string_view WhyNot(int code_times_10) {
     case 431:
     case 432:
       return "a tool length offset changes the tool vector; program the tool point and give its "
-             "place with --tool";
+             "position with --tool";
     case 930:
       return "inverse time feed depends on the length of the line, which is split; use G94";
     default:
-      return "it cannot be corrected; take it out or replace it";
+      return "it cannot be corrected; remove or replace it";
   }
 }
 
-// Between words, not at the start of a line.
+// A blank between words, none at the start of a line.
 void AppendBlank(std::string& out) {
   if (!out.empty() && out.back() != '\n') out += ' ';
 }
 
-// `units` of 10^-decimals, e.g. 12500000 with 6 decimals as "12.5". From the last digit on.
+// `units` of 10^-decimals, e.g. 12500000 with 6 decimals as "12.5". Written from the last digit
+// backwards.
 void AppendFixed(std::int64_t units, int decimals, std::string& out) {
   std::array<char, 32> text;
   char* const end = text.data() + text.size();
@@ -108,7 +109,7 @@ NcCorrection::NcCorrection(const Corrector& corrector, const NcOptions& options)
   is_known_.fill(true);
 }
 
-void NcCorrection::TakeG(const NcWord& word, Asked& asked) {
+void NcCorrection::TakeG(const NcWord& word, Block& block) {
   const int code = CodeTimes10(word);
   switch (code) {
     case 0:
@@ -121,7 +122,7 @@ void NcCorrection::TakeG(const NcWord& word, Asked& asked) {
       motion_ = -1;
       return;
     case 40:
-      asked.dwells = true;
+      block.dwells = true;
       return;
     case 170:
     case 180:
@@ -156,27 +157,27 @@ void NcCorrection::TakeG(const NcWord& word, Asked& asked) {
   }
 }
 
-NcCorrection::Asked NcCorrection::Understand() {
-  Asked asked;
+NcCorrection::Block NcCorrection::Understand() {
+  Block block;
   bool has_tolerance = false;
   for (const NcWord& word : words_) {
     switch (word.letter) {
       case 'X':
       case 'Y':
       case 'Z':
-        if (asked.axes[word.letter - 'X']) RefuseLine(counts_.lines, "an axis stands twice");
-        asked.axes[word.letter - 'X'] = word.value;
+        if (block.axes[word.letter - 'X']) RefuseLine(counts_.lines, "an axis is given twice");
+        block.axes[word.letter - 'X'] = word.value;
         break;
       case 'I':
       case 'J':
       case 'K':
-        asked.centre[word.letter - 'I'] = word.value;
+        block.centre[word.letter - 'I'] = word.value;
         break;
       case 'R':
-        asked.radius = word.value;
+        block.radius = word.value;
         break;
       case 'P':
-        asked.has_p = true;
+        block.has_p = true;
         break;
       case '(':
       case 'N':
@@ -186,74 +187,72 @@ NcCorrection::Asked NcCorrection::Understand() {
         break;
       case 'G':
         has_tolerance = has_tolerance || CodeTimes10(word) == 640;
-        TakeG(word, asked);
+        TakeG(word, block);
         break;
       case 'M':
         if (!IsKnownM(CodeTimes10(word))) {
-          RefuseLine(counts_.lines,
-                     fmt::format("{} is not supported: what it does to the machine is "
-                                 "not known; take it out",
-                                 word.text));
+          RefuseLine(counts_.lines, fmt::format("{} is not supported: its effect on the machine is "
+                                                "unknown; remove it",
+                                                word.text));
         }
         break;
       default:
-        RefuseLine(counts_.lines,
-                   fmt::format("{} is not supported: it cannot be corrected; take it "
-                               "out",
-                               word.text));
+        RefuseLine(counts_.lines, fmt::format("{} is not supported: it cannot be corrected; "
+                                              "remove it",
+                                              word.text));
     }
   }
   const auto has_any = [](const auto& values) {
     return std::any_of(values.begin(), values.end(), [](const auto& v) { return v.has_value(); });
   };
-  asked.is_move = has_any(asked.axes) || (motion_ >= 2 && has_any(asked.centre));
-  if (asked.has_p && !asked.dwells && !has_tolerance)
+  block.is_move = has_any(block.axes) || (motion_ >= 2 && has_any(block.centre));
+  if (block.has_p && !block.dwells && !has_tolerance)
     RefuseLine(counts_.lines, "P is not supported here");
-  RefuseLooseWords(asked);
-  return asked;
+  RefuseLooseWords(block);
+  return block;
 }
 
-void NcCorrection::RefuseLooseWords(const Asked& asked) {
-  const bool has_centre = asked.centre[0] || asked.centre[1] || asked.centre[2];
-  if (asked.is_move && asked.dwells) RefuseLine(counts_.lines, "a dwell together with a move");
-  if (asked.is_move && motion_ < 0) {
+void NcCorrection::RefuseLooseWords(const Block& block) {
+  const bool has_centre = block.centre[0] || block.centre[1] || block.centre[2];
+  if (block.is_move && block.dwells) RefuseLine(counts_.lines, "a dwell together with a move");
+  if (block.is_move && motion_ < 0) {
     RefuseLine(counts_.lines, "axis words without G0, G1, G2 or G3 in force");
   }
-  if ((has_centre || asked.radius) && (motion_ < 2 || !asked.is_move)) {
+  if ((has_centre || block.radius) && (motion_ < 2 || !block.is_move)) {
     RefuseLine(counts_.lines, "I, J, K and R belong to an arc");
   }
 }
 
-Vector3d NcCorrection::Target(const Asked& asked) {
+Vector3d NcCorrection::Target(const Block& block) {
   const double unit = is_inch_ ? kInch : kMillimetre;
   Vector3d target = place_;
   for (int k = 0; k < 3; ++k) {
     const auto at = static_cast<std::size_t>(k);
-    if (!asked.axes[at]) continue;
-    target[k] = unit * *asked.axes[at] + (is_relative_ ? place_[k] : 0.0);
+    if (!block.axes[at]) continue;
+    target[k] = unit * *block.axes[at] + (is_relative_ ? place_[k] : 0.0);
     if (!is_relative_) is_known_[at] = true;
   }
   return target;
 }
 
-Arc NcCorrection::ArcOf(const Asked& asked) const {
+Arc NcCorrection::ArcOf(const Block& block) const {
   const double unit = is_inch_ ? kInch : kMillimetre;
   Arc arc{plane_, motion_ == 2, place_, {}};
   const auto [u, v, w] = AxesOfPlane(plane_);
-  if (asked.centre[static_cast<std::size_t>(w)]) {
+  if (block.centre[static_cast<std::size_t>(w)]) {
     RefuseLine(counts_.lines, fmt::format("{} does not belong to an arc in G{}", "IJK"[w], plane_));
   }
   const bool has_centre =
-      asked.centre[static_cast<std::size_t>(u)] || asked.centre[static_cast<std::size_t>(v)];
-  if (has_centre == asked.radius.has_value()) {
-    RefuseLine(counts_.lines, "an arc takes I, J, K or R, and one of both");
+      block.centre[static_cast<std::size_t>(u)] || block.centre[static_cast<std::size_t>(v)];
+  if (has_centre == block.radius.has_value()) {
+    RefuseLine(counts_.lines, "an arc takes either I, J, K or R");
   }
-  if (asked.radius) {
-    arc.radius = unit * *asked.radius;
+  if (block.radius) {
+    arc.radius = unit * *block.radius;
     return arc;
   }
   for (const int k : {u, v}) {
-    const auto& given = asked.centre[static_cast<std::size_t>(k)];
+    const auto& given = block.centre[static_cast<std::size_t>(k)];
     if (centre_is_absolute_ && !given) {
       RefuseLine(counts_.lines, "an arc in G90.1 takes both coordinates of its centre");
     }
@@ -266,9 +265,9 @@ void NcCorrection::MustReach(const Vector3d& wanted) const {
   static_cast<void>(corrector_.Command(wanted + options_.work_offset));
 }
 
-// Ends and extremes are looked at before a path is divided: a slip of a unit would be a thousand
-// times as many points.
-void NcCorrection::Divide(const Asked& asked, const Vector3d& target) {
+// Ends and extremes are checked before a path is divided: a wrong unit would
+// make a thousand times as many points.
+void NcCorrection::Divide(const Block& block, const Vector3d& target) {
   points_.clear();
   if (motion_ == 0) {
     points_.push_back(target);
@@ -276,7 +275,7 @@ void NcCorrection::Divide(const Asked& asked, const Vector3d& target) {
     if (!((target - place_).norm() <= options_.limits.length)) MustReach(target);
     AddLine(place_, target, options_.limits, counts_.lines, points_);
   } else {
-    const Arc arc = ArcOf(asked);
+    const Arc arc = ArcOf(block);
     for (const Vector3d& point : Extremes(place_, target, arc, counts_.lines)) MustReach(point);
     AddArc(place_, target, arc, options_.limits, counts_.lines, points_);
   }
@@ -311,17 +310,17 @@ void NcCorrection::WritePoint(const Vector3d& wanted, std::string& out) {
   ++counts_.corrected;
 }
 
-void NcCorrection::Move(const Asked& asked, std::string& out) {
+void NcCorrection::Move(const Block& block, std::string& out) {
   const bool was_known = is_known_[0] && is_known_[1] && is_known_[2];
-  const Vector3d target = Target(asked);
+  const Vector3d target = Target(block);
   const bool is_known = is_known_[0] && is_known_[1] && is_known_[2];
   if (!is_known || (!was_known && motion_ != 0)) {
     RefuseLine(counts_.lines,
-               "moves while it is not known where the machine stands; begin with G0 to "
+               "moves while the position of the machine is unknown; begin with G0 to "
                "X, Y and Z in G90, or give the start with --start x,y,z");
   }
   Assume();
-  Divide(asked, target);
+  Divide(block, target);
   place_ = target;
   for (const NcWord& word : words_) {
     if (IsOfMove(word) || IsStop(word) || word.text.starts_with(';')) continue;
@@ -335,7 +334,7 @@ void NcCorrection::Move(const Asked& asked, std::string& out) {
     motion_out_ = motion;
   }
   for (const Vector3d& point : points_) WritePoint(point, out);
-  out.pop_back();  // what acts after the move, and what ends the line
+  out.pop_back();  // words that act after the move, and the end of the line
   for (const NcWord& word : words_) {
     if (!IsStop(word) && !word.text.starts_with(';')) continue;
     out += ' ';
@@ -349,8 +348,8 @@ void NcCorrection::Finish() const {
   if (is_open_ && !counts_.has_end) {
     RefuseLine(
         counts_.lines,
-        "the program begins with % and ends with neither %, M2 nor M30: it was cut; fetch it "
-        "whole");
+        "the program begins with % and ends with neither %, M2 nor M30: it is truncated; fetch "
+        "it again");
   }
 }
 
@@ -362,8 +361,8 @@ void NcCorrection::Take(std::string_view line, std::string& out) {
   if (is_percent && counts_.lines == 1) is_open_ = true;
   const bool is_last = std::any_of(words_.begin(), words_.end(), IsProgramEnd);
   counts_.has_end = counts_.has_end || is_last || (is_percent && counts_.lines > 1);
-  const Asked asked = Understand();
-  if (!asked.is_move) {
+  const Block block = Understand();
+  if (!block.is_move) {
     for (const NcWord& word : words_) {
       if (IsMotionWord(word)) motion_out_ = CodeTimes10(word) / 10;
       if (word.letter == 'G' && CodeTimes10(word) == 800) motion_out_ = -1;
@@ -372,7 +371,7 @@ void NcCorrection::Take(std::string_view line, std::string& out) {
     return;
   }
   try {
-    Move(asked, out);
+    Move(block, out);
   } catch (const InputError& failure) {
     const std::string_view what = failure.what();
     if (what.starts_with("line ")) throw;

@@ -14,20 +14,20 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// By how much the two ends of an arc may differ in radius: as LinuxCNC allows for millimetres.
+// Allowed difference in radius of the two ends of an arc, as in LinuxCNC for millimetres.
 constexpr double kRadiusAbsolute = 0.5e-6, kRadiusRelative = 1e-3;
 
-// m: an arc of this radius leaves its chord by 1 um over 3 m.
+// m: such an arc deviates from its chord by 1 um over 3 m.
 constexpr double kLargestRadius = 1e6;
 
 Vector2d CentreOfRadius(const Vector2d& a, const Vector2d& b, double radius, bool is_clockwise,
                         std::size_t line_number) {
   const Vector2d chord = b - a;
   const double half = chord.norm() / 2;
-  if (half == 0.0) RefuseLine(line_number, "an arc with R whose ends are one; give I, J or K");
+  if (half == 0.0) RefuseLine(line_number, "an arc with R and equal ends; give I, J or K");
   double height_square = radius * radius - half * half;
   if (height_square < 0.0) {
-    // Ends that rounding has put a little beyond the diameter.
+    // The ends may be beyond the diameter by rounding.
     if (half - std::abs(radius) > kRadiusAbsolute + kRadiusRelative * half) {
       RefuseLine(line_number,
                  fmt::format("R {:.6g} mm cannot reach over {:.6g} mm", 1e3 * radius, 2e3 * half));
@@ -49,7 +49,7 @@ int Count(double pieces, std::size_t line_number) {
   return std::max(1, static_cast<int>(std::ceil(pieces - 1e-9)));
 }
 
-// An arc, or the spiral between ends that differ a little in radius, with its rise.
+// An arc, or the spiral between ends of slightly different radius, with its rise.
 struct Course {
   int u, v, w;
   Vector2d centre;

@@ -59,7 +59,8 @@ PerformanceTest MakeTest(std::string_view name, const map::ErrorMap& map, const 
   for (const auto& [known, make] : kTests) {
     if (known == name) return make(volume, size);
   }
-  throw InputError(fmt::format("\"{}\" is no test; write {}", name, fmt::join(TestNames(), ", ")));
+  throw InputError(
+      fmt::format("\"{}\" is not a test; write {}", name, fmt::join(TestNames(), ", ")));
 }
 
 Matrix3Xd MadeBy(const machine::VolumetricModel& machine, const Vector3d& p_TQ,
@@ -74,8 +75,8 @@ std::vector<Figure> AfterCorrection(const map::ErrorMap& map, const Vector3d& p_
                                     const PerformanceTest& test, int draws, std::uint64_t seed) {
   if (!map.StatesUncertainty()) {
     throw InputError(
-        "this map states no uncertainty, and that is what remains after a correction; "
-        "fuse the runs anew for one that does");
+        "this map has no uncertainty, which determines the error after correction; "
+        "fuse the runs again to get one");
   }
   if (draws < 20) throw InputError(fmt::format("{} draws: give 20 or more", draws));
   const Corrector corrector(map, p_TQ);

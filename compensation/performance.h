@@ -1,5 +1,5 @@
-// Performance simulation: what a machine with these errors makes of a test piece, with the figures
-// of the standards, and what it makes of it when its map corrects it.
+// Performance simulation: the figures of the standards for a test piece made on a machine with the
+// errors of a map, and on the same machine after correction by the map.
 //
 //   const PerformanceTest test = MakeTest("circle", map, {});
 //   const std::vector<Figure> as_is = test.evaluate(MadeBy(map.model(), p_TQ, test.wanted));
@@ -11,8 +11,8 @@
 //   square     in XY, YZ, ZX: straightness of the worst side and squareness of the worst corner,
 //              ISO 230-1, least-squares lines
 //   cylinder   along Z: cylindricity, mean diameter, tilt of the axis
-//   diagonals  ISO 230-6 E_d and B_d (0: a map knows no reversal)
-//   freeform   the points given: largest and rms distance from where they should be
+//   diagonals  ISO 230-6 E_d and B_d (0: a map has no backlash)
+//   freeform   the given points: largest and rms distance from their nominal positions
 // Frames: axis positions; made = Corrector::Made. Units: figures in m or rad, `unit` prints them.
 // Failure: InputError for an unknown test, a piece larger than the travels, a freeform point
 // outside.
@@ -49,14 +49,16 @@ struct TestSize {
 };
 
 std::vector<std::string_view> TestNames();
+// The test of this name, of TestNames().
 PerformanceTest MakeTest(std::string_view name, const map::ErrorMap& map, const TestSize& size);
 
+// The positions, 3 x n, that the machine makes of the commands.
 Eigen::Matrix3Xd MadeBy(const machine::VolumetricModel& machine, const Eigen::Vector3d& p_TQ,
                         const Eigen::Matrix3Xd& commands);
 
-// The figures that remain when the map corrects the commands and the machine differs from the map
-// as its covariance says: of each figure the value whose size 95 % of `draws` drawn machines stay
-// below. InputError for a map that states no uncertainty.
+// The figures after correction, when the machine differs from the map according to its covariance:
+// for each figure the bound of the absolute value that 95 % of `draws` drawn machines do not
+// exceed. InputError for a map without uncertainty.
 std::vector<Figure> AfterCorrection(const map::ErrorMap& map, const Eigen::Vector3d& p_TQ,
                                     const PerformanceTest& test, int draws, std::uint64_t seed);
 

@@ -71,7 +71,7 @@ double RadiusOf(const Volume& volume, const TestSize& size) {
   return radius;
 }
 
-// The coordinates k of `count` points from `first` on, from `origin`.
+// Coordinate k of `count` points from `first` on, relative to `origin`.
 std::vector<double> Coordinates(const Matrix3Xd& made, Index first, Index count, int k,
                                 double origin) {
   std::vector<double> values;
@@ -142,7 +142,7 @@ PerformanceTest Circles(const Volume& volume, const TestSize& size) {
 
 PerformanceTest Squares(const Volume& volume, const TestSize& size) {
   const double half = RadiusOf(volume, size);
-  std::vector<Span> spans;  // of each plane: along u at -v and +v, along v at -u and +u
+  std::vector<Span> spans;  // for each plane: along u at -v and +v, along v at -u and +u
   for (const auto& [name, u, v] : kPlanes) {
     const Vector3d a = half * Vector3d::Unit(u), b = half * Vector3d::Unit(v);
     for (const double side : {-1.0, 1.0}) {

@@ -1,7 +1,7 @@
-// The test pieces of a performance simulation (performance.h): the places that each asks for and
-// the figures of what was made.
+// The test pieces of a performance simulation (performance.h): their nominal positions
+// and the figures of the positions made.
 //
-// To add one: a maker here, in a file of its own where it is long, and a line in performance.cpp.
+// To add one: a maker here, in a file of its own if it is long, and a line in performance.cpp.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@
 
 namespace abbe::compensation {
 
-// The box that pieces may use: middle -+ half.
+// The box available to test pieces: middle -+ half.
 struct Volume {
   Eigen::Vector3d middle, half;  // m
 };

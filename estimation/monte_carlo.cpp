@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kFewestBlocks = 10.0;
 
-// The four figures that have to settle.
+// Mean, standard uncertainty, low and high: the figures that have to be stable.
 using Figures = std::array<double, 4>;
 
 Figures FiguresOf(const MonteCarloOutput& output) {

@@ -36,7 +36,7 @@ class NormalEquations {
     for (double& s : scale_) s = s > 0.0 ? 1.0 / std::sqrt(s) : 0.0;
     scaled_ = scale_.asDiagonal() * scaled_ * scale_.asDiagonal();
     const Eigen::LLT<MatrixXd> factor(scaled_);
-    if (EveryDirectionStandsOut(factor)) {
+    if (HasFullRank(factor)) {
       undamped_ = Solved(factor);
     } else {
       Decompose();
@@ -109,7 +109,7 @@ std::string PullsMost(const Problem& problem, const Linearization& at, const Vec
   return name;
 }
 
-VectorXd Moved(const Layout& layout, VectorXd x, const VectorXd& step) {
+VectorXd AddStep(const Layout& layout, VectorXd x, const VectorXd& step) {
   for (Index c = 0; c < step.size(); ++c) {
     x[layout.entry_of_column[static_cast<std::size_t>(c)]] += step[c];
   }
@@ -124,7 +124,7 @@ double Excess(const Source& source, const SourceSums& sums) {
 
 // The largest step that counts as converged. Where the rows scatter beyond their stated noise, the
 // standard uncertainties are too small a scale, and a robust loss approaches its minimum slowly.
-double Short(const Problem& problem, const Linearization& at, double settled) {
+double ConvergedLength(const Problem& problem, const Linearization& at, double settled) {
   constexpr double kMostExcess = 10.0;
   double chi_square = 0.0, rows = 0.0;
   for (std::size_t s = 0; s < at.sources.size(); ++s) {
@@ -154,8 +154,9 @@ std::string Advice(const Problem& problem, const Linearization& at) {
       problem.sources()[worst].name, most);
 }
 
-[[noreturn]] void RefuseUnsettled(const Problem& problem, const Layout& layout,
-                                  const Linearization& at, int passes, const std::string& trouble) {
+[[noreturn]] void RefuseUnconverged(const Problem& problem, const Layout& layout,
+                                    const Linearization& at, int passes,
+                                    const std::string& trouble) {
   const NormalEquations equations(at);
   throw NumericalError(fmt::format(
       "the fit did not converge in {} passes: the next step is {:.2g} standard uncertainties long, "
@@ -167,26 +168,27 @@ std::string Advice(const Problem& problem, const Linearization& at) {
 
 }  // namespace
 
-Settled SettleByPasses(const Problem& problem, const Layout& layout, const SolveOptions& options,
-                       VectorXd x, Linearization at) {
-  Settled now{std::move(x), std::move(at), 0};
+Minimum FindMinimum(const Problem& problem, const Layout& layout, const SolveOptions& options,
+                    VectorXd x, Linearization at) {
+  Minimum now{std::move(x), std::move(at), 0};
   if (layout.columns() == 0) return now;
   double damping = 0.0;
   bool tolerable = false;
   std::string trouble;
   NormalEquations equations(now.at);
   // One pass at least: it solves a linear problem exactly, also where Ceres stopped early.
-  while (now.passes == 0 || equations.Length() > Short(problem, now.at, options.settled)) {
-    tolerable |= equations.Length() <= Short(problem, now.at, options.tolerated);
+  while (now.passes == 0 ||
+         equations.Length() > ConvergedLength(problem, now.at, options.settled)) {
+    tolerable |= equations.Length() <= ConvergedLength(problem, now.at, options.tolerated);
     if (now.passes == options.max_iterations || damping > kMostDamping) {
       if (tolerable || equations.Length() < kNegligible) break;
-      RefuseUnsettled(problem, layout, now.at, now.passes, trouble);
+      RefuseUnconverged(problem, layout, now.at, now.passes, trouble);
     }
-    VectorXd trial = Moved(layout, now.x, equations.Step(damping));
+    VectorXd trial = AddStep(layout, now.x, equations.Step(damping));
     Linearization there = Linearize(problem, layout, trial, options.threads);
     ++now.passes;
     const double cost = now.at.Cost();
-    const bool last = equations.Length() <= Short(problem, now.at, options.settled);
+    const bool last = equations.Length() <= ConvergedLength(problem, now.at, options.settled);
     if (there.trouble.empty() && (last || there.Cost() <= cost + kCostRounding * cost)) {
       now.x = std::move(trial);
       now.at = std::move(there);

@@ -19,14 +19,14 @@
 
 namespace abbe::estimation {
 
-struct Settled {
+struct Minimum {
   Eigen::VectorXd x;
   Linearization at;  // of the problem at x
   int passes = 0;
 };
 
 // `at` is the linearization at x, without trouble.
-Settled SettleByPasses(const Problem& problem, const Layout& layout, const SolveOptions& options,
-                       Eigen::VectorXd x, Linearization at);
+Minimum FindMinimum(const Problem& problem, const Layout& layout, const SolveOptions& options,
+                    Eigen::VectorXd x, Linearization at);
 
 }  // namespace abbe::estimation

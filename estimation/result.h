@@ -56,6 +56,7 @@ enum class SeenBy {
   kPrior,    // mostly the prior
   kNothing,  // it is part of an undetermined direction, or its uncertainty exceeds its tolerance
 };
+// "held", "data", "prior" or "nothing".
 std::string_view Name(SeenBy seen);
 
 struct Result {

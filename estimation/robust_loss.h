@@ -14,8 +14,8 @@
 // error tends to zero, but there may be several minima: start it near the solution.
 // Source: Huber and Ronchetti, Robust Statistics, 2nd ed. (2009), 4.5; Holland and Welsch,
 // Communications in Statistics A6 (1977) for the Cauchy constant.
-// When not to use: with fewer than about ten values for each parameter a robust loss cannot tell
-// which value is wrong.
+// When not to use: with fewer than about ten values for each parameter a robust loss cannot
+// identify the wrong value.
 #pragma once
 
 #include <cmath>

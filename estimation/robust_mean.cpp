@@ -75,15 +75,15 @@ double WeightedMedian(const Sample& sample) {
   return sample.values[order.back()];
 }
 
-// Makes the MAD of n normal values right on average (Croux and Rousseeuw).
+// Makes the MAD of n normal values unbiased (Croux and Rousseeuw).
 double SmallSampleFactor(std::size_t n) {
   constexpr std::array<double, 10> kFactor = {1.0,   1.0,   1.196, 1.495, 1.363,
                                               1.206, 1.200, 1.140, 1.129, 1.107};
   return n < kFactor.size() ? kFactor[n] : static_cast<double>(n) / (static_cast<double>(n) - 0.8);
 }
 
-// The scale of deviations from a centre: the median of their sizes over its normal value, or the
-// lowest higher quantile that is not zero.
+// The scale of absolute deviations from a centre: their median, or the lowest higher quantile that
+// is not zero, divided by its value for a standard normal distribution.
 double ScaleOf(std::vector<double> sizes) {
   struct Level {
     double share, normal;  // P(|t| < normal) = share

@@ -48,8 +48,8 @@ void FillParameters(const Problem& problem, const Layout& layout, const VectorXd
   }
 }
 
-SeenBy WhoSees(const Layout& layout, const Information& information, Index column,
-               double variance) {
+SeenBy DeterminedBy(const Layout& layout, const Information& information, Index column,
+                    double variance) {
   if (!std::isfinite(variance)) return SeenBy::kNothing;
   const double prior = information.prior(column, column);  // of this parameter alone
   if (prior > 0.0 && variance * prior > kSeenShare) return SeenBy::kPrior;
@@ -131,10 +131,10 @@ Result Problem::Solve(const SolveOptions& options, Linearization* at) const {
     result.iterations = ApproachMinimum(*this, layout, options, x);
     start = Linearize(*this, layout, x, options.threads);
   }
-  Settled settled = SettleByPasses(*this, layout, options, std::move(x), std::move(start));
-  result.iterations += settled.passes;
+  Minimum minimum = FindMinimum(*this, layout, options, std::move(x), std::move(start));
+  result.iterations += minimum.passes;
 
-  const Information information = Collect(*this, settled.at);
+  const Information information = Collect(*this, minimum.at);
   const PosteriorCovariance covariance = InvertInformation(information.data, information.prior);
   result.names = layout.names;
   result.covariance = covariance.matrix;
@@ -144,15 +144,15 @@ Result Problem::Solve(const SolveOptions& options, Linearization* at) const {
         FindWeakDirections(information.data, information.prior, layout.tolerance, layout.names);
   }
   for (Index c = 0; c < layout.columns(); ++c) {
-    result.seen_by.push_back(WhoSees(layout, information, c, covariance.matrix(c, c)));
+    result.seen_by.push_back(DeterminedBy(layout, information, c, covariance.matrix(c, c)));
   }
-  FillParameters(*this, layout, settled.x, result);
-  FillSources(*this, settled.at, covariance.determined, layout, result);
-  FillOutliers(*this, layout, settled.x, result);
+  FillParameters(*this, layout, minimum.x, result);
+  FillSources(*this, minimum.at, covariance.determined, layout, result);
+  FillOutliers(*this, layout, minimum.x, result);
   result.freedom = result.rows - (layout.columns() - covariance.undetermined);
   result.status =
       covariance.undetermined > 0 ? Result::Status::kUndetermined : Result::Status::kConverged;
-  if (at != nullptr) *at = std::move(settled.at);
+  if (at != nullptr) *at = std::move(minimum.at);
   return result;
 }
 

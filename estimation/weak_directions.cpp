@@ -100,14 +100,14 @@ VectorXd ToleranceInformation(const MatrixXd& prior, const VectorXd& tolerances)
   return information;
 }
 
-// A positive matrix factored with its diagonal scaled to 1.
+// A positive definite matrix, factored with its diagonal scaled to 1.
 class ScaledInverse {
  public:
   explicit ScaledInverse(const MatrixXd& total)
       : scale_(total.diagonal().cwiseSqrt().cwiseInverse()),
         factor_(scale_.asDiagonal() * total * scale_.asDiagonal()) {}
 
-  bool certain() const { return EveryDirectionStandsOut(factor_); }
+  bool certain() const { return HasFullRank(factor_); }
   MatrixXd Inverse() const {
     const MatrixXd inverse = scale_.asDiagonal() * factor_.solve(MatrixXd(scale_.asDiagonal()));
     return 0.5 * (inverse + inverse.transpose());

@@ -19,6 +19,7 @@
 
 namespace abbe::geometry {
 
+// Rotations by `angle` about the axes x, y and z.
 template <typename T>
 Eigen::Matrix3<T> RotationX(const T& angle) {
   using std::cos, std::sin;

@@ -11,10 +11,10 @@ namespace {
 
 using Eigen::Index;
 
-// Powers of t on [0, 1] lose no digits that matter up to here.
+// Up to this degree powers of t on [0, 1] lose no relevant digits.
 constexpr int kMostDegree = 7;
 
-// Where a form is continuous and a polynomial between its pieces: its degree; else 0.
+// The degree of a form that is continuous and piecewise polynomial; else 0.
 int PieceDegree(const FunctionForm& form) {
   const std::string name = form.Name();
   if (name == "table") return 1;
@@ -24,7 +24,7 @@ int PieceDegree(const FunctionForm& form) {
   return 0;
 }
 
-// Chebyshev's points of [0, 1] with both ends, so that the first coefficient is the value at t = 0.
+// Chebyshev points of [0, 1] with both ends, so that the first coefficient is the value at t = 0.
 Eigen::VectorXd Nodes(int degree) {
   Eigen::VectorXd nodes = Eigen::VectorXd::Zero(degree + 1);
   for (Index i = 1; i <= degree; ++i) {
@@ -33,7 +33,7 @@ Eigen::VectorXd Nodes(int degree) {
   return nodes;
 }
 
-// From values at the nodes to coefficients of 1, t, t^2 ...
+// The matrix from values at the nodes to coefficients of 1, t, t^2 ...
 Eigen::MatrixXd CoefficientsOfValues(const Eigen::VectorXd& nodes) {
   Eigen::MatrixXd powers(nodes.size(), nodes.size());
   for (Index k = 0; k < nodes.size(); ++k) {
@@ -47,7 +47,7 @@ Eigen::MatrixXd CoefficientsOfValues(const Eigen::VectorXd& nodes) {
 AxisMotions::AxisMotions(int axis, const std::array<ErrorFunction, kMotions>& functions,
                          const Travel& travel)
     : axis_(axis),
-      // An axis that the machine lacks has no travel, and no errors on any.
+      // An axis that the machine lacks has an empty travel and no errors.
       travel_(travel.last > travel.first ? travel : Travel{travel.first, travel.first + 1.0}),
       ends_{travel_.first, travel_.last} {
   std::vector<std::pair<int, const ErrorFunction*>> polynomials;

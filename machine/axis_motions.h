@@ -1,5 +1,5 @@
-// The six error motions of one axis at a position, fast: their functions as polynomials on common
-// pieces of the travel.
+// Fast evaluation of the six error motions of one axis: piecewise polynomials on common pieces of
+// the travel.
 //
 //   const AxisMotions motions(0, functions, travel);
 //   const geometry::ErrorVector<double> errors = motions.At(0.03);    // [EXX EYX EZX EAX EBX ECX]
@@ -8,11 +8,10 @@
 //
 //   f(x) = c0 + t (c1 + t (c2 + ...)),   t = (x - left) / width,
 //
-// through the functions at Chebyshev's points of the piece, gauge included. What is no polynomial
-// between its pieces (Fourier, a network) is evaluated as it is.
-// Units: m, rad. Failure: InputError for a position outside the travel. Source: own. Validity: the
-// functions as they are when this is made; equal to them to 1e-12 of their size, cubic ones to
-// 1e-14.
+// that interpolates the functions, gauge included, at Chebyshev points of the piece. A form that is
+// not piecewise polynomial (Fourier, a network) is evaluated directly.
+// Units: m, rad. Failure: InputError for a position outside the travel. Source: own. Validity: a
+// copy of the functions at construction; equal to them to 1e-12 of their size, cubic ones to 1e-14.
 #pragma once
 
 #include <array>
@@ -36,10 +35,10 @@ class AxisMotions {
   int axis_;
   Travel travel_;
   int degree_ = 0;
-  std::vector<double> ends_;  // of the pieces: one more than these
+  std::vector<double> ends_;  // of the pieces: their number + 1
   std::vector<double> per_width_;
-  std::vector<geometry::ErrorVector<double>> coefficients_;  // degree + 1 a piece
-  // Cells of one width with the piece at the beginning of each: where to look for a position.
+  std::vector<geometry::ErrorVector<double>> coefficients_;  // degree + 1 per piece
+  // Lookup table: cells of equal width and the piece at the beginning of each.
   std::vector<std::size_t> first_piece_;
   double cells_per_m_;
   std::vector<std::pair<int, ErrorFunction>> others_;

@@ -34,7 +34,7 @@ std::string Letters(std::string_view text) {
   }
   if (in_parentheses) throw Refuse(text, "has unpaired parentheses");
   if (letters.size() < 2 || letters.front() != '[' || letters.back() != ']') {
-    throw Refuse(text, "does not stand in brackets");
+    throw Refuse(text, "is not in brackets");
   }
   return letters.substr(1, letters.size() - 2);
 }
@@ -82,7 +82,8 @@ Chain Chain::Parse(std::string_view text) {
 
 bool Chain::CarriesTarget(char axis) const {
   if (axis >= 'X' && axis <= 'Z') return workpiece_axes_.find(axis) != std::string::npos;
-  throw InputError(fmt::format("'{}' is no axis of the chain {}; name X, Y or Z", axis, Text()));
+  throw InputError(
+      fmt::format("'{}' is not an axis of the chain {}; name X, Y or Z", axis, Text()));
 }
 
 std::optional<Positive> PositiveNamed(std::string_view word) {
@@ -104,15 +105,15 @@ void Chain::ReadPositive(std::string_view words, std::string_view how) {
   for (std::string word; text >> word;) {
     const std::optional<Positive> positive = PositiveNamed(word);
     if (!positive) {
-      throw InputError(
-          fmt::format("\"{}\" is no way to count an axis: write \"tool\" or \"carriage\"", word));
+      throw InputError(fmt::format(
+          "\"{}\" is not a way to count an axis: write \"tool\" or \"carriage\"", word));
     }
     read.push_back(*positive);
   }
   if (read.empty() && workpiece_axes_.empty()) return;
   if (read.empty()) {
     throw InputError(fmt::format(
-        "nothing says which way {} counts, which carries the workpiece; {}: tool, where the "
+        "it is not stated which way {} counts, which carries the workpiece; {}: tool, where the "
         "number rises as the tool goes towards + against the workpiece (ISO 841), or carriage, "
         "where it rises as the workpiece goes towards +",
         workpiece_axes_.front(), how));

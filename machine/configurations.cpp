@@ -19,9 +19,8 @@ Chain ChainOf(std::string_view chain) {
     names.emplace_back(known.name);
   }
   throw InputError(
-      fmt::format("\"{}\" is no machine configuration; did you mean \"{}\"? Known are {}; or write "
-                  "the chain in "
-                  "brackets, as \"[w X Y b Z t]\"",
+      fmt::format("\"{}\" is not a machine configuration; did you mean \"{}\"? Known are {}; or "
+                  "write the chain in brackets, as \"[w X Y b Z t]\"",
                   chain, settings::NearestWord(chain, names), fmt::join(names, ", ")));
 }
 

@@ -1,9 +1,9 @@
 // The machine configurations of the volumetric error lecture, by name.
 //
 // The lecture names and draws seven; its text gives a kinematic chain for the column type only. The
-// chains of the others are the project's reading of the names: the bridge types move the bridge
-// along Y over a table that stands still, the fixed bridge moves the table, the arm types move the
-// arm or the table along X. A column takes the table along X on Y.
+// other chains are the project's interpretation of the names: the bridge types move the bridge
+// along Y over a fixed table, the fixed bridge moves the table, the arm types move the arm or the
+// table along X. The column type moves the table along X on Y.
 #pragma once
 
 #include <array>
@@ -28,7 +28,8 @@ inline constexpr std::array<Configuration, 7> kConfigurations = {{
     {"fixed-horizontal-arm", "[w X b Z Y t]"},
 }};
 
-// "gantry" or "[w b Y X Z t]". InputError for an unknown name tells the nearest, and all.
+// The chain of a name ("gantry") or of a text in brackets ("[w b Y X Z t]"). InputError for an
+// unknown name lists all names and the nearest.
 Chain ChainOf(std::string_view chain);
 
 }  // namespace abbe::machine

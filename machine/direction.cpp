@@ -12,8 +12,8 @@ Eigen::Vector3d Direction(const settings::Table& table, const char* key, const s
   const bool reversed = text.size() == 2 && text.front() == '-';
   const char letter = text.empty() ? ' ' : text.back();
   if (text.size() != (reversed ? 2U : 1U) || letter < 'x' || letter > 'z') {
-    throw table.Error(key, fmt::format("\"{}\" is no machine direction; write \"x\", \"-z\" and "
-                                       "the like",
+    throw table.Error(key, fmt::format("\"{}\" is not a machine direction; write \"x\", "
+                                       "\"-z\" or another axis",
                                        text));
   }
   return (reversed ? -1.0 : 1.0) * Eigen::Vector3d::Unit(letter - 'x');

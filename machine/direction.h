@@ -1,8 +1,9 @@
-// Directions of the machine by name, as a machine file gives them.
+// Directions of the machine by name, as in a machine file.
 //
-// Frames: "x", "-z" are the unit vectors of the machine frame M; a rotation is named by where the
-// axes of a frame F point, `rotation = ["y", "-x", "z"]`, and its columns are those vectors: R_MF.
-// Failure: InputError with the line for a word that names no direction, or for three that are not a
+// Frames: "x", "-z" are the unit vectors of the machine frame M; a rotation is given by the
+// directions of the axes of a frame F, `rotation = ["y", "-x", "z"]`, which are the columns of
+// R_MF.
+// Failure: InputError with the line for a word that is not a direction, or for three that are not a
 // right-handed frame.
 #pragma once
 
@@ -14,6 +15,7 @@
 
 namespace abbe::machine {
 
+// The unit vector from `key`, in M.
 Eigen::Vector3d ReadDirection(const settings::Table& table, const char* key,
                               const std::string& fallback);
 

@@ -12,8 +12,9 @@
 namespace abbe::machine {
 namespace {
 
-// The slope of the least-squares line of f over the travel is the sum of weights times f at points:
-// 12 / length^3 * integral of (x - middle) f(x).
+// The slope of the least-squares line of f over the travel,
+//
+//   12 / length^3 * integral of (x - middle) f(x) dx = sum of weights * f(points)
 struct LineRule {
   std::vector<double> points, weights;
 };

@@ -1,13 +1,13 @@
-// One error motion over the travel of its axis: a form, its coefficients and the gauge.
-// Positions are those that the control shows (chain.h).
+// An error function: one error motion over the travel of its axis, as a form, its coefficients and
+// the gauge. Positions are those that the control shows (chain.h).
 //
 //   f(x) = form(x; c) - form(x0; c) - s (x - x0)         x0 the first end of the travel [x0, x1]
 //
-// Gauge: every error function is zero at x0. A straightness has no linear part besides, because the
+// Gauge: every error function is zero at x0. A straightness also has no linear part, because the
 // slope of an axis is its squareness: s is then the slope of the least-squares line of the form
 // over the full travel with uniform weight, else 0. The integral in s is exact to rounding for
 // every form, so the gauge holds for any coefficients and needs no constraint. With Gauge::kNone f
-// is the form itself: for tables of others, whose constants and slopes are part of what they say.
+// is the form itself: for imported tables, whose constants and slopes are part of the error.
 //
 //   ErrorFunction eyx(0, 1, MakePolynomialForm(4, 0.0, 0.06), {0.0, 0.06});
 //   eyx.SetCoefficients(c);
@@ -42,7 +42,7 @@ class ErrorFunction {
   const Eigen::VectorXd& coefficients() const { return coefficients_; }
   void SetCoefficients(const Eigen::Ref<const Eigen::VectorXd>& coefficients);
 
-  // f(x). Where they are not null, *slope becomes df/dx and gradient[0 ... n-1] df/dc.
+  // f(x). Unless null, *slope becomes df/dx and gradient[0 ... n-1] df/dc.
   double Evaluate(double x, double* slope = nullptr, double* gradient = nullptr) const;
 
  private:

@@ -1,7 +1,7 @@
 // The 18 error motions of three linear axes and their names after ISO 230-1.
 //
 // Order everywhere: axis 0, 1, 2 is X, Y, Z; motion 0 to 5 of every axis is the translation along
-// x, y, z and the turn about x, y, z, right-handed, in the machine frame. Of Y: [EXY EYY EZY EAY
+// x, y, z and the turn about x, y, z, right-handed, in the machine frame. For Y: [EXY EYY EZY EAY
 // EBY ECY]. Units: m and rad. Error = actual - nominal.
 #pragma once
 

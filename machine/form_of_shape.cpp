@@ -78,7 +78,7 @@ const KnownForm& Find(const std::string& name) {
     if (form.name == name) return form;
     known.emplace_back(form.name);
   }
-  throw InputError(fmt::format("\"{}\" is no form of an error function; write \"{}\"", name,
+  throw InputError(fmt::format("\"{}\" is not a form of an error function; write \"{}\"", name,
                                fmt::join(known, "\", \"")));
 }
 

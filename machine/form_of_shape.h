@@ -3,8 +3,8 @@
 //
 //   FormOf(form->Name(), form->Shape())      evaluates as *form does, bit for bit
 //
-// Units: SI, as the names of the numbers say. Failure: InputError for a name that is no form (it
-// lists the forms), a number that is missing or unknown, and whatever the maker refuses.
+// Units: SI, as in the names of the numbers. Failure: InputError for an unknown form (the message
+// lists the forms), for a missing or unknown number, and from the maker of the form.
 #pragma once
 
 #include <string>

@@ -1,10 +1,10 @@
-// The seam behind which an error function over an axis may take any form: f(x; c), a number for a
-// position x and n coefficients c.
+// The interface of the forms of an error function: f(x; c), a function of the position x and n
+// coefficients c.
 //
-// A form is immutable and holds no coefficients, so that several functions share it. To add one:
-// derive, give it a maker in a file of its own (standard_forms.h, tanh_network.h), and a line in
-// form_of_shape.cpp, so that files can hold it.
-// Units: x in m, f in m or rad. Failure: none here; error_function.h guards the range of x.
+// A form is immutable and holds no coefficients, so several functions can share it. To add one,
+// derive a class, declare its maker in a header of its own (standard_forms.h, tanh_network.h) and
+// add a line to form_of_shape.cpp, so that files can contain it.
+// Units: x in m, f in m or rad. Failure: none here; error_function.h checks the range of x.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@
 
 namespace abbe::machine {
 
-// The numbers that a form was made of, by name, with their unit in SI: {"degree": [3], "knots_m":
-// [...]}.
+// The numbers that define a form, by name, with the SI unit in the name:
+// {"degree": [3], "knots_m": [...]}.
 using FormShape = std::map<std::string, std::vector<double>>;
 
 class FunctionForm {
@@ -23,12 +23,12 @@ class FunctionForm {
 
   virtual std::string Name() const = 0;  // "b-spline"
   virtual int size() const = 0;          // n
-  // With Name() all that FormOf (form_of_shape.h) needs to make the form anew.
+  // Name() and Shape() are the input of FormOf (form_of_shape.h), which makes the same form.
   virtual FormShape Shape() const = 0;
-  // A linear form is a sum of coefficients times functions of x: its gradient knows no c.
+  // A linear form is a sum of coefficients times functions of x: its gradient does not depend on c.
   virtual bool IsLinear() const = 0;
 
-  // f(x; c). Where they are not null, *slope becomes df/dx and gradient[0 ... n-1] df/dc.
+  // f(x; c). Unless null, *slope becomes df/dx and gradient[0 ... n-1] df/dc.
   virtual double Evaluate(double x, const double* c, double* slope, double* gradient) const = 0;
 
   // Places from a to b, both included, between which x f(x) is smooth enough for a Gauss-Legendre

@@ -31,17 +31,17 @@ Travel ReadTravel(const settings::Table& axis) {
 
 Travel ReadLimit(const settings::Table& axis, const Travel& travel) {
   if (!axis.Has("limit_mm")) {
-    axis.Quantities("limit_mm", 0, std::vector<double>{});  // known, but has no value of its own
+    axis.Quantities("limit_mm", 0, std::vector<double>{});  // requested, without a fallback value
     return {travel.first - kBeyondTravel, travel.last + kBeyondTravel};
   }
   const std::vector<double> ends = axis.Quantities("limit_mm", 2);
   if (ends[0] > travel.first || ends[1] < travel.last) {
-    throw axis.Error("limit_mm", "must be [first, last], the soft limits, and hold the travel_mm");
+    throw axis.Error("limit_mm", "must be [first, last], the soft limits, and contain travel_mm");
   }
   return {ends[0], ends[1]};
 }
 
-// An axis that carries the tool may say it too: both words then mean the same.
+// An axis that carries the tool may have the key too: both words then mean the same.
 Positive ReadPositive(const settings::Table& axis, char letter, const Chain& chain) {
   if (!axis.Has("positive") && chain.CarriesTarget(letter)) {
     throw axis.Error(
@@ -80,7 +80,7 @@ Population ReadPopulation(const settings::Table& table) {
 
 int AxisIndex(char axis) {
   if (axis < 'X' || axis > 'Z') {
-    throw InputError(fmt::format("'{}' is no linear axis; name X, Y or Z", axis));
+    throw InputError(fmt::format("'{}' is not a linear axis; name X, Y or Z", axis));
   }
   return axis - 'X';
 }
@@ -104,8 +104,7 @@ double InTravel(const Travel& travel, int axis, double position) {
     }
     throw InputError(
         fmt::format("{} = {:.9g} mm lies outside its travel, {:.9g} to {:.9g} mm: the errors of "
-                    "the machine are "
-                    "not known there",
+                    "the machine are not known there",
                     "XYZ"[axis], 1e3 * position, 1e3 * travel.first, 1e3 * travel.last));
   }
   return std::clamp(position, travel.first, travel.last);
@@ -135,9 +134,10 @@ Machine ReadMachine(const settings::Table& root) {
     const std::string name(1, letter);
     if (machine.chain.Text().find(letter) == std::string::npos) {
       if (axes.Has(name)) {
-        throw axes.Error(name, fmt::format("is no axis of the chain {}; add it there, or remove "
-                                           "the table",
-                                           machine.chain.Text()));
+        throw axes.Error(name,
+                         fmt::format("is not an axis of the chain {}; add it there, or remove "
+                                     "the table",
+                                     machine.chain.Text()));
       }
       continue;
     }

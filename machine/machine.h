@@ -1,12 +1,12 @@
-// The machine as its file describes it: name, chain, axis travels, reference point and the
-// population of machines that its errors come from.
+// A machine as described in its file: name, chain, axis travels, reference point and the prior of
+// its errors.
 //
 //   const auto document = settings::Document::Read("machine.toml");
 //   const machine::Machine mill = machine::ReadMachine(document.Root());
 //
 // Frame: M, the machine frame, right-handed, along the axes X, Y, Z. The error motions of an axis
-// act at the reference point, which travels with the carriage and is named by where it stands with
-// all axes at zero. SI units. Every key stands in docs/machine-file.md.
+// act at the reference point, which moves with the carriage; `reference` is its position with all
+// axes at zero. Units: SI. docs/machine-file.md lists every key.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,17 +26,19 @@ struct Travel {
   double last;   // m, above first
 };
 
-// How far beyond the travel the soft limits lie where the machine file does not say.
+// Distance of the soft limits beyond the travel unless the machine file states them.
 inline constexpr double kBeyondTravel = 0.1e-3;  // m
 
+// The travels, widened by kBeyondTravel at both ends.
 std::array<Travel, 3> AroundTravels(const std::array<Travel, 3>& travels);
 
-// The position itself, or the end of the travel where only rounding puts it beyond (16 eps).
-// InputError names the axis 0, 1, 2 and its travel: nothing is known outside it.
+// The position, or the end of the travel if it is beyond it by rounding only (16 eps). InputError
+// outside the travel of the axis (0, 1, 2), where the errors are not known.
 double InTravel(const Travel& travel, int axis, double position);
 
-// Standard deviations of the errors of machines of this kind. An error function over an axis is a
-// stationary Gaussian process with this standard deviation and correlation length `smoothness`.
+// The prior of the errors: their standard deviations over the population of such machines. An error
+// function is a stationary Gaussian process with this standard deviation and the correlation length
+// `smoothness`.
 struct Population {
   double positioning;   // m: EXX
   double straightness;  // m: EYX, EZX
@@ -53,19 +55,20 @@ double PopulationDeviation(const Population& population, int axis, int motion);
 
 struct Machine {
   std::string name;
-  Chain chain;                    // with the way in which the control counts
+  Chain chain;                    // with the sign of the positions
   Eigen::Vector3d reference;      // m, in M
   std::array<Travel, 3> travels;  // of X, Y, Z: where the errors are known
-  std::array<Travel, 3> limits;   // the soft limits, which hold the travels
+  std::array<Travel, 3> limits;   // the soft limits, which contain the travels
   Population population;
 };
 
-// Reads `name`, `chain`, `reference_mm`, `[axis.*]` and `[population]`. Keys of the root that
-// belong to other readers are left alone; whoever has run all readers calls root.RefuseUnknown().
-// InputError with file, line and key.
+// Reads `name`, `chain`, `reference_mm`, `[axis.*]` and `[population]`. Other keys of the root are
+// ignored; the caller calls root.RefuseUnknown() after all readers. InputError with file, line and
+// key.
 Machine ReadMachine(const settings::Table& root);
 
-// Of a file that describes an arm and no axes: reads `name`; no travel, chain "[w b X Y Z t]".
+// For a file that describes an arm without axes: reads `name` and `[population]`; the travels are
+// empty and the chain is "[w b X Y Z t]".
 Machine ReadMachineWithoutAxes(const settings::Table& root);
 
 }  // namespace abbe::machine

@@ -1,6 +1,6 @@
-// Where an axis may be said to stand at all: its travel and a tenth of it, and 10 mm, beyond either
-// end. A position farther out is no position but a slip: the wrong order of words, a wrong scale or
-// unit, another axis. Units: m.
+// Plausible positions of an axis: its travel, widened at both ends by a tenth of it and 10 mm. A
+// position outside is a mistake: a wrong order of words, a wrong scale or unit, another axis.
+// Units: m.
 #pragma once
 
 #include "machine/machine.h"

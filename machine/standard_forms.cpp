@@ -12,7 +12,7 @@
 namespace abbe::machine {
 namespace {
 
-// Of the highest harmonic of a Fourier series over a travel; a metre of 0.1 mm each.
+// Most waves of the highest harmonic of a Fourier series over a travel: 0.1 mm each over a metre.
 constexpr int kMostWaves = 10000;
 
 class BSplineForm : public FunctionForm {
@@ -152,8 +152,8 @@ SharedForm MakeTableForm(const std::vector<double>& positions) {
   }
   for (std::size_t i = 1; i < positions.size(); ++i) {
     if (!(positions[i] > positions[i - 1])) {
-      throw InputError(fmt::format("table position {} ({} m) does not lie above the one before it",
-                                   i + 1, positions[i]));
+      throw InputError(fmt::format("table position {} ({} m) is not above the one before it", i + 1,
+                                   positions[i]));
     }
   }
   std::vector<double> knots = {positions.front()};

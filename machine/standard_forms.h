@@ -7,7 +7,7 @@
 //   fourier      [s_1 c_1 s_2 c_2 ...]: s_k sin(2 pi k x / period) + c_k cos(2 pi k x / period)
 // Failure: InputError for fewer than two positions or positions that do not increase, an empty
 // interval, a degree outside 0 ... kMaxPolynomialDegree, a period not above 0, fewer than one
-// harmonic. The makers hand the form on as shared: many functions may use one.
+// harmonic. The forms are shared: several functions may use one.
 // Source: Abramowitz and Stegun, 22.3.15 for T_k(cos t) = cos(k t), evaluated by recurrence.
 #pragma once
 

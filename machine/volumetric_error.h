@@ -1,21 +1,21 @@
-// The volumetric error: where the tool is, seen from the workpiece, minus where it should be. Exact
-// for any chain of three linear axes; the whole model stands on this page.
+// The volumetric error: the position of the tool point relative to the workpiece, actual minus
+// nominal. Exact for any chain of three linear axes; this page is the whole model.
 //
 // Frames, all in one place and parallel to M when the axes are at zero: W the workpiece, T the tool
 // body, and one carriage for each axis, all with their origin in the machine's reference point. The
 // bed is M. The tool vector p_TQ is the tool point Q seen from that origin.
-// Position: [X Y Z] as the control counts, m. The chain says which way that is (chain.h): with s =
-// CarriageSense the carriage of an axis at the number q stands at s q, and its positioning error,
-// as ISO 230-2 has it, is how much further along its own count it stands: it acts as s EXX. The
-// other five errors are motions of the carriage in M, whichever way it counts.
+// Position: [X Y Z] as the control shows, m. The chain defines the signs (chain.h): with s the
+// CarriageSense of an axis, its carriage is at s q when the control shows q. The positioning error
+// is counted like q, as in ISO 230-2, so it displaces the carriage by s EXX. The other five errors
+// are motions of the carriage in M and do not depend on s.
 // Units: m, rad. T: double, or dual numbers for derivatives.
 // Failure: none; a value that is not finite passes through.
 //
-//   carriage    X_ab = { R = exp([EA EB EC]),  p = s q l + [EX EY EZ] }   b on a, the first on the bed
+//   carriage    X_ab = { R = exp([EA EB EC]),  p = s q l + [EX EY EZ] }    b on a, first on the bed
 //   lines       l_X = x,  l_Y = exp(C0Y z) y,  l_Z = exp(A0Z x + B0Z y) z
 //   workpiece   X_MW = product of the carriages from b to w
 //   tool body   X_MT = product of the carriages from b to t
-//   error       p_WQ - nominal = X_MW^-1 X_MT p_TQ - (p_TQ +- positions)
+//   error       p_WQ - nominal = X_MW^-1 X_MT p_TQ - (p_TQ + [t_X X, t_Y Y, t_Z Z])    t: ToolSense
 //
 // The X line is the primary and the XY plane the secondary: C0Y turns the Y line about +z, A0Z and
 // B0Z turn the Z line about +x and +y (signs of standards/squareness.h).
@@ -42,7 +42,7 @@ struct MotionErrors {
   MotionErrors() { axes.fill(geometry::ErrorVector<T>::Zero()); }
 };
 
-// The turn of the line of an axis away from its nominal direction: a rotation vector.
+// The rotation vector of the line of an axis from its nominal direction, rad.
 template <typename T>
 Eigen::Vector3<T> LineTurn(int axis, const Eigen::Vector3<T>& squareness) {
   if (axis == 0) return {T(0), T(0), T(0)};
@@ -50,12 +50,13 @@ Eigen::Vector3<T> LineTurn(int axis, const Eigen::Vector3<T>& squareness) {
   return {squareness.x(), squareness.y(), T(0)};
 }
 
+// The unit vector l of the line of an axis, in M.
 template <typename T>
 Eigen::Vector3<T> LineOf(int axis, const Eigen::Vector3<T>& squareness) {
   return geometry::ExpRotation<T>(LineTurn<T>(axis, squareness)).col(axis);
 }
 
-// `sense`: the chain's CarriageSense of the axis.
+// X_ab of one carriage; `sense` is the CarriageSense of the axis.
 template <typename T>
 geometry::Transform<T> CarriagePose(int axis, double sense, const T& position,
                                     const MotionErrors<T>& errors) {
@@ -65,7 +66,7 @@ geometry::Transform<T> CarriagePose(int axis, double sense, const T& position,
   return X;
 }
 
-// Of the body at the end of these axes, which stand in the order from the bed.
+// The pose in M of the body carried by these axes, in the order from the bed.
 template <typename T>
 geometry::Transform<T> BodyPose(const Chain& chain, const std::string& axes_from_bed,
                                 const Eigen::Vector3<T>& position, const MotionErrors<T>& errors) {
@@ -77,6 +78,7 @@ geometry::Transform<T> BodyPose(const Chain& chain, const std::string& axes_from
   return X;
 }
 
+// X_MW.
 template <typename T>
 geometry::Transform<T> WorkpiecePose(const Chain& chain, const Eigen::Vector3<T>& position,
                                      const MotionErrors<T>& errors) {
@@ -84,6 +86,7 @@ geometry::Transform<T> WorkpiecePose(const Chain& chain, const Eigen::Vector3<T>
   return BodyPose<T>(chain, {from_workpiece.rbegin(), from_workpiece.rend()}, position, errors);
 }
 
+// X_MT.
 template <typename T>
 geometry::Transform<T> ToolPose(const Chain& chain, const Eigen::Vector3<T>& position,
                                 const MotionErrors<T>& errors) {
@@ -109,6 +112,7 @@ Eigen::Vector3<T> ToolInWork(const Chain& chain, const Eigen::Vector3<T>& positi
   return X_MW.Inverse() * (ToolPose<T>(chain, position, errors) * p_TQ);
 }
 
+// The error of p_WQ, actual - nominal.
 template <typename T>
 Eigen::Vector3<T> VolumetricError(const Chain& chain, const Eigen::Vector3<T>& position,
                                   const Eigen::Vector3<T>& p_TQ, const MotionErrors<T>& errors) {

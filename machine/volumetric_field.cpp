@@ -15,7 +15,7 @@ AxisMotions MotionsOf(const VolumetricModel& model, int axis) {
   return {axis, functions, model.travels()[static_cast<std::size_t>(axis)]};
 }
 
-// exp(turn) v, for small turns without the matrix: sin(a)/a and (1 - cos(a))/a^2 by their series,
+// exp(turn) v; for small turns without the matrix: sin(a)/a and (1 - cos(a))/a^2 by their series,
 // which neglect a^8/9! < 3e-22.
 Vector3d Turned(const Vector3d& turn, const Vector3d& v) {
   const double square = turn.squaredNorm();
@@ -34,8 +34,8 @@ VolumetricField::VolumetricField(const VolumetricModel& model)
              LineOf<double>(2, model.squareness())},
       axes_{MotionsOf(model, 0), MotionsOf(model, 1), MotionsOf(model, 2)} {}
 
-// The equations of volumetric_error.h with the tool point handed down from carriage to carriage to
-// the bed, and up the other side to the workpiece.
+// The equations of volumetric_error.h: the tool point is transformed from carriage to carriage to
+// the bed, then from the bed to the workpiece.
 Vector3d VolumetricField::ErrorOf(const Vector3d& position, const Vector3d& p_TQ,
                                   const AxisErrors& errors) const {
   Vector3d p = p_TQ;

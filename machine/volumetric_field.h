@@ -1,4 +1,4 @@
-// The volumetric error of a machine error model that no longer changes: the same numbers to
+// Fast evaluation of the volumetric error of a constant machine error model: the same numbers to
 // rounding, without derivatives, an order of magnitude faster.
 //
 //   const VolumetricField field(model);
@@ -6,10 +6,10 @@
 //   const Eigen::Matrix3Xd errors = field.Errors(positions, p_TQ);
 //
 // Frames, signs, units, shapes: volumetric_model.h. The motions of each axis come from
-// axis_motions.h, its line is computed once, and Errors() keeps the motions of the axes that stand
-// still from one position to the next.
-// Failure: InputError for a position outside a travel, naming axis and travel. Validity: the
-// model as it is when the field is made.
+// axis_motions.h, its line is computed once, and Errors() reuses the motions of the axes that do
+// not move from one position to the next.
+// Failure: InputError for a position outside a travel, naming axis and travel. Validity: a copy of
+// the model at construction.
 #pragma once
 
 #include <Eigen/Core>

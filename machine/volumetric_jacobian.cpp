@@ -18,8 +18,8 @@ Matrix3d LineJacobian(int axis, const Vector3d& squareness) {
   return by_squareness;
 }
 
-// What a change of one carriage does; side is 1 for the tool's, -1 for the workpiece's; sense is
-// that of its count.
+// Adds the derivatives by the motions and position of one carriage. side: +1 on the tool side, -1
+// on the workpiece side; sense: its CarriageSense.
 void AddCarriage(int axis, double side, double sense, const Matrix3d& R_Wa, const Vector3d& arm,
                  double q, const MotionErrors<double>& errors, VolumetricJacobian& out) {
   const Vector3d turn = errors.axes[static_cast<std::size_t>(axis)].tail<3>();

@@ -1,13 +1,14 @@
 // The volumetric error with its derivatives in closed form.
 //
-// Background: with a the frame before a carriage (on its bed side), R_Wa its attitude in the
-// workpiece and arm = p_aQ - p_ab the arm from the carriage to the tool point, small changes of the
-// carriage move the tool point in W by
+// With a the frame before a carriage (on its bed side), R_Wa its orientation in W and arm = p_aQ -
+// p_ab the vector from the carriage to the tool point, small changes of the carriage move the tool
+// point in W by
 //
-//   + R_Wa { d[EX EY EZ] + l dq + q dl - arm x (J d[EA EB EC]) }     + on the tool side, else -
+//   + R_Wa { d[EX EY EZ] + s l dq + s q dl - arm x (J d[EA EB EC]) }     + on the tool side, else -
 //
-// J is the left Jacobian of the rotation, ExpRotationJacobian.
-// Frames, units, signs: volumetric_error.h. Failure: none. Source: own.
+// The positioning error among EX EY EZ is multiplied by s, as in volumetric_error.h; J is the left
+// Jacobian of the rotation, ExpRotationJacobian.
+// Frames, units, signs: volumetric_error.h. Source: own.
 #pragma once
 
 #include <Eigen/Core>

@@ -7,13 +7,13 @@
 //   const Eigen::Vector3d error = model.Error({0.03, 0.02, 0.05}, p_TQ);
 //
 // Parameters: the coefficients of the functions, axis by axis in the order of error_motion.h, then
-// A0Z, B0Z, C0Y. Blocks() names them as an estimation wants them: block "EBX", entries "c0", "c1"
-// ...; block "squareness".
+// A0Z, B0Z, C0Y. Blocks() returns them as named blocks of an estimation: block "EBX", entries "c0",
+// "c1" ...; block "squareness".
 // Frames, signs, tool vector: volumetric_error.h. Gauge: error_function.h.
 // Units: SI. Shapes: positions in columns, 3 x N.
 // Failure: InputError for a position outside a travel, naming axis and travel, for an axis or
 // motion that does not exist, and for parameters of the wrong number or not finite.
-// Not safe to change while other threads evaluate; evaluation is.
+// Threads: several may evaluate at once, but not while one changes the model.
 #pragma once
 
 #include <Eigen/Core>
@@ -52,7 +52,7 @@ class VolumetricModel {
   struct Linearized {
     Eigen::Vector3d error;
     Eigen::Matrix3Xd J_error_parameters;
-    Eigen::Matrix3d J_error_position;  // the motions change with the position
+    Eigen::Matrix3d J_error_position;  // with the slopes of the error functions
     Eigen::Matrix3d J_error_tool;
   };
   Linearized Linearize(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const;

@@ -34,15 +34,15 @@ machine::Travel TravelOf(const AxisTables& tables, int axis) {
   return travel;
 }
 
-// Axes that carry the workpiece and all count as the tool goes are, for a control, axes of the
-// tool: with X_ab the pose of their carriage, (X_Y X_X)^-1 X_Z = X_X^-1 X_Y^-1 X_Z.
+// If all axes that carry the workpiece count as the tool goes, they become axes of the tool: with
+// X_ab the pose of a carriage, (X_Y X_X)^-1 X_Z = X_X^-1 X_Y^-1 X_Z.
 bool CountsAsTool(const machine::Chain& chain) {
   const std::string& work = chain.workpiece_axes();
   return !work.empty() && std::all_of(work.begin(), work.end(),
                                       [&](char axis) { return chain.CarriageSense(axis) < 0.0; });
 }
 
-// X_ab^-1 = {exp(E'), q l + e'}: the errors of the same axis on the tool's side, at the number q.
+// The errors of the same axis on the tool side, at position q: X_ab^-1 = {exp(E'), q l + e'}.
 geometry::ErrorVector<double> OnToolSide(const machine::Chain& chain, int axis, double q,
                                          const machine::MotionErrors<double>& errors) {
   const double sense = chain.CarriageSense("XYZ"[axis]);
@@ -107,18 +107,18 @@ std::vector<std::string> SignOfTables(const AxisTables& tables) {
   if (chain.workpiece_axes().empty()) {
     lines.emplace_back(
         "all axes on the side of the tool (ISG: workpiece_axes 0): where an error is +, the tool "
-        "stands towards + in the workpiece");
+        "is displaced towards + in the workpiece");
   }
   for (const char axis : chain.workpiece_axes()) {
     lines.push_back(
         chain.CarriageSense(axis) > 0.0
             ? fmt::format(
                   "{} carries the workpiece and counts as its carriage goes: where an error "
-                  "of {} is +, the tool stands towards - in the workpiece",
+                  "of {} is +, the tool is displaced towards - in the workpiece",
                   axis, axis)
             : fmt::format("{} carries the workpiece and counts as the tool goes: where E{}{} is +, "
-                          "the tool stands towards + in the workpiece, where another error of {} "
-                          "is +, towards -",
+                          "the tool is displaced towards + in the workpiece, where another error "
+                          "of {} is +, towards -",
                           axis, axis, axis, axis));
   }
   return lines;

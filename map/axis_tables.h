@@ -1,20 +1,20 @@
-// A map as the tables of its 21 errors, which is what controls and other programs exchange.
+// A map as tables of its 21 errors, the form that controls and other programs exchange.
 //
 //   const AxisTables tables = Tabulate(map, p_TQ, {31, 31, 31});
 //   const ErrorMap back = MapOfTables(tables);
 //
 // Order of the tables: error_motion.h. Units: SI. A table without positions is an error that the
-// file does not hold: zero.
+// file does not contain: zero.
 //
-// The tables state the errors of the carriages, volumetric_error.h, as their header says. Axes that
-// carry the workpiece and count as the tool goes (ISO 841) are for a control axes of the tool:
-// where all of them do, Tabulate gives the errors of the same machine with its axes on the tool's
-// side, chain and all, and every error in the file is then one of the tool against the workpiece.
-// The volumetric error is the same, exactly. Failure: InputError for an axis without any table, a
-// table of one position or whose positions do not increase, and for a file that does not say its
-// chain or how it counts. Validity: between the positions straight lines. Tables are taken as they
-// stand, constants and slopes included (Gauge::kNone, error_function.h): nothing of the volumetric
-// error is lost.
+// The tables hold the errors of the carriages (volumetric_error.h) of the chain in the header. A
+// control treats axes that carry the workpiece and count as the tool goes (ISO 841) as axes of the
+// tool. If all of them do, Tabulate converts the map to the equivalent chain with all axes on the
+// tool side, and every error in the file is one of the tool relative to the workpiece. The
+// volumetric error is exactly the same.
+// Failure: InputError for an axis without any table, for a table of one position or with positions
+// that do not increase, and for a file without its chain or the sign of its positions.
+// Validity: linear interpolation between the positions. Tables are not changed: constants and
+// slopes stay (Gauge::kNone, error_function.h), so the volumetric error is complete.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,16 +38,17 @@ struct AxisTables {
   Eigen::Vector3d squareness = Eigen::Vector3d::Zero();  // A0Z B0Z C0Y, rad
 };
 
-// What the exchanged tables hold an error in: mm or rad, in SI.
+// The unit of an error in the exchanged tables, mm or rad, in SI.
 double TableUnit(int error);
 
+// `counts`: positions along X, Y and Z, at least 2 each.
 AxisTables Tabulate(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
                     const std::array<Eigen::Index, 3>& counts);
 
-// What the numbers mean, for a person and for a reader to be built from: one line each.
+// The sign conventions of the file, one line each, for its header.
 std::vector<std::string> SignOfTables(const AxisTables& tables);
 
-// Without uncertainty, sources all "prior".
+// The map of the tables, without uncertainty; all sources are "prior".
 ErrorMap MapOfTables(const AxisTables& tables);
 
 }  // namespace abbe::map

@@ -10,7 +10,7 @@
 namespace abbe::map {
 namespace {
 
-// The covariance is used as given: an asymmetry beyond rounding is a mistake of its maker.
+// Relative asymmetry of a covariance that rounding explains; a larger one is a mistake.
 constexpr double kAsymmetry = 1e-9;
 
 void RefuseBadCovariance(const Eigen::MatrixXd& cov, const std::vector<std::string>& names) {
@@ -75,7 +75,7 @@ Eigen::Matrix3d ErrorMap::Covariance(const Eigen::Vector3d& position,
                                      const Eigen::Vector3d& p_TQ) const {
   if (!StatesUncertainty()) {
     throw InputError("the map of " + origin_.machine +
-                     " states no uncertainty; fuse the runs anew for one that does");
+                     " has no uncertainty; fuse the runs again to get one");
   }
   const Eigen::Matrix3Xd J = model_.Linearize(position, p_TQ).J_error_parameters;
   return J * cov_pp_ * J.transpose();

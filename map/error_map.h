@@ -1,5 +1,5 @@
-// The error map of a machine: what the tool does at every point of the volume, how well that is
-// known, and from what.
+// The error map of a machine: the volumetric error at every point, its uncertainty, and the runs
+// that determined it.
 //
 //   const ErrorMap map = ReadMap("out/map.toml");
 //   const Eigen::Vector3d error = map.Error({0.03, 0.02, 0.05}, map.origin().tool);
@@ -10,10 +10,10 @@
 // Units: SI. Shapes: the covariance of the parameters is P x P in the order of
 // VolumetricModel::Parameters(); 0 x 0 for a map that states no uncertainty, as an imported one.
 // Failure: InputError for a position outside the travels, which is never extrapolated; for a
-// covariance of another size, not symmetric, not finite or with a negative variance; for an
-// uncertainty asked of a map that states none.
-// Source: GUM (2008) 5.2.2, first order: cov_ee = J cov_pp J^T. Validity: parameters whose effect
-// on the error is linear over their uncertainty, which for errors below 1 mrad it is to 1e-3.
+// covariance of another size, not symmetric, not finite or with a negative variance; for a request
+// of the uncertainty of a map without one.
+// Source: GUM (2008) 5.2.2, first order: cov_ee = J cov_pp J^T. Validity: the error is linear in
+// the parameters over their uncertainty, for errors below 1 mrad to 1e-3.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,25 +27,27 @@
 
 namespace abbe::map {
 
-// What determined an error; beyond the prior it names the best of the runs that saw it.
+// The source of an error: the prior, or the kind of run that determines it best.
 enum class Source { kPrior, kSweep, kLinkage, kReference, kPlate, kLength };
 inline constexpr std::array<std::string_view, 6> kSourceNames = {"prior",     "sweep", "linkage",
                                                                  "reference", "plate", "length"};
 
 // The 21 errors: 18 motions in the order of error_motion.h, then A0Z, B0Z, C0Y.
 inline constexpr int kErrors = machine::kAxes * machine::kMotions + 3;
+// "EXX" ... "C0Y"; InputError for a number outside 0 ... kErrors - 1.
 std::string ErrorName(int error);
-// -1 for a name that is none of the 21.
+// The number of an error; -1 for an unknown name.
 int ErrorNamed(std::string_view name);
 
-// Where a map comes from.
+// Origin of a map: machine, conditions and sources.
 struct MapOrigin {
   std::string machine;
   Eigen::Vector3d reference = Eigen::Vector3d::Zero();   // m, in M, with all axes at zero
   Eigen::Vector3d tool = Eigen::Vector3d::Zero();        // p_TQ of the measurement, m
   double temperature = 20.0;                             // of the machine, degC
-  std::optional<std::array<machine::Travel, 3>> limits;  // the soft limits, where they are known
-  // Whether a calibrated length or scale went into it; if not, its isotropic scale is the prior's.
+  std::optional<std::array<machine::Travel, 3>> limits;  // the soft limits, if known
+  // Whether a calibrated length or scale was used; if not, the isotropic scale is that of the
+  // prior.
   bool scale_is_calibrated = false;
   std::array<Source, kErrors> sources = {};
 };
@@ -62,20 +64,20 @@ class ErrorMap {
   std::vector<std::string> ParameterNames() const;
   // "calibrated" or "prior only".
   std::string_view Scale() const;
-  // The soft limits; where none are known, the travels and kBeyondTravel.
+  // The soft limits; if unknown, the travels widened by kBeyondTravel.
   std::array<machine::Travel, 3> Limits() const;
 
   Eigen::Vector3d Error(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const {
     return model_.Error(position, p_TQ);
   }
-  // Of the three components, m^2.
+  // cov_ee of the three components, m^2.
   Eigen::Matrix3d Covariance(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const;
-  // The roots of its diagonal, m.
+  // The square roots of its diagonal, m.
   Eigen::Vector3d StandardUncertainty(const Eigen::Vector3d& position,
                                       const Eigen::Vector3d& p_TQ) const;
 
-  // What one of the 21 errors is at positions of its axis and how well that is known; a squareness
-  // is the same everywhere.
+  // One of the 21 errors at positions of its axis, with its standard uncertainty; a squareness is
+  // constant.
   struct Curve {
     Eigen::VectorXd value, u;  // m or rad
   };

@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view kColumns = "x_mm,y_mm,z_mm,ex_um,ey_um,ez_um";
 constexpr std::string_view kUncertainties = ",u95x_um,u95y_um,u95z_um";
 
-// The different positions of one column, in the order in which they come up: `stride` rows apart.
+// The distinct positions of one column in order of appearance, `stride` rows apart.
 std::vector<double> Positions(const std::vector<std::array<double, 9>>& rows, std::size_t column,
                               std::size_t stride) {
   std::vector<double> positions;

@@ -47,7 +47,7 @@ class EtalonReader {
     } else if (content.starts_with('[') && content.ends_with(']')) {
       error_ = SectionNamed(content.substr(1, content.size() - 2));
       if (seen_.test(static_cast<std::size_t>(error_))) {
-        throw Refused(ErrorName(error_) + " stands twice");
+        throw Refused(ErrorName(error_) + " is given twice");
       }
       seen_.set(static_cast<std::size_t>(error_));
     } else {

@@ -22,13 +22,13 @@ GridFile GridFileOf(const ErrorMap& map, const ExportOptions& options) {
 
 GridAxis AxisOfPositions(const std::vector<double>& positions, const std::string& where) {
   const auto count = static_cast<Eigen::Index>(positions.size());
-  if (count < 2) throw InputError(where + ": a grid needs two positions or more along each axis");
+  if (count < 2) throw InputError(where + ": a grid needs at least two positions along each axis");
   const GridAxis axis{positions.front(), positions.back(), count};
   for (Eigen::Index i = 0; i < count; ++i) {
-    // Positions go through millimetres and back.
+    // The file holds mm: allow for the rounding of the conversion.
     if (!(std::abs(positions[static_cast<std::size_t>(i)] - axis.At(i)) <= 1e-9 * axis.Step())) {
       throw InputError(
-          fmt::format("{}: position {} stands off a grid of equal steps", where, i + 1));
+          fmt::format("{}: position {} is not on a grid of equal steps", where, i + 1));
     }
   }
   return axis;

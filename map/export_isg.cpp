@@ -23,7 +23,7 @@ int ColumnNamed(std::string_view name, const std::string& where) {
                   where, name));
 }
 
-// The columns of a block: where the position stands, and the error of each other.
+// The columns of a block: the index of the position, and the error in each other column.
 struct Columns {
   int axis = -1;  // -1: a block of constants
   std::size_t position = 0;
@@ -38,7 +38,7 @@ Columns ColumnsOf(const std::vector<std::string_view>& names, const std::string&
     if (!is_axis) continue;
     if (columns.axis >= 0) {
       throw InputError(where +
-                       ": errors that depend on two axes are no part of this machine model");
+                       ": errors that depend on two axes are not part of this machine model");
     }
     columns.axis = names[i][0] - 'X';
     columns.position = i;
@@ -48,7 +48,7 @@ Columns ColumnsOf(const std::vector<std::string_view>& names, const std::string&
     const bool is_constant = error >= kErrors - 3;
     if (is_constant != (columns.axis < 0) || (!is_constant && error / kMotions != columns.axis)) {
       throw InputError(
-          fmt::format("{}: {} does not belong into this block; an axis has its own "
+          fmt::format("{}: {} does not belong in this block; an axis has its own "
                       "block, the squareness one without position",
                       where, ErrorName(error)));
     }

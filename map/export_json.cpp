@@ -80,8 +80,8 @@ GridFile ReadJsonGrid(const std::filesystem::path& path) {
   try {
     return FileOf(Json::parse(ReadWhole(path)), path.string());
   } catch (const nlohmann::json::exception& failure) {
-    throw InputError(fmt::format("{}: is no grid of a map as abbe export writes it: {}",
-                                 path.string(), failure.what()));
+    throw InputError(fmt::format("{}: is not a grid of a map from abbe export: {}", path.string(),
+                                 failure.what()));
   }
 }
 

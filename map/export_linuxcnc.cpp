@@ -71,8 +71,8 @@ AxisCurve ReadComp(const std::filesystem::path& file) {
     const auto numbers = NumbersOf(line, lines.Where());
     if (numbers.size() != 3) {
       throw InputError(
-          fmt::format("{}: {} numbers; LinuxCNC stops reading without a word at a line "
-                      "that is not three",
+          fmt::format("{}: {} numbers; LinuxCNC silently stops reading at a line "
+                      "without three",
                       lines.Where(), numbers.size()));
     }
     const double nominal = numbers[0] * kMillimetre;
@@ -87,7 +87,7 @@ AxisCurve ReadComp(const std::filesystem::path& file) {
     }
   }
   if (curve.positions.size() < 2) {
-    throw InputError(file.string() + ": holds no table of two or more points");
+    throw InputError(file.string() + ": contains no table of at least two points");
   }
   return curve;
 }

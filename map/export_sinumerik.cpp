@@ -19,10 +19,10 @@ constexpr int kTables = 9;
 const std::vector<std::string> kSignOfCec = {
     "a correction: the control adds it to the position of the output axis, in mm as it counts that "
     "axis",
-    "it is minus the error: minus what the place of the tool in the workpiece is, in the numbers "
-    "of the axis, less what was commanded"};
+    "it is minus the error: commanded minus actual position of the tool in the workpiece, in the "
+    "numbers of the axis"};
 
-// One CEC table as its file says it, mm.
+// One CEC table as in its file, mm.
 struct CecTable {
   std::map<int, double> values;
   std::map<std::string, double, std::less<>> numbers;  // STEP, MIN, MAX ...
@@ -48,7 +48,7 @@ std::string TableText(int table, const GridAxis& stations, const std::vector<dou
 
 int AxisOf(std::string_view value, const std::string& where) {
   if (value == "(AX1)" || value == "(AX2)" || value == "(AX3)") return value[3] - '1';
-  throw InputError(fmt::format("{}: {} is no axis; write (AX1), (AX2) or (AX3)", where, value));
+  throw InputError(fmt::format("{}: {} is not an axis; write (AX1), (AX2) or (AX3)", where, value));
 }
 
 int IndexOf(std::string_view word, int size, const std::string& where) {
@@ -127,14 +127,14 @@ Format::Paths WriteSinumerik(const ErrorMap& map, const ExportOptions& options,
   for (int table = 0; table < kTables; ++table) {
     const int input = table / 3, output = table % 3;
     const auto k = static_cast<std::size_t>(input);
-    if (options.counts[k] < 2) throw InputError("a CEC table takes two points or more");
+    if (options.counts[k] < 2) throw InputError("a CEC table takes at least two points");
     const GridAxis stations{travels[k].first, travels[k].last, options.counts[k]};
     std::vector<double> values;
     for (Eigen::Index i = 0; i < stations.count; ++i) {
       Eigen::Vector3d position = middle;
       position[input] = stations.At(i);
       double error = map.Error(position, options.tool)[output];
-      // The three tables of an output axis add up: the error in the middle stands in one of them.
+      // The three tables of an output axis are added: only one contains the error in the middle.
       if (input != output) error -= at_middle[output];
       values.push_back(-signs[output] * error);
     }

@@ -1,4 +1,4 @@
-// The formats that carry the tables of the 21 errors.
+// Formats of the tables of the 21 errors: ISG and Etalon.
 //
 // ISG (Beckhoff TF5280, ISG kernel) CSV: blocks of blank-separated columns, first the names; `#`
 // starts the next block, `//` a comment. Position in mm, errors in mm and rad.
@@ -10,7 +10,7 @@
 //   C0Y B0Z A0Z
 //   1.2e-05 -3e-06 8e-06
 //
-// Etalon exchange: a section an error, `//` a comment; mm and rad.
+// Etalon exchange: one section per error, `//` a comment; mm and rad.
 //
 //   [EXX]
 //   Gridpoints = {
@@ -20,8 +20,8 @@
 //   [C0Y]
 //   VALUE = 1.2e-05
 //
-// Failure: InputError with file and line. A name that is none of the 21 errors is refused; so is an
-// error that depends on two axes, which our machine model does not know.
+// Failure: InputError with file and line. A name that is not one of the 21 errors is refused, as is
+// an error that depends on two axes, which the machine model does not contain.
 // Source: the public descriptions of both formats in the TF5280 manual; own words and own code.
 #pragma once
 
@@ -29,6 +29,8 @@
 
 namespace abbe::map {
 
+// For each format: a writer that returns the files written, a reader of the tables, and the error
+// of the tables for the exporter's comparison.
 Format::Paths WriteIsg(const ErrorMap& map, const ExportOptions& options,
                        const std::filesystem::path& path);
 AxisTables ReadIsg(const std::filesystem::path& file);
@@ -39,7 +41,7 @@ Format::Paths WriteEtalon(const ErrorMap& map, const ExportOptions& options,
 AxisTables ReadEtalon(const std::filesystem::path& file);
 ErrorField ReadBackEtalon(const Format::Paths& files, const machine::Chain& chain);
 
-// The error that tables say, for the tool in their header.
+// The volumetric error of the tables, for the tool in their header.
 ErrorField FieldOf(const AxisTables& tables);
 
 }  // namespace abbe::map

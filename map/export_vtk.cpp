@@ -33,14 +33,14 @@ std::vector<double> InMicrometres(const Eigen::Matrix3Xd& values) {
   return {scaled.data(), scaled.data() + scaled.size()};
 }
 
-// The header as an XML comment, which must not hold "--".
+// The header as an XML comment, which must not contain "--".
 std::string CommentOf(const FileHeader& header) {
   std::string text = HeaderText(header, "", {kSignOfPoints});
   for (std::size_t at; (at = text.find("--")) != std::string::npos;) text.replace(at, 2, "- -");
   return "<!--\n" + text + "-->\n";
 }
 
-// The numbers of the array with this name; empty where there is none.
+// The numbers of the array with this name; empty if there is none.
 std::vector<double> ArrayNamed(const std::string& text, const std::string& name,
                                const std::string& where) {
   const std::size_t tag = text.find("Name=\"" + name + "\"");
@@ -86,7 +86,7 @@ GridFile ReadVtkGrid(const std::filesystem::path& path) {
   const std::string text = ReadWhole(path), where = path.string();
   if (text.find("type=\"RectilinearGrid\"") == std::string::npos ||
       text.find("</VTKFile>") == std::string::npos) {
-    throw InputError(where + ": is no whole VTK file of a rectilinear grid");
+    throw InputError(where + ": is not a complete VTK file of a rectilinear grid");
   }
   FileHeader header;
   Lines lines(text, where);

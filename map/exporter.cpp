@@ -50,7 +50,7 @@ const Format& FormatNamed(std::string_view name) {
     known.push_back(format.name);
   }
   throw InputError(
-      fmt::format("\"{}\" is no format of a map; write {}", name, fmt::join(known, ", ")));
+      fmt::format("\"{}\" is not a format of a map; write {}", name, fmt::join(known, ", ")));
 }
 
 Export ExportMap(const ErrorMap& map, const Format& format, const ExportOptions& options,

@@ -1,15 +1,15 @@
-// The formats that a map can be written in. To add one: a file export_NAME.cpp (hdf5_*.cpp for what
-// uses HDF5) with a writer and a reader, and one line in exporter.cpp.
+// Export of a map to the formats of other programs. To add one: a file export_NAME.cpp (hdf5_*.cpp
+// if it uses HDF5) with a writer and a reader, and one line in exporter.cpp.
 //
 //   const Export done = ExportMap(map, FormatNamed("isg"), {}, "out/mill.csv");
-//   done.discrepancy.largest     // how far what the file says lies from the map, m
+//   done.discrepancy.largest     // largest difference of the file from the map, m
 //
-// The discrepancy is found by reading the files just written, with the format's own reader, and
-// comparing what they say with the map over the whole travels (Compare, map_grid.h): it is what a
-// control that reads the file cannot correct.
+// For the discrepancy the files just written are read with the reader of the format and compared
+// with the map over the whole travels (Compare, map_grid.h): it is the part of the error that the
+// file cannot represent.
 // Units: SI inside; each format has its own, given in docs/map.md.
-// Failure: InputError for an unknown format, points that the format does not take, and files that
-// are broken, with their line.
+// Failure: InputError for an unknown format, points that the format does not take, and damaged
+// files, with the line.
 #pragma once
 
 #include <array>
@@ -33,17 +33,18 @@ struct Format {
 
   std::string_view name;
   std::string_view extension;
-  std::string_view drops;  // what it cannot carry, in words
+  std::string_view drops;  // the content of a map that it cannot represent, in words
   // Returns the files written, at `path` or beside it.
   Paths (*write)(const ErrorMap& map, const ExportOptions& options,
                  const std::filesystem::path& path);
-  // The error in W that the files say, for the tool they were written for.
+  // The error in W according to the files, for the tool they were written for.
   ErrorField (*read)(const Paths& files, const machine::Chain& chain);
-  // The whole map, for the formats that carry one; else null.
+  // The whole map, for formats that contain one; else null.
   AxisTables (*import)(const std::filesystem::path& file);
 };
 
 const std::vector<Format>& Formats();
+// InputError for an unknown name, with the known ones.
 const Format& FormatNamed(std::string_view name);
 
 struct Export {
@@ -51,11 +52,12 @@ struct Export {
   Discrepancy discrepancy;
 };
 
+// Writes the map, reads the files back and compares them with the map.
 Export ExportMap(const ErrorMap& map, const Format& format, const ExportOptions& options,
                  const std::filesystem::path& path);
 
-// A map in our own form (map.toml) or in one that can be imported, told apart by content. `chain`
-// and `positive` (Chain::ReadPositive) are for files that do not say theirs, else empty.
+// Reads map.toml (by its extension) or an importable format (by its content). `chain` and
+// `positive` (Chain::ReadPositive) replace those of the file; empty: not given.
 ErrorMap ReadAnyMap(const std::filesystem::path& path, std::string_view chain = {},
                     std::string_view positive = {});
 

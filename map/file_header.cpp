@@ -37,7 +37,7 @@ std::string HeaderText(const FileHeader& header, std::string_view mark,
 machine::Chain ChainOf(const FileHeader& header) {
   if (header.chain.empty()) {
     throw InputError(
-        "the file does not say the order of the axes; give it with --chain \"[w X Y b Z t]\"");
+        "the file does not state the order of the axes; give it with --chain \"[w X Y b Z t]\"");
   }
   machine::Chain chain = machine::Chain::Parse(header.chain);
   chain.ReadPositive(header.positive, "give --positive \"...\" of X, Y and Z");

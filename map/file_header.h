@@ -1,5 +1,5 @@
-// What a file of numbers says of itself in comments: lines "key = value" behind the comment mark
-// of its format.
+// The header of an exported file: comment lines "key = value" behind the comment mark of the
+// format.
 //
 //   # machine = demo-mill
 //   # chain = [w X Y b Z t]
@@ -9,8 +9,9 @@
 //   # scale = prior only
 //   # sign = what the numbers mean, in the words of each format
 //
-// Units: SI inside, the key's in the file. Failure: InputError from a chain or number that is none.
-// Lines without a known key are other people's comments and are passed over.
+// Units: SI inside, in the file those of the key. Failure: InputError for an invalid chain or
+// number.
+// Lines without a known key are ordinary comments and are ignored.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,8 +25,8 @@ namespace abbe::map {
 
 struct FileHeader {
   std::string machine;
-  std::string chain;                               // empty: the file does not say
-  std::string positive;                            // how X, Y, Z count; empty: it does not say
+  std::string chain;                               // empty: not stated
+  std::string positive;                            // sign of X, Y, Z (chain.h); empty: not stated
   Eigen::Vector3d tool = Eigen::Vector3d::Zero();  // p_TQ, m
   double temperature = 20.0;                       // degC
   std::string scale = "prior only";
@@ -33,19 +34,20 @@ struct FileHeader {
   friend bool operator==(const FileHeader&, const FileHeader&) = default;
 };
 
+// The header of a map exported for the tool p_TQ.
 FileHeader HeaderOf(const ErrorMap& map, const Eigen::Vector3d& p_TQ);
-// `sign`: one line each.
+// The comment lines of the header; `sign`: the lines "sign = ...".
 std::string HeaderText(const FileHeader& header, std::string_view mark,
                        const std::vector<std::string>& sign);
 
-// The chain with its count. InputError for a file that does not say it.
+// The chain with the sign of its positions. InputError if the header lacks either.
 machine::Chain ChainOf(const FileHeader& header);
 
-// Of the formats that hold the error at points.
+// `sign` of the formats that hold the error at points.
 inline constexpr const char* kSignOfPoints =
     "actual - nominal of the tool in the workpiece, at positions as the control counts";
 
-// Takes in the text of one comment, without its mark.
+// Reads one comment, without its mark, into the header.
 void ReadComment(std::string_view comment, FileHeader& header);
 
 }  // namespace abbe::map

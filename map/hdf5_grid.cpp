@@ -51,8 +51,8 @@ void PutNumbers(hid_t file, const char* name, const std::vector<hsize_t>& shape,
   recording::ThrowWriteFailure(path.string(), "nothing was written");
 }
 
-// What a file holds, by name.
-struct Held {
+// The content of a file, by name.
+struct StoredValues {
   std::map<std::string, std::string> texts;
   std::map<std::string, std::vector<double>> numbers;
 };
@@ -68,7 +68,7 @@ void SendNumbers(hid_t file, const std::string& name, int rank, const std::strin
   sender.Send('V', std::span<const double>(values));
 }
 
-// In a child: the numbers of each data set behind its name, a text behind its name.
+// Runs in the child: sends each name and then its numbers or its text.
 void SendAll(const std::string& file_name, const recording::Hdf5Sender& sender) {
   const Handle properties = recording::FileProperties();
   const Handle file(H5Fopen(file_name.c_str(), H5F_ACC_RDONLY, properties.id()), H5Fclose);
@@ -88,22 +88,22 @@ void SendAll(const std::string& file_name, const recording::Hdf5Sender& sender) 
   }
 }
 
-Held ReadAll(const std::filesystem::path& path) {
-  Held held;
+StoredValues ReadAll(const std::filesystem::path& path) {
+  StoredValues stored;
   std::string name;
   recording::ReadInChild(
       path, [&](const recording::Hdf5Sender& sender) { SendAll(path.string(), sender); },
       [&](char part, std::string_view bytes) {
         if (part == 'T' || part == 'N') name = bytes;
-        if (part == 't') held.texts[name] = bytes;
+        if (part == 't') stored.texts[name] = bytes;
         if (part != 'V') return true;
-        std::vector<double>& values = held.numbers[name];
+        std::vector<double>& values = stored.numbers[name];
         const std::size_t before = values.size(), count = bytes.size() / sizeof(double);
         values.resize(before + count);
         std::memcpy(values.data() + before, bytes.data(), count * sizeof(double));
         return true;
       });
-  return held;
+  return stored;
 }
 
 Eigen::Matrix3Xd VectorsOf(const std::vector<double>& values) {
@@ -157,27 +157,27 @@ Format::Paths WriteHdf5Grid(const ErrorMap& map, const ExportOptions& options,
 }
 
 GridFile ReadHdf5Grid(const std::filesystem::path& path) {
-  Held held = ReadAll(path);
-  const auto& tool_mm = held.numbers["tool_mm"];
-  const auto& temperature = held.numbers["temperature_c"];
+  StoredValues stored = ReadAll(path);
+  const auto& tool_mm = stored.numbers["tool_mm"];
+  const auto& temperature = stored.numbers["temperature_c"];
   if (tool_mm.size() != 3 || temperature.size() != 1) {
-    throw InputError(path.string() + ": tool_mm or temperature_c has another size");
+    throw InputError(path.string() + ": tool_mm or temperature_c has a wrong size");
   }
   FileHeader header;
-  header.machine = held.texts["machine"];
-  header.chain = held.texts["chain"];
-  header.positive = held.texts["positive"];
-  header.scale = held.texts["scale"];
+  header.machine = stored.texts["machine"];
+  header.chain = stored.texts["chain"];
+  header.positive = stored.texts["positive"];
+  header.scale = stored.texts["scale"];
   header.tool = 1e-3 * Eigen::Vector3d(tool_mm.data());
   header.temperature = temperature[0];
   std::array<GridAxis, 3> axes;
   for (std::size_t k = 0; k < 3; ++k) {
-    std::vector<double>& positions = held.numbers[kGridAxes[k]];
+    std::vector<double>& positions = stored.numbers[kGridAxes[k]];
     for (double& position : positions) position *= 1e-3;
     axes[k] = AxisOfPositions(positions, path.string());
   }
-  return {header,
-          MapGrid(axes, VectorsOf(held.numbers["error_um"]), VectorsOf(held.numbers["u95_um"]))};
+  return {header, MapGrid(axes, VectorsOf(stored.numbers["error_um"]),
+                          VectorsOf(stored.numbers["u95_um"]))};
 }
 
 }  // namespace abbe::map

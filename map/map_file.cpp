@@ -45,7 +45,7 @@ std::string HeadText(const ErrorMap& map) {
       QuotedList(std::array{of_squareness(0), of_squareness(1), of_squareness(2)}));
   for (std::size_t axis = 0; axis < kTravelKeys.size(); ++axis) {
     const machine::Travel& travel = map.model().travels()[axis];
-    if (!(travel.last > travel.first)) continue;  // the machine lacks it
+    if (!(travel.last > travel.first)) continue;  // no such axis
     text +=
         fmt::format("{} = {}\n", kTravelKeys[axis], Floats(std::array{travel.first, travel.last}));
   }
@@ -89,7 +89,7 @@ Source SourceNamed(const Table& table, const char* key, const std::string& name)
   const auto found = std::find(kSourceNames.begin(), kSourceNames.end(), name);
   if (found == kSourceNames.end()) {
     throw table.Error(
-        key, fmt::format("\"{}\" is no source; write {}", name, fmt::join(kSourceNames, ", ")));
+        key, fmt::format("\"{}\" is not a source; write {}", name, fmt::join(kSourceNames, ", ")));
   }
   return static_cast<Source>(found - kSourceNames.begin());
 }
@@ -109,7 +109,7 @@ MapOrigin ReadOrigin(const Table& root) {
   return origin;
 }
 
-// What `make` gives; when it refuses, with the place in the file.
+// The result of `make`; its InputError gets the place in the file.
 template <typename Make>
 auto Located(const Table& table, const char* key, const Make& make) {
   try {
@@ -149,9 +149,9 @@ void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin
   const std::string name = table.Text("name");
   const int error = ErrorNamed(name);
   if (error < 0 || error >= kErrors - 3)
-    throw table.Error("name", "is no error motion; write EXX ... ECZ");
+    throw table.Error("name", "is not an error motion; write EXX ... ECZ");
   if (std::exchange(seen[static_cast<std::size_t>(error)], true)) {
-    throw table.Error("name", name + " stands twice");
+    throw table.Error("name", name + " is given twice");
   }
   origin.sources[static_cast<std::size_t>(error)] = SourceNamed(table, "from", table.Text("from"));
   const int axis = error / machine::kMotions, motion = error % machine::kMotions;
@@ -161,7 +161,7 @@ void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin
     shape[key] = table.Quantities(key, 0);
   }
   const auto made = Located(table, "form", [&] { return machine::FormOf(form, shape); });
-  // Before there is memory for as many as the shape says.
+  // Checked before memory is allocated for the size in the shape.
   const auto c = table.Quantities("coefficients", static_cast<std::size_t>(made->size()));
   const bool bare = table.Choice("gauge", {"zero at start", "none"}) == "none";
   const auto gauge = bare ? machine::Gauge::kNone : machine::Gauge::kZeroAtStart;

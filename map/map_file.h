@@ -1,9 +1,9 @@
-// The file of an error map: TOML, written by `abbe fuse`, read by whatever puts the map to use.
+// The file of an error map: TOML, written by `abbe fuse`, read by the commands that use the map.
 //
 //   format = 1
 //   machine = "demo-mill"
 //   chain = "[w X Y b Z t]"
-//   positive = "carriage carriage tool"         # how X, Y and Z count, machine/chain.h
+//   positive = "carriage carriage tool"         # sign of X, Y and Z, machine/chain.h
 //   reference = [0.0, 0.0, 0.0]                 # m
 //   tool = [0.0, 0.0, 0.0]                      # m, of the measurement
 //   temperature_c = 20.0
@@ -12,24 +12,24 @@
 //   squareness_from = ["linkage", "linkage", "prior"]
 //   [travel]
 //   x = [0.0, 0.06]  y = ...  z = ...           # m
-//   [limit]                                     # the soft limits, m; left out: not known
+//   [limit]                                     # the soft limits, m; absent: unknown
 //   x = [-0.0001, 0.0601]  y = ...  z = ...
-//   [[error]]                                   # 18 of them, those that are zero may be left out
+//   [[error]]                                   # at most 18; an absent one is zero
 //   name = "EXX"
 //   from = "sweep"                              # sweep, linkage, reference, plate, length, prior
 //   form = "b-spline"                           # machine/form_of_shape.h
 //   degree = [3.0]
 //   knots_m = [...]
-//   gauge = "none"                              # of an imported table; left out: "zero at start"
+//   gauge = "none"                              # of an imported table; absent: "zero at start"
 //   coefficients = [...]                        # m or rad
-//   [covariance]                                # left out: the map states no uncertainty
+//   [covariance]                                # absent: a map without uncertainty
 //   names = ["EXX.c0", ...]
 //   rows = [...]                                # the lower triangle, row after row, SI
 //
-// All numbers are SI and in the shortest form that reads back the same, so a map that is written
-// and read is the same bit for bit.
-// Failure: InputError with file, line and key, for a number that is not finite too; for a file
-// that breaks off, its last line.
+// All numbers are SI and in the shortest form that reads back the same, so a map is the same bit
+// for bit after writing and reading.
+// Failure: InputError with file, line and key, also for a number that is not finite; for a
+// truncated file with its last line.
 #pragma once
 
 #include <filesystem>

@@ -85,7 +85,7 @@ Vector3d MapGrid::Error(const Vector3d& position) const {
     const auto at = static_cast<std::size_t>(k);
     const GridAxis& axis = axes_[at];
     double inside = position[k];
-    if (!(inside >= axis.first && inside <= axis.last)) {  // the rounding of an end, or refused
+    if (!(inside >= axis.first && inside <= axis.last)) {  // beyond an end: by rounding, or refused
       inside = machine::InTravel({axis.first, axis.last}, k, inside);
     }
     const double steps = (inside - first_[k]) * per_step_[k];

@@ -1,16 +1,16 @@
-// An error map on a grid: for programs that take points, and where millions of points are asked
-// for.
+// An error map on a grid, for programs that use grid points and for fast interpolation at millions
+// of points.
 //
 //   const MapGrid grid = SampleGrid(map, p_TQ, {31, 31, 31});
 //   const Eigen::Vector3d error = grid.Error({0.03, 0.02, 0.05});     // trilinear
 //   const Discrepancy worst = InterpolationError(map, p_TQ, grid);
 //
-// Frames, signs: error_map.h. Units: m. Shapes: one column a grid point, x runs fastest, then y,
-// then z; u95 is empty where the map states no uncertainty. u95 = kCoverage u of each component.
+// Frames, signs: error_map.h. Units: m. Shapes: one column per grid point, x runs fastest, then y,
+// then z; u95 is empty for a map without uncertainty. u95 = kCoverage u of each component.
 // Failure: InputError for fewer than two points along an axis, and for a position outside the
 // grid.
-// Source: own; trilinear interpolation. Validity: between the points the grid errs by what
-// InterpolationError says, which falls with the square of the spacing.
+// Source: own; trilinear interpolation. Validity: between the points the error of interpolation is
+// that of InterpolationError, proportional to the square of the spacing.
 #pragma once
 
 #include <Eigen/Core>
@@ -53,24 +53,25 @@ class MapGrid {
   Eigen::Vector3d first_, per_step_;
 };
 
+// The map at `counts` points along X, Y and Z, over the whole travels.
 MapGrid SampleGrid(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
                    const std::array<Eigen::Index, 3>& counts);
 
-// Where, and by how much, something that stands for a map differs from it most: |difference|, and
-// the largest |error| of the map at the points compared; m.
+// Comparison of an error field with a map, m: largest and rms |difference|, the position of the
+// largest, and the largest |error| of the map at the compared points.
 struct Discrepancy {
   double largest = 0.0, rms = 0.0, error = 0.0;
   Eigen::Vector3d where = Eigen::Vector3d::Zero();
 };
 
-// Compares at `points` points that fill the travels evenly and lie on no grid (Halton's sequence
+// Compares at `points` points that fill the travels evenly and are not on a grid (Halton sequence
 // in bases 2, 3, 5).
 using ErrorField = std::function<Eigen::Vector3d(const Eigen::Vector3d& position)>;
 Discrepancy Compare(const ErrorMap& map, const Eigen::Vector3d& p_TQ, const ErrorField& field,
                     int points = 4000);
 
-// Compares at the middle of every cell, edge and face of the grid, where a trilinear interpolation
-// errs most.
+// Compares at the middle of every cell, edge and face of the grid, where the error of trilinear
+// interpolation is largest.
 Discrepancy InterpolationError(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
                                const MapGrid& grid);
 

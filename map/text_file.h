@@ -6,7 +6,7 @@
 
 namespace abbe::map {
 
-// As recording/whole_file.h writes every result. Missing folders are made.
+// Written by recording/whole_file.h. Missing folders are created.
 void WriteWhole(const std::string& text, const std::filesystem::path& path);
 
 // InputError when the file cannot be read.

@@ -48,7 +48,7 @@ double NumberOf(std::string_view word, std::string_view where) {
   double number = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(number)) {
-    throw InputError(fmt::format("{}: \"{}\" is no number; correct it", where, word));
+    throw InputError(fmt::format("{}: \"{}\" is not a number; correct it", where, word));
   }
   return number;
 }

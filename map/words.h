@@ -1,6 +1,6 @@
-// Lines, words and numbers of the text formats that maps are exchanged in.
+// Lines, words and numbers of the text formats of maps.
 //
-// Failure: InputError that begins with `where`, for a word that is no finite number.
+// Failure: InputError that begins with `where`, for a word that is not a finite number.
 #pragma once
 
 #include <cstddef>
@@ -13,21 +13,22 @@ namespace abbe::map {
 
 std::string_view Trimmed(std::string_view text);
 
-// Between blanks and tabs, or between each `separator`, trimmed.
+// The words between blanks and tabs, or the trimmed parts between separators.
 std::vector<std::string_view> WordsOf(std::string_view text);
 std::vector<std::string_view> PartsOf(std::string_view text, char separator);
 
+// Finite numbers only, with a decimal point.
 double NumberOf(std::string_view word, std::string_view where);
 std::vector<double> NumbersOf(std::string_view text, std::string_view where);
 
-// Gives a text line by line.
+// Reads a text line by line.
 class Lines {
  public:
   Lines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {}
 
-  // Whether there was another line; `line` is then it, without its end.
+  // Sets `line` to the next line, without its end; false after the last.
   bool Next(std::string_view& line);
-  // "file:12", of the line that Next gave last.
+  // "file:12" for the last line from Next().
   std::string Where() const;
 
  private:

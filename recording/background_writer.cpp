@@ -26,7 +26,7 @@ BackgroundWriter::~BackgroundWriter() {
   try {
     Close();
   } catch (const std::exception&) {
-    // Close() is there for whoever wants to know.
+    // A caller that needs the error calls Close().
   }
 }
 
@@ -110,10 +110,10 @@ void BackgroundWriter::ThrowFailure() {
 
 void BackgroundWriter::RunWrites(const std::stop_token& stop) {
   std::mutex idle;
-  std::condition_variable_any nobody;
+  std::condition_variable_any never_notified;
   std::unique_lock lock(idle);
   while (!stop.stop_requested()) {
-    nobody.wait_for(lock, stop, kPeriod, [] { return false; });
+    never_notified.wait_for(lock, stop, kPeriod, [] { return false; });
     WriteWaiting();
   }
 }

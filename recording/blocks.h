@@ -1,11 +1,11 @@
-// A recording of any length in the memory of one block.
+// A recording of any length, read block by block in the memory of one block.
 //
 //   const Blocks blocks = [&](const UseBlock& use) { ReadBlocks("volume.h5", use); };
 //   blocks([&](const Recording& block) { rows += block.rows(); });       // as often as wanted
 //
-// Each block is a recording: the name, the header and the columns of the whole, and some of its
-// rows; `first_row` tells which. The last one has the warnings. A recording without rows is one
-// block without rows.
+// Each block is a recording with the name, the header and the columns of the whole and some of its
+// rows, from `first_row` on. The last block has the warnings. A recording without rows is one block
+// without rows.
 #pragma once
 
 #include <functional>

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kAllFlags = kStale | kOutOfRange | kDeviceError | kInterpolated | kClockJump;
 
-// Each inner list is satisfied by any one of its names.
+// One of the names of each inner list is required.
 using Required = std::vector<std::vector<std::string>>;
 
 struct KindRule {
@@ -48,9 +48,9 @@ const std::vector<KindRule>& KindRules() {
   return rules;
 }
 
-// What a value of a column that abbe knows may be, besides finite.
+// Allowed values of a column that abbe knows, besides finite.
 struct ValueRule {
-  std::string_view begin, end;  // of the column's name; equal to the name when it stands alone
+  std::string_view begin, end;  // of the column's name; both are the whole name for a single column
   bool (*allows)(double);
   std::string_view wanted;
 };
@@ -93,7 +93,7 @@ const ValueRule* RuleOf(std::string_view name) {
   throw InputError(fmt::format("{}: {}: {}", place, what, message));
 }
 
-// `before`: the time of the row before the first; then that of the last one.
+// `before`: in, the time of the row before the block; out, that of its last row.
 void CheckTime(std::span<const double> time, std::size_t first_row, const Places& places,
                double& before) {
   for (std::size_t i = 0; i < time.size(); ++i) {
@@ -103,8 +103,8 @@ void CheckTime(std::span<const double> time, std::size_t first_row, const Places
     }
     if (time[i] < before) {
       Refuse(places.Row(first_row + i), "time_s",
-             fmt::format("goes back from {} to {}; rows must stand in the order of their time",
-                         before, time[i]));
+             fmt::format("goes back from {} to {}; rows must be in the order of time", before,
+                         time[i]));
     }
     before = time[i];
   }

@@ -1,4 +1,4 @@
-// What makes a recording believable: the rules of docs/recordings.md that hold for its kind.
+// Validation of a recording: the rules of docs/recordings.md for its kind.
 #pragma once
 
 #include <cstddef>
@@ -12,19 +12,19 @@
 
 namespace abbe::recording {
 
-// Where the parts of a recording stand, for messages: "runs/a.csv:17", or "runs/a.h5: row 5".
+// Positions in the file of a recording, for messages: "runs/a.csv:17", or "runs/a.h5: row 5".
 struct Places {
   std::string file;
-  std::size_t header_line = 0;     // line of the file with the first line of the header; 0: HDF5
-  std::size_t first_row_line = 0;  // line of the file with the first row; 0: HDF5
+  std::size_t header_line = 0;     // line number of the first line of the header; 0: HDF5
+  std::size_t first_row_line = 0;  // line number of the first row; 0: HDF5
 
   std::string Header(std::size_t line) const;  // from 1
   std::string Row(std::size_t row) const;      // from 0; printed from 1
 };
 
-// Throws InputError when the names cannot be columns: none, one twice, or one that is empty, holds
-// a comma, a quote, a slash, a '#' in front or a control character, has blanks at its ends, or is
-// not UTF-8.
+// Throws InputError for invalid column names: none at all, a duplicate, or one that is empty,
+// contains a comma, a semicolon, a quote, a slash or a control character, begins with '#',
+// has blanks at its ends, or is not UTF-8.
 void CheckColumnNames(const std::vector<std::string>& names, std::string_view place);
 
 // The kinds that a header may state.
@@ -37,10 +37,10 @@ std::vector<std::string> RequiredColumns(std::string_view kind);
 void CheckHeader(const std::string& header, const std::vector<std::string>& names,
                  const Places& places);
 
-// The rules for rows, over the blocks of a recording one after the other: columns of one length,
-// time that never goes back, flags that are known, and in the columns that abbe knows no NaN,
-// infinity or impossible value in a row without a flag. Other columns may hold anything. Throws
-// InputError naming place and column.
+// The rules for rows, over the blocks of a recording one after the other: columns of equal length,
+// time that never decreases, known flags, and no NaN, infinity or impossible value in a row without
+// a flag, in the columns that abbe knows. Other columns are not checked.
+// Throws InputError naming place and column.
 class RowCheck {
  public:
   explicit RowCheck(Places places) : places_(std::move(places)) {}
@@ -51,7 +51,7 @@ class RowCheck {
   double time_ = -std::numeric_limits<double>::infinity();  // of the last row
 };
 
-// Throws InputError, naming place and column, unless the recording keeps every rule for names,
+// Throws InputError, naming place and column, unless the recording obeys every rule for names,
 // header and rows.
 void Check(const Recording& recording, const Places& places);
 

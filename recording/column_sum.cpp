@@ -36,7 +36,7 @@ class SumParser {
       if (next == 0) break;
       sign = next == '-' ? -1.0 : 1.0;
     }
-    if (!Blank()) Refuse("is no sum of columns and numbers");
+    if (!Blank()) Refuse("is not a sum of columns and numbers");
     if (sum_.terms.empty()) Refuse("names no column");
     return std::move(sum_);
   }
@@ -59,7 +59,7 @@ class SumParser {
       if (next == 0) break;
       divides = next == '/';
     }
-    if (!std::isfinite(factor)) Refuse("divides by 0, or has a number that is none");
+    if (!std::isfinite(factor)) Refuse("divides by 0, or has a number out of range");
     if (column) {
       sum_.terms.push_back({*column, factor});
     } else {
@@ -67,7 +67,7 @@ class SumParser {
     }
   }
 
-  // The longest name of the table that stands here whole, or what is in quotes.
+  // The name in quotes, or the longest name of the table that matches here.
   std::string TakeName() {
     if (Blank()) Refuse("ends where a column or a number is missing");
     if (rest_.front() == '"') {
@@ -83,7 +83,7 @@ class SumParser {
         longest = name;
       }
     }
-    // A word that is no name is shown whole.
+    // An unknown name: the whole word, for the message.
     std::string name(longest.empty() ? rest_.substr(0, rest_.find_first_of(" \t+-*/")) : longest);
     rest_.remove_prefix(name.size());
     return name;
@@ -112,7 +112,7 @@ class SumParser {
     return rest_.empty();
   }
 
-  // The letter taken, or 0.
+  // Takes the next letter if it is one of `letters`; else returns 0.
   char TakeAny(std::string_view letters) {
     if (Blank() || letters.find(rest_.front()) == std::string_view::npos) return 0;
     const char letter = rest_.front();

@@ -1,4 +1,5 @@
-// The parts of the CSV form that its reader and its writer share; docs/recordings.md has them all.
+// The signature of the CSV form, for its reader and its writer;
+// docs/recordings.md describes the form.
 #pragma once
 
 #include <string_view>

@@ -27,7 +27,7 @@ InputError Error(const Places& places, std::size_t line, std::string_view messag
   return InputError(fmt::format("{}:{}: {}", places.file, line, message));
 }
 
-// "abbe-recording = 1", whatever the blanks.
+// "abbe-recording = 1", with any blanks.
 void CheckSignature(std::string_view line, const Places& places) {
   std::string packed;
   for (const char c : line) {
@@ -125,7 +125,7 @@ class RowParser {
   const Places& places_;
 };
 
-// A recording without rows; `lines` then stands before the first row.
+// The recording without rows; the next line of `lines` is the first row.
 Recording ReadHead(LineReader& lines, Places& places) {
   Recording recording;
   recording.name = places.file;
@@ -158,7 +158,7 @@ void ReadCsv(const std::filesystem::path& path, std::size_t rows,
   const std::size_t at_most = rows <= kBlockRows ? rows : lines.CountLineEnds();
   for (Column& column : block.columns) column.values.reserve(at_most);
   const RowParser parser(block, places);
-  std::size_t blank = 0, before = 0;  // line; rows of the blocks before
+  std::size_t blank = 0, before = 0;  // a blank line; rows of earlier blocks
   while (const auto line = lines.Next()) {
     if (!lines.complete()) {
       block.warnings.push_back(

@@ -27,7 +27,7 @@ std::string_view WithoutBlanks(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kCellEdges) - first + 1);
 }
 
-// What spreadsheets put between cells: a semicolon where numbers have a decimal comma.
+// The separator of cells: spreadsheets write semicolons when numbers have a decimal comma.
 char SeparatorOf(std::string_view line) {
   for (const char separator : {';', '\t'}) {
     if (line.find(separator) != std::string_view::npos) return separator;
@@ -35,7 +35,7 @@ char SeparatorOf(std::string_view line) {
   return ',';
 }
 
-// A separator between quotes belongs to its cell; a doubled quote in them is one.
+// A separator inside quotes belongs to the cell; a doubled quote inside quotes is one quote.
 std::vector<std::string> CellsOf(std::string_view line, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false;
@@ -54,7 +54,7 @@ std::vector<std::string> CellsOf(std::string_view line, char separator) {
 }
 
 double NumberIn(std::string cell, char separator) {
-  // "1,5" cannot stand in a table whose cells commas part, except in quotes: there it may be 15.
+  // In a table separated by commas, "1,5" occurs only in quotes and may mean 15.
   if (separator != ',' && cell.find('.') == std::string::npos &&
       std::count(cell.begin(), cell.end(), ',') == 1) {
     cell[cell.find(',')] = '.';
@@ -101,8 +101,8 @@ class TableReader {
     }
     if (!any_good_) {
       throw InputError(fmt::format(
-          "{}: no row has a number in every column that was asked for; is the table parted by {}?",
-          path_, separator_ == '\t' ? "tabs" : fmt::format("\"{}\"", separator_)));
+          "{}: no row has a number in every requested column; is {} the separator of the table?",
+          path_, separator_ == '\t' ? "a tab" : fmt::format("\"{}\"", separator_)));
     }
     recording_.header = Header();
     return std::move(recording_);
@@ -111,10 +111,10 @@ class TableReader {
  private:
   void Choose() {
     if (columns_.empty()) {
-      throw InputError(
-          fmt::format("{}: a table does not say what its columns are ({}); name them with their "
-                      "units, for example --column pivot_1_rad=NAME",
-                      path_, fmt::join(names_, ", ")));
+      throw InputError(fmt::format(
+          "{}: the table does not state its quantities and units ({}); name the columns with "
+          "their units, for example --column pivot_1_rad=NAME",
+          path_, fmt::join(names_, ", ")));
     }
     for (const MonitoredColumn& column : columns_) {
       sums_.push_back(ParseColumnSum(column.channel, column.name, names_, path_));
@@ -130,7 +130,7 @@ class TableReader {
   std::optional<std::string_view> Next() {
     for (auto line = lines_.Next(); line; line = lines_.Next()) {
       if (line->find('\0') != std::string_view::npos) {
-        throw InputError(fmt::format("{}:{}: is no text in UTF-8; save the table as CSV (UTF-8)",
+        throw InputError(fmt::format("{}:{}: is not UTF-8 text; save the table as CSV (UTF-8)",
                                      path_, lines_.number()));
       }
       const std::string_view text = WithoutBlanks(*line);
@@ -145,11 +145,12 @@ class TableReader {
 
   void Take(const std::vector<std::string>& cells, double order) {
     if (cells.size() != names_.size()) {
-      throw InputError(fmt::format("{}:{}: {} cells, but the table has {} columns{}", path_,
-                                   lines_.number(), cells.size(), names_.size(),
-                                   separator_ == ',' && cells.size() > names_.size()
-                                       ? "; does it have decimal commas? then part its cells by ;"
-                                       : ""));
+      throw InputError(
+          fmt::format("{}:{}: {} cells, but the table has {} columns{}", path_, lines_.number(),
+                      cells.size(), names_.size(),
+                      separator_ == ',' && cells.size() > names_.size()
+                          ? "; does it have decimal commas? then separate its cells by ;"
+                          : ""));
     }
     for (std::size_t i = 0; i < asked_.size(); ++i) {
       if (!Says(cells[asked_[i]], options_.where[i].second)) return;
@@ -188,7 +189,7 @@ class TableReader {
   std::vector<MonitoredColumn> columns_;
   std::vector<ColumnSum> sums_;
   std::vector<std::size_t> asked_;
-  std::vector<double> numbers_;  // of the row that is read
+  std::vector<double> numbers_;  // of the current row
   bool has_time_ = false, any_good_ = false;
   Recording recording_;
 };

@@ -1,4 +1,4 @@
-// Reads a table of numbers with one line of names (CSV of others) into a recording.
+// Import of a CSV table from other programs, with one line of column names, into a recording.
 //
 //   pose,arm,lS,lL,x_m
 //   1,2,0.20,-1.17,0.391
@@ -6,19 +6,19 @@
 //   ReadCsvTable("poses.csv", {.columns = {{"pivot_1_rad", "lS"}, {"ref_x_mm", "x_m"}},
 //                              .where = {{"arm", "2"}}, .kind = "linkage"});
 //
-// Only the columns asked for are taken, each a column of the table or a sum of some
-// (recording/column_sum.h). A column of the table whose name ends in a unit is converted to the
-// unit of the new name; one without is taken to be in that unit. `where` keeps the rows in which a
-// column says that, as text or number. Without the column time_s the rows are counted (time_s from
-// 0 on, header time = "order"), those that are left out too. Lines that are empty or begin with #
-// are passed over; a cell without a finite number makes its row flagged.
-// As spreadsheets write it: cells are parted by the commas, semicolons or tabs of the first line,
-// decimals have a point, or, where no comma parts cells, a comma; quotes round a cell, a byte order
-// mark and CRLF do no harm. A table without a line of names takes them from `names`, "-" for a
-// column to leave out; without `columns` all others are taken as they are.
-// Failure: InputError with file, and line where there is one: no columns asked for, a name that the
-// table lacks (it lists those it has), a line with another number of cells, no row left, no number
-// in any.
+// Only the requested columns are read, each a column of the table or a sum of columns
+// (recording/column_sum.h). A column whose name ends in a unit is converted to the unit of the new
+// name; one without a unit is assumed to have that unit. `where` keeps the rows whose cell in a
+// column equals a text or number. Without a column time_s, time_s is the row number from 0 (header
+// time = "order"), in which excluded rows count too. Lines that are empty or begin with # are
+// ignored; a row with a cell that is not a finite number is flagged.
+// Format, as written by spreadsheets: the cells are separated by commas, semicolons or tabs, as in
+// the first line; decimals have a point, or a comma unless commas separate the cells; quotes round
+// a cell, a byte order mark and CRLF are accepted. A table without a line of names takes them from
+// `names`, "-" for a column to leave out; without `columns` all the others are read unchanged.
+// Failure: InputError with file and line, if there is one: no columns requested, a name that the
+// table lacks (the message lists its columns), a line with a wrong number of cells, no row left, no
+// row with a number in every column.
 #pragma once
 
 #include <filesystem>
@@ -32,13 +32,13 @@
 namespace abbe::recording {
 
 struct CsvTableOptions {
-  std::vector<MonitoredColumn> columns;  // new name, column or sum of columns of the table
-  std::vector<std::pair<std::string, std::string>> where = {};  // column, what it says
+  std::vector<MonitoredColumn> columns;  // new name; column or sum of columns of the table
+  std::vector<std::pair<std::string, std::string>> where = {};  // column, required cell
   std::string kind;
-  std::vector<std::string> names = {};  // of the table's columns, where it has no line of them
+  std::vector<std::string> names = {};  // of the columns of a table without a line of names
 };
 
-// Whether a file of the name *.csv is such a table: recordings begin with #.
+// Whether the file is *.csv and not a recording, which begins with #.
 bool IsCsvTable(const std::filesystem::path& path);
 
 Recording ReadCsvTable(const std::filesystem::path& path, const CsvTableOptions& options);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kBytesHeld = std::size_t{1} << 16;
 
-// Lines of text, collected before they go to the file.
+// Lines of text, buffered before they go to the file.
 class Lines {
  public:
   void Header(const std::string& header, const std::vector<std::string>& columns) {

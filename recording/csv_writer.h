@@ -1,4 +1,4 @@
-// Writing the CSV form of a recording at once; row_file.h has the form that grows.
+// Writing a complete recording as CSV; row_file.h writes row by row.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace abbe::recording {
 
-// Writes the columns of `recording` under `header`; the caller finishes the file. Failures are
+// Writes the columns of `recording` under `header`; the caller calls file.Finish(). Failures are
 // those of WholeFile.
 void WriteCsv(const Recording& recording, const std::string& header, WholeFile& file);
 

@@ -16,8 +16,8 @@ bool HasGoodRow(const Recording& recording) {
 }
 
 void RefuseNoGoodRow(const Recording& recording, std::size_t rows) {
-  throw InputError(fmt::format("{}: none of the {} rows is without a flag; nothing to evaluate",
-                               recording.name, rows));
+  throw InputError(
+      fmt::format("{}: all {} rows are flagged; nothing to evaluate", recording.name, rows));
 }
 
 std::vector<std::size_t> GoodRows(const Recording& recording) {
@@ -38,8 +38,8 @@ std::vector<double> ValuesOf(const Recording& recording, const std::string& colu
   values.reserve(rows.size());
   for (const std::size_t row : rows) {
     if (!std::isfinite(all[row])) {
-      throw InputError(fmt::format("{}: row {}: {} is no number and has no flag", recording.name,
-                                   recording.first_row + row + 1, column));
+      throw InputError(fmt::format("{}: row {}: {} is not a number, and the row has no flag",
+                                   recording.name, recording.first_row + row + 1, column));
     }
     values.push_back(all[row] * si);
   }

@@ -1,11 +1,11 @@
-// The rows of a recording that count, and their numbers in SI units.
+// The valid rows of a recording, and their values in SI units.
 //
-//   const std::vector<std::size_t> rows = GoodRows(recording);           // of this block of it
+//   const std::vector<std::size_t> rows = GoodRows(recording);           // of one block
 //   const std::vector<double> x = ValuesOf(recording, "x_mm", rows);       // m
 //
-// A row counts when its flag is 0 (or there is no column `flags`).
-// Failure: InputError naming file, row (from 1) and column: no row counts, a column is missing, or
-// a number is not finite in a row that counts.
+// A row is valid when its flag is 0 or there is no column `flags`.
+// Failure: InputError naming file, row (from 1) and column: no valid row, a missing column, or a
+// value that is not finite in a valid row.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,13 @@
 
 namespace abbe::recording {
 
+// The numbers of the valid rows of this block, and whether there is one.
 std::vector<std::size_t> GoodRows(const Recording& recording);
 bool HasGoodRow(const Recording& recording);
-// What GoodRows throws; `rows`: of the whole recording.
+// Throws the InputError of GoodRows; `rows`: number of rows of the whole recording.
 [[noreturn]] void RefuseNoGoodRow(const Recording& recording, std::size_t rows);
 
+// The values of a column in these rows, in SI units.
 std::vector<double> ValuesOf(const Recording& recording, const std::string& column,
                              const std::vector<std::size_t>& rows);
 

@@ -23,12 +23,12 @@ namespace abbe::recording {
 namespace {
 
 constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
-constexpr std::size_t kMostBytes = kMebi;  // of a message
+constexpr std::size_t kMostBytes = kMebi;  // of one message
 constexpr char kFailed = 'e', kDone = 'd';
 constexpr rlim_t kChildSeconds = 3;
-constexpr int kSecondsOfClock = 20;  // for one of CPU, on a machine with much else to do
+constexpr int kSecondsOfClock = 20;  // per second of CPU, for a busy computer
 constexpr std::uint64_t kBytesPerSecond = 2'000'000;
-constexpr std::uint64_t kLibrary = 256 * kMebi;  // what libhdf5 takes for itself
+constexpr std::uint64_t kLibrary = 256 * kMebi;  // memory of libhdf5 itself
 
 std::uintmax_t SizeOf(const std::filesystem::path& path) {
   std::error_code error;
@@ -41,7 +41,7 @@ void WriteAll(int pipe, const void* from, std::size_t size) {
   while (size > 0) {
     const ssize_t count = write(pipe, at, size);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) _exit(1);  // nobody listens any more
+    if (count < 0) _exit(1);  // the reader has closed the pipe
     at += count;
     size -= static_cast<std::size_t>(count);
   }
@@ -72,7 +72,7 @@ void Limit(int resource, rlim_t most) {
   setrlimit(resource, &limit);
 }
 
-// Bytes of address space that this process has.
+// Size of the address space of this process, in bytes.
 std::uint64_t Mapped() {
   std::uint64_t pages = 0;
   if (std::FILE* file = std::fopen("/proc/self/statm", "re")) {
@@ -93,13 +93,13 @@ struct Child {
 [[noreturn]] void RunChild(const Child& child) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGPIPE, SIG_IGN);
-  // A crash ends the child at once, whatever the program does in its own.
+  // Default signal handlers: a crash ends the child at once.
   for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGABRT, SIGBUS, SIGILL, SIGFPE}) {
     std::signal(signal, SIG_DFL);
   }
   close(child.pipe[0]);
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  dup2(nowhere, STDERR_FILENO);  // what the C library says of a broken heap
+  dup2(nowhere, STDERR_FILENO);  // messages of the C library about a corrupt heap
   Limit(RLIMIT_CORE, 0);
   Limit(RLIMIT_CPU, child.seconds);
 #if !defined(__SANITIZE_ADDRESS__)
@@ -117,8 +117,8 @@ struct Child {
   _exit(0);
 }
 
-// Forks while libhdf5 is ours: another thread may be inside it, and the child would wait for that
-// thread for ever. The library calls back with its lock held.
+// Forks while this thread holds the lock of libhdf5. Otherwise another thread could hold it, and
+// the child would wait for that thread for ever. H5Ewalk2 calls back with the lock held.
 void Fork(Child& child) {
   const auto fork_once = [](unsigned number, const H5E_error2_t*, void* to) -> herr_t {
     auto& forked = *static_cast<Child*>(to);
@@ -133,15 +133,15 @@ void Fork(Child& child) {
   H5Eclear2(H5E_DEFAULT);
 }
 
-// Ends the child when the reading is over, however it is.
-class Ending {
+// Ends the child on every way out of the reading.
+class ChildGuard {
  public:
-  Ending(pid_t child, int pipe) : child_(child), pipe_(pipe) {}
-  ~Ending() { End(); }
-  Ending(const Ending&) = delete;
-  Ending& operator=(const Ending&) = delete;
+  ChildGuard(pid_t child, int pipe) : child_(child), pipe_(pipe) {}
+  ~ChildGuard() { End(); }
+  ChildGuard(const ChildGuard&) = delete;
+  ChildGuard& operator=(const ChildGuard&) = delete;
 
-  // Its status: its own when it has ended by itself.
+  // Kills it unless it has ended; returns its exit status.
   int End() {
     if (child_ < 0) return 0;
     close(pipe_);
@@ -161,8 +161,8 @@ class Ending {
 [[noreturn]] void ThrowEnded(const std::string& name, int status) {
   const bool slow =
       WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL);
-  throw InputError(fmt::format("{}: this HDF5 file is damaged: {}; use a copy that is whole", name,
-                               slow ? "reading it finds no end"
+  throw InputError(fmt::format("{}: this HDF5 file is damaged: {}; use an intact copy", name,
+                               slow ? "reading it does not end"
                                : WIFSIGNALED(status)
                                    ? "the HDF5 library crashes on it"
                                    : "it asks for more memory than such a file can hold"));
@@ -176,9 +176,10 @@ class Ending {
 void RefuseForeignStorage(hid_t set, const std::string& name, const std::string& file) {
   const Handle layout(H5Dget_create_plist(set), H5Pclose);
   if (H5Pget_external_count(layout.id()) != 0 || H5Pget_layout(layout.id()) == H5D_VIRTUAL) {
-    RefuseNumbers(file, name,
-                  "its numbers stand in other files, which is not read; copy them into this one "
-                  "(h5repack)");
+    RefuseNumbers(
+        file, name,
+        "its numbers are in other files, which abbe does not read; copy them into this one "
+        "(h5repack)");
   }
   const int filters = H5Pget_nfilters(layout.id());
   for (int i = 0; i < filters; ++i) {
@@ -227,7 +228,7 @@ void ReadInChild(const std::filesystem::path& path,
   if (pipe2(child.pipe, O_CLOEXEC) != 0) throw InputError(name + ": too many open files");
   Fork(child);
   close(child.pipe[1]);
-  Ending ending(child.id, child.pipe[0]);
+  ChildGuard ending(child.id, child.pipe[0]);
   if (child.id < 0) throw InputError(name + ": no process to read it in; close other programs");
   const auto receive = [&, patience = kSecondsOfClock * static_cast<int>(child.seconds)](
                            void* to, std::size_t count) {
@@ -254,7 +255,7 @@ std::string TextAttribute(hid_t object, const char* attribute_name, const std::s
   const Handle space(attribute.good() ? H5Aget_space(attribute.id()) : H5I_INVALID_HID, H5Sclose);
   if (!type.good() || !space.good() || H5Tget_class(type.id()) != H5T_STRING ||
       H5Sget_simple_extent_npoints(space.id()) != 1) {
-    throw InputError(fmt::format("{}: is not what abbe writes: it has no text `{}`; check the path",
+    throw InputError(fmt::format("{}: was not written by abbe: it has no text `{}`; check the path",
                                  file, attribute_name));
   }
   const auto refuse_long = [&](std::size_t size) {
@@ -268,8 +269,8 @@ std::string TextAttribute(hid_t object, const char* attribute_name, const std::s
   std::string fixed(is_variable ? 0 : H5Tget_size(type.id()), '\0');
   void* const to = is_variable ? static_cast<void*>(&variable) : fixed.data();
   if (H5Aread(attribute.id(), type.id(), to) < 0) {
-    throw InputError(fmt::format("{}: the text `{}` cannot be read: {}; use a copy that is whole",
-                                 file, attribute_name, Hdf5Reason()));
+    throw InputError(fmt::format("{}: the text `{}` cannot be read: {}; use an intact copy", file,
+                                 attribute_name, Hdf5Reason()));
   }
   if (!is_variable) return fixed.substr(0, fixed.find('\0'));
   const std::string text = variable == nullptr ? "" : variable;
@@ -310,7 +311,7 @@ Hdf5Numbers::Hdf5Numbers(hid_t file, const std::string& name, int rank,
     if (size != 0 && count_ > most / size) {
       RefuseNumbers(file_name, name,
                     fmt::format("states {} x {} numbers, more than a file of this size can hold; "
-                                "use a copy that is whole",
+                                "use an intact copy",
                                 count_, size));
     }
     count_ *= size;
@@ -334,8 +335,8 @@ void Hdf5Numbers::RequireStorage(const std::string& file_name) const {
   }
   if (all || count_ == 0) return;
   RefuseNumbers(file_name, name_,
-                fmt::format("states {} numbers, but the file does not hold them all; use a copy "
-                            "that is whole",
+                fmt::format("states {} numbers, but the file does not hold them all; use an "
+                            "intact copy",
                             count_));
 }
 

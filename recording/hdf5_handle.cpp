@@ -24,7 +24,7 @@ Handle FileProperties() {
   Handle properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(properties.id(), H5F_LIBVER_V110, H5F_LIBVER_V110);
   H5Pset_file_locking(properties.id(), false, true);
-  // A piece that another process is just writing is read again, for at most some milliseconds.
+  // Metadata that another process is writing are read again, for at most some milliseconds.
   H5Pset_metadata_read_attempts(properties.id(), 20);
   return properties;
 }

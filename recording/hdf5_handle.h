@@ -1,5 +1,4 @@
-// What of HDF5 the reader and the writer share: handles that close themselves, and the form's
-// names.
+// HDF5 handles that close themselves, and the names in the HDF5 form of a recording.
 #pragma once
 
 #include <hdf5.h>
@@ -13,12 +12,12 @@ inline constexpr const char* kVersionAttribute = "abbe-recording";
 inline constexpr const char* kHeaderAttribute = "header";
 inline constexpr const char* kUnitAttribute = "unit";
 
-// A growing column is filled with this NaN where no row was written yet; no row can hold it,
-// because the writer appends every NaN as the plain one.
+// Fill value of a growing column: a NaN for rows not yet written. No row contains it, because the
+// writer appends every NaN as the quiet NaN.
 inline constexpr unsigned long long kUnwrittenBits = 0x7ff8'abbe'abbe'abbeULL;
 
-// Keeps HDF5 from printing its own messages in this thread, and from closing files behind our back
-// at exit: a file on a full disk is left as it is.
+// Turns off the messages of HDF5 in this thread, and its closing of files at exit: a file on a full
+// disk is left unchanged.
 class QuietHdf5 {
  public:
   QuietHdf5();
@@ -34,6 +33,7 @@ class QuietHdf5 {
 // The first cause of the last failure, e.g. "truncated file: eof = 800, ...".
 std::string Hdf5Reason();
 
+// An HDF5 identifier that is closed on destruction.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -52,9 +52,9 @@ class Handle {
 
   bool good() const { return id_ >= 0; }
   hid_t id() const { return id_; }
-  // Closes now; whether that went well.
+  // Closes now; whether it succeeded.
   bool CloseNow() { return close_(std::exchange(id_, H5I_INVALID_HID)) >= 0; }
-  // Never closes: what HDF5 still holds is not written.
+  // Never closes: data in the memory of HDF5 are not written.
   void Abandon() { id_ = H5I_INVALID_HID; }
 
  private:
@@ -62,8 +62,8 @@ class Handle {
   Close close_ = nullptr;
 };
 
-// Properties to open or create a file with: the form of HDF5 1.10, which can be read while it
-// grows, and no locks, which network folders lack.
+// File access properties: the format of HDF5 1.10, which can be read while it grows, and no file
+// locks, which network folders lack.
 Handle FileProperties();
 
 }  // namespace abbe::recording

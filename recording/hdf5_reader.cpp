@@ -16,7 +16,7 @@ namespace {
 
 struct OpenFile {
   Handle file;
-  std::string trouble;  // why it does not open as a file that was closed; empty when it does
+  std::string trouble;  // why it does not open as a closed file; empty if it does
 };
 
 OpenFile Open(const std::string& name) {
@@ -24,12 +24,12 @@ OpenFile Open(const std::string& name) {
   OpenFile open{Handle(H5Fopen(name.c_str(), H5F_ACC_RDONLY, properties.id()), H5Fclose), ""};
   if (open.file.good()) return open;
   open.trouble = Hdf5Reason();
-  // A file that grows is marked until its writer closes it; a reader that says it knows may enter.
+  // A growing file is marked until its writer closes it; it opens for SWMR readers only.
   open.file =
       Handle(H5Fopen(name.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, properties.id()), H5Fclose);
   if (open.file.good()) return open;
-  throw InputError(fmt::format("{}: this HDF5 file cannot be opened: {}; use a copy that is whole",
-                               name, open.trouble));
+  throw InputError(fmt::format("{}: this HDF5 file cannot be opened: {}; use an intact copy", name,
+                               open.trouble));
 }
 
 void CheckVersion(hid_t file, const std::string& name) {
@@ -51,7 +51,7 @@ void CheckVersion(hid_t file, const std::string& name) {
   }
 }
 
-// The names of the data sets in the order in which they were made.
+// The names of the data sets in the order of their creation.
 std::vector<std::string> ColumnNames(hid_t file) {
   std::vector<std::string> names;
   const auto add = [](hid_t, const char* name, const H5L_info_t*, void* to) -> herr_t {
@@ -75,8 +75,8 @@ class DataSet {
   hsize_t rows() const { return numbers_.count(); }
   void RequireStorage(const std::string& file) const { numbers_.RequireStorage(file); }
 
-  // The rows before the first chunk that lies beyond the end of a file of `size` bytes. HDF5 would
-  // read zeros there.
+  // The number of rows before the first chunk beyond the end of a file of `size` bytes, where HDF5
+  // would read zeros.
   hsize_t RowsWithin(std::uintmax_t size) const {
     const Handle layout(H5Dget_create_plist(numbers_.id()), H5Pclose);
     hsize_t chunk = 0;
@@ -99,8 +99,8 @@ class DataSet {
     H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, nullptr, &rows, nullptr);
     if (H5Dread(numbers_.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT,
                 values.data()) < 0) {
-      throw InputError(fmt::format("{}: {}: cannot be read: {}; use a copy that is whole",
-                                   file_name, name(), Hdf5Reason()));
+      throw InputError(fmt::format("{}: {}: cannot be read: {}; use an intact copy", file_name,
+                                   name(), Hdf5Reason()));
     }
   }
 
@@ -114,7 +114,7 @@ std::vector<DataSet> OpenColumns(hid_t file, const std::string& file_name) {
   return sets;
 }
 
-// The rows that every column of a file has that was not closed: columns grow one after the other.
+// Keeps the rows that all columns have: in a file that was not closed they may differ in length.
 void KeepWholeRows(Recording& recording) {
   std::size_t rows = recording.rows();
   for (const Column& column : recording.columns) {
@@ -167,8 +167,8 @@ hsize_t RowsOf(const Content& content) {
   return rows;
 }
 
-// What the child sends of a recording, in this order; kValues of one column after the other, and
-// kBlockEnd behind the last, once for each block.
+// The messages of the child, in this order; in each block kValues of one
+// column after the other, then kBlockEnd.
 enum Part : char {
   kHeader = 'H',
   kColumn = 'C',
@@ -191,8 +191,8 @@ void SendAll(const std::string& name, std::size_t rows, const Hdf5Sender& sender
   const hsize_t all = RowsOf(content);
   if (all > MostHdf5Numbers(name) / sizeof(double) / content.sets.size()) {
     throw InputError(fmt::format(
-        "{}: states {} rows, more than a file of this size can hold; use a copy that is whole",
-        name, all));
+        "{}: states {} rows, more than a file of this size can hold; use an intact copy", name,
+        all));
   }
   const std::uint64_t count = all;
   sender.Send(kRows, {reinterpret_cast<const char*>(&count), sizeof(count)});
@@ -210,7 +210,7 @@ void SendAll(const std::string& name, std::size_t rows, const Hdf5Sender& sender
   } while (first < all);
 }
 
-// Puts together what the child sends.
+// Assembles the messages of the child to blocks.
 class BlockTaker {
  public:
   BlockTaker(const std::string& name, std::size_t rows, const std::function<void(Recording&)>& use)
@@ -218,7 +218,7 @@ class BlockTaker {
     block_.name = name;
   }
 
-  // False when no more is wanted.
+  // False when no more messages are needed.
   bool Take(char part, std::string_view bytes) {
     if (part == kHeader) {
       block_.header = bytes;
@@ -251,8 +251,8 @@ class BlockTaker {
     const bool more = block_.rows() == wanted && next < all_;
     if (!more && unclosed_) {
       block_.warnings.push_back(fmt::format(
-          "{}: was not closed, for its recorder was killed or still records: the {} rows "
-          "that reached the disk are kept",
+          "{}: was not closed, because its recorder was killed or still records: the {} "
+          "rows on the disk are kept",
           block_.name, next));
     }
     check_.Take(block_);

@@ -9,15 +9,15 @@
 
 namespace abbe::recording {
 
-// The blocks of an HDF5 recording, each of `rows` rows but the last, which `use` may take. A file
-// that its writer did not close (it was killed, or it still records) opens with a warning in the
-// last block and the rows that were flushed. InputError ("file: row N: column: ...") for whatever
-// is not as docs/recordings.md has it, and for a file that was cut after it had been closed: its
-// missing numbers cannot be told from zeros.
+// Calls `use` for each block of an HDF5 recording, `rows` rows long except the last; `use` may
+// move from it. A file that its writer did not close (it was killed, or it still records) has its
+// flushed rows and a warning in the last block. InputError ("file: row N: column: ...") for any
+// violation of docs/recordings.md, and for a file that was truncated after it had been closed:
+// its missing numbers would read as zeros.
 void ReadHdf5(const std::filesystem::path& path, std::size_t rows,
               const std::function<void(Recording& block)>& use);
 
-// The same without its rows.
+// The recording without its rows.
 Recording ReadHdf5Head(const std::filesystem::path& path);
 
 }  // namespace abbe::recording

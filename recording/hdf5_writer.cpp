@@ -19,10 +19,10 @@ namespace {
 
 constexpr hsize_t kGrowingChunk = 1024;    // rows; 8 KiB, rewritten at every flush until it is full
 constexpr hsize_t kFinishedChunk = 16384;  // rows
-constexpr hsize_t kPage = 4096;            // bytes, of the kernel's memory
+constexpr hsize_t kPage = 4096;            // bytes, a memory page of the kernel
 constexpr unsigned kDeflate = 1;
 
-// A recording as far as the kind of a file is told.
+// How the content begins, for the overwriting rules of WholeFile.
 constexpr const char* kRecordingBegin = "\x89HDF\r\n\x1a\nabbe-recording";
 
 constexpr const char* kNothingSaved = "nothing is saved";
@@ -48,12 +48,12 @@ void PutText(hid_t object, const char* name, std::string_view text, const std::s
   Check(H5Awrite(attribute.id(), type.id(), std::string(text).c_str()), file);
 }
 
-// A file with the header and nothing else.
+// A file with the header only.
 Handle CreateWithHeader(const std::string& name, const std::string& header) {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  // The kernel may stop a killed process between two pages of one write: no piece of the file's
-  // structure lies across pages.
+  // The kernel may stop a killed process between two pages of one write, so no metadata of the file
+  // extend across pages.
   H5Pset_file_space_strategy(creation.id(), H5F_FSPACE_STRATEGY_PAGE, false, 1);
   H5Pset_file_space_page_size(creation.id(), kPage);
   const Handle access = FileProperties();
@@ -91,8 +91,8 @@ void CreateGrowing(const std::string& name, const std::string& header,
   Check(file.CloseNow() ? 0 : -1, name);
 }
 
-// Written in place and uncompressed, so that rewriting a chunk at a flush neither grows the file
-// nor can spoil the rows that were flushed before.
+// Written in place and uncompressed: rewriting a chunk at a flush neither enlarges the file nor
+// damages the rows flushed before.
 class Hdf5RowFile : public RowFile {
  public:
   Hdf5RowFile(const std::string& name, const std::vector<std::string>& columns) : name_(name) {
@@ -132,9 +132,9 @@ class Hdf5RowFile : public RowFile {
     }
   }
 
-  // Without the library, which serves one thread.
+  // Without libhdf5, which serves one thread at a time.
   void Sync() override {
-    // A device that has no way to synchronize (EINVAL) has taken the bytes already.
+    // EINVAL: a device without synchronisation, which has the bytes already.
     if (fdatasync(disk_) != 0 && errno != EINVAL && errno != EROFS) {
       ThrowWriteFailure(name_, kRowsSaved);
     }
@@ -159,8 +159,7 @@ class Hdf5RowFile : public RowFile {
         name_, kRowsSaved);
   }
 
-  // Closing would try to write what the disk did not take; the file stays as the last flush left
-  // it.
+  // Closing would write again to the full disk; the file stays as after the last flush.
   void Abandon() {
     for (Handle& set : sets_) set.Abandon();
     file_.Abandon();
@@ -171,7 +170,7 @@ class Hdf5RowFile : public RowFile {
   std::vector<Handle> sets_;
   std::vector<double> values_;
   hsize_t rows_ = 0;
-  int disk_ = -1;  // the file once more, for Sync()
+  int disk_ = -1;  // second descriptor of the file, for Sync()
 };
 
 }  // namespace
@@ -179,7 +178,7 @@ class Hdf5RowFile : public RowFile {
 std::unique_ptr<RowFile> CreateHdf5(const std::filesystem::path& path, const std::string& header,
                                     const std::vector<std::string>& columns) {
   const QuietHdf5 quiet;
-  close(CreateNewFile(path));  // takes the name
+  close(CreateNewFile(path));  // reserves the name
   try {
     WholeFile file(path);
     CreateGrowing(file.PartToFill(kRecordingBegin), header, columns);

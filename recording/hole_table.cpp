@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 4> kNames{"Meas X", "Meas Y", "Nom X", "N
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
 
-// The words of a line, which stand `blanks` blanks or more, or a tab, apart.
+// The words of a line, separated by at least `blanks` blanks or a tab.
 std::vector<std::string_view> Words(std::string_view line, std::size_t blanks) {
   std::vector<std::string_view> words;
   std::size_t at = 0;
@@ -41,7 +41,7 @@ std::vector<std::string_view> Words(std::string_view line, std::size_t blanks) {
   }
 }
 
-// Where the four names stand among those of the line; the number of names when one is missing.
+// The columns of the four names; for a missing one the number of columns.
 std::array<std::size_t, 4> PlacesOf(const std::vector<std::string_view>& names) {
   std::array<std::size_t, 4> places{};
   for (std::size_t i = 0; i < kNames.size(); ++i) {
@@ -58,7 +58,7 @@ double Number(std::string_view word, const std::string& place) {
     return value;
   }
   throw InputError(
-      fmt::format("{}: \"{}\" is no number; correct it or remove the row", place, word));
+      fmt::format("{}: \"{}\" is not a number; correct it or remove the row", place, word));
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ Recording ReadHoleTable(const std::filesystem::path& path, double u_probing_um) 
     recording.columns.push_back({name, {}});
   }
   LineReader lines(path);
-  std::size_t width = 0;  // 0: the names have not come yet
+  std::size_t width = 0;  // 0: before the line of names
   std::array<std::size_t, 4> places{};
   while (const auto line = lines.Next()) {
     if (width == 0) {
@@ -87,7 +87,7 @@ Recording ReadHoleTable(const std::filesystem::path& path, double u_probing_um) 
     const std::string place = fmt::format("{}:{}", path.string(), lines.number());
     if (words.size() != width) {
       throw InputError(
-          fmt::format("{}: has {} numbers where the names are {}; complete the row "
+          fmt::format("{}: has {} numbers for {} names; complete the row "
                       "or remove it",
                       place, words.size(), width));
     }
@@ -98,10 +98,11 @@ Recording ReadHoleTable(const std::filesystem::path& path, double u_probing_um) 
     for (std::size_t i = 0; i < row.size(); ++i) recording.columns[i].values.push_back(row[i]);
   }
   if (recording.rows() > 0) return recording;
-  throw InputError(fmt::format(
-      "{}: {}; a table of holes has a line of names with {}, and a row for "
-      "each hole",
-      path.string(), width == 0 ? "has no such names" : "has no rows", fmt::join(kNames, ", ")));
+  throw InputError(
+      fmt::format("{}: {}; a table of holes has a line of names with {}, and a row for "
+                  "each hole",
+                  path.string(), width == 0 ? "has no line of such names" : "has no rows",
+                  fmt::join(kNames, ", ")));
 }
 
 }  // namespace abbe::recording

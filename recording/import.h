@@ -1,4 +1,4 @@
-// Files of others that become recordings: one line in the table of import.cpp for each.
+// Import of files of other programs as recordings: one line per format in the table of import.cpp.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +9,14 @@
 
 namespace abbe::recording {
 
-// What the file itself does not say.
+// Data that the file itself does not contain.
 struct ImportOptions {
   std::string axis;           // "X", "Y" or "Z": the axis that was measured; empty when not given
   double u_probing_um = 0.0;  // standard uncertainty of a hole centre; 0 when not given
 };
 
-// The recording in a file of another's form, told by its extension; nothing when no importer takes
-// that extension. InputError, by the importer, for a file that is not as it should be.
+// The recording from a file of another format, chosen by its extension; nothing when no importer
+// has that extension. InputError of the importer for an invalid file.
 std::optional<Recording> Import(const std::filesystem::path& path, const ImportOptions& options);
 
 }  // namespace abbe::recording

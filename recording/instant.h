@@ -1,4 +1,4 @@
-// Instants as files write them, "2026-11-21T09:00:00Z", as seconds since 1970.
+// Instants in UTC: texts such as "2026-11-21T09:00:00Z" and seconds since 1970.
 #pragma once
 
 #include <optional>
@@ -6,10 +6,11 @@
 
 namespace abbe::recording {
 
-// Nothing for a text that is no such instant.
+// Nothing for a text of another form.
 std::optional<double> SecondsOf(const std::string& instant);
+// The text of an instant, in whole seconds.
 std::string InstantText(double seconds);
-// The present one.
+// The current instant.
 std::string UtcNow();
 
 }  // namespace abbe::recording

@@ -1,4 +1,4 @@
-// The lines of a file, one after the other, through one block of memory.
+// Reads a file line by line through one block of memory.
 //
 //   LineReader lines("runs/a.csv");
 //   while (const auto line = lines.Next()) Parse(*line);  // the view lives until the next call
@@ -24,11 +24,11 @@ class LineReader {
   // The next line without its "\n" or "\r\n", the first one without a byte-order mark; nothing at
   // the end of the file. InputError when a line is longer than the block (1 MiB).
   std::optional<std::string_view> Next();
-  // Whether the line that Next() gave last ended in a line end, and its number, from 1.
+  // Whether the last line from Next() had a line end, and its number, from 1.
   bool complete() const { return complete_; }
   std::size_t number() const { return number_; }
 
-  // The number of line ends in the whole file, by one pass through it; Next() goes on as before.
+  // The number of line ends in the whole file, by one pass through it; does not affect Next().
   std::size_t CountLineEnds();
 
  private:
@@ -37,8 +37,8 @@ class LineReader {
 
   std::string name_;
   int file_ = -1;
-  std::unique_ptr<char[]> block_;  // only what is read into it is touched
-  std::size_t begin_ = 0;          // of what is not handed out yet, in block_
+  std::unique_ptr<char[]> block_;  // uninitialised: only the pages read into are used
+  std::size_t begin_ = 0;          // of the unread bytes in block_
   std::size_t end_ = 0;
   std::size_t number_ = 0;
   bool complete_ = true;

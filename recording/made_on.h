@@ -8,7 +8,7 @@
 
 namespace abbe::recording {
 
-// InputError when the header names another machine than this one; a header may name none.
+// InputError when the header names a machine other than `machine`; it need not name one.
 void RefuseOtherMachine(const Recording& recording, const std::string& machine);
 
 // InputError when the recording is of another kind; `why` ends the message.

@@ -40,18 +40,18 @@ std::string_view NextWord(std::string_view& line) {
   return word;
 }
 
-// Whether `text` is written as `form`, in which 0 stands for any digit.
-bool IsWritten(std::string_view text, std::string_view form) {
+// Whether `text` matches `form`, in which 0 is any digit.
+bool Matches(std::string_view text, std::string_view form) {
   return std::equal(text.begin(), text.end(), form.begin(), form.end(),
                     [](char is, char as) { return as == '0' ? is >= '0' && is <= '9' : is == as; });
 }
 
-// "2023-02-08" and "14:21:15.970781" since 1970 of the same clock.
-std::optional<Nanoseconds> Moment(std::string_view date, std::string_view time) {
-  constexpr int kFirstYear = 1970, kLastYear = 2200;  // which nanoseconds can count
+// The time since 1970, on the same clock, of "2023-02-08" and "14:21:15.970781".
+std::optional<Nanoseconds> InstantOf(std::string_view date, std::string_view time) {
+  constexpr int kFirstYear = 1970, kLastYear = 2200;  // the range of nanoseconds in 64 bits
   constexpr std::string_view kSeconds = "00:00:00";
   const std::string_view decimals = time.substr(std::min(time.size(), kSeconds.size()));
-  if (!IsWritten(date, "0000-00-00") || !IsWritten(time.substr(0, kSeconds.size()), kSeconds) ||
+  if (!Matches(date, "0000-00-00") || !Matches(time.substr(0, kSeconds.size()), kSeconds) ||
       (!decimals.empty() &&
        (decimals[0] != '.' || decimals.size() == 1 ||
         decimals.find_first_not_of("0123456789", 1) != std::string_view::npos))) {
@@ -65,16 +65,16 @@ std::optional<Nanoseconds> Moment(std::string_view date, std::string_view time) 
   if (*year < kFirstYear || *year > kLastYear) return std::nullopt;
   if (*hour > 23 || *minute > 59 || !(*second < 60.0)) return std::nullopt;
   using namespace std::chrono;
-  const year_month_day that_day{std::chrono::year(*year), std::chrono::month(*month),
-                                std::chrono::day(*day)};
-  if (!that_day.ok()) return std::nullopt;
-  const auto midnight = duration_cast<nanoseconds>(sys_days(that_day).time_since_epoch());
+  const year_month_day calendar_day{std::chrono::year(*year), std::chrono::month(*month),
+                                    std::chrono::day(*day)};
+  if (!calendar_day.ok()) return std::nullopt;
+  const auto midnight = duration_cast<nanoseconds>(sys_days(calendar_day).time_since_epoch());
   return (midnight + hours(*hour) + minutes(*minute)).count() + std::llround(*second / kNanosecond);
 }
 
 struct Line {
   std::string_view channel, date, time, value;
-  std::optional<Nanoseconds> moment;
+  std::optional<Nanoseconds> instant;
 };
 
 Line LineOf(std::string_view text) {
@@ -83,7 +83,7 @@ Line LineOf(std::string_view text) {
   line.date = NextWord(text);
   line.time = NextWord(text);
   line.value = NextWord(text);
-  line.moment = Moment(line.date, line.time);
+  line.instant = InstantOf(line.date, line.time);
   return line;
 }
 
@@ -99,7 +99,7 @@ class LogReader {
         spoke_(columns.size(), false) {
     if (columns.empty()) {
       throw InputError(
-          fmt::format("{}: the log of a monitor does not say what its channels are; name them as "
+          fmt::format("{}: the log of a monitor has no quantities and units; name the channels as "
                       "columns with their units, for example shaft_deg=CHANNEL",
                       path_));
     }
@@ -122,22 +122,22 @@ class LogReader {
     if (line.channel.empty()) return;
     if (!channels_.contains(line.channel)) channels_.emplace(line.channel);
     if (line.date == "***") return;
-    if (!line.moment) {
+    if (!line.instant) {
       throw InputError(fmt::format(
-          "{}:{}: no moment after \"{}\"; a line of a monitor is channel, date, time, value", path_,
-          number, line.channel));
+          "{}:{}: no date and time after \"{}\"; a line of a monitor is channel, date, time, value",
+          path_, number, line.channel));
     }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       if (columns_[i].channel != line.channel) continue;
       const auto value = Parse<double>(line.value);
       if (!value || !std::isfinite(*value)) {
-        throw InputError(fmt::format("{}:{}: \"{}\" of {} is no number; leave the channel out",
+        throw InputError(fmt::format("{}:{}: \"{}\" of {} is not a number; leave the channel out",
                                      path_, number, line.value, line.channel));
       }
-      if (moments_.empty() || *line.moment < moments_.begin()->first) {
+      if (instants_.empty() || *line.instant < instants_.begin()->first) {
         started_ = fmt::format("{}T{}", line.date, line.time);
       }
-      auto& row = moments_[*line.moment];
+      auto& row = instants_[*line.instant];
       row.resize(columns_.size(), kNotANumber);
       row[i] = *value;
       spoke_[i] = true;
@@ -156,8 +156,8 @@ class LogReader {
           fmt::format("{} = {}\n", settings::Key(column.name), settings::Quoted(column.channel));
       recording.columns.push_back({column.name, {}});
     }
-    for (const auto& [moment, row] : moments_) {
-      const auto since = static_cast<double>(moment - moments_.begin()->first);
+    for (const auto& [instant, row] : instants_) {
+      const auto since = static_cast<double>(instant - instants_.begin()->first);
       recording.columns[0].values.push_back(since * kNanosecond);
       for (std::size_t i = 0; i < row.size(); ++i) {
         recording.columns[i + 1].values.push_back(row[i]);
@@ -171,7 +171,7 @@ class LogReader {
   const std::string kind_;  // lines of the header
   std::vector<bool> spoke_;
   std::set<std::string, std::less<>> channels_;
-  std::map<Nanoseconds, std::vector<double>> moments_;
+  std::map<Nanoseconds, std::vector<double>> instants_;
   std::string started_;
 };
 
@@ -180,7 +180,7 @@ class LogReader {
 bool IsMonitorLog(const std::filesystem::path& path) {
   LineReader lines(path);
   const auto first = lines.Next();
-  return first && LineOf(*first).moment.has_value();
+  return first && LineOf(*first).instant.has_value();
 }
 
 Recording ReadMonitorLog(const std::filesystem::path& path,

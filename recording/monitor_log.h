@@ -1,18 +1,18 @@
-// Reads the log of a channel monitor (EPICS camonitor) into a recording of kind "dwell", or, with
-// the places of the sensors round a turning shaft (degrees), of kind "shaft".
+// Import of the log of a channel monitor (EPICS camonitor) into a recording of kind "dwell", or,
+// with the angles of the sensors round a turning shaft (degrees), of kind "shaft".
 //
 //   TARGET_DU:Rotation-PosAct 2023-02-08 14:21:15.970781 94.2006
 //   channel                   date       time            value [alarm ...]
 //
-// Each channel speaks for itself and only when it changes, so a row is one moment: the columns that
-// were silent then are nan. The log knows no units; who imports names the columns, and the end of a
-// name is the unit. Channels that nobody asked for are left out; words after the value are alarms
-// and are not kept. Rows are sorted by time, which is local time and counts from the first row.
+// Each channel is logged only when it changes. A row is one instant; the columns of channels
+// without a value at that instant are nan. The log has no units: the user names the columns, and
+// the ending of a name is the unit. Other channels are ignored, as are the words after the value
+// (alarms). Rows are sorted by time; time_s is local time from the first row on.
 //
-// Failure: InputError with file and line for a line without a moment, or a value of a channel that
-// was asked for which is no number; InputError with the file for a channel that never speaks (it
-// lists those that do), and for no channel asked for. A channel that says "***" (not connected) has
-// no value there.
+// Failure: InputError with file and line for a line without an instant, or a value of a
+// requested channel that is not a number; InputError with the file for a requested channel
+// without any value (the message lists those with values), and for no requested channel.
+// "***" (not connected) is not a value.
 #pragma once
 
 #include <filesystem>

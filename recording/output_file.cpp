@@ -49,7 +49,7 @@ void OutputFile::Append(std::string_view bytes) {
       const std::size_t line_end = bytes.substr(0, written).rfind('\n');
       size_ += line_end == std::string_view::npos ? 0 : line_end + 1;
       if (ftruncate(file_, static_cast<off_t>(size_)) != 0) {
-        // The rest of a line stays at the end; whoever reads the file drops it.
+        // Part of a line remains at the end; readers drop it.
       }
       errno = error;
       ThrowWriteFailure(name_, "all rows that fitted are saved");
@@ -60,7 +60,7 @@ void OutputFile::Append(std::string_view bytes) {
 }
 
 void OutputFile::Sync() {
-  // A device that has no way to synchronize (EINVAL) has taken the bytes already.
+  // EINVAL: a device without synchronisation, which has the bytes already.
   if (fdatasync(file_) != 0 && errno != EINVAL && errno != EROFS) {
     ThrowWriteFailure(name_, "the last rows may be lost");
   }

@@ -1,4 +1,4 @@
-// A file that takes rows while they are measured, with failures that say what to do.
+// A file to which rows are appended while they are measured.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,14 @@
 
 namespace abbe::recording {
 
-// Creates an empty file, for its owner to write. An existing one is InputError: nothing measured is
-// ever overwritten. Returns its descriptor.
+// Creates an empty file and returns its descriptor. InputError if it exists:
+// nothing measured is ever overwritten.
 int CreateNewFile(const std::filesystem::path& path);
 
-// DeviceError for the current errno: "disk full" where it is that, and what was saved.
+// Throws DeviceError for the current errno, "disk full" in that case; `saved` says what was saved.
 [[noreturn]] void ThrowWriteFailure(std::string_view file, std::string_view saved);
 
-// A plain file that takes bytes at its end. Closes itself, without a word on failure.
+// A plain file for appending. The destructor closes it and ignores failures.
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
@@ -22,8 +22,8 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // Returns when the bytes are with the kernel. When not all of them can be taken, takes them back
-  // up to the last whole line and throws DeviceError.
+  // Returns when the kernel has the bytes. If they do not all fit, removes them back to the
+  // last whole line and throws DeviceError.
   void Append(std::string_view bytes);
   // Returns when the bytes are on the disk.
   void Sync();

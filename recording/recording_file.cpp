@@ -45,7 +45,7 @@ constexpr std::string_view kProgram =
 
 enum class Form { kCsv, kHdf5 };
 
-// What to do with a file that is no recording, by the end of its name.
+// Advice for a file that is not a recording, by its extension.
 std::string_view WhatToDo(std::string_view extension) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kKnown{{
       {".xlsx", kSpreadsheet},
@@ -105,7 +105,7 @@ std::string Begin(const std::filesystem::path& path) {
   return begin;
 }
 
-// The form of the name and of the content, which must be one.
+// The form according to name and content, which must agree.
 Form FoundForm(const std::filesystem::path& path) {
   const Form form = FormOf(path);
   const bool hdf5 = Begin(path) == kHdf5Begin;
@@ -121,7 +121,7 @@ Form FoundForm(const std::filesystem::path& path) {
   return form;
 }
 
-// A header as both forms keep it: lines that end in "\n".
+// The header as stored in both forms: lines that end in "\n".
 std::string KeptHeader(std::string_view header) {
   std::string kept;
   while (!header.empty()) {

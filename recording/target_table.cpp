@@ -18,7 +18,7 @@
 namespace abbe::recording {
 namespace {
 
-constexpr int kMaxCycles = 10'000;  // far above any test, so that a slip of the pen is caught
+constexpr int kMaxCycles = 10'000;  // far above any test, to catch typing errors
 
 struct Place {
   int position;
@@ -158,7 +158,7 @@ TargetTable ReadTable(const std::filesystem::path& path) {
   return table;
 }
 
-// Fills in what was not stated and refuses what does not fit together.
+// Completes the numbers that the file does not state and refuses contradictions.
 void Complete(TargetTable& table) {
   const int targets = table.targets.empty() ? 0 : table.targets.rbegin()->first;
   if (table.positions == 0) table.positions = targets;

@@ -1,5 +1,5 @@
-// Reads target and cycle tables of ISO 230-2 tests, as test scripts of motion controllers write
-// them, into a recording of kind "reference" with one axis.
+// Import of target and cycle tables of ISO 230-2 tests, from test scripts of motion controllers,
+// into a recording of kind "reference" with one axis.
 //
 //   UNIT=mm
 //   CYCLES=5
@@ -8,22 +8,22 @@
 //   REF_DATA_FWD[1,1]=-20.0492      reference reading at position 1 in cycle 1, going forwards
 //   REF_DATA_BWD[1,1]=-20.0185      the same, going backwards
 //
-// Positions are counted from 1 in the order in which the axis goes forwards; backwards it visits
-// them in reverse order. Forwards is direction +1 when the targets ascend and -1 when they descend.
+// Positions are counted from 1 in the order of forward motion; backwards the axis visits them in
+// reverse order. Forwards is direction +1 when the targets ascend and -1 when they descend.
 // Lines in any order; `#` starts a comment line; the first line may begin with `TEST_DATA=`;
-// numbers may lack the zero before the point (`.0017`). UNIT is m, mm (also when absent) or um.
+// numbers may omit the zero before the point (`.0017`). UNIT is m, mm (also when absent) or um.
 // CYCLES and POSITIONS may be absent. REF_PV and TGT_SET_PV become [sources] of the header; any
 // other name is ignored with a warning.
 //
 // The recording has the columns time_s, x_mm (the target), pass (the cycle), direction, ref_x_mm
-// and flags; with axis Y they are y_mm and ref_y_mm, and so on. Such a table knows no time: time_s
-// is the order of measurement, one a reading, and the header says so: time = "order". A reading
-// that is missing in the table (an interrupted test) is missing in the recording, with a warning.
+// and flags; with axis Y they are y_mm and ref_y_mm, and so on. The table has no times: time_s is
+// the order of measurement, 1 per reading, and the header has time = "order". A reading that is
+// missing in the table (an interrupted test) is missing in the recording, with a warning.
 //
-// Failure: InputError with file and line for a line that is no assignment, a value that is no
-// finite number, an unknown unit, an index out of range or given twice; InputError with the file
-// for a file that cannot be read or has no readings, a missing target, or targets that neither
-// ascend nor descend.
+// Failure: InputError with file and line for a line that is not an assignment, a value that
+// is not a finite number, an unknown unit, an index out of range or given twice; InputError
+// with the file for a file that cannot be read or has no readings, a missing target, or
+// targets that neither ascend nor descend.
 #pragma once
 
 #include <filesystem>

@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostLinks = 40;           // as many as Linux follows
-constexpr std::size_t kBegin = 1 << 14;  // bytes that tell the kind of a file
+constexpr int kMostLinks = 40;           // limit of Linux
+constexpr std::size_t kBegin = 1 << 14;  // bytes that determine the kind of a file
 constexpr std::string_view kNothingChanged = "nothing is saved";
 
 Overwriting& Policy() {
@@ -35,7 +35,7 @@ std::optional<struct stat> StatOf(const fs::path& path) {
   return status;
 }
 
-// Where the links of `path` lead, also when nothing is there yet.
+// The target of the symbolic links of `path`, which need not exist.
 fs::path Followed(fs::path path) {
   std::error_code error;
   for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
@@ -45,11 +45,11 @@ fs::path Followed(fs::path path) {
   return path;
 }
 
-// How the TOML files begin that abbe writes.
+// First words of the TOML files that abbe writes.
 constexpr std::array<std::string_view, 3> kOwn{"# An error map", "# A calibration of the linkage",
                                                "# What the simulation of this machine lacked"};
 
-// In words, from how it begins; what a command writes again begins as it did.
+// The kind of a file in words, by how it begins; a command always writes the same beginning.
 std::string KindOf(std::string_view begin) {
   if (begin.find("abbe-recording") != std::string_view::npos) return "a recording";
   if (begin.starts_with("\x89HDF\r\n\x1a\n")) return "an HDF5 file";
@@ -77,7 +77,7 @@ void RefuseInput(const struct stat& status, const std::string& name) {
     const auto read = StatOf(input);
     if (!read || read->st_dev != status.st_dev || read->st_ino != status.st_ino) continue;
     throw InputError(fmt::format(
-        "{}: exists already, and this command reads it; choose another name, or say --force",
+        "{}: exists already, and this command reads it; choose another name, or add --force",
         name));
   }
 }
@@ -86,7 +86,7 @@ void RefuseRecording(const std::string& kind, const std::string& name) {
   if (kind != "a recording") return;
   throw InputError(fmt::format(
       "{}: exists already, and nothing recorded is overwritten; choose another name, or "
-      "say --force",
+      "add --force",
       name));
 }
 
@@ -95,7 +95,7 @@ void RefuseRecording(const std::string& kind, const std::string& name) {
                                name, std::strerror(error)));
 }
 
-// A reader of a pipe that went away is a failure to write, not the end of this program.
+// A pipe closed by its reader is a failure to write, not the end of this program.
 class NoPipeSignal {
  public:
   NoPipeSignal() : before_(std::signal(SIGPIPE, SIG_IGN)) {}
@@ -140,7 +140,7 @@ void WholeFile::Remove() {
   part_.clear();
 }
 
-// `begin` of the content tells whether it is of the kind of what is there.
+// `begin`: the beginning of the content, compared with the kind of an existing file.
 void WholeFile::Open(std::string_view begin) {
   begun_ = true;
   if (special_) {
@@ -154,9 +154,9 @@ void WholeFile::Open(std::string_view begin) {
     const bool written_by_hand = is == "other text" && target_.extension() == ".toml";
     if (is != becomes || written_by_hand) {
       throw InputError(fmt::format(
-          "{}: exists already and holds {}, but {} would be written; choose another name, or say "
+          "{}: exists already and holds {}, but {} would be written; choose another name, or add "
           "--force",
-          name_, written_by_hand ? "settings of yours" : is, becomes));
+          name_, written_by_hand ? "your settings" : is, becomes));
     }
   }
   part_ = fmt::format("{}.{}.part", target_.string(), getpid());
@@ -166,7 +166,7 @@ void WholeFile::Open(std::string_view begin) {
   const int error = errno;
   const fs::path part = std::exchange(part_, {});
   if (error == EEXIST) {
-    throw InputError(fmt::format("{}: stands in the way; remove it", part.string()));
+    throw InputError(fmt::format("{}: is in the way; remove it", part.string()));
   }
   RefusePlace(name_, error);
 }
@@ -193,7 +193,7 @@ fs::path WholeFile::PartToFill(std::string_view kind_of) {
 
 void WholeFile::Finish() {
   if (!begun_) Open({});
-  // What has no disk behind it (EINVAL) has taken the bytes already.
+  // EINVAL: a device without synchronisation, which has the bytes already.
   if (fsync(file_) != 0 && errno != EINVAL && errno != EROFS) {
     ThrowWriteFailure(name_, kNothingChanged);
   }

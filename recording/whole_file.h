@@ -1,17 +1,16 @@
-// A file that a command writes: there whole under its name, or not at all.
+// The output file of a command: it appears complete under its name, or not at all.
 //
 //   WholeFile file("out/map.toml");
 //   file.Append(text);
 //   file.Finish();  // without it nothing is left behind
 //
-// It grows beside its name as NAME.part with the number of the process, and takes the name when it
-// is on the disk. A link is followed: what it points to is written, and it stays. What is no plain
-// file (a device, a pipe) takes the bytes as they come.
+// It is written as NAME.PID.part in the same folder and renamed when it is on the disk. A symbolic
+// link is kept and its target written. A device or a pipe receives the bytes directly.
 //
-// Overwriting is refused, InputError, for a file that the command reads, for one that holds a
-// recording, and for another kind of file than is written (told by how both begin); a user who
-// wants it says --force. A folder is always refused, and so is a place that cannot be written.
-// DeviceError when the disk takes no more ("disk full").
+// Overwriting is refused with InputError for an input of the command, for a recording,
+// and for a file of a kind other than the one written (judged by how both begin), unless
+// the user gives --force. A folder and a place without write permission are always
+// refused. DeviceError when the disk is full.
 #pragma once
 
 #include <filesystem>
@@ -21,16 +20,17 @@
 
 namespace abbe::recording {
 
-// What the whole program may write over, set once by its main().
+// The overwriting rules of the program, set once by its main().
 struct Overwriting {
-  std::vector<std::filesystem::path> inputs;  // that the command reads
+  std::vector<std::filesystem::path> inputs;  // of the command
   bool force = false;
 };
+// Not thread-safe: call it before any file is written.
 void SetOverwriting(Overwriting overwriting);
 bool OverwritingIsForced();
 
-// Refuses a place that no command may write over without --force: an input, a recording. For a
-// look before long work; WholeFile looks again.
+// InputError if `path` is an input or a recording and --force was not given. For a check
+// before long work; WholeFile checks again.
 void RefuseToOverwrite(const std::filesystem::path& path);
 
 class WholeFile {
@@ -43,8 +43,8 @@ class WholeFile {
   void Append(std::string_view bytes);
   void Finish();
 
-  // For a library that writes by name: the empty file to fill, instead of Append(). InputError when
-  // `path` is a device or a pipe. `kind_of` begins as the content will.
+  // The path of an empty file to be filled instead of Append(), for a library that opens files by
+  // name. InputError when `path` is a device or a pipe. `kind_of`: how the content will begin.
   std::filesystem::path PartToFill(std::string_view kind_of);
 
  private:
@@ -57,7 +57,7 @@ class WholeFile {
   bool special_ = false, begun_ = false;
 };
 
-// A whole text at once. Missing folders are made.
+// Writes a text as such a file. Missing folders are created.
 void WriteWhole(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace abbe::recording

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-// The file's bytes, put between two symbols by the assembler: five megabytes cost no compile time.
+// The assembler embeds the file between two symbols: five megabytes cost no compile time.
 asm(".pushsection .rodata\n"
     ".global abbe_page_template\n"
     ".global abbe_page_template_end\n"

@@ -1,12 +1,12 @@
-// The page without its results: one HTML document with styles, fonts, scripts and Plotly inside,
-// embedded in the program when it is built.
+// The page without results: one HTML document that contains styles, fonts, scripts and Plotly. The
+// build embeds it in the program.
 #pragma once
 
 #include <string_view>
 
 namespace abbe::report {
 
-// Where the results belong in the page: between the tags of the script element "results".
+// Placeholder of the results, between the tags of the script element "results".
 inline constexpr std::string_view kResultsMark = "@@results@@";
 
 std::string_view PageTemplate();

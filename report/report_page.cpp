@@ -35,16 +35,16 @@ std::vector<fs::path> JsonFiles(const fs::path& folder) {
   return files;
 }
 
-// An empty text when `value` is a result, else why it is not.
+// Why `value` is not a result; empty if it is one.
 std::string WhyForeign(const Json& value) {
-  if (value.is_discarded()) return "is not JSON, perhaps cut short; write it again or delete it";
+  if (value.is_discarded()) return "is not JSON, perhaps truncated; write it again or delete it";
   const bool result =
       value.is_object() && value.contains("command") && value["command"].is_string();
-  return result ? "" : "has no text \"command\", so it is no result of abbe; move it elsewhere";
+  return result ? "" : "has no text \"command\", so it is not a result of abbe; move it elsewhere";
 }
 
-// Discarded when it is not JSON, or is nested deeper than any result: whoever writes or draws it
-// goes down by recursion.
+// A discarded value when it is not JSON, or is nested deeper than any result:
+// writing and drawing it are recursive.
 Json ReadJson(const fs::path& file) {
   constexpr int kDeepest = 100;
   bool too_deep = false;
@@ -57,8 +57,8 @@ Json ReadJson(const fs::path& file) {
   return too_deep ? Json(Json::value_t::discarded) : value;
 }
 
-// As text for a script element: nothing in it can end the element or open a comment, because the
-// only place where JSON may hold "<" is a string.
+// Text for a script element. It cannot end the element or open a comment: in JSON "<" occurs in
+// strings only, where it is escaped.
 std::string ScriptText(const Json& value) {
   const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string safe;

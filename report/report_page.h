@@ -1,16 +1,16 @@
-// One HTML page of an output folder: every result in it as a section with its figures and tables.
+// One HTML page for an output folder: a section with figures and tables for every result in it.
 //
 //   const auto report = report::ComposeReport("out");
 //   for (const std::string& note : report.notes) fmt::print(stderr, "abbe: {}\n", note);
 //
-// A result is a file *.json whose top is an object with a text "command" ("reduce", ...) and, where
-// a command has several kinds of result, a text "kind" ("sweep", "reference", ...). The page holds
-// the results as they are and draws them in the browser, without a network: report/page/ has one
-// script a kind of section. A kind that no script knows is shown as a table of its numbers. Keys
-// that are absent leave out their figure.
+// A result is a file *.json whose top level is an object with a text "command" ("reduce", ...) and,
+// if a command has several kinds of result, a text "kind" ("sweep", "reference", ...). The page
+// contains the results unchanged and draws them in the browser, without a network: report/page/ has
+// one script per kind of section. A kind without a script is shown as a table of its numbers. A
+// figure whose keys are absent is left out.
 //
 // Units: the numbers of a result are SI unless their key says otherwise (docs/report.md); the page
-// converts them for reading.
+// converts them for display.
 //
 // Validity: the page is about 5 MB (Plotly) plus the results, which the browser keeps in memory;
 // meant for results (thousands of numbers), not for recordings (millions).
@@ -29,13 +29,12 @@ namespace abbe::report {
 struct Report {
   std::string page;  // the whole HTML
   std::size_t results = 0;
-  // One line for each *.json that is not a result: which file, why, and what to do. The page has
-  // them too.
+  // One line for each *.json that is not a result: file, reason and remedy. Also on the page.
   std::vector<std::string> notes;
 };
 
 // The results of `folder` (not of folders below it), in the order of their file names, as a page.
-// InputError when `folder` is not a folder or holds no result.
+// InputError when `folder` is not a folder or has no result.
 Report ComposeReport(const std::filesystem::path& folder);
 
 }  // namespace abbe::report

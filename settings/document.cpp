@@ -20,7 +20,7 @@ namespace abbe::settings {
 struct Document::State {
   std::string name;
   toml::table root;
-  std::map<std::string, AskedKey> asked;
+  std::map<std::string, RequestedKey> requested;
   // Real table path -> keys requested by name, and keys returned by Named().
   std::map<std::string, std::set<std::string, std::less<>>> known;
   std::map<std::string, std::set<std::string, std::less<>>> named;
@@ -41,7 +41,7 @@ const toml::node* Find(const toml::table* table, std::string_view key) {
   return table == nullptr ? nullptr : table->get(key);
 }
 
-// A whole number is a number, however large.
+// An integer of any size is accepted as a number.
 double AsNumber(const toml::node& node) {
   if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
   return node.as_floating_point()->get();
@@ -100,19 +100,19 @@ Table Document::Root() const {
 }
 
 const std::string& Document::name() const { return state_->name; }
-const std::map<std::string, AskedKey>& Document::asked() const { return state_->asked; }
+const std::map<std::string, RequestedKey>& Document::requested() const { return state_->requested; }
 
 Table::Table(std::shared_ptr<Document::State> state, std::shared_ptr<const Node> node,
-             std::string path, std::string asked_path, std::string key)
+             std::string path, std::string requested_path, std::string key)
     : state_(std::move(state)),
       node_(std::move(node)),
       path_(std::move(path)),
-      asked_path_(std::move(asked_path)),
+      requested_path_(std::move(requested_path)),
       key_(std::move(key)) {}
 
-void Table::Ask(std::string_view key, const AskedKey& asked) const {
+void Table::Request(std::string_view key, const RequestedKey& requested) const {
   state_->known[path_].emplace(key);
-  state_->asked.try_emplace(Join(asked_path_, key), asked);
+  state_->requested.try_emplace(Join(requested_path_, key), requested);
 }
 
 InputError Table::Error(std::string_view key, std::string_view message) const {
@@ -127,7 +127,7 @@ InputError Table::Error(std::string_view key, std::string_view message) const {
 bool Table::Has(std::string_view key) const { return Find(node_->table, key) != nullptr; }
 
 std::string Table::Text(std::string_view key) const {
-  Ask(key, {"text", "", ""});
+  Request(key, {"text", "", ""});
   const toml::node* node = Find(node_->table, key);
   if (node == nullptr) throw Error(key, "is missing; it must be a text in quotes");
   if (!node->is_string()) throw Error(key, "must be a text in quotes");
@@ -135,13 +135,13 @@ std::string Table::Text(std::string_view key) const {
 }
 
 std::string Table::Text(std::string_view key, std::string_view fallback) const {
-  Ask(key, {"text", "", fmt::format("\"{}\"", fallback)});
+  Request(key, {"text", "", fmt::format("\"{}\"", fallback)});
   return Has(key) ? Text(key) : std::string(fallback);
 }
 
 std::string Table::Choice(std::string_view key, const std::vector<std::string>& allowed,
                           bool required) const {
-  if (!required) Ask(key, {"text", "", fmt::format("\"{}\"", allowed.front())});
+  if (!required) Request(key, {"text", "", fmt::format("\"{}\"", allowed.front())});
   if (!required && !Has(key)) return allowed.front();
   std::string value = Text(key);
   if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
@@ -151,7 +151,7 @@ std::string Table::Choice(std::string_view key, const std::vector<std::string>& 
 }
 
 bool Table::Truth(std::string_view key, bool fallback) const {
-  Ask(key, {"truth", "", fallback ? "true" : "false"});
+  Request(key, {"truth", "", fallback ? "true" : "false"});
   const toml::node* node = Find(node_->table, key);
   if (node == nullptr) return fallback;
   if (!node->is_boolean()) throw Error(key, "must be true or false");
@@ -179,8 +179,8 @@ double Table::ReadNumber(std::string_view key, const NumberRule& rule) const {
 }
 
 double Table::Number(std::string_view key, const NumberRule& rule) const {
-  Ask(key, {"number", std::string(UnitOf(key).name),
-            rule.fallback ? fmt::format("{}", *rule.fallback) : ""});
+  Request(key, {"number", std::string(UnitOf(key).name),
+                rule.fallback ? fmt::format("{}", *rule.fallback) : ""});
   return ReadNumber(key, rule);
 }
 
@@ -199,8 +199,8 @@ std::int64_t Table::Integer(std::string_view key, const NumberRule& rule) const 
 std::vector<double> Table::Quantities(std::string_view key, std::size_t size,
                                       const std::optional<std::vector<double>>& fallback) const {
   const Unit unit = UnitOf(key);
-  Ask(key, {"numbers", std::string(unit.name),
-            fallback ? fmt::format("[{}]", fmt::join(*fallback, ", ")) : ""});
+  Request(key, {"numbers", std::string(unit.name),
+                fallback ? fmt::format("[{}]", fmt::join(*fallback, ", ")) : ""});
   const std::string wanted =
       size == 0 ? std::string("a list of numbers") : fmt::format("a list of {} numbers", size);
   std::vector<double> values;
@@ -231,7 +231,7 @@ std::vector<std::string> Table::Texts(
   for (const std::string& text : fallback.value_or(std::vector<std::string>{})) {
     quoted.push_back(fmt::format("\"{}\"", text));
   }
-  Ask(key, {"texts", "", fallback ? fmt::format("[{}]", fmt::join(quoted, ", ")) : ""});
+  Request(key, {"texts", "", fallback ? fmt::format("[{}]", fmt::join(quoted, ", ")) : ""});
   const std::string wanted =
       size == 0 ? std::string("a list of texts") : fmt::format("a list of {} texts", size);
   const toml::node* node = Find(node_->table, key);
@@ -252,18 +252,18 @@ std::vector<std::string> Table::Texts(
 }
 
 Table Table::Child(std::string_view key) const {
-  Ask(key, {"table", "", "{}"});
+  Request(key, {"table", "", "{}"});
   const toml::node* node = Find(node_->table, key);
   if (node != nullptr && !node->is_table()) throw Error(key, "must be a table");
   auto below = std::make_shared<Node>();
   below->table = node == nullptr ? nullptr : node->as_table();
   below->line = node == nullptr ? 0 : node->source().begin.line;
-  return Table(state_, std::move(below), Join(path_, key), Join(asked_path_, key),
+  return Table(state_, std::move(below), Join(path_, key), Join(requested_path_, key),
                std::string(key));
 }
 
 std::vector<Table> Table::Children(std::string_view key) const {
-  Ask(key, {"tables", "", "[]"});
+  Request(key, {"tables", "", "[]"});
   const toml::node* node = Find(node_->table, key);
   std::vector<Table> children;
   if (node == nullptr) return children;
@@ -274,7 +274,7 @@ std::vector<Table> Table::Children(std::string_view key) const {
     if (!element->is_table()) throw Error(key, "must be a list of tables");
     auto below = std::make_shared<Node>(Node{element->as_table(), element->source().begin.line});
     children.push_back(Table(state_, std::move(below), fmt::format("{}[{}]", Join(path_, key), i),
-                             Join(asked_path_, key) + "[]", std::string(key)));
+                             Join(requested_path_, key) + "[]", std::string(key)));
   }
   return children;
 }
@@ -282,13 +282,13 @@ std::vector<Table> Table::Children(std::string_view key) const {
 std::vector<Table> Table::Named() const {
   std::vector<Table> named;
   if (node_->table == nullptr) return named;
-  const auto& asked_for = state_->known[path_];
+  const auto& requested_here = state_->known[path_];
   for (const auto& [key, node] : *node_->table) {
-    if (!node.is_table() || asked_for.contains(key.str())) continue;
+    if (!node.is_table() || requested_here.contains(key.str())) continue;
     state_->named[path_].emplace(key.str());
     auto below = std::make_shared<Node>(Node{node.as_table(), node.source().begin.line});
-    named.push_back(Table(state_, std::move(below), Join(path_, key.str()), Join(asked_path_, "[]"),
-                          std::string(key.str())));
+    named.push_back(Table(state_, std::move(below), Join(path_, key.str()),
+                          Join(requested_path_, "[]"), std::string(key.str())));
   }
   return named;
 }

@@ -31,7 +31,7 @@ struct NumberRule {
 };
 
 // One requested key, for the documentation and its test.
-struct AskedKey {
+struct RequestedKey {
   std::string type;      // "number", "text", "truth", "numbers", "texts", "table", "tables"
   std::string unit;      // as in Unit::name
   std::string fallback;  // as written in a file; empty when the key is required
@@ -51,7 +51,7 @@ class Document {
   const std::string& name() const;
   // All keys requested so far, by dotted path; "[]" stands for an element of an array of tables or
   // of a named collection.
-  const std::map<std::string, AskedKey>& asked() const;
+  const std::map<std::string, RequestedKey>& requested() const;
 
  private:
   friend class Table;
@@ -108,14 +108,14 @@ class Table {
   friend class Document;
   struct Node;  // hides the TOML library
   Table(std::shared_ptr<Document::State> state, std::shared_ptr<const Node> node, std::string path,
-        std::string asked_path, std::string key);
-  void Ask(std::string_view key, const AskedKey& asked) const;
+        std::string requested_path, std::string key);
+  void Request(std::string_view key, const RequestedKey& requested) const;
   double ReadNumber(std::string_view key, const NumberRule& rule) const;
 
   std::shared_ptr<Document::State> state_;
   std::shared_ptr<const Node> node_;
-  std::string path_;        // "devices.head"
-  std::string asked_path_;  // "devices.[]"
+  std::string path_;            // "devices.head"
+  std::string requested_path_;  // "devices.[]"
   std::string key_;
 };
 

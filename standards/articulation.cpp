@@ -62,7 +62,8 @@ Sphere SmallestEnclosingSphere(const Eigen::Matrix3Xd& p) {
   }
   constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
   constexpr int kMaxRounds = 10000;
-  const Eigen::Vector3d origin = p.rowwise().mean();  // differences are small beside positions
+  const Eigen::Vector3d origin =
+      p.rowwise().mean();  // differences are small compared with positions
   const double tolerance = kRounding * (p.colwise() - origin).colwise().norm().maxCoeff() +
                            std::numeric_limits<double>::min();
   Points active{p.col(0) - origin};

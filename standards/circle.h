@@ -31,6 +31,7 @@ struct Circle {
   double radius = 0.0;  // minimum zone: mean of the two circles
 };
 
+// The reference circle of this kind.
 Circle ReferenceCircle(CircleKind kind, std::span<const double> x, std::span<const double> y);
 
 // The figures of ISO 12181-1:2011 about a reference circle; for the minimum zone Error() is RONt.

@@ -26,6 +26,7 @@ struct DiagonalFigures {
   double E = 0.0, B = 0.0;
 };
 
+// E_d and B_d of one diagonal; B_d is 0 without backward runs.
 DiagonalFigures EvaluateDiagonal(const DiagonalRuns& runs);
 
 // E_d and B_d of the machine.

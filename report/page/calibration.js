@@ -1,10 +1,10 @@
-// The section of a calibration of the linkage: how far off it is before and after, pose by pose,
-// its parameters, what the data could not see, and the cells of a mapping.
+// The section of a calibration of the linkage: errors before and after, residuals of each pose,
+// parameters, combinations that the data do not determine, and the cells of a mapping.
 
 const DISTANCES = [
   ['before', 'Nominal linkage, displacements'],
   ['after', 'Calibrated'],
-  ['held_out', 'Calibrated, poses that took no part'],
+  ['held_out', 'Calibrated, held-out poses'],
 ];
 const CALIBRATION_SHOWN = 8;  // rows of a list that may be long before it is folded
 
@@ -18,7 +18,7 @@ function calibrationSummary(result) {
     sentences.push(
         `The linkage was off by ${
             micrometres(before.rms_um)} (rms in space); calibrated it is off ` +
-        `by ${micrometres(now.rms_um)}` + (now === held ? ' at poses that took no part.' : '.'));
+        `by ${micrometres(now.rms_um)}` + (now === held ? ' at held-out poses.' : '.'));
   }
   if (isNumber(seen)) {
     sentences.push(
@@ -91,15 +91,15 @@ function poseResidualGroup(result) {
         [['before_um', 'before', 'muted']], result),
     poseResidualPanel(
         'After',
-        'Distance of the ball from the reference at each pose, calibrated, and where the pose took ' +
-            'no part.',
+        'Distance of the ball from the reference at each pose, calibrated, and held ' +
+            'out.',
         [['gap_um', 'calibrated', 'mean'], ['held_out_um', 'held out', 'backward']], result),
   ];
   return figureGroup({
-    title: 'Residuals, pose by pose',
+    title: 'Residuals of each pose',
     intro:
         'Distances in space. Before: the nominal linkage with its base registered. Held out: the ' +
-        'pose and its neighbours in time took no part, so this is what a measurement may expect.',
+        'pose and its neighbours in time were held out, as in a new measurement.',
     items: known,
     panels: result.residuals.some((one) => length3(one.before_um) !== null) ? panels :
                                                                               panels.slice(1),
@@ -132,10 +132,10 @@ function parameterTables(result) {
   const told = all.filter((one) => one.seen_by === 'data');
   const rest = all.filter((one) => one.seen_by !== 'data');
   return [
-    parameterTable('Parameters told by the data, with their expanded uncertainty', told),
+    parameterTable('Parameters determined by the data, with their expanded uncertainty', told),
     rest.length ? folded(
-                      rest, `${rest.length} parameters that their tolerance holds`,
-                      parameterTable('Parameters held by their tolerance', rest)) :
+                      rest, `${rest.length} parameters limited by their tolerance`,
+                      parameterTable('Parameters limited by their tolerance', rest)) :
                   null,
   ];
 }
@@ -144,13 +144,13 @@ function unseenTable(result) {
   const unseen = result.unseen ?? [];
   if (!unseen.length) return null;
   const content = table({
-    caption: 'What the data could not see: combinations in units of the tolerances',
+    caption: 'Combinations that the data do not determine, in units of the tolerances',
     columns: [{head: 'Combination'}, {head: 'Left of its tolerance', unit: '%', numeric: true}],
     rows: unseen.map(
         ({words,
           share_of_prior: share}) => [words, isNumber(share) ? fixed(100 * share, 0) : null]),
   });
-  return folded(unseen, `${unseen.length} combinations that the data could not see`, content);
+  return folded(unseen, `${unseen.length} combinations that the data do not determine`, content);
 }
 
 // Cell centres in mm, in the order of the cells (z fastest).
@@ -229,10 +229,9 @@ function cellGroup(result) {
   };
   return figureGroup({
     title: 'Mapping cells',
-    intro:
-        `${result.mapped.cells} cells have parameters of their own. A line is how far they put ` +
-        'the ball from where one set for all puts it, magnified: large ones show what the model ' +
-        'leaves out, or noise.',
+    intro: `${result.mapped.cells} cells have parameters of their own. A line is the shift of ` +
+        'the ball from its position with common parameters, magnified: large ones show errors that ' +
+        'the model lacks, or noise.',
     slider: magnifierFor(size * 1e-3, most * 1e-6),
     panels: [panel],
   });
@@ -259,7 +258,7 @@ function modelTable(result) {
 function outlierTable(result) {
   if (!result.outliers?.length) return null;
   return table({
-    caption: 'Poses that lie far off and hardly count',
+    caption: 'Outlying poses, with little weight',
     columns: [
       {head: 'Recording'}, {head: 'Row', numeric: true},
       {head: 'Off by', unit: '\u00b5m', numeric: true}, {head: 'Standard deviations', numeric: true}

@@ -1,5 +1,5 @@
 // The section of a circular test: figures of ISO 230-4, the circle with its deviation magnified,
-// the path in space, harmonics, and what made the circle as it is.
+// the path in space, harmonics, and the causes of the deviation.
 
 const CIRCLE_FIGURES = [
   [
@@ -8,18 +8,18 @@ const CIRCLE_FIGURES = [
   ],
   ['G_cw_um', 'G(cw)', 'Circular deviation, clockwise'],
   ['G_b_um', 'G(b)', 'The ring around both senses together'],
-  ['F_max_um', 'F max', 'Largest radius less the programmed one, about the set-up centre'],
-  ['F_min_um', 'F min', 'Smallest radius less the programmed one, about the set-up centre'],
-  ['D_um', 'D', 'Mean radius of both senses less the programmed one'],
+  ['F_max_um', 'F max', 'Largest radius minus the programmed one, about the set-up centre'],
+  ['F_min_um', 'F min', 'Smallest radius minus the programmed one, about the set-up centre'],
+  ['D_um', 'D', 'Mean radius of both senses minus the programmed one'],
 ];
-// Where nobody said the programmed radius; no figures of the standard.
+// Without the programmed radius: not figures of the standard.
 const RECORDED_FIGURES = [
   [
     'largest_beyond_recorded_um', 'Largest radius',
-    'Less that of the circle of the recorded positions, about the set-up centre'
+    'Minus that of the circle of the recorded positions, about the set-up centre'
   ],
-  ['smallest_beyond_recorded_um', 'Smallest radius', 'Less that of the recorded positions'],
-  ['mean_beyond_recorded_um', 'Mean radius', 'Of both senses, less that of the recorded positions'],
+  ['smallest_beyond_recorded_um', 'Smallest radius', 'Minus that of the recorded positions'],
+  ['mean_beyond_recorded_um', 'Mean radius', 'Both senses, minus that of the recorded positions'],
 ];
 const SENSES = [['ccw', 'counter-clockwise', 'forward'], ['cw', 'clockwise', 'backward']];
 const SIGNATURE_NAMES = {
@@ -67,10 +67,10 @@ function circleSummary(result) {
 }
 
 const signatureName = ({cause, object}) => `${SIGNATURE_NAMES[cause] ?? cause} ${object}`;
-// Seen by the data, and beyond its U95.
+// Determined by the data, and beyond its U95.
 const isFound = ({seen, value, u}) => seen && Math.abs(value) > COVERAGE * u;
 
-// With its expanded uncertainty, where that is known.
+// With its expanded uncertainty, if known.
 const circleFigure = (run, key) =>
     isNumber(run[key]) ? quantity(run[key], COVERAGE * (run.u?.[key] ?? 0)) : null;
 
@@ -99,7 +99,7 @@ function signatureTable(circle) {
     caption: `Causes by one joint fit: ${circle.instrument} ${circle.plane}`,
     columns: [
       {head: 'Cause'}, {head: 'Amount', numeric: true}, {head: 'Unit'},
-      {head: 'On the radius', unit: '\u00b5m', numeric: true}, {head: 'Told by the data'}
+      {head: 'On the radius', unit: '\u00b5m', numeric: true}, {head: 'Determined by the data'}
     ],
     rows: circle.causes.map(
         (one) =>
@@ -137,7 +137,7 @@ function magnifierFor(size, deviation) {
 
 const ARC_GAP = 0.3;  // rad between neighbours: the path was not measured there
 
-// Lists along a circle, closed where the circle is, with a gap (NaN) where nothing was measured.
+// Lists along a circle, closed for a full circle, with a gap (NaN) where nothing was measured.
 const ringOf = (angle) => (list) => {
   if (!list?.length) return [];
   const ring =
@@ -160,7 +160,7 @@ function circleTrace(name, radius, {angle, radial}, amount, line) {
   };
 }
 
-// The nominal circle and a ring inside and outside, each with its deviation beside it.
+// The nominal circle and a ring inside and outside, each labelled with its deviation.
 function circleRings(radius, amount, colours) {
   const step = roundNumber(0.3 * radius / amount * 1e3);  // um
   const turn = Array.from({length: 181}, (unused, index) => index * Math.PI / 90);
@@ -209,8 +209,8 @@ function circleAxes(circle, colours) {
   };
 }
 
-// An arrow from where a sense starts, the way that it goes; both stand within the circle, one above the
-// other where they start at one place.
+// An arrow from the start of a sense in its direction; both are inside the circle, one above the
+// other if they start at the same place.
 function senseArrows(circle, run, senses, colours) {
   const turn = 18 * Math.PI / 180;
   return senses.flatMap(([sense, , colour], index) => {
@@ -311,9 +311,9 @@ function polarGroup(result) {
   return figureGroup({
     title: 'The circle, its deviation magnified',
     intro:
-        'About the least-squares centre of both senses: what the set-up put off centre is gone. ' +
-        'Angles count from the first axis towards the second; an arrow stands where a sense starts ' +
-        'and points the way it goes. Dotted: what the causes of the joint fit explain.',
+        'About the least-squares centre of both senses, without the eccentricity of the set-up. ' +
+        'Angles count from the first axis towards the second; an arrow marks start and direction ' +
+        'of a sense. Dotted: the part that the causes of the joint fit explain.',
     items: [
       {key: 'ccw', label: 'Counter-clockwise', swatch: 'forward'},
       {key: 'cw', label: 'Clockwise', swatch: 'backward'},
@@ -377,7 +377,7 @@ function harmonicPanel(circle, run) {
                        hovertemplate: '%{y:.3f}\u00a0\u00b5m',
                      })),
       layout: figureLayout(
-          colours, {x: 'Undulations a turn', xaxis: {dtick: 1}, bargap: 0.35, bargroupgap: 0.1}),
+          colours, {x: 'Undulations per turn', xaxis: {dtick: 1}, bargap: 0.35, bargroupgap: 0.1}),
     }),
     values: () => ({
       columns: [
@@ -400,14 +400,14 @@ function harmonicGroup(result) {
   if (!runs.length) return null;
   return figureGroup({
     title: 'Harmonics of the radius',
-    intro: 'Two a turn is an oval: squareness, scales and servo mismatch together. One harmonic ' +
-        'alone names no cause; the joint fit does.',
+    intro: 'Two per turn is an oval: squareness, scales and servo mismatch together. A single ' +
+        'harmonic does not identify a cause; the joint fit does.',
     items: SENSES.map(([key, name, swatch]) => ({key, label: capital(name), swatch})),
     panels: runs.map(({circle, run}) => harmonicPanel(circle, run)),
   });
 }
 
-// How the encoders became positions: {parameters, file, model, mapped, held_out_rms_um}.
+// The parameters of the linkage: {parameters, file, model, mapped, held_out_rms_um}.
 function linkageText(linkage) {
   if (!linkage) return null;
   if (linkage.parameters !== 'calibrated') return 'its nominal parameters';
@@ -416,7 +416,7 @@ function linkageText(linkage) {
       (isNumber(rms) ? `, held-out rms ${micrometres(rms)}` : '');
 }
 
-// Only of a part of the circle: "240 degrees counter-clockwise, 120 clockwise".
+// Only for a part of the circle: "240 degrees counter-clockwise, 120 clockwise".
 function coveredText(result) {
   const part = runsOf(result).map(({run}) => run).find((run) => run.partial);
   if (!part) return null;
@@ -442,14 +442,14 @@ registerSection({
       [
         'Filter',
         result.circles?.[0]?.filter_undulations ?
-            `${positionText(result.circles[0].filter_undulations)} undulations a turn` :
+            `${positionText(result.circles[0].filter_undulations)} undulations per turn` :
             'none'
       ],
       ['Linkage read with', linkageText(result.linkage)], ['Covered', coveredText(result)],
       ['Recordings', [...new Set(runsOf(result).flatMap(({run}) => run.recordings))].join(', ')]],
   body: (result) => [circleFigureTable(result, 'Figures of ISO\u00a0230-4', CIRCLE_FIGURES),
                      circleFigureTable(
-                         result, 'Beside the standard: the programmed radius is not known',
+                         result, 'Not figures of the standard: the programmed radius is unknown',
                          RECORDED_FIGURES),
                      polarGroup(result), circleSpaceGroup(result),
                      harmonicGroup(result), ...(result.circles ?? []).map(signatureTable),

@@ -1,5 +1,4 @@
-// The colours of the figures are those of the style sheet, as the theme of the moment resolves
-// them.
+// The colours of the figures: those of the style sheet in the current theme.
 
 const COLOUR_NAMES = [
   'ink', 'muted', 'line', 'axis', 'surface', 'mean', 'band', 'forward', 'backward', 'zone',
@@ -26,7 +25,7 @@ function isDark() {
   return chosen ? chosen === 'dark' : prefersDark.matches;
 }
 
-// The choice is kept where the browser lets a local file keep something.
+// The choice is stored if the browser allows it for a local file.
 function storedTheme() {
   try {
     return localStorage.getItem('abbe-theme');
@@ -39,7 +38,7 @@ function storeTheme(theme) {
   try {
     localStorage.setItem('abbe-theme', theme);
   } catch {
-    // A page that may store nothing follows the system at the next opening.
+    // Without storage the page follows the system at the next opening.
   }
 }
 

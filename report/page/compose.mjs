@@ -15,7 +15,7 @@ function fontFace(weight) {
       `src:url(data:font/woff2;base64,${data}) format("woff2")}`;
 }
 
-// A script element ends at the first "</script", wherever it stands.
+// A script element ends at the first "</script", even inside a string.
 const inScript = (text) => text.replaceAll(/<\/(?=script)/gi, '<\\/');
 
 const parts = {

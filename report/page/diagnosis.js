@@ -1,11 +1,11 @@
-// The section of a diagnosis: what the machine has, what it could have instead, what the runs
-// cannot show, and what is left.
+// The section of a diagnosis: the causes found, their rivals, causes that the runs cannot show, and
+// what remains unexplained.
 
 const VERDICTS = {
-  clean: 'Nothing was found, and nothing is left that would need a cause.',
-  explained: 'What was found explains the runs; nothing is left over.',
-  ambiguous: 'Something is there, but these runs cannot tell which of several causes it is.',
-  unexplained: 'Something is left that no known cause explains.',
+  clean: 'No cause was found, and the residuals need none.',
+  explained: 'The causes found explain the runs completely.',
+  ambiguous: 'There is a cause, but these runs cannot separate several candidates.',
+  unexplained: 'Residuals remain that no known cause explains.',
 };
 const EVIDENCE_SHOWN = 8;  // candidates before the list is folded
 
@@ -53,19 +53,19 @@ const rootMeanSquare = (values) =>
 
 const HARDLY = 0.02;  // of the rms of all rows: less looks like nothing beside a probability
 
-// What rows that took no part say in all: a mean over them hides a cause that acts in a few.
+// The result in all held-out rows: a mean over them hides a cause that acts in a few.
 function heldOutSum(before, after, rows) {
   if (!isNumber(rows)) return null;
   const gain = rows * (before ** 2 - after ** 2);
   const sum = `chi-square over these ${grouped(rows)} rows falls by ${significant(gain)}`;
-  if (gain <= 0) return `in these ${grouped(rows)} rows it is no gain: do not build on it yet`;
+  if (gain <= 0) return `in these ${grouped(rows)} rows there is no gain: do not rely on it yet`;
   return before - after > HARDLY * before ?
       sum :
-      `${sum}: an rms is a mean over all rows, most of which this cause hardly touches, and hides ` +
-          'what the probability weighs, their sum';
+      `${sum}: an rms is a mean over all rows, few of which this cause affects; the probability ` +
+          'follows from their sum';
 }
 
-// Where the cause lives in its own unit, then in all rows, fitted and held out.
+// The gain in the channel of the cause in its own unit, then in all rows, fitted and held out.
 function findingWorth({curve, rms_before: before, rms_after: after, ...heldOut}, held) {
   const {heldout_rms_before: heldBefore, heldout_rms_after: heldAfter} = heldOut;
   const pair = (one, other) => `${one} without it, ${other} with it`;
@@ -74,13 +74,13 @@ function findingWorth({curve, rms_before: before, rms_after: after, ...heldOut},
           (values) => `${significant(rootMeanSquare(numbers(values)))}\u00a0${unitText(curve.unit)}`))}` :
       null;
   const rows = isNumber(heldBefore) ?
-      `in units of the stated noise ${pair(fixed(before, 3), fixed(after, 3))}; in rows that took ` +
-          `no part ${pair(fixed(heldBefore, 3), fixed(heldAfter, 3))}` :
+      `in units of the stated noise ${pair(fixed(before, 3), fixed(after, 3))}; in held-out ` +
+          `rows ${pair(fixed(heldBefore, 3), fixed(heldAfter, 3))}` :
       null;
   const told = [where, rows].filter(Boolean);
   if (!told.length) return null;
   const sum = rows ? heldOutSum(heldBefore, heldAfter, held?.rows) : null;
-  return [`${capital(told.join('; '))} (rms of measured less simulated)`, sum && capital(sum)]
+  return [`${capital(told.join('; '))} (rms of measured minus simulated)`, sum && capital(sum)]
       .filter(Boolean)
       .join('. ');
 }
@@ -90,7 +90,7 @@ function findingWords(finding, held) {
   const sensor = (parameters ?? []).find(({name}) => name === 'sensor')?.value;
   return factList([
     ['Probability', percent(probability)], ['Follows the sensor', sensor],
-    ['What it is worth', findingWorth(finding, held), true],
+    ['Gain', findingWorth(finding, held), true],
     ['What it is', words.what && capital(words.what), true],
     ['How it shows', words.shows && capital(words.shows), true],
     ['What to check', words.check && capital(words.check), true],
@@ -98,19 +98,20 @@ function findingWords(finding, held) {
   ]);
 }
 
-// Measured less simulated on the variable where the cause lives, without and with it.
+// Measured minus simulated over the variable of the cause, without and with it.
 function findingCurve(finding) {
   const {variable, unit, x, before, after} = finding.curve ?? {};
   if (!x?.length) return null;
   const shown = unitText(unit);
   const curves = [
-    ['before', 'without what was found', before, 'backward'], ['after', 'with it', after, 'mean']
+    ['before', 'without the causes found', before, 'backward'],
+    ['after', 'with them', after, 'mean']
   ];
   const panel = {
-    name: 'Measured less simulated',
+    name: 'Measured minus simulated',
     unit: shown,
     height: 280,
-    about: `Measured less simulated over ${variable} in ${shown}, without and with what was found; the values follow as a table.`,
+    about: `Measured minus simulated over ${variable} in ${shown}, without and with the causes found; the values follow as a table.`,
     draw: (colours, on) => ({
       data: curves.filter(([key, , y]) => y && on.has(key))
                 .map(
@@ -130,8 +131,8 @@ function findingCurve(finding) {
   return figureGroup({
     title: 'Where it shows',
     items: [
-      {key: 'before', label: 'Without what was found', swatch: 'backward'},
-      {key: 'after', label: 'With it', swatch: 'mean'}
+      {key: 'before', label: 'Without the causes found', swatch: 'backward'},
+      {key: 'after', label: 'With them', swatch: 'mean'}
     ],
     panels: [panel],
   });
@@ -148,10 +149,10 @@ function rivalsTable(result) {
   const list = (items) =>
       element('ul', {class: 'plain'}, items.map((one) => element('li', {}, one)));
   return table({
-    caption: 'What else it could be, and the run that tells',
+    caption: 'Alternative causes, and the run that separates them',
     columns: [
       {head: 'Causes'}, {head: 'Probability', numeric: true}, {head: 'Run to make next'},
-      {head: 'The right one then', numeric: true}
+      {head: 'Expected probability then', numeric: true}
     ],
     rows: rivals.map(
         ({causes, odds, next_run: next, expected_odds: then}) =>
@@ -187,20 +188,20 @@ function evidenceTable(result) {
 
 function cannotShowBlock(result) {
   return notesBlock(
-      'These runs cannot show, so nothing is said of them:',
+      'These runs cannot show, so there is no statement about them:',
       (result.cannot_show ?? []).map(candidateName));
 }
 
 const WITHOUT_VARIABLE = {
-  scatter: 'scatters beyond what is stated',
-  memory: 'goes on from one reading to the next',
+  scatter: 'scatters beyond its stated noise',
+  memory: 'is correlated from one reading to the next',
 };
 
 const whatItDoes = ({variable, from, to, variable_unit: unit}) => {
   if (WITHOUT_VARIABLE[variable]) return WITHOUT_VARIABLE[variable];
   if (!isNumber(from)) return `varies with ${variable}`;
   const [first, last] = [from, to].map((border) => plain(Number(border.toPrecision(4))));
-  return `stands apart where ${variable} is ${first} to ${last}\u00a0${unit},`;
+  return `is offset where ${variable} is ${first} to ${last}\u00a0${unit},`;
 };
 
 function leftoverBlock(result) {
@@ -216,15 +217,15 @@ function gainTable(result) {
   const rows = [
     isNumber(before) ? ['All runs', Math.sqrt(before), Math.sqrt(after)] : null,
     heldout ?
-        [`${grouped(heldout.rows)} rows that took no part`, heldout.rms_before, heldout.rms_after] :
+        [`${grouped(heldout.rows)} held-out rows`, heldout.rms_before, heldout.rms_after] :
         null
   ].filter(Boolean);
   if (!rows.length || !result.findings?.length) return null;
   return table({
-    caption: 'Measured less simulated, in units of the stated noise (1: nothing is left but noise)',
+    caption: 'Measured minus simulated, in units of the stated noise (1: noise only)',
     columns: [
-      {head: 'Rows'}, {head: 'Without what was found', numeric: true},
-      {head: 'With it', numeric: true}
+      {head: 'Rows'}, {head: 'Without the causes found', numeric: true},
+      {head: 'With them', numeric: true}
     ],
     rows: rows.map(([name, ...both]) => [name, ...both.map((one) => fixed(one, 3))]),
   });

@@ -1,7 +1,7 @@
 // Small pieces of the page: elements, tables, lists of facts, rows of toggles.
 
-// element('p', {class: 'note'}, 'text', otherElement): an attribute that is null or false is left
-// out, children that are null are too.
+// element('p', {class: 'note'}, 'text', otherElement): null or false attributes and null children
+// are left out.
 function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -15,7 +15,7 @@ const code = (name) => element('span', {class: 'code'}, name);
 const symbolU95 = () =>
     element('span', {class: 'symbol'}, element('i', {}, 'U'), element('sub', {}, '95'));
 
-// "42.3 +/- 1.2" as an element that does not break; the unit stands in the head of the column.
+// "42.3 +/- 1.2" as an element that does not break; the unit is in the head of the column.
 function quantity(value, U, unit = '') {
   const text = rounded(value, U);
   return element(
@@ -99,7 +99,7 @@ function toggles(label, items, changed) {
   return {row, on};
 }
 
-// A row of buttons of which one is on. items: [{key, label}], the first is on at the start;
+// A row of buttons, one of which is on. items: [{key, label}], the first is on at the start;
 // `changed` gets the key that is on.
 function choiceRow(label, items, changed) {
   const buttons = items.map(
@@ -114,7 +114,7 @@ function choiceRow(label, items, changed) {
   return element('div', {class: 'toggles', role: 'group', 'aria-label': label}, buttons);
 }
 
-// A slider over a list of values, with the value of the moment beside it.
+// A slider over a list of values, with the current value next to it.
 function sliderRow({label, values, at, text}, changed) {
   const shown = element('output', {}, text(values[at]));
   const input = element('input', {

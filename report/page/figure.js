@@ -1,6 +1,5 @@
-// Figures: each says how to draw itself from the colours of the moment, so that it follows the
-// theme and prints light; each has a name, a unit and its values as a table for those who do not
-// see it.
+// Figures: each draws itself from the current colours, so that it follows the theme and prints
+// light; each has a name, a unit and its values as a table, for readers who cannot see it.
 
 const figures = [];
 const PRINT_WIDTHS = {
@@ -55,8 +54,8 @@ const FIGURE_OPTIONS = {
   modeBarButtons: [['zoom2d', 'pan2d', 'resetScale2d', 'toImage']],
 };
 
-// A band between two lists of the same length, as one closed shape. Stations without a number split
-// nothing: they are left out.
+// A band between two lists of the same length, as one closed shape. Stations without a number are
+// left out and do not split it.
 function bandTrace(x, middle, half, colour) {
   const points = x.map((at, index) => [at, middle[index], half[index]])
                      .filter((point) => point.every(isNumber));
@@ -74,7 +73,7 @@ function bandTrace(x, middle, half, colour) {
   };
 }
 
-// The values behind a figure, made when somebody opens them.
+// The values of a figure, created when opened.
 function valuesTable(caption, values) {
   const details = element(
       'details', {class: 'values'},
@@ -117,7 +116,7 @@ function makeFigure(
 const redrawFigures = () =>
     figures.filter((figure) => figure.drawn).forEach((figure) => figure.redraw());
 
-// Figures are drawn one a frame, so the page can be read and scrolled from the start.
+// Figures are drawn one per frame, so the page can be read and scrolled from the start.
 async function drawFigures() {
   for (const figure of figures) {
     if (!figure.drawn) await figure.redraw();
@@ -125,7 +124,7 @@ async function drawFigures() {
   }
 }
 
-// Paper is light and has its own width.
+// For printing: the light theme and the width of the paper.
 function connectPrinting() {
   const root = document.documentElement;
   let theme;
@@ -143,9 +142,8 @@ function connectPrinting() {
   });
 }
 
-// Panels side by side under one heading, with toggles that say what all of them show, a choice of
-// one among several things, and a slider whose value all of them take. panels: makeFigure's
-// argument, with draw(colours, shown, amount, chosen).
+// Panels side by side under one heading, with toggles for all of them, a choice of one component,
+// and a common slider. panels: makeFigure's argument, with draw(colours, shown, amount, chosen).
 function figureGroup({title, intro, items = [], choices = [], slider = null, panels}) {
   const redraw = () => made.forEach((figure) => figure.redraw());
   let shown = new Set();

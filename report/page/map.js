@@ -1,5 +1,5 @@
-// The section of a fused error map: what it says, how well it is known, from what, and whether the
-// runs agree.
+// The section of a fused error map: its errors, their uncertainty and sources, and the agreement of
+// the runs.
 
 // The error in space at the grid points, and its expanded uncertainty: largest and rms, in um.
 function mapSize(result) {
@@ -31,11 +31,11 @@ function mapSummary(result) {
         `(${micrometres(size.rms)} rms in space).`);
   }
   if (Number.isFinite(size?.U)) {
-    sentences.push(`The map knows this to ${micrometres(size.U)} (U\u2089\u2085, rms in space).`);
+    sentences.push(`Its uncertainty is ${micrometres(size.U)} (U\u2089\u2085, rms in space).`);
   }
   if (result.scale) {
     sentences.push(
-        isScaleOpen(result) ? 'Its scale rests on the tolerance alone.' :
+        isScaleOpen(result) ? 'Its scale is known from the tolerance only.' :
                               'Its scale is calibrated.');
   }
   return sentences.join(' ');
@@ -63,7 +63,7 @@ function mapWarnings(result) {
                 isNumber(prior) ? ` of about ${significant(prior, 2)}\u00a0ppm` : ''}` +
             '. Give a run of kind length.' :
                                   null,
-    unseen.length ? `PRIOR ONLY: nothing measured ${joinWords(unseen)}.` : null,
+    unseen.length ? `PRIOR ONLY: no run determines ${joinWords(unseen)}.` : null,
   ].filter(Boolean);
 }
 
@@ -91,11 +91,11 @@ function chiSquareTable(result) {
              (result.contradictions ?? []).includes(run) ?
                  element('strong', {}, `${probabilityText(agreement?.p ?? NaN)}, CONTRADICTS`) :
                  agreement?.directions ? probabilityText(agreement.p) :
-                                         'nobody else saw it']),
+                                         'no other run sees it']),
   });
 }
 
-// The functions' own coefficients say nothing to a reader.
+// Without the coefficients of the error functions, which mean nothing to a reader.
 function instrumentParameters(result) {
   const shown =
       (result.parameters ?? []).filter(({name}) => !/^(E[XYZABC][XYZ]|squareness)\./.test(name));

@@ -1,5 +1,5 @@
-// The 21 errors of a map: each function over its travel with its band and what determined it, and
-// the three squarenesses.
+// The 21 errors of a map: each function over its travel with its band and its sources, and the
+// three squarenesses.
 
 const SQUARENESS_NAMES = {
   A0Z: 'Squareness Z to Y',
@@ -14,7 +14,7 @@ const mapFunctions = (result) =>
 const mapSquareness = (result) =>
     Object.entries(result.map?.errors ?? {}).filter(([name]) => isSquareness(name));
 
-// The kinds of runs that determined an error, best first; none: its tolerance alone.
+// The kinds of runs that determined an error, best first; none: only its tolerance.
 const determinedBy = (result, name) => result.observability?.[name]?.determined_by ??
     [result.map?.errors?.[name]?.from].filter((from) => from && from !== 'prior');
 const sourceText = (result, name) => determinedBy(result, name).join(', ') || 'prior only';
@@ -111,8 +111,8 @@ function mapErrorGroup(result) {
   return figureGroup({
     title: 'The 21 errors',
     intro: 'Each error over the travel of its axis, zero at the first end; a straightness has no ' +
-        'slope, which is squareness. Beside the unit stands what determined it; dotted: nothing ' +
-        'measured it, only its tolerance is known.',
+        'slope, which is squareness. Next to the unit: the runs that determine it; dotted: ' +
+        'not measured, only its tolerance is known.',
     items: [
       {key: 'band', label: '95\u00a0% band', swatch: 'band'},
       {key: 'one_scale', label: 'One scale for all of a unit', on: false}
@@ -121,7 +121,7 @@ function mapErrorGroup(result) {
   });
 }
 
-// Before the data the tolerance, after it what is left, as expanded uncertainties.
+// Expanded uncertainties before (the tolerance) and after the data.
 function determinedTable(result) {
   const known = Object.entries(result.observability ?? {});
   if (!known.length) return null;

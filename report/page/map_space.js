@@ -6,8 +6,8 @@ const MAP_COMPONENTS = [
 ];
 const MAP_PLANES = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];  // across, up, through
 
-// Turned by 25 deg and seen from 28 deg above: no two points of a cubic grid stand in one place, as
-// they would in an isometric view.
+// Turned by 25 deg and seen from 28 deg above: no two points of a cubic grid coincide, as they
+// would in an isometric view.
 const MAP_VIEW = [[0.906, -0.198], [0.423, 0.425], [0, 0.883]];
 
 const hasMapGrid = (result) =>
@@ -16,7 +16,7 @@ const hasMapGrid = (result) =>
 // The number of a grid point: x runs fastest, then y, then z.
 const gridPoint = (grid, [i, j, k]) => i + grid.x.length * (j + grid.y.length * k);
 
-// Of the grid points, in m: the component, or the length of all three.
+// At the grid points, in m: one component, or the length of all three.
 function gridComponent(lists, component) {
   if (!lists?.[2]) return [];
   return component === 'all' ? lists[0].map((unused, i) => length3(lists.map((list) => list[i]))) :
@@ -128,10 +128,8 @@ function mapSpaceGroup(result) {
   };
   return figureGroup({
     title: 'The map over the volume',
-    intro:
-        'From each point of the grid a line to where the tool is when it should be there, along ' +
-        'the axes as they are commanded, magnified. Grey: the volume; orange: its edges as the machine ' +
-        'makes them.',
+    intro: 'From each point of the grid a line to the actual position of the tool, along ' +
+        'the axes as commanded, magnified. Grey: the volume; orange: its edges with the errors.',
     choices: MAP_COMPONENTS,
     slider: magnifierFor(Math.max(...half), Math.max(1e-9, ...grid.error.map(largest))),
     panels: [panel],
@@ -157,7 +155,7 @@ function slicePanel(grid, lists, plane, {name, about, isSigned}) {
     unit: '\u00b5m',
     width: 'third',
     height: 260,
-    about: `${about} in the ${across}${up} plane, as colours; the values stand with the map over ` +
+    about: `${about} in the ${across}${up} plane, as colours; the values are with the map over ` +
         'the volume.',
     draw: (colours, shown, share, component) => {
       const values = gridComponent(lists, component);

@@ -15,7 +15,7 @@ const NANOMETRE = {
   scale: 1e9
 };
 
-// A unit of a result (um, ppm/degC, nm/mm^2) with the signs that files leave out.
+// A unit of a result (um, ppm/degC, nm/mm^2) with the special characters that files avoid.
 const unitText = (unit) =>
     unit?.replace(/^u(?=m|rad)/, '\u00b5').replace('degC', '\u00b0C').replace('^2', '\u00b2');
 
@@ -41,7 +41,7 @@ function placesFor(value, digits) {
   return Math.min(12, digits - 1 - exponent);
 }
 
-// Three significant digits, for numbers whose uncertainty is not known.
+// Three significant digits, for numbers of unknown uncertainty.
 const significant = (value, digits = 3) => fixed(value, placesFor(value, digits));
 
 // A position without the digits of its binary form: 12, 12.5, 0.
@@ -60,7 +60,7 @@ const numbers = (list) => (list ?? []).filter(isNumber);
 const largest = (list) => numbers(list).reduce((most, value) => Math.max(most, Math.abs(value)), 0);
 const rangeOf = (list) => Math.max(...numbers(list)) - Math.min(...numbers(list));
 const scaled = (list, scale) => (list ?? []).map((value) => isNumber(value) ? value * scale : null);
-// Uncertainties may be one number or one a station: their root mean square.
+// One uncertainty, or the root mean square of one per station.
 function typical(u) {
   const list = numbers(Array.isArray(u) ? u : [u]);
   return list.length ? Math.sqrt(list.reduce((sum, one) => sum + one * one, 0) / list.length) : NaN;

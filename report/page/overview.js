@@ -1,6 +1,6 @@
 // The top of the page: all axes with their key figures, and what was left out.
 
-// One table a kind of section, one row a result; the first cell leads to the section.
+// One table per kind of section, one row per result; the first cell leads to the section.
 function overviewTables(sections) {
   return sectionKinds.filter((kind) => kind.overview).flatMap((kind) => {
     const mine = sections.filter((section) => section.kind === kind);

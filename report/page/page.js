@@ -20,7 +20,7 @@ function resultSection({id, kind, result, file}) {
       factList(allFacts(kind.facts(result), result, file)), kind.body(result));
 }
 
-// A result that no section can read says so in its place and spoils nothing else.
+// A result that its section cannot read is replaced by a message; the others are not affected.
 function safeSection(section) {
   try {
     return resultSection(section);
@@ -30,7 +30,7 @@ function safeSection(section) {
         element(
             'p', {class: 'note'},
             `This result could not be shown (${error.message}): a key has ` +
-                'another form than docs/report.md says. Write it again with this version of abbe.'));
+                'a form other than in docs/report.md. Write it again with this version of abbe.'));
   }
 }
 

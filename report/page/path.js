@@ -77,7 +77,7 @@ function pathSpaceGroup(result) {
                             key: 'measured',
                             name: 'measured',
                             colour: 'mean',
-                            // What is kept is the measured path and its deviation: the nominal one
+                            // The result has the measured path and its deviation: the nominal path
                             // is their difference.
                             position: ['x', 'y', 'z'].map(
                                 (axis) => path[axis].map((at, i) => at - path[`d${axis}`][i])),

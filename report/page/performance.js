@@ -1,5 +1,5 @@
-// The sections of what a map is used for: a performance simulation, before and after the
-// correction, a corrected program or table, an export and what its format drops.
+// The sections of the uses of a map: a performance simulation before and after the correction, a
+// corrected program or table, an export and what its format drops.
 
 // "F_max XY um" -> {name: "F_max XY", unit: "um"}
 function figureKey(key) {
@@ -23,7 +23,7 @@ function performancePanel(result, unit, figures) {
     name: `Size of each figure, ${shown}`,
     unit: shown,
     height: 260,
-    about: `Size of each figure in ${shown} before and after the correction; the values stand in ` +
+    about: `Size of each figure in ${shown} before and after the correction; the values are in ` +
         'the table.',
     draw: (colours, on) => ({
       data: [
@@ -69,8 +69,8 @@ function performanceGroup(result) {
   return figureGroup({
     title: 'Before and after',
     intro: result.corrected_95 ?
-        'Corrected: what the uncertainty of the map leaves; 95\u00a0% of the machines that it ' +
-            'allows stay below.' :
+        'Corrected: the error from the uncertainty of the map; 95\u00a0% of the machines that it ' +
+            'allows are below.' :
         'As the machine is, without correction.',
     items: [
       {key: 'as_is', label: 'As it is', swatch: 'backward'},

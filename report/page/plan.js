@@ -1,4 +1,4 @@
-// The section of a plan: what a set of runs would show of each cause, and what it would confuse.
+// The section of a plan: the causes that a set of runs would show, and those it would not separate.
 
 const planSizes = ({sizes}) => element(
     'ul', {class: 'plain'},
@@ -20,13 +20,13 @@ function plannedTable(caption, causes) {
     ],
     rows: causes.map(
         (one) =>
-            [findingName(one), one.sizes?.length ? planSizes(one) : 'there or not',
+            [findingName(one), one.sizes?.length ? planSizes(one) : 'present or absent',
              fixed(one.visible_sd, one.visible_sd < 10 ? 1 : 0)]),
   });
 }
 
 const confusedBlock = (result) => notesBlock(
-    'These runs could not tell apart:',
+    'These runs could not separate:',
     (result.confused ?? [])
         .map(
             ({causes, cosine}) => `${causes.map(candidateName).join('; ')} (cosine ${
@@ -45,7 +45,7 @@ registerSection({
   facts: (result) => [['Runs', (result.runs ?? []).join(', '), true]],
   body: (result) => [element(
       'details', {class: 'fold group'},
-      element('summary', {}, 'Each cause, and what these runs could not tell apart'),
+      element('summary', {}, 'Each cause, and the causes that these runs could not separate'),
       confusedBlock(result), plannedTable('Would be seen', seenCauses(result)),
       plannedTable(
           'Would not be seen at their usual size',

@@ -1,10 +1,10 @@
 // The section of a positioning test against a reference: ISO 230-2.
 
 const ISO_230_2_FIGURES = [
-  ['A_um', 'A', 'Bi-directional accuracy: what the axis keeps, systematic and random together'],
-  ['R_um', 'R', 'Bi-directional repeatability: how well it returns to a target'],
+  ['A_um', 'A', 'Bi-directional accuracy: systematic and random errors together'],
+  ['R_um', 'R', 'Bi-directional repeatability: scatter of the returns to a target'],
   ['E_um', 'E', 'Bi-directional systematic error: range of the mean deviations of both directions'],
-  ['M_um', 'M', 'Range of the mean of both directions: what a compensation table can take away'],
+  ['M_um', 'M', 'Range of the mean of both directions: a compensation table can remove it'],
   ['B_um', 'B', 'Reversal: the largest difference between the two directions'],
   ['mean_reversal_um', 'mean B', 'Reversal, mean over the targets, with its sign'],
 ];

@@ -1,12 +1,11 @@
 // The kinds of section. A kind is an object
-//   {command, kind?,                      which results it shows (kind left out: all of the
-//   command)
+//   {command, kind?,                      which results it shows (without kind: all of the command)
 //    title(result), short(result),        heading; entry of the table of contents
 //    summary(result),                     one sentence for a machinist
-//    facts(result),                       [[name, text]] beside the common ones
+//    facts(result),                       [[name, text]] in addition to the common ones
 //    body(result),                        elements: tables and figure groups
 //    overview?: {title, columns, row(result)}}
-// and joins with registerSection in a file of its own.
+// and is registered with registerSection in a file of its own.
 
 const sectionKinds = [];
 const registerSection = (kind) => sectionKinds.push(kind);
@@ -20,9 +19,8 @@ const sectionKindOf = (result) => sectionKinds.find(
 const unknownSection = {
   title: (result) => [result.command, result.kind, result.axis].filter(Boolean).join(' \u00b7 '),
   short: (result) => [result.command, result.kind, result.axis].filter(Boolean).join(' '),
-  summary: () =>
-      'This page knows no figures for this kind of result; its numbers are below, in SI ' +
-      'units unless their name says otherwise.',
+  summary: () => 'This page has no figures for this kind of result; its numbers are below, in SI ' +
+      'units unless their name has another unit.',
   facts: () => [],
   body: (result) => [table({
     caption: 'All numbers of this result',
@@ -86,7 +84,7 @@ function temperatureFacts(conditions = {}) {
   });
 }
 
-// What every result may say about itself, around what its kind adds.
+// The facts that every result may have, around those of its kind.
 function allFacts(facts, result, file) {
   const conditions = result.conditions ?? {};
   return [

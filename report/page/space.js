@@ -35,7 +35,7 @@ function spacePath({name, position, deviation}, middle, amount, line) {
   };
 }
 
-// Three short arrows that say where the axes point.
+// Three short arrows along the axes.
 function spaceAxes(axes, span, colours, view = ISOMETRIC) {
   const [ax, ay] = [-0.8 * span, -0.8 * span];
   return axes
@@ -68,7 +68,7 @@ function spacePanel({name, axes, paths}) {
     unit: '\u00b5m',
     width: 'half',
     height: 420,
-    about: `${name}: the path in space with its deviation magnified, beside the nominal path; ` +
+    about: `${name}: the path in space with its deviation magnified, and the nominal path; ` +
         'the values follow as a table.',
     draw: (colours, shown, amount) => ({
       data:

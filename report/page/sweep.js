@@ -1,4 +1,4 @@
-// The section of an axis sweep: what its five error motions come to, in words and as a table.
+// The section of an axis sweep: its five error motions in words and as a table.
 
 const errorsOf = (result) => Object.entries(result.errors ?? {});
 const isAngular = (error) => error.unit === 'rad';
@@ -15,10 +15,10 @@ function componentName(component, error) {
   return component[1] === component[2] ? 'Positioning' : `Straightness in ${component[1]}`;
 }
 
-// The factor of U95: of a component with few degrees of freedom it is Student's t.
+// The coverage factor of U95: Student's t for a component with few degrees of freedom.
 const coverageOf = (error) => error.coverage ?? COVERAGE;
 
-// An uncertain number is {value, u}, in SI; a plain number takes the `u` beside it.
+// An uncertain number is {value, u}, in SI; a plain number has its own `u`.
 const uncertain = (given, u) => isNumber(given) ? {value: given, u: typical(u)} : given ?? {};
 
 // Peak to peak.
@@ -41,8 +41,9 @@ function shownQuantity({value, u}, error) {
   return quantity(value * scale, coverageOf(error) * u * scale);
 }
 
-// The components whose mean reversal is beyond chance, as the result says; an older one does not, and
-// its U95 decides. The mean decides, not the largest: among many stations some exceed it by chance.
+// The components with a significant mean reversal, according to the result; in an older result
+// according to U95. The mean decides, not the largest value: some of many stations exceed U95 by
+// chance.
 const seenReversals = (result) =>
     Object.entries(result.reversal ?? {}).filter(([component, one]) => {
       if (typeof one.seen === 'boolean') return one.seen;
@@ -54,7 +55,7 @@ function travelText(result) {
   const stations = numbers(result.stations);
   if (!stations.length) return '';
   const [first, last] = [Math.min(...stations), Math.max(...stations)];
-  // To the micrometre: a scale trembles below it.
+  // To the micrometre: the last digits of a scale fluctuate.
   const text = (position) => positionText(Number((position * 1e3).toFixed(3)));
   return `${text(first)} to ${text(last)}`;
 }

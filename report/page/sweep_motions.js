@@ -1,4 +1,4 @@
-// What an axis sweep measured, as figures: error motions, straightness and its lines, reversal.
+// Figures of an axis sweep: error motions, straightness and its lines, reversal.
 
 const positionTitle = (result) => `${result.axis} position (mm)`;
 const positionsOf = (result) => scaled(result.stations, 1e3);
@@ -120,8 +120,8 @@ const STRAIGHTNESS_LINES = [
   {key: 'minimum_zone', label: 'Minimum zone', swatch: 'zone', dash: 'solid'},
 ];
 
-// A result states its lines in the recording's own slope and its curve without: what is shown is
-// each line less the least-squares line.
+// In a result the lines contain the slope of the recording and the curve does not: each line
+// is shown minus the least-squares line.
 function lineOverStations(result, component, key) {
   const lines = result.straightness_lines[component];
   const [line, level] = [lines[key], lines.least_squares];
@@ -244,9 +244,8 @@ function reversalGroup(result) {
       [...turns, ...bows].map(([component], index) => [component, `series-${index + 1}`]));
   return figureGroup({
     title: 'Reversal',
-    intro:
-        'Forward minus backward at each station. Inside the grey band a difference cannot be told ' +
-        'from zero.',
+    intro: 'Forward minus backward at each station. Inside the grey band a difference is not ' +
+        'significant.',
     items: Object.entries(swatches).map(([key, swatch]) => ({key, label: key, swatch})),
     panels: [
       turns.length ? reversalPanel(result, turns, 'Rotations', swatches) : null,

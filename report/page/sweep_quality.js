@@ -1,4 +1,4 @@
-// How good an axis sweep is, as figures: uncertainty budget, residuals, noise.
+// Figures of the quality of an axis sweep: uncertainty budget, residuals, noise.
 
 // --- uncertainty budget
 
@@ -118,7 +118,7 @@ const probeName = (probe) =>
     capital(probe.replace(/^probe_(.)$/, (whole, letter) => `probe ${letter.toUpperCase()}`)
                 .replaceAll('_', ' '));
 
-// One lane a probe over a common time, all to one scale, so that a pattern stands out.
+// One lane per probe over a common time, all to one scale, so that patterns are visible.
 function residualPanel(result, probes) {
   const unit = lengthUnit(Math.max(...probes.map((probe) => largest(result.residuals[probe]))));
   const time = scaled(result.dwells?.time_s, 1 / 60);
@@ -130,7 +130,7 @@ function residualPanel(result, probes) {
     unit: unit.name,
     height: 56 + 72 * probes.length,
     about:
-        `Reading of each probe at each dwell less the mean of its station and direction, over time, in ${
+        `Reading of each probe at each dwell minus the mean of its station and direction, over time, in ${
             unit.name}; ` +
         'root mean squares follow as a table.',
     draw: (colours, shown) => ({
@@ -278,8 +278,7 @@ function quietGroup(result) {
           .filter((key) => result.noise[key] !== null && typeof result.noise[key] === 'object');
   return figureGroup({
     title: 'Residuals and noise',
-    intro:
-        'What each dwell leaves over the mean of its station and direction. A pattern in time is a ' +
+    intro: 'Each dwell minus the mean of its station and direction. A pattern in time is a ' +
         'disturbance; an ' +
         `even cloud is noise.${chiSquareText(result.noise)}`,
     items: result.dwells?.direction && residual.length ? DIRECTIONS : [],

@@ -158,14 +158,14 @@ class CorrectTest(unittest.TestCase):
                              ("G2 X30 Y30 I1000000000 J0\n", "line 1: ", "an arc of radius 1e+09 mm"),
                              ("G2 X30 Y30 I1000000 J0\n", "line 1: X = ", "outside its travel"),
                              ("G2 X30 Y30 Z1000000000 I5 J0\n", "line 1: Z = ", "outside its travel"),
-                             ("GnanX10 Y10 Z10\n", 'line 1: "GnanX10', "no letter with a number"),
+                             ("GnanX10 Y10 Z10\n", 'line 1: "GnanX10', "not a letter with a number"),
                              ("G99999999999999999999 X10\n", "line 1: G99999999999999999999 is not supported"),
                              ("G429496730.6 X10\n", "line 1: G429496730.6 is not supported"),
-                             ("Minf\n", 'line 1: "Minf"', "no letter with a number"),
+                             ("Minf\n", 'line 1: "Minf"', "not a letter with a number"),
                              ("G1 Xinf\n", 'line 1: "Xinf"'), ("G1 X nan\n", 'line 1: "X nan"'),
                              ("G0 X1\n" + 100000 * "(" + "\n", "line 2: longer than 65534 characters"),
                              ("", "part.ngc: is empty"),
-                             ("%\nG0 X30\n", "line 2: ", "it was cut")):
+                             ("%\nG0 X30\n", "line 2: ", "it is truncated")):
             (self.folder / "part.ngc").write_text(text)
             self.refused(machine, "part.ngc", "part.ngc: ", *words)
 
@@ -210,7 +210,7 @@ class CorrectTest(unittest.TestCase):
         done = self.correct(machine, "cmm.csv", "--out", self.folder / "causes.csv", "--feed-mm-min", "600",
                             "--causes", self.folder / "causes.toml")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("beside the map, from causes.toml: nothing; left out, for a path has no time and no "
+        self.assertIn("in addition to the map, from causes.toml: nothing; left out, because a path has no time and no "
                       "temperature: vibration:X, warm-up-drift:Y", done.stdout)
         self.assertEqual((self.folder / "causes.csv").read_text(), (self.folder / "plain.csv").read_text())
 

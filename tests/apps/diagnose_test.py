@@ -59,7 +59,7 @@ class PlanTest(ProgramCase):
         pair = ("cap-friction:cap", "clock-skew:linkage")
         one, text = self.plan(self.path_file(600))
         self.assertIn(pair, self.alike(one))
-        self.assertIn("Cannot be told apart (cosine 1.000): cap-friction:cap, cap-trailing:cap, clock-skew:linkage", text)
+        self.assertIn("Cannot be separated (cosine 1.000): cap-friction:cap, cap-trailing:cap, clock-skew:linkage", text)
         two, _ = self.plan(self.path_file(600), self.path_file(120))
         self.assertNotIn(pair, self.alike(two))
 

@@ -124,10 +124,10 @@ class ExportTest(unittest.TestCase):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
             self.assertIn(words, done.stderr)
-        refused("no format of a map", self.map, "--format", "xls")
+        refused("not a format of a map", self.map, "--format", "xls")
         refused("cannot be read", self.folder / "none.toml", "--format", "csv")
         refused("2 to 256", self.map, "--format", "linuxcnc", "--points", "300,2,2")
-        refused("2 points or more", self.map, "--format", "csv", "--points", "1")
+        refused("at least 2 points", self.map, "--format", "csv", "--points", "1")
         (self.folder / "cut.toml").write_text(self.map.read_text()[:2000])
         refused("cut.toml", self.folder / "cut.toml", "--format", "csv")
 

@@ -82,7 +82,7 @@ class Harmonics(unittest.TestCase):
 
     def test_refuses_in_one_line(self):
         log = self.path / "turn.log"
-        self.assertIn("name them as columns", self.refusal("convert", log, self.path / "a.csv"))
+        self.assertIn("name the channels as columns", self.refusal("convert", log, self.path / "a.csv"))
         self.assertIn("is not NAME=CHANNEL", self.refusal("convert", log, self.path / "a.csv", "--column", "gap_mm"))
         self.assertIn("the log has W:angle, W:gap",
                       self.refusal("convert", log, self.path / "a.csv", "--column", "gap_mm=W:gab"))

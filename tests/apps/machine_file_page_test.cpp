@@ -77,17 +77,17 @@ std::string DemoWithForm(const std::string& form, const std::string& links) {
   return text;
 }
 
-void AddKeysOf(const std::string& text, std::map<std::string, settings::AskedKey>& keys) {
+void AddKeysOf(const std::string& text, std::map<std::string, settings::RequestedKey>& keys) {
   const auto path =
       std::filesystem::temp_directory_path() / fmt::format("abbe_machine_file_{}.toml", ::getpid());
   std::ofstream(path) << text;
   const MachineFile file = ReadMachineFile(path);
   std::filesystem::remove(path);
-  for (const auto& [name, key] : file.document.asked()) keys.emplace(name, key);
+  for (const auto& [name, key] : file.document.requested()) keys.emplace(name, key);
 }
 
-std::map<std::string, settings::AskedKey> KeysOfAllReaders() {
-  std::map<std::string, settings::AskedKey> keys;
+std::map<std::string, settings::RequestedKey> KeysOfAllReaders() {
+  std::map<std::string, settings::RequestedKey> keys;
   AddKeysOf(Demo(), keys);
   AddKeysOf(DemoWithForm("segments", "segment = [{ length_mm = 9, encoder = \"theta\" }]"), keys);
   AddKeysOf(DemoWithForm("denavit-hartenberg", "joint = [{ a_mm = 9 }]"), keys);

@@ -67,7 +67,7 @@ class OverwritingTest(ProgramCase):
         self.run_in("reduce", "sX.csv", "--machine", "mill.toml", "--json", "out/x.json")
         for line, saying in (("report out --out sX.csv", "nothing recorded is overwritten"),
                              ("report out --out out/x.json", "holds JSON, but a page"),
-                             ("report out --out mill.toml", "holds settings of yours")):
+                             ("report out --out mill.toml", "holds your settings")):
             self.refused(line, saying)
 
     def test_its_own_kind_and_force(self):
@@ -144,7 +144,7 @@ class OverwritingTest(ProgramCase):
     def test_sizes_are_bounded(self):
         record = "rig record --machine mill.toml --out new.csv "
         for line, saying in (("export map.toml --format csv --points 2000 --out new.csv", "take fewer"),
-                             ("export map.toml --format csv --points=-5 --out new.csv", "2 points or more"),
+                             ("export map.toml --format csv --points=-5 --out new.csv", "at least 2 points"),
                              (record + "--course circle --feed 1e-9", "take a higher feed"),
                              (record + "--course cube --points 1000,1000,1000", "take fewer"),
                              (record + "--course cube --dwell 1e300", "take a higher feed"),

@@ -82,7 +82,7 @@ TEST(ReduceReference, PrintsTheFiguresWithTheirUnit) {
        {"ISO 230-2, axis X: 2 targets, 3 cycles in both directions\n",
         "target [mm]    up [um]  down [um]", "    100.0000       5.00       6.00      -1.00",
         "accuracy A                              18.00       5.00      18.00\n",
-        "mean reversal (up - down)                1.50\n", "1 rows with a flag were left out\n",
+        "mean reversal (up - down)                1.50\n", "1 flagged rows were left out\n",
         "fewer than the five cycles that ISO 230-2 asks for\n"}) {
     EXPECT_NE(table.find(line), std::string::npos) << line << "not in\n" << table;
   }
@@ -94,7 +94,7 @@ TEST(ReduceReference, FindsTheAxisByItsReferenceColumn) {
   EXPECT_EQ(ReduceReference(recording)["axis"], "X");
   recording.columns.push_back({"ref_y_mm", std::vector<double>(recording.rows(), 0.0)});
   EXPECT_EQ(Refusal(recording),
-            "hand.csv: 2 reference columns: say in the header which axis moves, axis = \"X\"");
+            "hand.csv: 2 reference columns: name the moving axis in the header, axis = \"X\"");
 }
 
 TEST(ReduceReference, RefusesWhatIsNoPositioningTest) {
@@ -107,7 +107,7 @@ TEST(ReduceReference, RefusesWhatIsNoPositioningTest) {
   Recording plane = ByHand();
   plane.header = "kind = \"reference\"\naxis = \"XY\"\n";
   EXPECT_EQ(Refusal(plane),
-            "hand.csv: axis = \"XY\": positioning is judged along one axis, X, Y or Z");
+            "hand.csv: axis = \"XY\": positioning is evaluated along one axis, X, Y or Z");
 
   Recording still = ByHand();
   still.columns[3].values[4] = 0;

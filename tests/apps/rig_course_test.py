@@ -77,8 +77,8 @@ class RigCourse(unittest.TestCase):
         far.write_text(text.replace("position_mm = [-180.0,", "position_mm = [-300.0,"))
         for says, arguments, machine in (
                 ("no such file", ["--course", "kube"], MACHINE),
-                ("say what to record", [], MACHINE),
-                ("say what to record", ["--axis", "X", "--course", "cube"], MACHINE),
+                ("nothing to record", [], MACHINE),
+                ("nothing to record", ["--axis", "X", "--course", "cube"], MACHINE),
                 ("beyond the travel of 0 to 60 mm", ["--course", "circle", "--size", 80], MACHINE),
                 ("2 numbers, but the course cube has 3", ["--course", "cube", "--size", "1,2"], MACHINE),
                 ("--points: 3 numbers, but the course stepping has 1",

@@ -54,7 +54,7 @@ class SimulateTest(unittest.TestCase):
     def test_refusals_take_one_line(self):
         path = self.folder / "path.csv"
         path.write_text("x_mm,y_mm\n1,2\n")
-        for words, *options in (("is no test", "--test", "cone"), ("--path", "--test", "freeform"),
+        for words, *options in (("is not a test", "--test", "cone"), ("--path", "--test", "freeform"),
                                 ("no column z_mm", "--test", "freeform", "--path", path),
                                 ("does not fit", "--test", "circle", "--radius-mm", "31")):
             done = self.simulate(*options)

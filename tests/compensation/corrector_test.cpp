@@ -110,7 +110,7 @@ TEST(Corrector, ACommandMayLieBeyondTheTravelButNotBeyondTheSoftLimits) {
         }
         ++beyond;
         const std::string refused = map::MessageOf<InputError>([&] { hard.Command(corner); });
-        map::ExpectHas(refused, "lies beyond the soft limits, 0 to 60 mm");
+        map::ExpectHas(refused, "is beyond the soft limits, 0 to 60 mm");
         map::ExpectHas(refused, "limit_mm in [axis.");
       }
     }

@@ -172,7 +172,7 @@ TEST(NcCorrection, WhatItCannotCorrectIsRefusedWithItsLine) {
   }
   map::ExpectHas(Refusal("G80\nX1\n"), "line 2: axis words without");
   map::ExpectHas(Refusal("G1 X1 I2\n"), "belong to an arc");
-  map::ExpectHas(Refusal("G2 X1\n"), "takes I, J, K or R");
+  map::ExpectHas(Refusal("G2 X1\n"), "takes either I, J, K or R");
   map::ExpectHas(Refusal("G2 X1 K1\n"), "K does not belong to an arc in G17");
   map::ExpectHas(Refusal("G2 X50 R10\n"), "cannot reach over 50 mm");
   map::ExpectHas(Refusal("G2 X50 I10\n"), "starts 10 mm from its centre and ends 40 mm");
@@ -183,7 +183,7 @@ TEST(NcCorrection, WhatItCannotCorrectIsRefusedWithItsLine) {
 TEST(NcCorrection, WhatIsNoNumberAndNoCodeIsRefused) {
   for (const char* const word :
        {"Xnan", "Yinf", "Z-inf", "GnanX1", "Minf", "Fnan", "Ginfinity", "Xnan(char)"}) {
-    map::ExpectHas(Refusal(std::string("G0 X1\n") + word + "\n"), "is no letter with a number");
+    map::ExpectHas(Refusal(std::string("G0 X1\n") + word + "\n"), "is not a letter with a number");
   }
   // 429496730.6 and 6553.6 are 1 and 0 in a word of 32 or 16 bits.
   for (const char* const word :
@@ -268,8 +268,10 @@ TEST(NcCorrection, AProgramThatWasCutHasNoEnd) {
 TEST(NcCorrection, ThePlaceOfTheMachineMustBeKnown) {
   NcOptions options = kCoarse;
   options.start.reset();
-  map::ExpectHas(Refusal("G0 Z5\n", options), "line 1: moves while it is not known");
-  map::ExpectHas(Refusal("G1 X1 Y1 Z1\n", options), "line 1: moves while it is not known");
+  map::ExpectHas(Refusal("G0 Z5\n", options),
+                 "line 1: moves while the position of the machine is unknown");
+  map::ExpectHas(Refusal("G1 X1 Y1 Z1\n", options),
+                 "line 1: moves while the position of the machine is unknown");
   EXPECT_EQ(Corrected("G0 X1 Y1 Z1\nG1 X2\n", Perfect(), options), "G0 X1 Y1 Z1\nG1 X2 Y1 Z1\n");
 }
 

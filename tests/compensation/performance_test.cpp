@@ -133,7 +133,7 @@ TEST(Performance, RefusesWhatItCannotDo) {
   map::ExpectHas(map::MessageOf<InputError>([&] {
                    AfterCorrection(bare, Vector3d::Zero(), MakeTest("circle", bare, {}), 20, 1);
                  }),
-                 "states no uncertainty");
+                 "has no uncertainty");
 }
 
 }  // namespace performance_test

@@ -115,8 +115,8 @@ step_mm = 1
   ReadDevices(document.Root().Child("devices"));
   ReadSweepPlan(document.Root().Child("sweep"), 'X');
   const std::string page = Page();
-  EXPECT_GT(document.asked().size(), 60u);
-  for (const auto& [path, asked] : document.asked()) {
+  EXPECT_GT(document.requested().size(), 60u);
+  for (const auto& [path, asked] : document.requested()) {
     const std::string key = path.substr(path.rfind('.') + 1);
     const bool table = path == "devices" || path == "sweep" || key.size() == 1;  // [sweep.X]
     if (table) continue;

@@ -57,9 +57,10 @@ TEST(Machine, AConfigurationStandsForItsChain) {
   };
   EXPECT_EQ(chain("fixed-bridge"), "[w Y b X Z t]");
   EXPECT_EQ(chain("[w Y b X Z t]"), "[w Y b X Z t]");
-  ExpectRefusal(Replaced(kSmall, "[w X Y b Z t]", "fixed-brigde"),
-                "small.toml:3: chain: \"fixed-brigde\" is no machine configuration; did you mean "
-                "\"fixed-bridge\"?");
+  ExpectRefusal(
+      Replaced(kSmall, "[w X Y b Z t]", "fixed-brigde"),
+      "small.toml:3: chain: \"fixed-brigde\" is not a machine configuration; did you mean "
+      "\"fixed-bridge\"?");
 }
 
 TEST(Machine, RefusesBadValuesWithFileLineAndKey) {

@@ -132,7 +132,7 @@ TEST(Configurations, AnUnknownNameIsToldTheNearestAndAll) {
     ChainOf("gandry");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("\"gandry\" is no machine configuration"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("\"gandry\" is not a machine configuration"));
     EXPECT_THAT(error.what(), testing::HasSubstr("did you mean \"gantry\"?"));
     EXPECT_THAT(error.what(), testing::HasSubstr("column, moving-bridge, gantry"));
   }

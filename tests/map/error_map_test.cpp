@@ -76,7 +76,7 @@ TEST(ErrorMap, AMapWithoutCovarianceSaysSo) {
   ExpectHas(MessageOf<InputError>([&] {
               bare.StandardUncertainty({0.01, 0.01, 0.01}, Vector3d::Zero());
             }),
-            "states no uncertainty");
+            "has no uncertainty");
 }
 
 }  // namespace error_map_test

@@ -236,13 +236,13 @@ class BrokenExport : public testing::Test {
 
 TEST_F(BrokenExport, IsRefusedWithItsLine) {
   ExpectHas(Refusal("X EXX\n0 0 0\n", ReadIsg), "bad.txt:2: 3 numbers under 2 names");
-  ExpectHas(Refusal("X EXX\n0 nan\n", ReadIsg), "bad.txt:2: \"nan\" is no number");
+  ExpectHas(Refusal("X EXX\n0 nan\n", ReadIsg), "bad.txt:2: \"nan\" is not a number");
   ExpectHas(Refusal("X EYQ\n", ReadIsg), "\"EYQ\" is none of the 21");
   ExpectHas(Refusal("X Z EXX\n", ReadIsg), "two axes");
   ExpectHas(Refusal("X EXY\n", ReadIsg), "EXY does not belong");
   ExpectHas(Refusal("[EXX]\nGridpoints = {\n0 0\n", ReadEtalon), "cut off");
   ExpectHas(Refusal("[EXX]\nVALUE = 3\n", ReadEtalon), "bad.txt:2: expected Gridpoints");
-  ExpectHas(Refusal("[C0Y]\nVALUE = 3\n[C0Y]\n", ReadEtalon), "bad.txt:3: C0Y stands twice");
+  ExpectHas(Refusal("[C0Y]\nVALUE = 3\n[C0Y]\n", ReadEtalon), "bad.txt:3: C0Y is given twice");
   ExpectHas(Refusal("[EXX]\nGridpoints = {\n0 0 0\n}\n", ReadEtalon), "bad.txt:3");
 }
 

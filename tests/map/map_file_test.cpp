@@ -89,16 +89,16 @@ TEST_F(BrokenMap, IsRefusedWithFileLineAndKey) {
   ExpectHas(With("coefficients = [", "coefficients = [nan, "), "bad.toml:");
   ExpectHas(With("rows = [\n", "rows = [ nan,\n"), "covariance.rows");
   ExpectHas(With("reference = [", "reference = [nan, "), "reference");
-  ExpectHas(With("form = \"b-spline\"", "form = \"bspline\""), "no form of an error function");
-  ExpectHas(With("name = \"EYX\"", "name = \"EXX\""), "EXX stands twice");
-  ExpectHas(With("name = \"EYX\"", "name = \"EQX\""), "no error motion");
-  ExpectHas(With("from = \"", "from = \"my "), "no source");
+  ExpectHas(With("form = \"b-spline\"", "form = \"bspline\""), "not a form of an error function");
+  ExpectHas(With("name = \"EYX\"", "name = \"EXX\""), "EXX is given twice");
+  ExpectHas(With("name = \"EYX\"", "name = \"EQX\""), "not an error motion");
+  ExpectHas(With("from = \"", "from = \"my "), "not a source");
   ExpectHas(With("format = 1", "format = 2"), "another version");
   ExpectHas(With("scale = \"", "scale = \"not "), "scale");
   ExpectHas(With("x = [0.0, 0.06]", "x = [0.06, 0.06]"), "first below the last");
   ExpectHas(With("machine =", "colour = 3\nmachine ="), "colour");
   ExpectHas(With("positive = \"carriage carriage tool\"\n", ""),
-            "positive: nothing says which way X counts");
+            "positive: it is not stated which way X counts");
   ExpectHas(With("\"EXX.c0\", ", ""), "covariance.names");
 }
 

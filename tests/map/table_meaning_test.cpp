@@ -78,7 +78,8 @@ TEST(TableMeaning, CountedAsTheToolGoesPlusIsTheToolTowardsPlus) {
   FormatNamed("etalon").write(map, options, folder / "a.etalon");
   const ForeignTables file(ReadWhole(folder / "a.etalon"));
   ASSERT_EQ(file.sign().size(), 3u);
-  EXPECT_NE(file.sign()[2].find("the tool stands towards + in the workpiece"), std::string::npos);
+  EXPECT_NE(file.sign()[2].find("the tool is displaced towards + in the workpiece"),
+            std::string::npos);
   // At the origin of the other axes the arms are those of X alone, and the tool is in its origin.
   const Vector3d place(0.02, 0.0, 0.0);
   const Vector3d error = map.Error(place, Vector3d::Zero());
@@ -228,9 +229,9 @@ TEST(TableMeaning, AsksForTheChainAndTheCount) {
   const auto refused = [&](const char* positive) {
     return MessageOf<InputError>([&] { ReadAnyMap(folder / "f.csv", kColumn, positive); });
   };
-  ExpectHas(refused(""), "nothing says which way X counts");
+  ExpectHas(refused(""), "it is not stated which way X counts");
   ExpectHas(refused(""), "--positive");
-  ExpectHas(refused("table"), "\"table\" is no way to count an axis");
+  ExpectHas(refused("table"), "\"table\" is not a way to count an axis");
   ExpectHas(refused("tool tool"), "one each for X, Y and Z");
   EXPECT_EQ(
       ReadAnyMap(folder / "f.csv", kColumn, "tool carriage tool").model().chain().PositiveText(),

@@ -97,8 +97,8 @@ TEST(HeadSettings, RefuseWithLineAndKey) {
   names(Refusal("[head.axis_X]\nrotation = [\"x\", \"y\", \"-z\"]"),
         "must be a right-handed frame");
   names(Refusal("[head.axis_X]\nrotation = [\"x\", \"x\", \"z\"]"), "must be a right-handed frame");
-  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"+y\", \"z\"]"), "is no machine direction");
-  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"\", \"z\"]"), "is no machine direction");
+  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"+y\", \"z\"]"), "is not a machine direction");
+  names(Refusal("[head.axis_X]\nrotation = [\"x\", \"\", \"z\"]"), "is not a machine direction");
   names(Refusal("[head.probe_d]\nunit = \"top\""), "head.probe_d.unit: must be \"side\"");
   names(Refusal("[head.probe_d]\nzero_gap_um = 300.0"), "above range_um");
   names(Refusal("[head.tolerance]\ngain_ppm = -1.0"), "at least");

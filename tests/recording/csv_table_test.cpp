@@ -74,7 +74,7 @@ TEST_F(CsvTable, RefusalsSayWhatIsWrong) {
   EXPECT_THAT(Refusal("a,b\n1,2\n"), HasSubstr("has no column \"lS\"; it has a, b"));
   EXPECT_THAT(Refusal("lS,x_m,unc_m,arm\n1,2\n"), HasSubstr(":2: 2 cells, but the table has 4"));
   EXPECT_THAT(Refusal("lS,x_m,unc_m,arm\n1,2,3,1\n"), HasSubstr("no row is left"));
-  EXPECT_THAT(Refusal(kTable, {{}, {}, "linkage"}), HasSubstr("name them with their units"));
+  EXPECT_THAT(Refusal(kTable, {{}, {}, "linkage"}), HasSubstr("name the columns with their units"));
 }
 
 TEST_F(CsvTable, IsReadAsSpreadsheetsWriteIt) {
@@ -131,7 +131,7 @@ TEST_F(CsvTable, AColumnMayBeASumOfOthers) {
   EXPECT_THAT(refusal("a/0"), HasSubstr("divides by 0"));
   EXPECT_THAT(refusal("3"), HasSubstr("names no column"));
   EXPECT_THAT(refusal("a+"), HasSubstr("is missing"));
-  EXPECT_THAT(refusal("a 2"), HasSubstr("is no sum"));
+  EXPECT_THAT(refusal("a 2"), HasSubstr("is not a sum"));
   EXPECT_THAT(refusal("1e999*a"), HasSubstr("has no column"));
 }
 

@@ -39,7 +39,7 @@ TEST(DamagedHdf5, RowsBeyondTheSizeOfTheFileAreRefused) {
 }
 
 TEST(DamagedHdf5, NumbersOfOtherFilesAreNotRead) {
-  ExpectHas(RefusalOfDamaged("extstorage.h5"), "stand in other files");
+  ExpectHas(RefusalOfDamaged("extstorage.h5"), "are in other files");
 }
 
 TEST(DamagedHdf5, ABrokenHeapDoesNotEndTheProgram) {
@@ -81,7 +81,7 @@ TEST_F(LyingHdf5, VirtualColumnsAreRefused) {
                       "layout = h5py.VirtualLayout(shape=(1,), dtype='f8')\n"
                       "layout[:] = h5py.VirtualSource('b.h5', 't', shape=(1,))\n"
                       "f.create_virtual_dataset('time_s', layout)\n"),
-            "time_s: its numbers stand in other files");
+            "time_s: its numbers are in other files");
 }
 
 TEST_F(LyingHdf5, RowsThatNobodyWroteAreNoZeros) {
@@ -108,7 +108,7 @@ TEST(Hdf5Child, ItsEndIsAFailureOfTheFile) {
               for (std::atomic<int> i = 0;; ++i) {
               }
             }),
-            "reading it finds no end");
+            "reading it does not end");
   ExpectHas(refusal([](const Hdf5Sender&) { throw InputError("said so"); }), "said so");
 #if !defined(__SANITIZE_ADDRESS__)
   ExpectHas(refusal([](const Hdf5Sender&) { std::vector<char> many(std::size_t{1} << 34, 'x'); }),

@@ -50,10 +50,11 @@ TEST_F(HoleTable, BecomesAPlateOfOneSetup) {
 }
 
 TEST_F(HoleTable, RefusesWhatIsNone) {
-  Refuses("some text\n", "has no such names; a table of holes has a line of names with Meas X");
+  Refuses("some text\n",
+          "has no line of such names; a table of holes has a line of names with Meas X");
   Refuses(kNames, "has no rows");
-  Refuses(kNames + "1 2 3 4\n", ".txt:2: has 4 numbers where the names are 5");
-  Refuses(kNames + "1 2 3 4 5\n1 x 3 4 5\n", ".txt:3: \"x\" is no number");
+  Refuses(kNames + "1 2 3 4\n", ".txt:2: has 4 numbers for 5 names");
+  Refuses(kNames + "1 2 3 4 5\n1 x 3 4 5\n", ".txt:3: \"x\" is not a number");
 }
 
 }  // namespace hole_table_test

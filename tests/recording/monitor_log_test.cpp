@@ -79,9 +79,9 @@ TEST_F(MonitorLog, IsOfAShaftWhereTheSensorsStand) {
 
 TEST_F(MonitorLog, NamesTheWrongLine) {
   EXPECT_THAT(Refusal("W:gap 2023-02-08 12:00:00.0 1\nW:gap 2023-02-30 12:00:00.0 2\n"),
-              HasSubstr("log:2: no moment after \"W:gap\""));
+              HasSubstr("log:2: no date and time after \"W:gap\""));
   EXPECT_THAT(Refusal("W:gap 2023-02-08 12:00:00.0 wide\n"),
-              HasSubstr("log:1: \"wide\" of W:gap is no number"));
+              HasSubstr("log:1: \"wide\" of W:gap is not a number"));
   EXPECT_THAT(Refusal("W:gap 2023-02-08 12:00:00.0 1\nW:x 2023-02-08 12:00:00.0 1\n"),
               HasSubstr("channel \"W:angle\" has no value; the log has W:gap, W:x"));
   std::ofstream(path_) << kLog;
@@ -95,7 +95,7 @@ TEST_F(MonitorLog, AMomentIsOneOfTheCalendar) {
         "2023-02-08 -1:21:15", "2023-02-30 14:21:15", "2023-02-08 14:21:15.", "0000-01-01 00:00:00",
         "2023-02-08 14:21:15x0"}) {
     const std::string text = "W:gap 2023-02-08 14:21:15 1\nW:gap " + std::string(moment) + " 1.5\n";
-    EXPECT_THAT(Refusal(text), HasSubstr(":2: no moment after \"W:gap\"")) << moment;
+    EXPECT_THAT(Refusal(text), HasSubstr(":2: no date and time after \"W:gap\"")) << moment;
   }
 }
 

@@ -60,9 +60,9 @@ TEST_F(WholeFileTest, RefusesWhatIsOfAnotherKind) {
   Put(scratch_ / "photo.png", std::string_view("\x89PNG\0\0", 6));
   ExpectHas(RefusalToWrite("{}\n", scratch_ / "sweep.csv"), "nothing recorded is overwritten");
   ExpectHas(RefusalToWrite("x_mm\n1\n", scratch_ / "sweep.csv"), "nothing recorded is overwritten");
-  ExpectHas(RefusalToWrite("{}\n", scratch_ / "mill.toml"), "holds settings of yours");
-  ExpectHas(RefusalToWrite("x,y\n", scratch_ / "mill.toml"), "holds settings of yours");
-  ExpectHas(RefusalToWrite(map, scratch_ / "mill.toml"), "holds settings of yours");
+  ExpectHas(RefusalToWrite("{}\n", scratch_ / "mill.toml"), "holds your settings");
+  ExpectHas(RefusalToWrite("x,y\n", scratch_ / "mill.toml"), "holds your settings");
+  ExpectHas(RefusalToWrite(map, scratch_ / "mill.toml"), "holds your settings");
   ExpectHas(RefusalToWrite("{}\n", scratch_ / "map.toml"), "holds \"An error map\"");
   ExpectHas(RefusalToWrite("{}\n", scratch_ / "part.ngc"), "but JSON would be written");
   ExpectHas(RefusalToWrite(map, scratch_ / "photo.png"), "holds a binary file");
@@ -140,8 +140,7 @@ TEST_F(WholeFileTest, RefusesAFolderAndAPartInTheWay) {
   Put(scratch_ / "mine", "precious\n");
   const auto part = scratch_ / ("a.json." + std::to_string(getpid()) + ".part");
   std::filesystem::create_symlink("mine", part);
-  ExpectHas(MessageOf<InputError>([&] { Write("{}\n", scratch_ / "a.json"); }),
-            "stands in the way");
+  ExpectHas(MessageOf<InputError>([&] { Write("{}\n", scratch_ / "a.json"); }), "is in the way");
   EXPECT_EQ(Bytes(scratch_ / "mine"), "precious\n");
   std::filesystem::remove(part);
 }

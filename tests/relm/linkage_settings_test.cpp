@@ -138,8 +138,8 @@ TEST(LinkageSettings, RefuseWhatCannotBe) {
   ExpectRefusal(pivots("link_2_mm = nan"), "link_2_mm");
   ExpectRefusal(pivots("elbow = \"left\""), "elbow");
   ExpectRefusal(pivots("link1_mm = 120"), "link_1_mm");  // the nearest known key
-  ExpectRefusal(pivots("down = \"south\""), "no machine direction");
-  ExpectRefusal(pivots("down = \"+-z\""), "no machine direction");
+  ExpectRefusal(pivots("down = \"south\""), "not a machine direction");
+  ExpectRefusal(pivots("down = \"+-z\""), "not a machine direction");
   ExpectRefusal(pivots("bearing_harmonics = [0]"), "whole numbers from 1 to 64");
   ExpectRefusal(pivots("graduation_harmonics = [1.5]"), "whole numbers from 1 to 64");
   ExpectRefusal(pivots("graduation_harmonics = [1e30]"), "whole numbers from 1 to 64");

@@ -70,7 +70,7 @@ TEST(TipPath, SaysWhatIsWrongWithARecording) {
       {[](auto& r) {
          r.columns[4].values = {1, 1, 1, 1};
        },
-       "none of the 4 rows"},
+       "all 4 rows are flagged"},
       {[](auto& r) { r.columns[2].values[3] += 6.28; }, "row 4: pivot_3_rad jumps by 6.48"},
       {[](auto& r) {
          r.columns.push_back({"pivot_4_rad", {0, 0, 0, 0}});

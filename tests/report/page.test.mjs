@@ -266,18 +266,18 @@ test(
       assert.match(await backlash.locator('tr', {hasText: 'Width'}).textContent(), /6\.020\u00b10\.080/);
       assert.match(await backlash.locator('dl').textContent(), /over 99\.9.*Preload or replace/);
       assert.match(
-          await backlash.locator('dl').textContent(), /shows 3\.00.\u00b5m without it, 0\.14.*1\.900 without it.*no part 1\.880 without it, 1\.030/);
+          await backlash.locator('dl').textContent(), /shows 3\.00.\u00b5m without it, 0\.14.*1\.900 without it.*held-out rows 1\.880 without it, 1\.030/);
       const rivals = section.locator('tr', {hasText: 'Probe crosstalk'}).first();
       assert.match(await rivals.textContent(), /probe b and probe c.*62\.0.*move the gap.*99\.9/);
       const [left, hidden] = await section.locator('[role=note]').allTextContents();
-      assert.match(left, /Probe d stands apart where time is 481\.1 to 500\.8.s, by 0\.224/);
+      assert.match(left, /Probe d is offset where time is 481\.1 to 500\.8.s, by 0\.224/);
       assert.match(hidden, /Squareness, axes X and Z/);
       // Little by its rms, and why that is no contradiction of 62 %.
       const small = section.locator('section.group', {hasText: 'Probe gain'}).first();
       assert.match(
           await small.locator('dl').textContent(),
-          /no part 0\.971 without it, 0\.970 with it.*these 1.240 rows falls by 2\.41: an rms is a mean over all rows/);
-      const gain = section.locator('tr', {hasText: 'rows that took no part'});
+          /held-out rows 0\.971 without it, 0\.970 with it.*these 1.240 rows falls by 2\.41: an rms is a mean over all rows/);
+      const gain = section.locator('tr', {hasText: 'held-out rows'});
       assert.match(await gain.textContent(), /1.240.*1\.880.*1\.030/);
     }));
 
@@ -307,7 +307,7 @@ test(
       assert.match(
           await section.locator('tr', {hasText: 'link.link_1'}).textContent(), /312\.4\u00b18\.2/);
       assert.match(
-          await section.locator('table', {hasText: 'could not see'}).textContent(), /run_out\.c/);
+          await section.locator('table', {hasText: 'do not determine'}).textContent(), /run_out\.c/);
       const [before, after] = await section.locator('.plot').evaluateAll(
           (plots) => plots.slice(0, 2).map((plot) => plot.data.map(({y}) => Math.max(...y))));
       assert.deepEqual(before, [100]);
@@ -337,7 +337,7 @@ test(
       const note = await section.locator('.note').textContent();
       assert.match(note, /CONTRADICTION: sweep_X\.csv .*chi-square 40\.2 of 12/);
       assert.match(note, /SCALE: PRIOR ONLY\..*20.ppm/);
-      assert.match(note, /nothing measured ECX, ECY and ECZ/);
+      assert.match(note, /no run determines ECX, ECY and ECZ/);
       const runs = section.locator('table', {hasText: 'does each fit'});
       // 4988.2 / 4900, and 1 -+ 2 sqrt(2 / 4900).
       assert.match(await runs.textContent(), /1\.0180\.96 to 1\.04/);

@@ -223,7 +223,7 @@ TEST(DocumentTest, LogsWhatWasAskedFor) {
     device.Integer("port");
     for (const Table& block : device.Children("block")) block.Integer("at");
   }
-  const auto& asked = document.asked();
+  const auto& asked = document.requested();
   const auto expect = [&](const std::string& path, std::string_view type, std::string_view unit,
                           std::string_view fallback) {
     ASSERT_TRUE(asked.contains(path)) << path;

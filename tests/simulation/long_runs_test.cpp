@@ -83,7 +83,7 @@ TEST(LinkageParts, NameTheRowOfTheFile) {
   EXPECT_THAT(go, ThrowsMessage<InputError>(HasSubstr("row 26: pivot_2_rad jumps")));
   for (double& flag : ColumnOf(recording, "flags")) flag = 1.0;
   EXPECT_THAT(go, ThrowsMessage<InputError>(
-                      HasSubstr(fmt::format("none of the {} rows", recording.rows()))));
+                      HasSubstr(fmt::format("all {} rows are flagged", recording.rows()))));
 }
 
 // Of 60 poses drawn a quarter stands in each quarter of the run, and half at even places: within
