@@ -12,8 +12,8 @@
 // in both directions or, if no way is passed in both, the strokes of equal direction. Its offset
 // absorbs the set-up and form of the gauges and all errors that are equal in both directions: those
 // of the machine and of the calibration of a linkage. Each stroke counts as one reading, because
-// its rows share slow errors; u follows from the repeatability of the strokes, with strokes - lines
-// - 1 degrees of freedom.
+// its rows share slow errors; u follows from the repeatability of the strokes. Its degrees of
+// freedom are the strokes less the lines less 1.
 // Units: m, N, m/s. Shapes: one result for each force and feed. Failure: InputError with the
 // recording for a gauge whose column is missing, no moving row, or motion in one direction only.
 // Source: the study of the magnetic tool cap in the linkage's second paper (8.5 N, 100 mm/min:

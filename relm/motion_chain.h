@@ -16,7 +16,7 @@
 // Frames: B, the linkage base; T, the ball. Units: m, rad, K. Shapes: `angles` one per joint, `x`
 // one per parameter; T is any scalar, also ceres::Jet. Failure: none; a wrong index is a
 // programming error. Source: docs/theory-linkage.md. Validity: the lean under gravity is taken on
-// the nominal chain at the encoder angles: what an error of 1 mrad changes in it is 0.1 % of the
+// the nominal chain at the encoder angles: an error of 1 mrad changes it by 0.1 % of the
 // compliance.
 #pragma once
 

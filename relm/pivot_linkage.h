@@ -15,9 +15,10 @@
 // Failure: the constructor throws InputError for a length that is not positive and finite; Angles
 // throws NumericalError with the distance of the ball. The batch functions do not throw: a
 // pose without solution has its Reach and zeros, never NaN. The forward function always succeeds.
-// Source: the RELM paper, equations 1 to 3; its inverse is not legible, docs/theory-linkage.md
-// derives this one. Validity: exact. Tip of single poses is correct to rounding; the batch
-// functions may use the C library's vector functions (4 units in the last place).
+// Source: the RELM paper, equations 1 to 3; its inverse is missing from the copy at hand,
+// docs/theory-linkage.md derives this one. Validity: exact. Tip of single poses is correct to
+// rounding; the batch functions may use the C library's vector functions (4 units in the last
+// place).
 #pragma once
 
 #include <Eigen/Core>

@@ -146,7 +146,7 @@ class SweepMaker {
   Eigen::Vector3d axes_;              // as the controller shows them
   std::vector<RigChannel> channels_;  // of the columns from kFirstReading on
   recording::Recording sweep_;
-  // The place of `gaps_`.
+  // The position at which `gaps_` were computed.
   Eigen::Vector3d gaps_at_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   Readings gaps_{};
 };
