@@ -30,7 +30,7 @@
 
 namespace abbe::rig {
 
-struct CampaignOptions {
+struct RecordSweepOptions {
   double rate = 200.0;        // rows in a second; at most the sensors' update rate
   bool moving = true;         // also write the rows between the stations
   std::uint64_t run = 1;      // runs of one world differ in their noise only; 0 is the served rig's
@@ -49,6 +49,6 @@ std::vector<hal::Channel> ChannelsOf(const hal::DevicesSettings& devices);
 // above the update rate, or when a channel is none of the rig's.
 recording::Recording RecordSweep(const World& world, char axis,
                                  const std::vector<hal::Channel>& channels,
-                                 const CampaignOptions& options = {});
+                                 const RecordSweepOptions& options = {});
 
 }  // namespace abbe::rig
