@@ -36,7 +36,7 @@ void CheckCircles(const std::vector<const CircleRun*>& runs) {
   for (const CircleRun* run : runs) {
     if (run->plane.Inclined()) {
       throw InputError(fmt::format(
-          "{}: the circle lies in no plane of two axes: its causes cannot be told by axis",
+          "{}: the circle lies in no plane of two axes: its causes cannot be assigned to axes",
           run->recordings.front()));
     }
     if (run->plane.name != runs.front()->plane.name ||

@@ -138,10 +138,10 @@ Finding FromGains(const Assumption& fit) {
     return {fit.rms, fmt::format("the encoder of pivot_{} counts in the other sense", worst + 1),
             "change the sign of its node in [devices.linkage]"};
   }
-  return {
-      fit.rms,
-      fmt::format("the encoder of pivot_{} turns {:.4f} times as far as it says", worst + 1, scale),
-      "correct counts_per_turn of its node in [devices.linkage]"};
+  return {fit.rms,
+          fmt::format("the encoder of pivot_{} turns {:.4f} times as far as it reads", worst + 1,
+                      scale),
+          "correct counts_per_turn of its node in [devices.linkage]"};
 }
 
 }  // namespace

@@ -241,7 +241,7 @@ CapDisplacement Evaluate(const Readings& readings, const std::vector<Eigen::Inde
   if (lines.empty()) {
     throw InputError(
         fmt::format("{}: at {:.0f} mm/min the gauges see motion in one direction alone: the "
-                    "displacement cannot be told from their offsets; move to and fro",
+                    "displacement cannot be separated from their offsets; move to and fro",
                     recording, readings.feed[rows.front()] / settings::kMillimetre * 60.0));
   }
   CapDisplacement result;

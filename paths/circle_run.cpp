@@ -178,7 +178,7 @@ double ProgrammedRadius(const MeasuredPath& path, const CircleOptions& options, 
   const double radius = options.radius > 0.0 ? options.radius : path.radius;
   if (radius > 0.0 && std::abs(radius - commanded) > kLikeCommanded * radius) {
     throw InputError(fmt::format(
-        "{}: {} says a radius of {:.6g} mm, but x_mm, y_mm, z_mm go round one of {:.6g} mm; "
+        "{}: {} states a radius of {:.6g} mm, but x_mm, y_mm, z_mm go round one of {:.6g} mm; "
         "correct it",
         path.recording, options.radius > 0.0 ? "--radius" : "radius_mm of the header", 1e3 * radius,
         1e3 * commanded));

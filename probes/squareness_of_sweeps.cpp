@@ -26,7 +26,7 @@ void RefuseUnlessComparable(const SweepResult& one, const SweepResult& other,
   for (const SweepResult* sweep : {&one, &other}) {
     if (sweep->mounting.empty()) {
       throw InputError(
-          fmt::format("{}the header of {} does not say `mounting`; state the same mounting "
+          fmt::format("{}the header of {} does not state `mounting`; state the same mounting "
                       "in both if the target was not moved between them, else measure again",
                       both, sweep->recording));
     }

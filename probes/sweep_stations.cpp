@@ -183,11 +183,11 @@ void CheckAgainstPasses(double chi2, double dof, StationMeans& means) {
   means.noise.scale = std::sqrt(chi2 / dof);
   means.noise.u_dof = dof;
   for (Eigen::MatrixXd& covariance : means.covariance) covariance *= chi2 / dof;
-  means.notes.push_back(
-      fmt::format("the passes scatter {:.2f} times more than the noise model says: the noise part "
-                  "of u is scaled "
-                  "up by it; look for drift, vibration or a loose mounting, or correct [noise]",
-                  means.noise.scale));
+  means.notes.push_back(fmt::format(
+      "the passes scatter {:.2f} times more than the noise model predicts: the noise part "
+      "of u is scaled "
+      "up by it; look for drift, vibration or a loose mounting, or correct [noise]",
+      means.noise.scale));
 }
 
 void FillResidualsAndFigures(const SweepDwells& sweep, const DwellFit& fit, StationMeans& means) {

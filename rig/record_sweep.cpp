@@ -108,7 +108,7 @@ class SweepMaker {
     Put(sweep_.columns.size() - 1, flags);
   }
 
-  // As they are said.
+  // The gaps as recorded, with noise and hidden effects.
   Readings Gaps(double time) {
     const Eigen::Vector3d place = hidden_.PlaceFor(Source::kGaps);
     Eigen::Vector3d moved = place - gaps_at_;

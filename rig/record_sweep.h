@@ -46,7 +46,7 @@ struct RecordSweepOptions {
 std::vector<hal::Channel> ChannelsOf(const hal::DevicesSettings& devices);
 
 // `axis` 'X', 'Y' or 'Z'. InputError when no sweep of the axis is programmed, when the rate is
-// above the update rate, or when a channel is none of the rig's.
+// above the update rate, or when the rig has no such channel.
 recording::Recording RecordSweep(const World& world, char axis,
                                  const std::vector<hal::Channel>& channels,
                                  const RecordSweepOptions& options = {});

@@ -37,8 +37,9 @@ struct ServerOptions {
 
 class RegisterServer : private hal::RegisterBank {
  public:
-  // Listens when it returns. DeviceError when the address is taken; InputError when a channel is
-  // none of the rig's, or when two devices claim a register of one unit. `machine` must outlive it.
+  // Listens when it returns. DeviceError when the address is taken; InputError when the rig lacks a
+  // channel of a device, or when two devices claim a register of one unit. `machine` must outlive
+  // it.
   RegisterServer(LiveMachine& machine, const hal::DevicesSettings& devices,
                  const ServerOptions& options);
 

@@ -1,5 +1,5 @@
 // The world of the virtual rig: one machine with its head and target, drawn by a seed from the
-// population of the machine file, that answers what the five probes read at any commanded position.
+// population of the machine file, with the readings of the five probes at any commanded position.
 //
 // Nothing here is linearised: full rotations, the product of the carriages' displacements in the
 // order of the chain, and the intersection of each probe's axis with the target's real face. It
