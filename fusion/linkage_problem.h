@@ -29,9 +29,9 @@ struct LinkageProblemOptions {
 };
 
 // Solves by a few passes from the nominal linkage; where these do not converge, as with a base
-// known to some decimetres only, with the trust region. `settled`: the last step in standard
-// uncertainties; with a robust loss few poses do not converge much further than the default.
-// Failure: that of Problem::Solve.
+// known to some decimetres only, with the trust region. `settled`: remaining distance to the
+// solution, in standard uncertainties; with a robust loss few poses do not come much nearer than
+// the default. Failure: that of Problem::Solve.
 estimation::Result SolveLinkage(const estimation::Problem& problem, int threads = 0,
                                 bool weak_directions = true, double settled = 1e-4);
 

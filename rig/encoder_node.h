@@ -8,8 +8,8 @@
 //
 // It sends its boot-up message, waits pre-operational for the start command (NMT), sends its count
 // in the PDO of its settings at each SYNC while operational, answers SDO uploads of its objects
-// (Describe() in encoder_node.cpp) and refuses downloads. Without an angle it sends an emergency
-// 5000h (hardware) and repeats its last count, until it has an angle again.
+// (Describe() in encoder_node.cpp) and refuses downloads. Without an angle it sends emergency 5000h
+// (hardware) and repeats its last count; the next angle clears the emergency.
 //
 // It builds its frames from CiA 301 and 406 and shares no code with the client in hal that is
 // tested against it. Units: rad.
