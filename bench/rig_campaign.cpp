@@ -22,7 +22,7 @@ void RecordSweep(benchmark::State& state) {
   const settings::Document document = DemoMill();
   const rig::World world(rig::ReadRigSettings(document.Root()), 1);
   const auto channels = rig::ChannelsOf(hal::ReadDevices(document.Root().Child("devices")));
-  const rig::CampaignOptions options{.rate = 75.0, .moving = state.range(0) != 0};
+  const rig::RecordSweepOptions options{.rate = 75.0, .moving = state.range(0) != 0};
   for (auto _ : state) benchmark::DoNotOptimize(rig::RecordSweep(world, 'X', channels, options));
 }
 BENCHMARK(RecordSweep)->ArgName("moving")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);

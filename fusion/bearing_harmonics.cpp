@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kLeastProbeNoise = 1e-9;  // m: no probe of a shop has less
+constexpr double kLeastProbeNoise = 1e-9;  // m: below that of any probe in a workshop
 
 std::string NameOf(const char* wave, int order) { return fmt::format("shaft_{}_{}", wave, order); }
 
@@ -89,7 +89,7 @@ BearingHarmonics FitBearing(std::span<const double> angles, std::span<const doub
   const Eigen::Map<const Eigen::VectorXd> b(values.data(), n);
   BearingHarmonics fit{orders, Solve(A, b, orders, kLeastProbeNoise)};
   fit.rms = RmsAbout(fit, angles, values);
-  // Once more with the noise that was found, for the uncertainties.
+  // Again with the estimated noise, for the uncertainties.
   fit.result = Solve(A, b, orders, std::max(fit.rms, kLeastProbeNoise));
   return fit;
 }

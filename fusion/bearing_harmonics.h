@@ -1,5 +1,5 @@
-// The run-out of a turning shaft from readings of a probe at any angles, by the one estimator: the
-// block "bearing" of the linkage's pivots (relm/error_models.h), alone.
+// The run-out of a turning shaft from readings of a probe at any angles: the block "bearing" of the
+// linkage's pivots (relm/error_models.h) as a fit of its own.
 //
 //   const BearingHarmonics fit = FitBearing(shaft.angle, shaft.value, {1, 2});
 //   fit.result.Value("bearing.shaft_sin_1");
@@ -8,12 +8,12 @@
 //   value = mean + sum over the orders n of s_n sin(n angle) + c_n cos(n angle)
 //
 // Order 1 is an eccentricity of the target on the shaft, 2 and above are form of the target and of
-// the bearing. The noise is taken from the residuals; the uncertainties hold if these are
-// independent, which those of neighbouring readings seldom are.
+// the bearing. The noise is estimated from the residuals; the uncertainties assume that these are
+// independent, which neighbouring readings seldom are.
 // Units: rad, m. Shapes: lists of one length. Failure: InputError for too few readings or orders
-// that are not from 1 up; NumericalError when the angles do not tell the harmonics apart (a short
-// arc). Source: Boelens (2006), the Fourier sum of the bearing's roundness. Validity: one speed; a
-// delay between probe and encoder turns into a phase.
+// below 1; NumericalError when the angles do not determine the harmonics (a short arc). Source:
+// Boelens (2006), the Fourier sum of the bearing's roundness. Validity: one speed; a delay between
+// probe and encoder turns into a phase.
 #pragma once
 
 #include <span>
@@ -28,14 +28,14 @@ struct BearingHarmonics {
   estimation::Result result;  // blocks "mean" and "bearing"
   double rms = 0.0;           // m: of the residuals
 
-  double At(double angle) const;
-  double Amplitude(int order) const;
+  double At(double angle) const;      // m: the fitted value
+  double Amplitude(int order) const;  // m
 };
 
 BearingHarmonics FitBearing(std::span<const double> angles, std::span<const double> values,
                             const std::vector<int>& orders);
 
-// How far readings lie from a fit: rms, m.
+// The rms deviation of readings from a fit, m.
 double RmsAbout(const BearingHarmonics& fit, std::span<const double> angles,
                 std::span<const double> values);
 

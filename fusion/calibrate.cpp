@@ -24,12 +24,12 @@ using simulation::LinkageRun;
 using simulation::LinkageSimulation;
 
 constexpr double kNoGap = std::numeric_limits<double>::quiet_NaN();
-constexpr double kBadFit = 5.0;         // residuals over noise from which the encoders are suspect
+constexpr double kBadFit = 5.0;         // excess-noise factor above which encoders are checked
 constexpr double kContradiction = 6.0;  // prior standard deviations
 constexpr double kOnePlace = 1e-4;      // m
 constexpr double kOneLine = 1e-3;       // second over first extent
 
-// Too few poses, or poses that say nothing about a volume.
+// Too few poses, or poses that span no volume.
 void RefusePoorPoses(const std::vector<LinkageRun>& runs, Index free) {
   Index poses = 0;
   for (const LinkageRun& run : runs) poses += run.poses();
@@ -58,7 +58,7 @@ void RefusePoorPoses(const std::vector<LinkageRun>& runs, Index free) {
   }
 }
 
-// The estimate that lies farthest from its nominal value, in prior standard deviations.
+// Estimates too far from their nominal values, in prior standard deviations.
 void RefuseContradiction(const Result& fit, double excess) {
   for (const auto& block : fit.blocks) {
     for (std::size_t i = 0; i < block.entries.size(); ++i) {

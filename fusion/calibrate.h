@@ -1,18 +1,19 @@
-// The calibration of the linkage: from runs to parameters, with what they can be believed.
+// The calibration of the linkage: its parameters from runs, with uncertainty, observability and
+// held-out residuals.
 //
 //   const CalibrationReport report = Calibrate(chain, linkage, runs, {.model = kComplete});
 //   WriteCalibration(report.calibration, "linkage.toml");
-//   report.held_out.rms;               // m: of ball positions that took no part
+//   report.held_out.rms;               // m: of held-out ball positions
 //
-// The poses of each run are split into `folds` blocks in order of time; each block in turn is
-// predicted by a calibration from all others. Neighbours share their errors, so single poses held
-// out would look too good.
+// Cross-validation: the poses of each run are split into `folds` blocks in order of time, and each
+// block in turn is predicted by a calibration from all others. Blocks, because neighbouring poses
+// share errors and single held-out poses would be predicted too well.
 // Units: m, rad. Shapes: as in LinkageSimulation.
 // Failure: InputError for too few poses, poses on one line or all in one place, for encoders that
 // are swapped, reversed or of wrong counts (fusion/encoder_check.h), and for estimates that
 // contradict their priors: each says which and what to do. NumericalError when a fit does not
-// converge. Validity: errors of the machine that the reference does not know go into the parameters
-// of the linkage.
+// converge. Validity: machine errors that the reference does not measure bias the parameters of the
+// linkage.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,12 +32,12 @@ struct CalibrateOptions {
   simulation::LinkageProblemOptions problem = {};
   int folds = 5;        // below 2: nothing is held out
   bool mapped = false;  // also local parameter sets, fusion/mapping.h
-  // Whether estimates may contradict their priors: a model that leaves something out bends its
-  // parameters beyond their tolerances, and still says how well it does.
+  // Accept estimates that contradict their priors: an incomplete model moves its parameters beyond
+  // their tolerances, and its residuals are still of interest.
   bool contradict = false;
 };
 
-// Of distances between measured and true ball positions, 3D.
+// Distances between measured and true ball positions, 3D.
 struct Distances {
   double rms = 0.0;
   double max = 0.0;
@@ -49,7 +50,7 @@ struct PoseResidual {
   std::size_t row;           // of the recording, from 0
   Eigen::Vector3d before;    // m, in M: nominal linkage, its base registered
   Eigen::Vector3d gap;       // m, in M
-  Eigen::Vector3d held_out;  // m: when the pose took no part; NaN without folds
+  Eigen::Vector3d held_out;  // m: when the pose is held out; NaN without folds
   double normalised;         // largest of the three whitened rows
 };
 
@@ -62,8 +63,9 @@ struct CalibrationReport {
   Distances held_out;                   // NaN without folds
   std::vector<PoseResidual> residuals;  // in the order of runs and poses
   std::vector<PoseResidual> outliers;   // beyond estimation::kOutlierAt, worst first
-  Eigen::Matrix3Xd cell_shifts;         // m, of the cells of a mapped one: fusion/mapping.h
-  // Residuals over the noise that was stated; beyond 1 the uncertainties are too small by it.
+  Eigen::Matrix3Xd cell_shifts;         // m, with `mapped`: CellShifts, fusion/mapping.h
+  // Excess-noise factor: residuals over stated noise; above 1 the uncertainties are too small by
+  // it.
   double excess = 1.0;
 };
 

@@ -11,9 +11,9 @@
 //
 // Frames: M, the machine frame as the workpiece carries it (relm/linkage_settings.h); B, the base;
 // T, the ball. Units: m, rad. Shapes: one column per pose.
-// Failure: InputError when the calibration is of another model than it says, lacks the mounting, or
-// does not fit the linkage of the machine file. Validity: inside the calibrated volume; outside it
-// the uncertainty grows without a warning other than StandardUncertainties.
+// Failure: InputError when the calibration lacks the mounting or does not fit its model for the
+// linkage of the machine file. Validity: inside the calibrated volume; outside it the uncertainty
+// grows, which only StandardUncertainties shows.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,10 +37,10 @@ struct MappedParameters {
 struct Calibration {
   std::string machine;  // name of the machine
   relm::ErrorModel model = relm::ErrorModel::kComplete;
-  bool displacement = false;  // base position known from the data only
-  // Of each mounting "base" and "base_turn" (for a mounting with a name "base NAME"), then those of
-  // the model; with values and uncertainties.
+  bool displacement = false;  // no prior for the base position
   std::vector<std::string> mountings;
+  // "base" and "base_turn" of each mounting ("base NAME" for one with a name), then those of the
+  // model; with values and uncertainties.
   std::vector<estimation::ParameterBlock> blocks;
   std::vector<std::string> names;  // of the free parameters
   Eigen::MatrixXd covariance;      // of the free parameters
@@ -54,20 +54,20 @@ class CalibratedLinkage {
 
   const Calibration& calibration() const { return calibration_; }
   const relm::LinkageModel& model() const { return model_; }
-  // The base of a mounting. The first one stands in for a name that the calibration does not have
-  // when `strict` is false: displacements then still hold.
+  // The base of a mounting. Unless `strict`, an unknown name gets the first base: displacements are
+  // then still valid.
   geometry::Transform<double> X_MB(const std::string& mounting, bool strict = true) const;
 
   // p_MT of each pose.
   Eigen::Matrix3Xd Tips(const relm::LinkageReadings& readings, const std::string& mounting = "",
                         bool strict = true) const;
-  // Of each coordinate of Tips from the calibration alone (global parameters), without the noise of
-  // the readings.
+  // Standard uncertainty of each coordinate of Tips due to the calibration (global parameters),
+  // without the noise of the readings.
   Eigen::Matrix3Xd StandardUncertainties(const relm::LinkageReadings& readings,
                                          const std::string& mounting = "") const;
-  // What the same uncertainty does to several sets of readings together: [direction][set] holds how
-  // one independent error of the calibration, as large as its standard deviation, moves the tips.
-  // Largest first; directions that move them by less than 1 nm (rms) are left out.
+  // The same uncertainty with the correlation of several sets of readings: [error][set] holds the
+  // shifts of the tips by one standard deviation of one independent error of the calibration.
+  // Largest first; errors that shift them by less than 1 nm (rms) are left out.
   std::vector<std::vector<Eigen::Matrix3Xd>> IndependentErrors(
       const std::vector<const relm::LinkageReadings*>& readings,
       const std::vector<std::string>& mountings) const;
@@ -81,7 +81,7 @@ class CalibratedLinkage {
   Calibration calibration_;
   relm::LinkageModel model_;
   geometry::Transform<double> nominal_X_MB_;
-  std::vector<Eigen::VectorXd> x_;  // of LinkageSimulation, for each mounting
+  std::vector<Eigen::VectorXd> x_;  // parameters of LinkageSimulation, for each mounting
 };
 
 }  // namespace abbe::fusion

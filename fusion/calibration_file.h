@@ -1,15 +1,14 @@
-// The file of a calibration: TOML, written by `abbe calibrate`, read by whatever measures with the
-// linkage.
+// The file of a calibration: TOML, written by `abbe calibrate`, read with --calibration.
 //
 //   format = 1
 //   machine = "demo-mill"
 //   model = "complete"            # a name of relm/error_model_name.h
 //   displacement = false
 //   mountings = [""]
-//   held_out_rms_um = 0.74        # where poses were held out
+//   held_out_rms_um = 0.74        # if poses were held out
 //   [[parameter]]                 # every parameter in the order of the model, the bases first
 //   name = "tilt.pivot_1_u"
-//   value = 312.4                 # in `unit`, so is all of this table
+//   value = 312.4                 # in `unit`, like all numbers of this table
 //   uncertainty = 4.1             # left out: not determined
 //   nominal = 0.0
 //   prior = 500.0                 # left out: none

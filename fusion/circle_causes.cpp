@@ -20,9 +20,9 @@ using paths::CirclePoint;
 using paths::CircleRun;
 using standards::Signature;
 
-constexpr std::size_t kSectors = 36;  // whose means tell what neighbouring rows share
-// m: the first guess of the noise, so small that the priors do not pull; no instrument of a
-// machine shop has less.
+constexpr std::size_t kSectors = 36;  // their means show the correlation of neighbouring rows
+// m: the first guess of the noise, below that of any instrument of a machine shop and so small that
+// the priors have no effect.
 constexpr double kLeastRadialNoise = 10e-9;
 constexpr double kSameRadius = 0.01;  // of the radius: lag makes a fast circle smaller
 constexpr double kLargePart = 0.3;    // of a weak direction of length 1
@@ -36,7 +36,7 @@ void CheckCircles(const std::vector<const CircleRun*>& runs) {
   for (const CircleRun* run : runs) {
     if (run->plane.Inclined()) {
       throw InputError(fmt::format(
-          "{}: the circle lies in no plane of two axes: its causes cannot be told by axis",
+          "{}: the circle lies in no plane of two axes: its causes cannot be assigned to axes",
           run->recordings.front()));
     }
     if (run->plane.name != runs.front()->plane.name ||
@@ -62,8 +62,8 @@ double Radial(const CirclePoint& point, double radius) {
   return std::hypot(point.first, point.second) - radius;
 }
 
-// Radial deviations of a run, and the derivatives by the centre, by each cause, by the waves of
-// smooth errors and by the errors of the instrument.
+// Radial deviations of a run, and their derivatives with respect to the centre, each cause, the
+// harmonics of smooth errors and the errors of the instrument.
 struct Equations {
   Eigen::MatrixXd centre, causes, smooth, instrument;
   Eigen::VectorXd radial;
@@ -103,15 +103,15 @@ Equations EquationsOf(const CircleRun& run, const CauseOptions& options) {
       (IsCentre(signature) ? equations.centre(i, centre++) : equations.causes(i, cause++)) =
           signature.radial(at);
     }
-    // The distance to the set-up centre; what the square of the centre's offset adds to it is no
-    // deviation of the path.
+    // The distance to the set-up centre; the square of the centre's offset in it is no deviation of
+    // the path.
     equations.radial[i] = Radial(point, run.radius);
   }
   return equations;
 }
 
-// About `middle` instead of the set-up centre, so that the centre's offset stays small and its
-// square does not matter.
+// The run about `middle` instead of the set-up centre, so that the square of the centre's offset is
+// negligible.
 CircleRun About(const Eigen::Vector2d& middle, const CircleRun& run) {
   CircleRun centred = run;
   for (CirclePoint& point : centred.points) {
@@ -121,7 +121,7 @@ CircleRun About(const Eigen::Vector2d& middle, const CircleRun& run) {
   return centred;
 }
 
-// Of run number `at`.
+// The equations of run number `at`, about its middle.
 Equations CentredEquations(const std::vector<const CircleRun*>& runs, std::size_t at,
                            const CauseOptions& options) {
   const Eigen::Vector2d middle = runs[at]->middle;
@@ -138,7 +138,8 @@ Equations CentredEquations(const std::vector<const CircleRun*>& runs, std::size_
 
 struct Fit {
   estimation::Result result;
-  // Of each run: what the causes leave, what of it is smooth or of the instrument, and the rest.
+  // For each run: the deviations without the causes, their fitted smooth part (with the errors of
+  // the instrument), and the residuals.
   std::vector<Eigen::VectorXd> unexplained, smooth, noise;
 };
 
@@ -152,7 +153,7 @@ estimation::ParameterBlock SmoothBlock(const std::vector<double>& deviations) {
   return block;
 }
 
-// Each in units of its own standard deviation.
+// The errors of the instrument, each in units of its standard deviation.
 estimation::ParameterBlock InstrumentBlock(std::size_t directions) {
   estimation::ParameterBlock block{"instrument", {"", 1.0}, {}};
   for (std::size_t k = 0; k < directions; ++k) {
@@ -210,7 +211,7 @@ double Rms(const std::vector<Eigen::VectorXd>& residuals) {
   return std::sqrt(squares / n);
 }
 
-// By how much the means of sectors scatter more than those of independent rows would: at least 1.
+// The factor by which the means of sectors scatter more than those of independent rows: at least 1.
 double Correlated(const std::vector<const CircleRun*>& runs,
                   const std::vector<Eigen::VectorXd>& residuals, double rms) {
   double excess = 0.0, sectors = 0.0;
@@ -236,7 +237,7 @@ double Correlated(const std::vector<const CircleRun*>& runs,
   return rms > 0.0 ? std::sqrt(std::max(1.0, excess / sectors / (rms * rms))) : 1.0;
 }
 
-// The data tell the parameter, and not only a sum with another that they cannot take apart.
+// The data determine the parameter itself, not only a combination with another.
 bool SeenByData(const estimation::Result& result, const std::string& name) {
   if (result.Seen(name) != estimation::SeenBy::kData) return false;
   const auto at = std::ranges::find(result.names, name) - result.names.begin();
@@ -245,7 +246,8 @@ bool SeenByData(const estimation::Result& result, const std::string& name) {
   });
 }
 
-// A cause has the largest part in it; what the data leave open of the instrument is known anyway.
+// The largest coefficient is that of a cause; directions of the nuisance parameters are of no
+// interest.
 bool IsOfCauses(const estimation::Result& result, const estimation::WeakDirection& weak) {
   Eigen::Index most = 0;
   weak.coefficients.cwiseAbs().maxCoeff(&most);

@@ -1,25 +1,26 @@
-// What made a circle as it is: all causes of the signature table in one joint fit.
+// The causes of a circle's deviations: all causes of the signature table in one joint fit.
 //
 //   const CircleCauses causes = FitCircleCauses({&slow, &fast}, {});
 //   for (const CauseEstimate& one : causes.causes) one.cause, one.object, one.value, one.u;
 //
 // The runs are of one instrument, plane and radius, in both senses and at two feeds where that was
-// measured: a reading of the causes one harmonic at a time takes one for another
-// (standards/circle_signatures.h). Each run has a centre of its own, which is the set-up's and no
-// cause. The smooth errors of the machine, the same in both senses, make harmonics of every order;
-// those from order 4 on, which no cause explains, are terms of the fit with the standard deviations
-// `smooth`, else they pass for reversal spikes and through these for backlash. So are the errors of
-// the instrument: `shifted` holds the runs as they would be if one independent error of it were off
-// by one standard deviation.
-// Units: SI; `effect` is the largest radial deviation of a cause in m, with its sign left out.
-// Noise: the data tell it. The standard deviation of a row is that of the residuals, enlarged by
-// what neighbouring rows share: the factor by which the means of 10 degrees scatter more than
-// independent rows would let them. So what no cause explains enters the uncertainties.
-// `seen` is false where the prior (the `usual` amount of a machine tool) says more than the data:
-// one sense cannot tell squareness from servo mismatch, one feed not scale from lag.
+// measured. The fit is joint because causes share harmonics (standards/circle_signatures.h). Its
+// nuisance parameters are
+//   - the centre of each run, which is that of the set-up;
+//   - harmonics from order 4 on with the standard deviations `smooth`. The smooth errors of the
+//     machine, equal in both senses, have harmonics of every order; no cause explains these, and
+//     without them they would pass for reversal spikes and through these for backlash;
+//   - the errors of the instrument: `shifted` holds the runs with one independent error of it
+//     changed by one standard deviation.
+// Units: SI; `effect` is the largest radial deviation of a cause in m, without sign.
+// Noise: estimated from the residuals, and enlarged for the correlation of neighbouring rows by the
+// factor by which the means of 10 degrees scatter more than those of independent rows. Deviations
+// that no cause explains therefore enlarge the uncertainties. `seen` is false where the prior (the
+// `usual` amount of a machine tool) determines the value more than the data: one sense cannot
+// separate squareness from servo mismatch, nor one feed scale from lag.
 // Failure: InputError for no run or runs of different circles; NumericalError from the fit.
-// Source: linear least squares (estimation/problem.h). Validity: errors small beside the radius;
-// an error of the instrument itself is read as one of the machine.
+// Source: linear least squares (estimation/problem.h). Validity: errors small against the radius;
+// an error of the instrument that is not in `shifted` is attributed to the machine.
 #pragma once
 
 #include <map>
@@ -35,9 +36,9 @@ struct CauseOptions {
   std::map<char, double> pitch = {};  // m: of cyclic errors, by axis
   double spike_width = 0.07;          // rad
   // m: sine and cosine of order kFirstHarmonic, ... each; fusion/smooth_harmonics.h. By default
-  // nothing is known of the machine: orders 4 to 12 are as the data have them.
+  // wide priors for orders 4 to 12.
   std::vector<double> smooth = std::vector<double>(9, 20e-6);
-  std::vector<std::vector<const paths::CircleRun*>> shifted = {};  // of each error, all runs
+  std::vector<std::vector<const paths::CircleRun*>> shifted = {};  // [error][run]
 };
 
 struct CauseEstimate {
@@ -52,11 +53,11 @@ struct CircleCauses {
   std::vector<CauseEstimate> causes;  // without the centres
   std::vector<std::string> weak_directions;
   double rms_before = 0.0;     // m: of the radius about centre and mean radius of each run
-  double rms_smooth = 0.0;     // m: of smooth errors and errors of the instrument
-  double rms_after = 0.0;      // m: without them
+  double rms_smooth = 0.0;     // m: of the fitted smooth errors and errors of the instrument
+  double rms_after = 0.0;      // m: of the residuals
   double correlated = 1.0;     // the factor on the standard deviation
   Eigen::MatrixXd covariance;  // of `causes`, in their order
-  std::vector<std::vector<double>> residuals;  // m, of each run's points: without the causes
+  std::vector<std::vector<double>> residuals;  // m, [run][point]: without the causes
 };
 
 CircleCauses FitCircleCauses(const std::vector<const paths::CircleRun*>& runs,

@@ -78,9 +78,9 @@ ParameterBlock PerEncoder(const std::string& name, Index joints, double sd) {
   return block;
 }
 
-constexpr double kAnyAngle = 1.0;   // rad, and of gains: priors that hold nothing
-constexpr double kSpread = 1e-4;    // m: what the tolerances of a linkage leave
-constexpr double kLeftOver = 5e-3;  // of the reach: a gap beyond it is no explanation
+constexpr double kAnyAngle = 1.0;   // rad, and of gains: wide priors
+constexpr double kSpread = 1e-4;    // m: gap that the tolerances of a linkage explain
+constexpr double kLeftOver = 5e-3;  // of the reach: a larger gap is no explanation
 constexpr double kReversed = -2.0;  // gain of an encoder of the other sense
 
 std::optional<Assumption> FitAssuming(const LinkageSimulation& simulation, const Matrix3Xd& p_MT,
@@ -138,10 +138,10 @@ Finding FromGains(const Assumption& fit) {
     return {fit.rms, fmt::format("the encoder of pivot_{} counts in the other sense", worst + 1),
             "change the sign of its node in [devices.linkage]"};
   }
-  return {
-      fit.rms,
-      fmt::format("the encoder of pivot_{} turns {:.4f} times as far as it says", worst + 1, scale),
-      "correct counts_per_turn of its node in [devices.linkage]"};
+  return {fit.rms,
+          fmt::format("the encoder of pivot_{} turns {:.4f} times as far as it reads", worst + 1,
+                      scale),
+          "correct counts_per_turn of its node in [devices.linkage]"};
 }
 
 }  // namespace

@@ -1,14 +1,14 @@
-// Whether the encoders are those that the machine file says: order, sense and counts per turn.
+// Checks the order, the sense and the counts per turn of the encoders against the machine file.
 //
 //   CheckEncoders(simulation, run);      // throws and names the encoder
 //
-// Called when a calibration fits badly. It asks the estimator for the pose of the base and the
-// offset of each encoder on the nominal chain, under one assumption after the other: as stated; two
-// encoders swapped; each encoder with a gain of its own. The one with the smallest gap is told as
-// the cause if that is less than a kExplains-th of the stated one's.
-// Units: m. Failure: InputError is the finding; returns when no assumption explains the gap.
+// Called when a calibration fits badly. It estimates the pose of the base and the offset of each
+// encoder on the nominal chain, under one assumption after the other: as stated; two encoders
+// swapped; each encoder with a gain of its own. The assumption with the smallest gap is reported if
+// its gap is below 1/kExplains of the gap as stated.
+// Units: m. Failure: InputError with the cause; returns when no assumption explains the gap.
 // Validity: the run must turn the encoder in question by some hundredths of a radian, more than the
-// tolerances of the linkage could do.
+// tolerances of the linkage can explain.
 #pragma once
 
 #include "simulation/linkage/linkage_simulation.h"

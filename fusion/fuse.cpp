@@ -49,7 +49,7 @@ map::Source SourceOf(const std::string& kind) {
   return static_cast<map::Source>(found - map::kSourceNames.begin());
 }
 
-// A problem with its solution and what every source says there.
+// A problem with its solution and the information of every source there.
 struct Fitted {
   Problem problem;
   Result fit = {};
@@ -96,7 +96,7 @@ class FuseJob {
   }
 
  private:
-  // From these values on; from the nominal ones where there are none.
+  // Starts at the values of `start`, or at the nominal ones where it is empty.
   Fitted Fit(double length, const std::vector<estimation::ParameterBlock>& start) const {
     Fitted fitted{
         MakeMachineProblem(machine_, model_, MachinePrior(machine_, model_, length), runs_)};
@@ -110,7 +110,7 @@ class FuseJob {
     return fitted;
   }
 
-  // To the residuals that take a first fit; false when there are none.
+  // Replaces the residuals that need a first fit; false when there are none.
   bool Condense(const Result& fit) {
     bool any = false;
     for (SimulatedRun& run : runs_) {
@@ -152,7 +152,7 @@ class FuseJob {
     const VectorXd x = ValuesFound(fitted.fit, fitted.fit.blocks);
     const Linearization& at = fitted.at;
     const std::vector<int> columns = MachineColumns(layout, model_);
-    // All but the smoothness: information and gradient at x; x itself for the prior to come.
+    // Information and gradient at x without the smoothness prior; its own part comes from x below.
     MatrixXd information = at.prior.information;
     VectorXd gradient = at.prior.gradient;
     for (std::size_t s = 0; s < runs_.size(); ++s) {
@@ -183,7 +183,7 @@ class FuseJob {
     return tried;
   }
 
-  // Rows of the functionals of one error: its values over the travel; a squareness itself.
+  // The rows that give the values of one error over the travel; of a squareness itself.
   MatrixXd ValuesOf(int error) const {
     const Index n = model_.ParameterCount();
     if (error >= machine::kAxes * machine::kMotions) {
@@ -206,7 +206,7 @@ class FuseJob {
     return rows;
   }
 
-  // The mean slope of EXX, EYY and EZZ, of the axes that there are.
+  // The mean slope of EXX, EYY and EZZ over the axes of the machine.
   Eigen::RowVectorXd ScaleRow() const {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(model_.ParameterCount());
     int axes = 0;

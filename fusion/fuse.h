@@ -1,4 +1,5 @@
-// The joint estimate: from all runs of a machine to one error map, with what each part rests on.
+// The joint estimate of one error map from all runs of a machine, with the kinds of run that
+// determine each part of it.
 //
 //   const FuseReport report = Fuse(mill, runs, {});
 //   map::WriteMap(report.map, "out/map.toml");
@@ -7,14 +8,14 @@
 //
 // One estimation, not an average of maps: the functions of the machine, the linkage and its base,
 // the head, its target and every offset of a run are free together, under the priors of the machine
-// file. The smoothness of the functions is chosen by marginal likelihood: for each correlation
-// length the probability of the data with all unknowns integrated out, to second order at the
-// solution (exact for a linear problem, which this nearly is).
+// file. The correlation length of the functions is the one with the largest marginal likelihood:
+// the probability of the data with all parameters marginalised, to second order at the solution
+// (exact for a linear problem, which this nearly is).
 //
-// What determined a function: its variance over the travel, without and with the data. A kind of
-// run determines it when it alone at least halves the prior variance. The isotropic scale, the mean
-// slope of EXX, EYY and EZZ, is what a linkage of unknown links cannot see: calibrated when the
-// data at least halve its prior variance, else "prior only".
+// A kind of run determines a function when it alone at least halves the function's prior variance
+// over the travel. A linkage of unknown link lengths cannot see the isotropic scale, the mean slope
+// of EXX, EYY and EZZ: it is calibrated when the data at least halve its prior variance, else
+// "prior only".
 //
 // Units: SI. Failure: InputError for no run; NumericalError when the estimate does not converge.
 // Source: Rasmussen and Williams (2006), 5.4.1 for the marginal likelihood.
@@ -39,8 +40,8 @@ struct FuseOptions {
 
 struct FunctionSeen {
   std::string name;                        // "EXX" ... "ECZ", then "A0Z", "B0Z", "C0Y"
-  double prior = 0.0;                      // rms standard uncertainty over the travel before
-  double u = 0.0;                          // and after: m or rad
+  double prior = 0.0;                      // rms standard uncertainty over the travel, m or rad:
+  double u = 0.0;                          // of the prior, and with the data
   std::vector<std::string> determined_by;  // kinds of runs, the best first
 };
 
@@ -62,7 +63,7 @@ struct FuseReport {
   std::vector<SmoothnessTried> smoothness = {};
   double chosen_smoothness = 0.0;  // m
   std::vector<RunConsistency> runs = {};
-  int contradicting = -1;              // of `runs`
+  int contradicting = -1;              // index into `runs`; -1: none
   std::vector<HeldOut> held_out = {};  // one for each run; empty when not asked for
 };
 

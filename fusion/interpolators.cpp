@@ -22,8 +22,8 @@ using machine::NetworkBias;
 using simulation::PlateSetup;
 using simulation::SimulatedRun;
 
-constexpr double kNothing = 1e-12;         // m or rad
-constexpr double kSharpness = 0.1;         // of kLearned: how near a network should come
+constexpr double kNothing = 1e-12;         // m or rad: a function below it is zero
+constexpr double kSharpness = 0.1;         // of kLearned: noise of the values that are learned
 constexpr double kWeights = 3.0;           // prior of the inputs of a neuron
 constexpr double kOutputs = 10.0;          // prior of its output, of the function's largest value
 constexpr std::size_t kMostStations = 40;  // of an axis, at most
@@ -124,7 +124,7 @@ class Teacher {
       const auto& source = result.sources.front();
       return Lesson{form, result.blocks.front().Values(), source.rms * kSharpness * accepted_,
                     result.iterations};
-    } catch (const NumericalError&) {  // did not settle: another size may
+    } catch (const NumericalError&) {  // not converged: another size may
       return std::nullopt;
     }
   }
@@ -163,7 +163,7 @@ class Folds {
   std::map<std::pair<std::string, int>, int> fold_;
 };
 
-// The x of a run: of the machine those of the model, else those of the fit.
+// The parameters of a run: those of the machine from `model`, the others from `fit`.
 VectorXd InputsOf(const SimulatedRun& run, const machine::VolumetricModel& model,
                   const estimation::Result& fit) {
   const auto own = run.blocks.begin() + static_cast<std::ptrdiff_t>(model.Blocks().size());

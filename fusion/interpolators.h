@@ -1,15 +1,14 @@
-// Which form of the error functions predicts holes best that it has not seen: the B-spline of the
-// fit, or the network of Ha and Khanh.
+// Compares two forms of the error functions by held-out holes of a plate: the B-spline of the fit
+// and the neural network of Ha and Khanh.
 //
 //   const auto checks = CompareInterpolators(mill, smoothness, setups, 4);
 //   const VolumetricModel networks = AsNetworks(model, stations, NetworkBias::kWithBias, nullptr);
 //
-// Every `folds`-th hole is left out in turn, in all set-ups; the rest is fitted, with B-splines.
-// The network then does what the document does: it learns each error function from its values at
-// the stations, the axis positions of the holes. It has one hidden layer of tanh
-// and grows by one neuron until its rms is 1 um or less (of an angle: at the longest travel) or
-// kMostNeurons is reached; each size is trained by the one estimator, in at most kMostCycles steps,
-// under weak priors that keep its weights from running away.
+// Every `folds`-th hole is left out in turn, in all set-ups; the rest is fitted, with B-splines. As
+// in the paper, a network then learns each error function from its values at the stations, the axis
+// positions of the holes. It has one hidden layer of tanh and grows by one neuron until its rms is
+// 1 um or less (of an angle: at the longest travel) or kMostNeurons is reached. Each size is
+// trained in at most kMostCycles steps, under weak priors that bound its weights.
 // Units: m. Failure: InputError when too few holes are left in a set-up to lay the plate.
 // Source: Ha and Khanh, "An application of neural network in calibration of coordinate measuring
 // machines" (2011), section 4: equations 22 and 23, stop at RMS <= 1 um or N cycles; there trained
@@ -31,13 +30,15 @@ inline constexpr double kLearned = 1e-6;  // m, rms
 inline constexpr int kMostNeurons = 6;
 inline constexpr int kMostCycles = 200;
 
+// The largest values over all functions.
 struct Learning {
-  double rms = 0.0;  // m, of the function that was learned worst
-  int cycles = 0;    // most
-  int neurons = 0;   // most
+  double rms = 0.0;  // m
+  int cycles = 0;
+  int neurons = 0;
 };
 
-// `stations`: of each axis, m. Functions that are nowhere larger than a picometre become zero.
+// Every error function of `model` as a network. `stations`: of each axis, m. Functions below 1 pm
+// or 1 prad everywhere become zero.
 machine::VolumetricModel AsNetworks(const machine::VolumetricModel& model,
                                     const std::array<std::vector<double>, machine::kAxes>& stations,
                                     machine::NetworkBias bias, Learning* learning);

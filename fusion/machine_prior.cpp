@@ -20,7 +20,7 @@ using geometry::BSplineBasis;
 constexpr int kDegree = 5;
 constexpr double kKnotsPerLength = 2.0;
 constexpr int kPointsPerCoefficient = 6;
-constexpr double kHardlyAllowed = 1e-7;  // of the largest variance
+constexpr double kHardlyAllowed = 1e-7;  // least eigenvalue, of the largest variance
 
 BSplineBasis BasisOf(const machine::Travel& travel, Index size) {
   return BSplineBasis::Uniform(kDegree, travel.first, travel.last, static_cast<int>(size));
@@ -32,7 +32,7 @@ machine::VolumetricModel UnknownMachine(const machine::Machine& machine) {
   machine::VolumetricModel model(machine.chain, machine.travels);
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     const machine::Travel& travel = machine.travels[static_cast<std::size_t>(axis)];
-    if (!(travel.last > travel.first)) continue;  // the machine lacks it
+    if (!(travel.last > travel.first)) continue;  // the machine has no such axis
     const double spans =
         std::ceil(kKnotsPerLength * (travel.last - travel.first) / machine.population.smoothness);
     const auto form = machine::MakeBSplineForm(

@@ -2,7 +2,7 @@
 //
 //   estimation::Problem problem = MakeMachineProblem(mill, model, prior, runs);
 //
-// Blocks: the functions of the machine and its squareness, then what each run brings, shared by
+// Blocks: the functions of the machine and its squareness, then the blocks of the runs, shared by
 // name. Sources: one for each run in their order, then "smoothness", the prior of the functions.
 // Failure: InputError for no run.
 #pragma once
@@ -24,7 +24,7 @@ estimation::Problem MakeMachineProblem(const machine::Machine& machine,
                                        const MachinePrior& prior,
                                        const std::vector<simulation::SimulatedRun>& runs);
 
-// The values that a fit found for all entries of these blocks, in their order.
+// The estimates of all entries of these blocks, in their order.
 Eigen::VectorXd ValuesFound(const estimation::Result& fit,
                             const std::vector<estimation::ParameterBlock>& blocks);
 

@@ -96,7 +96,7 @@ VectorXd CellParameters(const LinkageSimulation& simulation, const LinkageRun& c
       .tail(simulation.model().parameters());
 }
 
-// Where a position stands between the centres: the lower one and the share of the upper one.
+// The centres on either side of a position: index of the lower one and weight of the upper one.
 std::pair<std::size_t, double> Between(const std::vector<double>& centres, double position) {
   if (centres.size() == 1 || position <= centres.front()) return {0, 0.0};
   if (position >= centres.back()) return {centres.size() - 2, 1.0};

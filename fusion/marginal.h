@@ -1,11 +1,12 @@
-// What is known of some unknowns when the others are free: the marginal of an information matrix.
+// The marginal of an information matrix: the information about some parameters with all others as
+// nuisance parameters.
 //
 //   const Eigen::MatrixXd U = MarginalFactor(information, columns);   // lower, U U' = C^-1
 //
-// C is the covariance of the columns, in their order. The columns stand last in the order of one
-// Cholesky factor, whose last part is U: nothing is inverted. Unknowns without any information are
-// left out. Shapes: information n x n, U as many as columns. Failure: an empty matrix when rounding
-// hides the rest, or a column has no information.
+// C is the covariance of the columns, in their order. One Cholesky factor with the columns last has
+// U as its last part: nothing is inverted. Parameters without any information are left out. Shapes:
+// information n x n, U as many as columns. Failure: an empty matrix when the information is
+// singular to rounding, or a column has none.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +16,7 @@ namespace abbe::fusion {
 
 Eigen::MatrixXd MarginalFactor(const Eigen::MatrixXd& information, const std::vector<int>& columns);
 
-// C itself; directions that nothing determines count as known when MarginalFactor fails.
+// C itself. When MarginalFactor fails, undetermined directions contribute no variance.
 Eigen::MatrixXd MarginalCovariance(const Eigen::MatrixXd& information,
                                    const std::vector<int>& columns);
 

@@ -19,7 +19,7 @@ using relm::ErrorModel;
 using simulation::LinkageRun;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNoCircle = 0.01;  // of the radius
+constexpr double kNoCircle = 0.01;  // of the radius: a larger deviation is no circle
 constexpr std::array kModelsCompared{ErrorModel::kPivots, ErrorModel::kPublished,
                                      ErrorModel::kPublishedWithBearing, ErrorModel::kComplete};
 
@@ -65,7 +65,7 @@ class Comparison {
                      Checked(mapped.calibration)});
   }
 
-  // Only its middle is left of the grid of cells.
+  // The calibration with only the middle cell of its grid.
   static Calibration MiddleCellOf(Calibration calibration) {
     MappedParameters& cells = *calibration.mapped;
     std::size_t middle = 0;
@@ -141,7 +141,7 @@ double CircleDeviation(const Matrix3Xd& path) {
     }
     return largest < kNoCircle * circle.radius ? largest : kUnknown;
   } catch (const NumericalError&) {
-    return kUnknown;  // so far from a circle that none settles
+    return kUnknown;  // so far from a circle that the fit does not converge
   }
 }
 

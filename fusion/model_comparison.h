@@ -1,11 +1,11 @@
-// The error models side by side on one recording: what each more complete one is worth.
+// Compares the error models on one recording.
 //
 //   for (const ComparedModel& row : CompareModels(chain, linkage, run, {circle}, options)) ...
 //
 // Rows: the reference itself (its circles only), the nominal linkage, then for each model the
 // calibrated linkage: global; where the poses form a grid also by the one cell in its middle alone,
-// and mapped. `checks` are runs that take no part, such as a circle. `options.model`,
-// `options.mapped` and `options.contradict` are not looked at. Units: m. Failure: that of
+// and mapped. `checks` are runs that are not calibrated with, such as a circle. `options.model`,
+// `options.mapped` and `options.contradict` are ignored. Units: m. Failure: that of
 // Calibrate; a model that this form of linkage does not have is left out. Source of the order:
 // Boelens (2006), see fusion/mapping.h; the complete model is beyond it.
 #pragma once
@@ -17,7 +17,7 @@
 
 namespace abbe::fusion {
 
-// How a linkage does on a run that it was not calibrated with.
+// The deviations of a linkage on a run that it was not calibrated with.
 struct CheckedRun {
   Distances distance;  // from the reference; as displacements for the nominal linkage
   // Largest distance of the path from its least-squares circle, in the plane of the two axes that
@@ -29,7 +29,7 @@ struct ComparedModel {
   std::string name;             // "published, mapped"
   Eigen::Index parameters = 0;  // of the model, of each cell where mapped
   Distances after;              // of the poses that it was calibrated with
-  Distances held_out;           // of poses that took no part; NaN for one cell
+  Distances held_out;           // of held-out poses; NaN for one cell
   std::vector<CheckedRun> checks;
 };
 

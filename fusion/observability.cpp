@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The information about the parameters with a prior, in units of it, the others eliminated.
+// The information about the parameters with a prior, in units of the prior, the others eliminated.
 MatrixXd InUnitsOfPrior(const MatrixXd& data, const VectorXd& prior_sd) {
   std::vector<Index> known, open;
   for (Index i = 0; i < prior_sd.size(); ++i) {

@@ -1,4 +1,5 @@
-// What the data of a fit can see: how many combinations of parameters, how well, and which not.
+// Observability: how many combinations of parameters the data of a fit determine, how well, and
+// which they do not.
 //
 //   const Observability seen = Observe(problem, result);
 //   seen.rank;                      // 17 of the 24 + 6
@@ -6,9 +7,9 @@
 //
 // Background: J is the Jacobian of the data, its rows divided by the noise, its columns multiplied
 // by the prior standard deviations; parameters without a prior (the base position in the
-// displacement form) are eliminated first. A singular value s says that the data shrink the
-// uncertainty along its direction to 1 / sqrt(1 + s^2) of what was known: below s = 1 the direction
-// counts as not seen. So the rank is tied to the noise and to what was known, not to rounding.
+// displacement form) are eliminated first. Along the direction of a singular value s the data
+// reduce the prior uncertainty to 1 / sqrt(1 + s^2) of it: below s = 1 the direction counts as not
+// seen. So the rank depends on noise and priors, not on rounding.
 //
 //   condition            s_1 / s_n of the columns scaled to length 1
 //   noise amplification  s_r^2 / s_1, r the rank (Nahvi and Hollerbach, ICRA 1996): larger is

@@ -19,9 +19,9 @@ using Eigen::VectorXd;
 using estimation::Result;
 using simulation::PlateSetup;
 
-constexpr double kAlong = 0.99;  // cosine
+constexpr double kAlong = 0.99;  // cosine: 8 degrees
 
-// Where a hole is in the plate: its certificate and the form that the fit found.
+// The place of a hole in the plate: its certificate and the estimated form.
 Vector2d PlaceInPlate(const PlateSetup& setup, Index point, const Result& fit) {
   const int hole = setup.holes[static_cast<std::size_t>(point)];
   Vector2d place = setup.certificate.col(point);
@@ -31,7 +31,7 @@ Vector2d PlaceInPlate(const PlateSetup& setup, Index point, const Result& fit) {
   return place;
 }
 
-// The holes at its ends, and what a squareness does to it.
+// The holes at its ends, and the effect of a squareness on it.
 struct Diagonal {
   Index from = 0, to = 0;
   Vector2d direction;  // in the plate
@@ -56,14 +56,15 @@ Diagonal DiagonalOf(const PlateSetup& setup, const Eigen::Matrix3Xd& places, dou
   return diagonal;
 }
 
-// By the whitened residuals of the set-up: a hole that reads too far out shortens the stretch.
+// Derivatives with respect to the whitened residuals of the set-up: a hole that is read too far out
+// reduces the stretch.
 void AddWeights(const Diagonal& diagonal, double factor, const PlateSetup& setup, VectorXd& b) {
   const Vector2d weight = factor * setup.u_probing / diagonal.true_length * diagonal.direction;
   b.segment<2>(2 * diagonal.to) -= weight;
   b.segment<2>(2 * diagonal.from) += weight;
 }
 
-// The squareness that one set-up tells, and its derivatives by the residuals.
+// The squareness by one set-up, and its derivatives with respect to the residuals.
 struct OfSetup {
   Index normal;
   double value;
@@ -88,7 +89,7 @@ std::optional<OfSetup> SquarenessOf(const machine::VolumetricModel& square,
   return found;
 }
 
-// J' b of a set-up by the free parameters of the fit.
+// J' b of a set-up, in the free parameters of the fit.
 VectorXd ByParameters(const simulation::SimulatedRun& run, const VectorXd& b, const Result& fit) {
   std::map<std::string_view, Index> columns;
   for (std::size_t c = 0; c < fit.names.size(); ++c) {

@@ -1,9 +1,10 @@
-// Squareness from the diagonals of a hole plate, beside that of the fit.
+// Squareness from the diagonals of a hole plate, to compare with that of the fit.
 //
 //   SquarenessByDiagonals(model, reference, setups, fit)
 //
-// A plate that lies in two axes has a shorter and a longer diagonal on a machine whose axes are not
-// square. With all other errors of the machine taken off, and the form of the plate known:
+// On a machine whose axes are not square, one diagonal of a plate in their plane is measured too
+// long, the other too short. With the other errors of the machine and the form of the plate
+// corrected:
 //
 //   stretch = length in the plate / length on the machine - 1 = scale + sign squareness d_i d_j
 //   squareness = sign (stretch_1 - stretch_2) / ((d_i d_j)_1 - (d_i d_j)_2)
@@ -11,10 +12,10 @@
 // d the direction of a diagonal, i and j the axes; sign is + for B0Z, - for A0Z and C0Y. Set-ups in
 // one plane are averaged; a plate that lies askew (beyond 8 degrees) is left out.
 //
-// What is taken off was fitted to the same readings. To first order the value is that of the fit
-// plus b' r: r the whitened residuals that the fit leaves, b as above, not zero for the holes at
-// the ends of the diagonals. The errors of a fit are uncorrelated with what it leaves, which has
-// the covariance I - J C J', so that
+// The corrections were fitted to the same readings. To first order the value is that of the fit
+// plus b' r: r are the whitened residuals of the fit, b the derivatives of the value with respect
+// to them, not zero for the holes at the ends of the diagonals. The errors of a fit are
+// uncorrelated with its residuals, which have the covariance I - J C J', so that
 //
 //   u^2 = u_fit^2 + b' b - (J' b)' C (J' b)
 //
@@ -37,7 +38,7 @@ struct DiagonalSquareness {
   int setups;
 };
 
-// Of A0Z, B0Z, C0Y. `model` as fitted, `fit` with the form of the plate.
+// A0Z, B0Z, C0Y. `model` as fitted, `fit` with the form of the plate.
 std::array<DiagonalSquareness, 3> SquarenessByDiagonals(
     const machine::VolumetricModel& model, const Eigen::Vector3d& reference,
     const std::vector<simulation::PlateSetup>& setups, const estimation::Result& fit);

@@ -38,7 +38,7 @@ double LogDeterminant(const Factor& factor) {
   return 2.0 * MatrixXd(factor.matrixL()).diagonal().array().log().sum();
 }
 
-// The best pose that is not chosen yet, and what the logarithm of the determinant gains by it.
+// The best pose that is not chosen yet, and the increase of the log determinant by it.
 std::pair<Index, double> Best(const PoseInformation& candidates, const Factor& factor,
                               const std::vector<bool>& chosen) {
   // J C J' = W' W with W = L^-1 J': as a square it stays positive however weak the prior.

@@ -8,8 +8,8 @@
 // Background: pose i brings the information J_i' J_i (J_i: 3 x parameters, whitened). The choice of
 // N poses that makes det(P^-1 + sum J_i' J_i) largest makes the volume of the uncertainty smallest
 // (D-optimal, with the priors P). Poses are added one by one, the best first; then chosen and other
-// poses are exchanged while the determinant grows. What a choice is worth to the user is the
-// uncertainty of ball positions, over all candidates: `tip_rms`. Poses are enough when the
+// poses are exchanged while the determinant grows. The figure of merit for the user is the
+// uncertainty of ball positions over all candidates, `tip_rms`. Poses are enough when the
 // calibration adds less than a tenth to the noise of a single reading.
 //
 // Units: m. Shapes: one entry of J per pose. Failure: InputError when more poses are asked for than
@@ -26,7 +26,7 @@
 namespace abbe::fusion {
 
 struct PoseInformation {
-  // `x` is that of the simulation. Directions without prior get one of 1 (m, rad).
+  // `x`: parameters of the simulation. Parameters without a prior get one of 1 (m, rad).
   PoseInformation(const simulation::LinkageSimulation& simulation,
                   const simulation::LinkageRun& run, const Eigen::VectorXd& x);
 
@@ -38,20 +38,21 @@ struct PoseInformation {
 };
 
 struct PoseChoice {
-  std::vector<Eigen::Index> poses;  // in the order of their worth when added
+  std::vector<Eigen::Index> poses;
   double log_determinant;
   double tip_rms;  // m: 3D uncertainty of ball positions from the calibration, over all candidates
   int exchanges;
 };
 PoseChoice ChoosePoses(const PoseInformation& candidates, Eigen::Index count);
 
-// rms over all candidates of the 3D standard uncertainty that the calibration leaves.
+// m: 3D standard uncertainty of a ball position by a calibration with `poses`, rms over all
+// candidates.
 double TipUncertainty(const PoseInformation& candidates, const std::vector<Eigen::Index>& poses);
 
 struct EnoughRow {
   Eigen::Index poses;
   double tip_rms;   // m, chosen by ChoosePoses
-  double even_rms;  // m, the same number taken evenly from the candidates
+  double even_rms;  // m, as many poses taken evenly from the candidates
   bool enough;
 };
 std::vector<EnoughRow> HowManyPoses(const PoseInformation& candidates,

@@ -16,14 +16,14 @@ using Eigen::VectorXd;
 
 constexpr double kSeen = 0.5;           // lambda
 constexpr double kSignificance = 0.01;  // of the whole set
-constexpr double kUnknown = 1e-12;      // of a parameter's information: nobody else sees it
+constexpr double kUnknown = 1e-12;      // least share of the others in a parameter's information
 
 struct Quadratic {
   MatrixXd information;
   VectorXd score;
 };
 
-// The same without the unknowns of `own`, which are free to follow.
+// The same with the parameters of `own` eliminated.
 Quadratic Eliminate(const Quadratic& all, const std::vector<int>& others,
                     const std::vector<int>& own) {
   Quadratic left{all.information(others, others), all.score(others)};
@@ -50,7 +50,7 @@ RunConsistency Check(const std::string& name, const estimation::SourceSums& run,
   }
   const MatrixXd factor = MarginalFactor(rest(others, others), touched);
   if (factor.size() == 0) return check;
-  // What the run does not touch is integrated out; L = U'^-1 with H = U U'.
+  // Parameters that the run does not depend on are marginalised; L = U'^-1 with H = U U'.
   const auto U = factor.triangularView<Eigen::Lower>();
   const MatrixXd half = U.solve(MatrixXd(seen.information(touched, touched)));
   const MatrixXd M = U.solve(MatrixXd(half.transpose()));
@@ -85,7 +85,7 @@ std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
 
 int Contradicting(const std::vector<RunConsistency>& runs) {
   const auto worst = std::min_element(runs.begin(), runs.end(), [](const auto& a, const auto& b) {
-    // Beyond what a probability can hold, the statistic decides.
+    // Where both probabilities underflow, the statistic decides.
     if (a.probability == 0.0 && b.probability == 0.0) {
       return a.statistic / a.directions > b.statistic / b.directions;
     }

@@ -1,21 +1,26 @@
-// Whether the runs of a fit agree: what each of them says against what all others say.
+// Consistency of the runs of a fit: a test of each run against the prediction of all others.
 //
 //   for (const RunConsistency& run : CheckRuns(problem, sums)) ...
 //
 // Background: at the common estimate x, run r has the information D and the score g = J'r of its
-// own rows; all others and the priors have the information H. Without run r the estimate would be
-// x + H^-1 g. There the score of run r is s = (1 + D H^-1) g, and if all is stated truly its
-// covariance is D + D H^-1 D. In the directions v that run r sees better than it was known
-// (lambda > 1/2 of L'DL, H^-1 = LL'):
+// own rows; all others and the priors have the information H. Without run r:
+//
+//   estimate              x + H^-1 g
+//   score of run r there  s = (1 + D H^-1) g
+//   its covariance        D + D H^-1 D, under the null hypothesis of no error
+//
+// The test takes the directions v in which run r has more than half of the information of the
+// others (eigenvalue lambda > 1/2 of L'DL, H^-1 = LL'):
 //
 //   T = sum over these of (1 + lambda) / lambda * (v' L' g)^2      chi-square, one for each
 //
-// The rows of a run are thousands, what they say of the machine is a handful of numbers: T looks at
-// these, the run's own chi-square at the rows. Unknowns that only this run sees are eliminated.
+// A run has thousands of rows but determines few combinations of parameters. T tests these
+// combinations, the run's own chi-square tests the rows. Parameters that only this run determines
+// are eliminated.
 // Source: the predictive form of Baarda's test, e.g. Teunissen, "Testing Theory" (2006); own form.
-// Validity: to first order at the solution. A run that is wrong pulls all others: the smallest
-// probability names the wrong one when at least two others agree; of two runs it can only say that
-// they contradict each other.
+// Validity: to first order at the solution. A wrong run biases the prediction for all others: the
+// smallest probability names the wrong one when at least two others agree; two runs can only
+// contradict each other.
 #pragma once
 
 #include <string>
@@ -29,16 +34,16 @@ namespace abbe::fusion {
 struct RunConsistency {
   std::string name;
   double statistic = 0.0;    // T
-  int directions = 0;        // its degrees of freedom; 0: nothing that others know too
-  double probability = 1.0;  // of a T as large by chance
+  int directions = 0;        // its degrees of freedom; 0: nothing in common with the others
+  double probability = 1.0;  // of a T as large under the null hypothesis
 };
 
-// In the order of the sources; those that are priors are left out. `sums`: of the problem at its
+// In the order of the sources, without those that are priors. `sums`: the problem linearised at its
 // solution.
 std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
                                       const estimation::Linearization& sums);
 
-// The run that contradicts the others, an index into `runs`; -1: none does at 1 % for the whole
+// The index of the run that contradicts the others; -1: none at a significance of 1 % for the whole
 // set.
 int Contradicting(const std::vector<RunConsistency>& runs);
 

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kPlaces = 180;        // around the circle: aliases of the orders are far off
+constexpr Index kPlaces = 180;        // around the circle: no aliasing of these orders
 constexpr double kNegligible = 1e-9;  // m
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
@@ -27,7 +27,7 @@ double DeviationOf(const machine::Population& population, int axis, int motion) 
 
 struct Circle {
   Eigen::Matrix3Xd positions;  // of the axes
-  Eigen::MatrixXd J_radial;    // by the 18 error motions, one row a place
+  Eigen::MatrixXd J_radial;    // with respect to the 18 error motions, one row a place
 };
 
 Circle CircleOf(const machine::Machine& machine, const paths::CircleRun& run) {

@@ -1,9 +1,10 @@
-// What a map is worth on a specimen of known length: measured on the machine as it is, and
-// corrected by the map.
+// Checks a map with a specimen of known length: its measured length, without and with correction by
+// the map.
 //
 //   for (const SpecimenLength& each : CheckSpecimen(map, recording)) ...
 //
-// The recording is of kind length (simulation/points/length_simulation.h) and took no part in the map.
+// The recording is of kind length (simulation/points/length_simulation.h) that was not used for the
+// map.
 // Units: m. Failure: InputError as there. Source: Ha and Khanh, "An application of neural network
 // in calibration of coordinate measuring machines" (2011), section 6: a specimen of 100 mm measured
 // 100.037 mm before and 100.009 mm after compensation.

@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-constexpr int kCheckPoints = 7;  // along each side of the travel, to judge by
+constexpr int kCheckPoints = 7;  // along each side of the travel, for travel_rms
 
 simulation::LinkageRun Planned(const simulation::LinkageSimulation& simulation,
                                const Matrix3Xd& positions) {

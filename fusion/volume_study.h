@@ -1,5 +1,5 @@
-// Which calibration volume and which spacing of the poses: a table from the model alone, before
-// anything is measured.
+// Compares calibration volumes and spacings of the poses by the model alone, before any
+// measurement.
 //
 //   for (const VolumeRow& row : StudyVolumes(simulation, travel)) ...
 //

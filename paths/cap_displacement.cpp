@@ -17,14 +17,14 @@ namespace {
 
 using recording::Recording;
 
-constexpr double kMoving = 0.5;       // of the median speed of what moves
+constexpr double kMoving = 0.5;       // of the median speed of moving rows
 constexpr double kStandstill = 1e-6;  // m/s
 constexpr Eigen::Index kSpan = 3;     // rows before and after over which a velocity is taken
 constexpr double kStraight = 0.9;     // cosine of the turn that ends a stroke
 constexpr double kParallel = 0.99;    // cosine
 constexpr double kSameWay = 0.1;      // of the length: how far apart strokes of one way may lie
-constexpr double kSeen = 0.05;        // of the direction that the gauges read, squared
-constexpr double kOneWay = 0.999;     // mean sense
+constexpr double kSeen = 0.05;        // least squared part of a direction along measured axes
+constexpr double kOneWay = 0.999;     // mean sense of a line passed in one direction
 
 struct Readings {
   std::vector<char> axes;         // of the columns of `displacement`
@@ -41,7 +41,7 @@ Eigen::VectorXd At(std::span<const double> column, const std::vector<std::size_t
   return values;
 }
 
-// What was seen less where it should be, along the axes that the reference has.
+// `seen` minus `expected`, along the axes that were measured.
 Readings Beside(const MeasuredPath& path, const Eigen::Matrix3Xd& seen,
                 const Eigen::Matrix3Xd& expected) {
   Readings readings;
@@ -74,10 +74,10 @@ Readings FromGauges(const Recording& recording, const std::vector<std::size_t>& 
   return readings;
 }
 
-// Positions, times, force and feed of the rows without a flag; the reference where it is there.
+// The rows without a flag; `measured` is the commanded path where there is no reference.
 MeasuredPath SteadyMotion(const Recording& recording) {
   if (HasReference(recording)) return ReferencePath(recording);
-  Recording with = recording;  // the commanded position as its own reference: motion only
+  Recording with = recording;  // the commanded position as its own reference
   for (const char axis : {'x', 'y', 'z'}) {
     if (const auto column = recording.Find(fmt::format("{}_mm", axis))) {
       with.columns.push_back({fmt::format("ref_{}_mm", axis), {column->begin(), column->end()}});
@@ -123,7 +123,7 @@ struct Stroke {
   double along = 0.0;                // mean reading along the line
 };
 
-// Told apart by a pause or a turn.
+// Splits rows at pauses and reversals.
 std::vector<Stroke> StrokesOf(const std::vector<Eigen::Index>& rows,
                               const Eigen::Matrix3Xd& velocity, const Eigen::Matrix3Xd& commanded) {
   std::vector<Stroke> strokes;
@@ -138,7 +138,7 @@ std::vector<Stroke> StrokesOf(const std::vector<Eigen::Index>& rows,
     stroke.to = commanded.col(row);
     stroke.middle += commanded.col(row);
   }
-  // The rows of a turn itself.
+  // What short strokes are: the rows of a reversal.
   std::erase_if(strokes, [](const Stroke& stroke) {
     return stroke.rows.size() <= static_cast<std::size_t>(2 * kSpan);
   });
@@ -149,10 +149,10 @@ std::vector<Stroke> StrokesOf(const std::vector<Eigen::Index>& rows,
   return strokes;
 }
 
-// Strokes to and fro, and what the readings say along their direction.
+// Strokes over one way, and their mean reading along it.
 struct Line {
   std::vector<Stroke*> strokes;
-  Eigen::VectorXd seen;  // of the direction, along the axes that are read
+  Eigen::VectorXd seen;  // the direction, along the axes that were measured
   double weight = 0.0;   // square of its length
   double sense = 0.0;    // mean over its strokes
   double along = 0.0;
@@ -192,7 +192,7 @@ std::vector<Line> LinesOf(std::vector<Stroke>& strokes, const Readings& readings
       line.sense += line.SenseOf(*stroke) / count;
     }
   }
-  // What is passed one way only says nothing.
+  // A line passed in one direction does not determine e.
   std::erase_if(lines, [](const Line& line) {
     return line.weight < kSeen || std::abs(line.sense) > kOneWay;
   });
@@ -241,7 +241,7 @@ CapDisplacement Evaluate(const Readings& readings, const std::vector<Eigen::Inde
   if (lines.empty()) {
     throw InputError(
         fmt::format("{}: at {:.0f} mm/min the gauges see motion in one direction alone: the "
-                    "displacement cannot be told from their offsets; move to and fro",
+                    "displacement cannot be separated from their offsets; move to and fro",
                     recording, readings.feed[rows.front()] / settings::kMillimetre * 60.0));
   }
   CapDisplacement result;

@@ -1,14 +1,14 @@
-// What the noise of single readings does to the figures of a circle: they are ranges, so noise adds
-// to them, and the more the more points there are.
+// The effect of the noise of single readings on the figures of a circle: they are ranges, so noise
+// increases them, and the more, the more points there are.
 //
 //   const double noise = ReadingNoise(run);
 //   EvaluateCircle(WithNoise(run, std::sqrt(3.0) * noise, 1))      // as if it were twice as large
 //
-// The noise of a radius is told from third differences of neighbouring readings, which a smooth
-// path does not reach. A range grows with the noise: from once to twice as much by as much as it
-// has grown from none to once. Units: m. Failure: none; without four readings in sequence the noise
-// is 0. Source: the method of Cook and Stefanski, JASA 89 (1994). Validity: noise that is white
-// from reading to reading; what is slower counts as path.
+// The noise of a radius is estimated from third differences of neighbouring readings, to which a
+// smooth path contributes little. The figure without noise follows by extrapolation: doubling the
+// noise increases a range by as much as the noise itself did. Units: m. Failure: none; without four
+// readings in sequence the noise is 0. Source: simulation extrapolation, Cook and Stefanski, JASA
+// 89 (1994). Validity: noise that is white from reading to reading; slower noise counts as path.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,10 @@
 
 namespace abbe::paths {
 
+// The standard deviation of one radius, m.
 double ReadingNoise(const CircleRun& run);
 
-// The run with normal noise on each radius and out of plane; `copy` tells one draw from another.
+// The run with normal noise on each radius and out of plane; `copy`: number of the draw.
 CircleRun WithNoise(const CircleRun& run, double deviation, std::uint64_t copy);
 
 }  // namespace abbe::paths

@@ -17,16 +17,16 @@ namespace abbe::paths {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-// Of the radius: commanded rows further off the circle are run-in and run-out.
+// Part of the radius; commanded rows further off the circle are run-in and run-out.
 constexpr double kOffCircle = 0.01;
-// Of the radius: a commanded path that leaves its plane by more is inclined.
+// Part of the radius; a commanded path that leaves its plane by more is inclined.
 constexpr double kOffPlane = 1e-3;
-// A block that turns by less is no part of a circle.
+// rad; a block that turns by less is not part of a circle.
 constexpr double kLeastTurn = 0.1;
 // Two runs are one when radius and centre agree to this, m, and the feed to this part.
 constexpr double kSameCircle = 10e-6;
 constexpr double kSameFeed = 0.01;
-// Of a turn: less is a part of the circle, and still less tells no circle from another.
+// Parts of a turn: below kWhole it is an arc, below kLeastCovered too short to evaluate.
 constexpr double kWhole = 0.95;
 constexpr double kLeastCovered = 0.25;
 
@@ -87,7 +87,7 @@ InPlane Project(const Eigen::Matrix3Xd& p, const CirclePlane& plane) {
   return {{a.begin(), a.end()}, {b.begin(), b.end()}};
 }
 
-// The commanded circle, and which poses are on it.
+// The commanded circle, and the poses on it.
 struct Nominal {
   standards::Circle circle;
   std::vector<Eigen::Index> on;
@@ -103,7 +103,7 @@ Nominal CommandedCircle(const MeasuredPath& path, const CirclePlane& plane) {
     throw InputError(fmt::format("{}: the commanded path in {} is no circle: {}", path.recording,
                                  plane.name, failure.what()));
   }
-  // Run-in and run-out pull at the first circle; each round leaves out what is off the last one.
+  // Run-in and run-out bias the first circle; each round leaves out the poses off the last one.
   for (int round = 0; round < 20; ++round) {
     const std::vector<double> off =
         standards::RadialDeviations(nominal.circle, all.first, all.second);
@@ -138,8 +138,8 @@ Nominal CommandedCircle(const MeasuredPath& path, const CirclePlane& plane) {
 
 double Wrapped(double angle) { return angle - kTurn * std::round(angle / kTurn); }
 
-// +1 or -1 for each pose, 0 for blocks that do not turn: the way the commanded path goes round.
-// A block has one pass, direction and feed.
+// The sense of the commanded path at each pose: +1 or -1, 0 for blocks that do not turn. A block
+// has one pass, direction and feed.
 std::vector<int> Senses(const MeasuredPath& on, const CirclePlane& plane,
                         const standards::Circle& circle) {
   const InPlane p = Project(on.commanded, plane);
@@ -173,12 +173,12 @@ bool SameRun(const CircleRun& a, const CircleRun& b) {
          std::abs(a.feed - b.feed) <= kSameFeed * std::max(a.feed, b.feed);
 }
 
-// The programmed radius, m; 0 where neither the options nor the header say it.
+// The programmed radius, m; 0 where neither the options nor the header state it.
 double ProgrammedRadius(const MeasuredPath& path, const CircleOptions& options, double commanded) {
   const double radius = options.radius > 0.0 ? options.radius : path.radius;
   if (radius > 0.0 && std::abs(radius - commanded) > kLikeCommanded * radius) {
     throw InputError(fmt::format(
-        "{}: {} says a radius of {:.6g} mm, but x_mm, y_mm, z_mm go round one of {:.6g} mm; "
+        "{}: {} states a radius of {:.6g} mm, but x_mm, y_mm, z_mm go round one of {:.6g} mm; "
         "correct it",
         path.recording, options.radius > 0.0 ? "--radius" : "radius_mm of the header", 1e3 * radius,
         1e3 * commanded));
@@ -186,7 +186,7 @@ double ProgrammedRadius(const MeasuredPath& path, const CircleOptions& options, 
   return radius;
 }
 
-// Without angles, which need the whole run.
+// The runs of one path without angles, which need the whole run.
 std::vector<CircleRun> RunsOf(const MeasuredPath& path, const CircleOptions& options) {
   const std::string named = !options.plane.empty()   ? options.plane
                             : path.plane.size() == 2 ? path.plane
@@ -252,10 +252,10 @@ void SetMiddle(CircleRun& run, const Eigen::Vector2d& middle) {
   }
 }
 
-// The middle of an arc of the nominal radius: the radius of an arc is badly told, and with it where
-// its own circle has its centre.
+// The centre of an arc, with its radius held at the nominal one: an arc determines its radius, and
+// with it its centre, badly.
 void CentreArc(CircleRun& run) {
-  constexpr int kRounds = 4;  // each squares what is off, as a part of the radius
+  constexpr int kRounds = 4;  // of Newton: each squares the relative error
   SetMiddle(run, Eigen::Vector2d::Zero());
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
@@ -271,7 +271,8 @@ void CentreArc(CircleRun& run) {
   }
 }
 
-// Covered angles count from the middle, so it comes first; an arc is then centred as such.
+// Covered angles are about the centre, so the centre of a whole circle comes first; an arc is then
+// centred as an arc.
 void FillAngles(CircleRun& run) {
   const InPlane all = Coordinates(run, 0);
   const standards::Circle circle =

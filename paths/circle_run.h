@@ -1,23 +1,26 @@
-// A circular test as an instrument saw it: points in the plane of the circle, both senses.
+// A circular test as measured: points in the plane of the circle, both senses.
 //
 //   std::vector<CircleRun> runs = CircleRuns({path_cw, path_ccw}, {.plane = "XY"});
 //   const CircleFigures figures = EvaluateCircle(runs.front(), {.cutoff = 50.0});
 //
-// Paths of one instrument, plane, radius, centre and feed are one run, in whatever recordings they
-// stand. The plane is that of the options, else of the header, else that in which the commanded
-// path lies: XY, YZ, ZX, or "inclined". Counter-clockwise turns the first axis towards the second,
-// as the commanded path itself turns; the column `direction` is not needed. Left out are rows that
-// do not lie on the commanded circle (run-in and run-out), and rests (direction 0).
+// Paths of one instrument, plane, radius, centre and feed form one run, also from several
+// recordings. The plane is that of the options, else of the header, else that of the commanded
+// path: XY, YZ, ZX, or "inclined". Counter-clockwise is from the first axis towards the second; the
+// sense is that of the commanded path, not of the column `direction`. Rows off the commanded circle
+// (run-in and run-out) and at rest (direction 0) are left out.
+//
+// The nominal radius is the programmed one, of the options or else of the header
+// (MeasuredPath::radius). Without either it is the least-squares radius of the recorded positions.
+// These may be readings of the scales, whose circle is smaller than the programmed one by the lag
+// of the servos: D, F_max and F_min are then not figures of the standard (is_programmed).
+//
 // Frames: `first`, `second` and `third` are coordinates from the commanded centre, along the axes
 // of the plane and its normal. Units: m, rad, m/s. Shapes: one entry a point.
 // Failure: InputError with the recording for a path that is no circle, a sense with less than a
-// quarter of it, a plane that is not two axes, or coordinates that the instrument lacks. Source:
-// ISO 230-4. The nominal radius is the programmed one, of the options or else of the header
-// (MeasuredPath::radius). Where neither says it, it is that of the positions in the recording
-// (least squares): these may be scales, which a lagging servo leaves inside the programmed circle,
-// so D, F_max and F_min are then no figures of the standard (is_programmed). Validity: a programmed
-// radius within kLikeCommanded of the positions'; of a part of the circle (Partial) the figures are
-// those of the arc, and D, which is a mean of whole turns, and harmonics are left out.
+// quarter of it, a plane that is not two axes, or coordinates that were not measured.
+// Source: ISO 230-4. Validity: a programmed radius within kLikeCommanded of the recorded one. For a
+// part of the circle (Partial) the figures are those of the arc, without D, which is a mean over
+// whole turns, and without harmonics.
 #pragma once
 
 #include <Eigen/Core>
@@ -52,16 +55,16 @@ struct CircleRun {
   Eigen::Vector3d centre;  // m, axis coordinates
   double feed = 0.0;       // m/s
   bool third_seen = false;
-  bool is_programmed = false;  // the nominal radius; false: it is that of the recorded positions
+  bool is_programmed = false;       // the nominal radius; else it is that of the recorded positions
   std::vector<CirclePoint> points;  // in the order of time, recording after recording
   std::size_t left_out = 0;         // rows off the circle, at rest, or with a flag
-  // m: where the measured circle has its centre, from the commanded one: least squares, for a part
-  // of the circle with the nominal radius.
+  // m: the least-squares centre of the measured circle from the commanded centre; for a part of the
+  // circle that of a circle with the nominal radius.
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
 
   double Covered(int sense) const;  // rad of the circle that has points, counted in steps of 5 deg
   bool Has(int sense) const;
-  bool Partial() const;  // a sense that was measured is not all around
+  bool Partial() const;  // a measured sense is not a whole turn
 };
 
 struct CircleOptions {
@@ -72,8 +75,8 @@ struct CircleOptions {
 std::vector<CircleRun> CircleRuns(const std::vector<MeasuredPath>& paths,
                                   const CircleOptions& options = {});
 
-// Of the radius: a programmed one that is further off from the recorded positions is another
-// circle's. A lag of 30 ms at 5 m/min makes 20 mm smaller by 0.8 %.
+// Largest relative difference between the programmed and the recorded radius; beyond it the
+// programmed one belongs to another circle. A lag of 30 ms at 5 m/min is 0.8 % of 20 mm.
 inline constexpr double kLikeCommanded = 0.1;
 
 struct CircleFigures {
@@ -88,7 +91,7 @@ struct FigureOptions {
   int harmonics = 10;
 };
 
-// The run with its radius filtered; as it is for a cutoff of 0.
+// The run with its radius filtered; unchanged for a cutoff of 0.
 CircleRun Filtered(const CircleRun& run, double cutoff);
 
 CircleFigures EvaluateCircle(const CircleRun& run, const FigureOptions& options = {});

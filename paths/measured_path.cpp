@@ -53,7 +53,7 @@ double ProgrammedRadius(const Recording& recording) {
   return settings::kMillimetre * radius.value_or(0.0);
 }
 
-// Everything but what the instrument measured.
+// The path without the measured positions: `measured` is `commanded`.
 MeasuredPath Commanded(const Recording& recording, const Rows& rows) {
   MeasuredPath path;
   path.recording = recording.name;

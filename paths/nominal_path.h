@@ -5,8 +5,8 @@
 //   0,0,0
 //   25,0,0
 //
-// Further columns are ignored, lines that begin with # are comments; blanks around a field count
-// for nothing. Units: m in the result, axis coordinates. Failure: InputError with file and line.
+// Further columns, lines that begin with # and blanks around a field are ignored. Units: m in the
+// result, axis coordinates. Failure: InputError with file and line.
 #pragma once
 
 #include <Eigen/Core>

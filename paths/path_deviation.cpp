@@ -14,10 +14,10 @@ namespace abbe::paths {
 namespace {
 
 constexpr double kSamePoint = 1e-9;  // m: nominal points nearer than this are one
-// Pieces before and behind the last nearest one that are tried first. The whole path is searched
-// when the nearest of them is at either end of these, or is farther off than it should be.
+// Pieces before and behind the last nearest one that are searched first. The whole path is searched
+// when the nearest of them is the first or the last, or is farther off than the limits below.
 constexpr Eigen::Index kNeighbours = 20;
-constexpr double kFarther = 1.5;     // of the distance before
+constexpr double kFarther = 1.5;     // times the last distance
 constexpr double kFartherBy = 1e-6;  // m, in addition
 
 struct Chain {

@@ -1,17 +1,17 @@
-// How far a measured path is from a nominal one.
+// The deviation of a measured path from a nominal one.
 //
 //   const PathDeviation raw = DeviationFrom(path, {});                  // from the commanded path
 //   const PathDeviation best = DeviationFrom(path, {.nominal = corners, .align = true});
 //
 // The nominal path is a chain of straight pieces through the points given, else through the
 // commanded positions. The deviation of a pose is measured - the nearest point of the nominal path:
-// what it is late or early along the path does not count. With `align` the measured path is first
-// moved as a rigid body so that the sum of squared distances to the commanded positions is least:
-// this takes away where the instrument stands, and with it what of the machine looks like that.
+// it does not contain a lag along the path. With `align` the measured path is first moved as a
+// rigid body to the least sum of squared distances to the commanded positions: this removes the
+// pose of the instrument, and with it machine errors of the same form.
 // Frames: axis coordinates. Units: m. Shapes: one column or entry a pose.
 // Failure: InputError for a nominal path of fewer than two points. Source: rigid motion by singular
 // values, Kabsch, Acta Cryst. A32 (1976). Validity: at a crossing of the nominal path with itself
-// the nearer branch counts; coordinates that the instrument lacks count as commanded.
+// the nearer branch counts; coordinates that were not measured are the commanded ones.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,7 +37,7 @@ struct PathDeviation {
 
 PathDeviation DeviationFrom(const MeasuredPath& path, const DeviationOptions& options);
 
-// The rigid motion X with X * from nearest to `to`, column by column.
+// The rigid motion X that minimises the sum of squared distances of X * from to `to`, by columns.
 geometry::Transform<double> RigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
 
 }  // namespace abbe::paths

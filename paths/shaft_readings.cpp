@@ -16,7 +16,7 @@ struct Series {
   std::vector<double> time, value;
 };
 
-// Where the column has something to say.
+// The finite values of a column in rows without a flag.
 Series SeriesOf(const recording::Recording& recording, const std::string& name) {
   const auto time = recording.At("time_s"), column = recording.At(name);
   const auto flags = recording.Find("flags");
@@ -32,7 +32,7 @@ Series SeriesOf(const recording::Recording& recording, const std::string& name) 
 
 bool IsAngle(const std::string& name) { return name.ends_with("_deg") || name.ends_with("rad"); }
 
-// On over the end of a turn.
+// Removes the jumps by a whole turn.
 void Unwrap(std::vector<double>& angles) {
   for (std::size_t i = 1; i < angles.size(); ++i) {
     angles[i] = angles[i - 1] + std::remainder(angles[i] - angles[i - 1], 2.0 * std::numbers::pi);

@@ -1,8 +1,8 @@
-// Readings of a probe against the angle of a shaft, from channels that speak at times of their own.
+// Readings of a probe against the angle of a shaft, from channels with times of their own.
 //
 //   const ShaftReadings readings = ReadShaft(recording, "shaft_deg", "gap_1_mm");
 //
-// The columns may be nan in rows where their channel said nothing. The angle at a reading is
+// The columns may be nan in rows where their channel has no value. The angle at a reading is
 // interpolated in time between the two angles around it; readings before the first and after the
 // last angle are left out, and so are rows with a flag.
 // Units: s, rad, and the value in SI by the end of its column's name. Shapes: lists of one length.

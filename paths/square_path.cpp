@@ -11,7 +11,7 @@
 namespace abbe::paths {
 namespace {
 
-constexpr double kOnSide = 20e-6;      // m: what a commanded position may be off its side
+constexpr double kOnSide = 20e-6;      // m: largest distance of a commanded position from its side
 constexpr double kCorner = 0.02;       // of a side, left out at each end: the axes change there
 constexpr double kLeastOnSides = 0.5;  // of the rows
 constexpr int kPieces = 100;           // of a side, averaged each

@@ -1,7 +1,7 @@
-// The square path: four sides along two axes, judged like the sides of a workpiece.
+// The square path: four sides along two axes, evaluated like the sides of a workpiece.
 //
-// The sides are found in the commanded positions: rows that lie on the rectangle that holds them
-// all, without its corners' neighbourhood. On each side the measured positions are averaged over
+// The sides are the rows whose commanded positions lie on the rectangle around all of them, away
+// from its corners. On each side the measured positions are averaged over
 // short pieces; a side's line is that of least squares (standards/reference_line.h).
 //   straightness     of each side, least squares and minimum zone
 //   length           between the corners where the lines of the sides meet, minus nominal
@@ -9,9 +9,9 @@
 // Frames: axis coordinates, from the commanded centre. Units: m, rad. Shapes: sides in the order
 // low second, high first, high second, low first (counter-clockwise from the lower side); corner i
 // lies between side i and side i + 1. Failure: InputError with the recording for a commanded path
-// that is no such rectangle or a side without points. Source: ISO 230-1 for line and straightness;
+// that is no rectangle or a side without points. Source: ISO 230-1 for line and straightness;
 // the path is the 125 mm square of the linkage's second paper.
-// Validity: all passes and both senses together; give recordings of one sense to judge it alone.
+// Validity: all passes and both senses together; give recordings of one sense for that sense alone.
 #pragma once
 
 #include <array>

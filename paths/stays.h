@@ -1,7 +1,7 @@
-// The stays of a path: where the machine was sent and stood still, as means.
+// The stays of a path: mean positions during standstills.
 //
 // A stay is a sequence of rows whose commanded position keeps within `window` of its first row, at
-// least `kLeastRows` rows long. Its first quarter is left out: the machine settles there.
+// least `kLeastRows` rows long. Its first quarter, in which the machine settles, is left out.
 // Units: m. Failure: none. Validity: stays of equal commanded position are separate entries.
 #pragma once
 

@@ -13,7 +13,7 @@
 namespace abbe::paths {
 namespace {
 
-constexpr double kSamePlace = 20e-6;  // m: what a stop may differ from another and be the same
+constexpr double kSamePlace = 20e-6;  // m: largest distance between visits to one stop
 
 // The axis along which the machine went from one stay to the next, if it was one alone.
 std::optional<int> AxisOfMove(const Stay& from, const Stay& to) {

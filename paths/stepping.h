@@ -1,11 +1,11 @@
-// The stepping test: the machine goes along one axis in steps (0, 5, ... 25 mm) and stops at each;
-// does the instrument see the same displacements? One line each for X, Y and Z.
+// The stepping test: the machine moves along one axis in steps (0, 5, ... 25 mm) and stops at each;
+// compares the measured displacements with these steps. One line each for X, Y and Z.
 //
 // A displacement is the position of a stop minus that of the first stop of its line, so a constant
 // offset of the instrument does not matter. Stops that are visited again are averaged.
 // Frames: axis coordinates. Units: m. Failure: InputError with the recording when there are not two
 // stops that differ in one axis alone. Source: the stepping motion test of Boelens, "Error
-// Parameter Model" (2006). Validity: tells the instrument and the machine together.
+// Parameter Model" (2006). Validity: the errors of instrument and machine are not separated.
 #pragma once
 
 #include <Eigen/Core>

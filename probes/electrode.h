@@ -1,20 +1,20 @@
-// What a capacitive probe says for a gap: the effect of a tilted surface and of stray capacitance.
+// The reading of a capacitive probe over a tilted surface and with stray capacitance; its inverse.
 //
-// A gap is positive, from the electrode to the surface. The reading is the gap for which an ideal
+// A gap is positive, from the electrode to the surface. The reading is the gap at which an ideal
 // probe, whose capacitance is inverse to its gap, would have the same capacitance.
 //
 //   tilt    a circular electrode of radius a over a surface tilted by phi:
 //           m = g (1 + sqrt(1 - (a phi / g)^2)) / 2,   and back:   g = m + (a phi)^2 / (4 m)
-//   stray   a constant capacitance beside the gap, k per length of gap:
+//   stray   a constant capacitance in parallel with the gap, k per length of gap:
 //           m = g / (1 + k g),                         and back:   g = m / (1 - k m)
 //
-// Both together: the tilt first, then the stray capacitance. Both need the gap itself, not its
-// change.
+// The tilt acts first, then the stray capacitance. Both act on the gap itself, not on its change.
 //
 // Units: m, rad, 1/m.
 // Failure: InputError where the edge of the electrode would touch the surface (a phi >= g), or
-// where no finite gap gives the reading (k m >= 1). Source: the integral of 1/gap over the disc,
-// docs/theory-head.md. Validity: straight field lines, no fringe: the gap small against the radius.
+// where no finite gap gives the reading (k m >= 1).
+// Source: the integral of 1/gap over the disc, docs/theory-head.md.
+// Validity: straight field lines without fringe; the gap is small against the radius.
 #pragma once
 
 #include <cmath>
@@ -28,7 +28,7 @@ struct Electrode {
   double stray = 0;   // 1/m: stray capacitance over (permittivity times electrode area)
 };
 
-// What the probe says at the gap `gap` over a surface tilted by `tilt`. T: double or a dual number.
+// The reading at the gap `gap` over a surface tilted by `tilt`. T: double or a dual number.
 template <typename T>
 T ElectrodeReading(const Electrode& electrode, const T& gap, double tilt) {
   using std::sqrt;
@@ -42,7 +42,7 @@ T ElectrodeReading(const Electrode& electrode, const T& gap, double tilt) {
   return tilted / (T(1) + electrode.stray * tilted);
 }
 
-// The gap at which the probe says `reading` over a surface tilted by `tilt`.
+// The gap that gives `reading` over a surface tilted by `tilt`.
 inline double ElectrodeGap(const Electrode& electrode, double reading, double tilt) {
   const double tilted = reading / (1 - electrode.stray * reading);
   const double edge = electrode.radius * tilt / 2;

@@ -27,8 +27,8 @@ double TopArea(const HeadLayout<>& layout) {
   const double longest = std::max({ab, ac, bc});
   if (!(std::abs(area) > kDegenerate * longest * longest)) {
     throw InputError(
-        "probe head: the top probes A, B and C stand on one line, so roll and pitch cannot be told "
-        "apart; check [head.probe_a], [head.probe_b] and [head.probe_c] position_mm");
+        "probe head: the top probes A, B and C stand on one line, so roll and pitch cannot be "
+        "separated; check [head.probe_a], [head.probe_b] and [head.probe_c] position_mm");
   }
   return area;
 }

@@ -1,21 +1,24 @@
-// From five readings to the five errors of the swept axis.
+// The five errors of the swept axis from five readings.
 //
 //   const SmallAngleInversion invert(layout, MovingBody::kTarget);
 //   const HeadErrors<> errors = invert(readings, d);
 //
-// Three inversions, each for both bodies that may move. Frames, units, signs and the order of the
-// readings are those of head_model.h; `exx` is the positioning error where it is known.
+// Three inversions, each for a moving target and for a moving head. Frames, units, signs and the
+// order of the readings are those of head_model.h; `exx` is the positioning error where it is
+// known.
 //   SimplifiedInversion  first order in the errors: the published equations, for any layout;
-//   SmallAngleInversion    exact for SmallAngleReadings;
+//   SmallAngleInversion  exact for SmallAngleReadings;
 //   RigidInversion       exact for RigidReadings, for any measuring lines.
-// The exact ones are closed forms, not iterations: three readings fix the top plane, two more the
-// side plane, and what remains is a quadratic in the yaw (document) or the rotation of two known
-// normals (rigid). Their residual error is rounding.
+// The exact inversions are closed forms without iteration. The three top readings fix the plane of
+// the top face, the two side readings that of the side face. What remains is a quadratic in the yaw
+// (small angles) or the rotation with two known normals (rigid). The residual is rounding.
 //
-// Failure: a constructor throws InputError for a layout that cannot tell the errors apart: top
+// Failure: a constructor throws InputError for a layout that does not determine the errors: top
 // probes on a line, or side probes with the same u. The exact inversions throw NumericalError for
 // readings that no small motion gives (never NaN); SimplifiedInversion does not fail.
-// Source: Kweon, Liu, Yang, equations 8 to 12; the exact ones are derived in docs/theory-head.md.
+// Source: docs/theory-head.md. The published first-order equations, 8 to 12 of Kweon, Liu, Yang,
+// are missing from the copy at hand and are derived again there; the exact inversions are the
+// project's.
 // Validity: SimplifiedInversion neglects second order: for the nominal layout, 1 mrad and 50 um up
 // to 1e-6 rad and 0.09 um, at any travel.
 #pragma once
@@ -24,7 +27,7 @@
 
 namespace abbe::probes {
 
-// The slopes of the plane through three readings, from the layout's inverse computed once.
+// The slopes of the plane through the three top readings; the layout is inverted once.
 class TopPlane {
  public:
   explicit TopPlane(const HeadLayout<>& layout);
@@ -45,7 +48,7 @@ class SimplifiedInversion {
  public:
   SimplifiedInversion(const HeadLayout<>& layout, MovingBody moving);
 
-  // A moving head sees what a target that moves the other way would show at d = 0.
+  // To first order a moving head reads minus what a moving target would give at d = 0.
   HeadErrors<> operator()(const PerProbe<>& readings, double d, double exx = 0) const {
     const auto& [x_a, y_a] = layout_.top[0];
     const auto& [x_d, z_d] = layout_.side[0];
@@ -63,7 +66,7 @@ class SimplifiedInversion {
   HeadLayout<> layout_;
   TopPlane top_;
   double sign_;          // +1 a moving target, -1 a moving head
-  double travels_;       // 1 a moving target, 0 a moving head
+  double travels_;       // 1 a moving target, 0 a moving head: the lever has no travel
   double inverse_span_;  // 1/m: of the side probes along u
 };
 

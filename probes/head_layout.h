@@ -1,4 +1,4 @@
-// Where the five probes of the head stand and which way they look.
+// The positions and measuring directions of the five probes of the head.
 //
 // Frame H, the head frame of one sweep: right-handed (u, s, n), u along the sweep, s the outward
 // normal of the side surface of the target, n that of its top surface. Its origin lies on the edge
@@ -10,7 +10,7 @@
 // starts, so the height of a probe above the surface plays no part.
 //
 // Units: m.
-// Failure: none; a layout that cannot tell the five errors apart is refused by the inversions.
+// Failure: none; the inversions refuse a layout that does not determine the five errors.
 // Source: Kweon, Liu, Yang (docs/theory-head.md), figure 5: A (l, 0), B (0, l), C (0, -l) on top
 // and D (0, l''), E (l, l'') on the side, l = 10 mm, l'' = 20 mm.
 #pragma once
@@ -61,8 +61,7 @@ struct MeasuringLine {
 template <typename T = double>
 using MeasuringLines = PerProbe<MeasuringLine<T>>;
 
-// The lines of a head that stands as drawn: along n for the top probes, along s for the side
-// probes.
+// The lines of an ideal head: along n for the top probes, along s for the side probes.
 template <typename T>
 MeasuringLines<T> LinesOf(const HeadLayout<T>& layout) {
   MeasuringLines<T> lines;

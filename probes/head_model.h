@@ -1,22 +1,23 @@
-// What the five probes read when the swept axis has moved by d with its six errors.
+// The readings of the five probes when the swept axis has moved by d with its six errors.
 //
 // Frame H = (u, s, n) of head_layout.h; errors carry the source's letters x, y, z for u, s, n. A
 // reading is the change of the coordinate of the surface under the probe since the sweep started
-// without error, along the outward normal: Delta = zero_gap - gap, positive when the target comes
-// nearer. Signs: d > 0 when the moving body goes towards +u; angles follow the right-hand rule.
+// without error, along the outward normal: Delta = zero_gap - gap, positive when the gap gets
+// smaller. Signs: d > 0 when the moving body goes towards +u; angles follow the right-hand rule.
 //
-// Two models, each for both bodies that may move:
-//   SmallAngleReadings  the source's model: the pose of the moved body is d plus the small-angle
-//                     matrix I + [EAX EBX ECX]x, which is solved exactly but is no rotation;
-//   RigidReadings     the moved body turns by the full rotation exp([EAX EBX ECX]x), which knows no
-//                     order of the three angles; the plane of the target is cut by the measuring
-//                     line of the probe, whichever way the line points.
+// Two models, each for a moving target and for a moving head:
+//   SmallAngleReadings  the source's model: the moved body is shifted by d and turned by the
+//                       small-angle matrix I + [EAX EBX ECX]x, which is no rotation; solved exactly
+//   RigidReadings       the moved body turns by the full rotation exp([EAX EBX ECX]x), in which the
+//                       three angles have no order; the measuring line of a probe, in any
+//                       direction, is intersected with the plane of the target
 // They differ by half a product of two angles times the lever: 0.04 um at 1 mrad and 60 mm.
 //
-// Units: m and rad. Shapes: five readings in the order A, B, C, D, E. T is any scalar, also a jet
-// of Ceres. Failure: none; the angles must stay well below 1 rad, where a line meets the plane.
+// Units: m and rad. Shapes: five readings in the order A, B, C, D, E. T is any scalar, also
+// ceres::Jet. Failure: none; the angles must be well below 1 rad, so that each line meets its
+// plane.
 // Source: Kweon, Liu, Yang (docs/theory-head.md), equations 2 to 7. The matrix printed there has
-// lost the sign of its -EBX entry; the equations are right. The case of a moving head is the
+// lost the sign of its -EBX entry; the equations are right. The model of a moving head is the
 // project's. Validity: a rigid target with flat faces that are square to each other.
 #pragma once
 
@@ -59,6 +60,7 @@ T SmallAngleSide(const HeadErrors<T>& e, const T& x, const T& z, const T& d) {
                           e.ecx * (lever + (z - e.ezx) * e.ebx));
 }
 
+// The five readings of the small-angle model. For a moving head it is linear in the errors.
 template <typename T>
 PerProbe<T> SmallAngleReadings(const HeadLayout<T>& layout, MovingBody moving,
                                const HeadErrors<T>& e, const T& d) {
@@ -76,7 +78,7 @@ PerProbe<T> SmallAngleReadings(const HeadLayout<T>& layout, MovingBody moving,
   return delta;
 }
 
-// The moved body's frame seen from where it would be at d = 0 without error.
+// The pose of the moved body relative to its pose at d = 0 without error.
 template <typename T>
 geometry::Transform<T> MovedPose(const HeadErrors<T>& e, const T& d) {
   geometry::ErrorVector<T> errors;
@@ -84,6 +86,7 @@ geometry::Transform<T> MovedPose(const HeadErrors<T>& e, const T& d) {
   return geometry::ErrorTransform(errors);
 }
 
+// The five readings of the rigid model.
 template <typename T>
 PerProbe<T> RigidReadings(const MeasuringLines<T>& lines, MovingBody moving, const HeadErrors<T>& e,
                           const T& d) {

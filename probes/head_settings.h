@@ -5,7 +5,7 @@
 //
 // Frames: H, the head frame (u, s, n) of head_layout.h; M, the machine frame. SI units.
 // Failure: InputError with file, line and key, also for an unknown key in one of these tables.
-// Every key stands in docs/machine-file.md.
+// docs/machine-file.md lists every key.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +25,7 @@ namespace abbe::probes {
 struct ProbeSettings {
   double range;                    // m: the largest gap
   std::optional<double> zero_gap;  // m: gap at the start; without it the mean of the first station
-  double gain;                     // what the probe shows = gain * Delta
+  double gain;                     // change of the reading = gain * Delta
 };
 
 // Standard deviations that remain after manufacture and mounting.
@@ -36,7 +36,7 @@ struct HeadTolerance {
   double gain;            // relative
 };
 
-// Where the head frame stands in the machine for the sweep of one axis.
+// The pose of the head frame in the machine for the sweep of one axis.
 struct AxisFrame {
   Eigen::Matrix3d R_MH;  // columns u, s, n
   Eigen::Vector3d p_MH;  // m: the origin of H when the sweep starts
@@ -49,7 +49,7 @@ struct HeadSettings {
   Installation<> installation;
   HeadTolerance tolerance;
   std::array<AxisFrame, 3> axes;  // of the sweeps of X, Y, Z
-  // Keys that move results and that the file leaves to their defaults: "head.axis_X.position_mm".
+  // Missing keys whose defaults affect results: "head.axis_X.position_mm".
   std::set<std::string> assumed;
 
   // The largest gap of each probe, m.
@@ -71,7 +71,7 @@ struct TargetSettings {
 
 struct ProbeNoise {
   double probe;       // m: standard deviation of one reading of one probe
-  double drift;       // m: standard deviation of the slow drift
+  double drift;       // m: standard deviation of its drift
   double drift_time;  // s: its correlation time
 };
 

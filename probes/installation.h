@@ -1,4 +1,4 @@
-// How a head that is mounted askew moves its measuring lines.
+// The measuring lines of a head that is mounted with small angles and offsets.
 //
 // Frame H of head_layout.h. The fixture is turned about the origin of H and then shifted; a point p
 // of the fixture as drawn goes to R p + offset with R = Rx(roll) Ry(pitch) Rz(yaw), the source's
@@ -8,7 +8,7 @@
 // Source: Kweon, Liu, Yang (docs/theory-head.md), the transform before equation 16. Its printed
 // entry (2,3), -sin(pitch) sin(roll), must be -cos(pitch) sin(roll), or the matrix is no rotation.
 // Validity: InstalledLines is exact. InstalledLayout is the source's first-order form, in which the
-// lines keep their direction: per surface only the coordinates in it move. It neglects the square
+// lines keep their direction: only their coordinates in the surface change. It neglects the square
 // of the angles times the position (0.04 um for 2 mrad and 10 mm, in the position of a probe, so
 // 1e-3 of that in a reading at 1 mrad) and the turn of the measuring lines.
 #pragma once

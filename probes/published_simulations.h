@@ -1,26 +1,26 @@
-// Simulations I and II of the head's paper: how far an inversion is off under random errors.
+// Simulations I and II of the head's paper: the errors of an inversion for random error motions.
 //
 //   const SimulationErrors errors =
 //       RunSimulation({.simulation = Simulation::kOne, .inversion = Inversion::kSimplified});
 //   errors[kEcx].worst;  // rad
 //
-// A draw: EAX, EBX, ECX uniform in +-1 mrad, EYX, EZX uniform in +-50 um; SmallAngleReadings of the
-// nominal layout with a moving target; an inversion; error = estimated - true. Draw i stands at
-// station i mod 61 of the travel, so 61 draws in a row are one run of the source. EXX = 0.
-//   kOne  d = 0 ... 60 mm, the head as drawn;
-//   kTwo  d = 0 ... 10 mm, every probe off its place by 10 um in a random direction, the head
-//         installed with yaw = pitch = 2 mrad and 50 um along u, s and n (roll and the turn of the
-//         measuring lines play no part in the source's model). The inversion knows the nominal
-//         layout only, unless it is kCalibrated.
+// A draw takes EAX, EBX, ECX uniform in +-1 mrad, EYX, EZX uniform in +-50 um and EXX = 0,
+// computes SmallAngleReadings for a moving target and inverts them; error = estimated - true. Draw
+// i is at station i mod 61 of the travel, so 61 draws in a row are one run of the source.
+//   kOne  d = 0 ... 60 mm, the nominal layout;
+//   kTwo  d = 0 ... 10 mm, every probe displaced by 10 um in a random direction, the head
+//         installed with yaw = pitch = 2 mrad and 50 um along u, s and n (the source's model has
+//         neither roll nor the turn of the measuring lines). The inversion uses the nominal
+//         layout, unless it is kCalibrated.
 //
 // Random numbers: 32-bit uniforms from the words of random/counter_words.h, five a draw in kOne,
 // ten in kTwo; in each block of 256 draws, word 256 c + i is number c of draw i. The result is a
-// pure function of simulation, inversion, draws and seed, whatever the number of threads.
+// pure function of simulation, inversion, draws and seed; it does not depend on the threads.
 //
 // Units: m and rad.
 // Failure: InputError for no draws or a negative number of threads.
-// Source: Kweon, Liu, Yang (docs/theory-head.md), sections 5 and 6 and appendix. What it
-// found is in BoundsOf.
+// Source: Kweon, Liu, Yang (docs/theory-head.md), sections 5 and 6 and appendix; BoundsOf has its
+// results.
 #pragma once
 
 #include <array>
@@ -32,9 +32,9 @@ namespace abbe::probes {
 enum class Simulation { kOne, kTwo };
 
 enum class Inversion {
-  kSimplified,  // the source's, first order
+  kSimplified,  // SimplifiedInversion, the source's
   kExact,       // SmallAngleInversion for the nominal layout
-  kCalibrated,  // SmallAngleInversion for the layout as it really stands; in kOne the same as kExact
+  kCalibrated,  // SmallAngleInversion for the actual layout; in kOne the same as kExact
 };
 
 struct SimulationOptions {
@@ -42,7 +42,7 @@ struct SimulationOptions {
   Inversion inversion = Inversion::kSimplified;
   std::uint64_t draws = 20000;
   std::uint64_t seed = 1;
-  int threads = 0;  // 0: as many as there are
+  int threads = 0;  // 0: all
 };
 
 struct ErrorStatistics {

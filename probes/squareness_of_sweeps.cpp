@@ -26,7 +26,7 @@ void RefuseUnlessComparable(const SweepResult& one, const SweepResult& other,
   for (const SweepResult* sweep : {&one, &other}) {
     if (sweep->mounting.empty()) {
       throw InputError(
-          fmt::format("{}the header of {} does not say `mounting`; state the same mounting "
+          fmt::format("{}the header of {} does not state `mounting`; state the same mounting "
                       "in both if the target was not moved between them, else measure again",
                       both, sweep->recording));
     }
@@ -64,7 +64,7 @@ SquarenessResult SquarenessOfSweeps(const SweepResult& one, const SweepResult& o
   const SweepResult& second = in_order ? other : one;
   const StraightnessFigures& of_first = StraightnessOf(first, second.axis);
   const StraightnessFigures& of_second = StraightnessOf(second, first.axis);
-  // Over the way of the carriage in the machine, not over the numbers of the control.
+  // Slopes over the travel of the carriage in M; the control may count the other way.
   const standards::Line a{.slope = first.sense * of_first.slope.value};
   const standards::Line b{.slope = second.sense * of_second.slope.value};
   SquarenessResult result{};

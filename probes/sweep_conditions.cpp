@@ -9,7 +9,7 @@
 namespace abbe::probes {
 namespace {
 
-// Of the values in good rows that are numbers; NaN when there are none.
+// Over the rows with a number and without a flag; NaN where there are none.
 Spread SpreadOf(const recording::Recording& recording, std::span<const double> values) {
   const auto flags = recording.Find("flags");
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// Under which conditions a recording was made: temperatures, duration, feed.
+// The conditions of a recording: temperatures, duration, feed.
 #pragma once
 
 #include <string>
@@ -17,14 +17,14 @@ struct SweepConditions {
     std::string name;  // of the column: "temp_column_c"
     Spread spread;     // degC
   };
-  std::string started;  // as the header says it
+  std::string started;  // as stated in the header
   double duration = 0;  // s
   double feed = 0;      // m/s, the largest commanded one
   std::vector<Temperature> temperatures;
-  bool simulated = false;  // no machine was measured: the header says so
+  bool simulated = false;  // the header states that no machine was measured
 };
 
-// Rows with a flag do not count. Any recording with the column time_s.
+// Over the rows without a flag of any recording with the column time_s.
 SweepConditions ConditionsOf(const recording::Recording& recording);
 
 }  // namespace abbe::probes

@@ -58,7 +58,7 @@ Rows RowsOf(const recording::Recording& recording, char axis) {
   return rows;
 }
 
-// Gathers the rows of the run at hand and turns them into a dwell when it ends.
+// Gathers the rows of the current run and turns them into a dwell when it ends.
 class DwellFinder {
  public:
   DwellFinder(const DwellRule& rule, SweepDwells& found) : rule_(rule), found_(found) {}
@@ -126,8 +126,8 @@ class DwellFinder {
   const DwellRule& rule_;
   SweepDwells& found_;
   bool open_ = false;
-  Dwell dwell_;                    // the one at hand: its beginning
-  double start_ = 0.0, at_ = 0.0;  // s and mm, there
+  Dwell dwell_;                    // the open one
+  double start_ = 0.0, at_ = 0.0;  // s and mm, at its first row
   double time_ = 0.0;              // s, sum
   double first_time_ = 0.0, last_time_ = 0.0;
   double position_ = 0.0;
@@ -206,7 +206,7 @@ void DropDwells(SweepDwells& found, const std::function<bool(const Dwell&)>& unw
   });
 }
 
-// Standstills outside the passes, turning points and other short stops are no dwells.
+// Drops standstills outside the passes, turning points and other short stops.
 void DropOtherStandstills(SweepDwells& found) {
   DropDwells(found, [](const Dwell& dwell) { return dwell.pass == 0 || dwell.direction == 0; });
   if (found.dwells.empty()) return;

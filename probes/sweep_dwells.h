@@ -1,11 +1,11 @@
-// The standstills of a sweep and what each probe read during each of them: the only part of the
-// reduction that looks at single rows.
+// The dwells of a sweep (its standstills) and the gap of each probe in each of them: the only part
+// of the reduction that reads single rows.
 //
 // A dwell is a run of consecutive rows of one pass and direction whose position stays within
 // `window` of its first row; its first `settle` seconds do not count. Pass 0 and direction 0 are
-// outside the sweep, and runs that keep fewer than a quarter of the usual number of rows are no
-// dwells (turning points). The gap of a dwell is a Huber-type robust mean. Dwells nearer to each
-// other than `window` belong to one station.
+// outside the sweep; runs with fewer than a quarter of the usual number of rows are turning points,
+// not dwells. The gap of a dwell is a Huber-type robust mean. Dwells nearer to each other than
+// `window` belong to one station.
 //
 // Units: m, s. Rows with a flag or a NaN are left out and counted; a gap in an unflagged row that
 // is negative or above its probe's range is an InputError with file, row, probe, value and range.
@@ -50,9 +50,8 @@ struct SampleCounts {
 // The scatter of single readings within the dwells, pooled over all of them.
 struct Scatter {
   double white = 0.0;  // m, standard deviation; 0 when no dwell has two rows
-  double lag1 =
-      0.0;  // correlation of neighbouring readings, corrected for the dwells' finite length
-  double dof = 0.0;  // degrees of freedom of `white`
+  double lag1 = 0.0;   // correlation of neighbouring readings, without the bias of short dwells
+  double dof = 0.0;    // degrees of freedom of `white`
 };
 
 struct SweepDwells {
@@ -69,7 +68,7 @@ struct SweepDwells {
 DwellRule DwellRuleOf(const recording::Recording& recording);
 
 // `recording` is of kind sweep; `ranges` are the largest gaps of the probes, m. One pass over the
-// rows. Of a long recording `head` needs no rows, and memory is that of a block and of a dwell.
+// rows, holding one block and one dwell in memory; `head` needs no rows of its own.
 SweepDwells FindDwells(const recording::Recording& head, const recording::Blocks& blocks,
                        const DwellRule& rule, const PerProbe<>& ranges);
 SweepDwells FindDwells(const recording::Recording& recording, const DwellRule& rule,

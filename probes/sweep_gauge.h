@@ -1,10 +1,11 @@
-// What a sweep cannot see, taken out in one way everywhere: an angle is counted from the first
-// station, a straightness from its least-squares line (whose slope is mounting tilt and
-// squareness).
+// The gauge of a sweep: the constants that a sweep does not determine, removed in one way
+// everywhere. An angle is counted from the first station, a straightness from its least-squares
+// line, whose slope is mounting tilt and squareness.
 //
-// A gauge is linear, y = G x, over the groups of a sweep, which are numbered station * directions +
-// k. Its reference is the mean of the directions, so a reversal passes through unchanged. Units:
-// those of the values. Shapes: values are groups x anything. Failure: none.
+// A gauge is linear, y = G x, over the groups of a sweep, which are numbered
+// station * directions + k. Its reference is the mean of the directions, so it leaves a reversal
+// error unchanged. Units: those of the values. Shapes: values are groups x any number of columns.
+// Failure: none.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +23,7 @@ class SweepGauge {
   Eigen::MatrixXd Apply(Kind kind, const Eigen::MatrixXd& values) const;
   // G V G^T, V groups x groups.
   Eigen::MatrixXd Covariance(Kind kind, const Eigen::MatrixXd& covariance) const;
-  // The mean over the directions: stations x anything.
+  // The mean over the directions: stations x columns of `values`.
   Eigen::MatrixXd StationMeans(const Eigen::MatrixXd& values) const;
   // The slope of the least-squares line is slope_weights . values, 1/m.
   const Eigen::VectorXd& slope_weights() const { return slope_weights_; }

@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::string_view kRotationLetters = "ABC";
 
-// The tilt of the target's surface against the face of the probe, as far as it is known: a moving
-// target turns away from the installed head, a moving head turns with its installation.
+// The angle between the target's surface and the face of the probe: error minus installation angle
+// where the target moves, their sum where the head moves.
 double TiltUnder(std::size_t probe, MovingBody moving, const HeadErrors<>& errors,
                  const Installation<>& installed) {
   const double sense = moving == MovingBody::kTarget ? -1.0 : 1.0;
@@ -79,8 +79,8 @@ GroupReadings SweepInversion::Deltas(const GroupReadings& readings,
   GroupReadings delta = gap_to_delta(readings);
   const bool tilts = head_.electrode.radius > 0.0;
   if (!tilts && head_.electrode.stray == 0.0) return delta;
-  // The tilt response needs the tilt, which needs the gaps: the second round is exact to 1e-6 of
-  // it.
+  // The response depends on the tilt, and the tilt on the gaps: the second round is exact to 1e-6
+  // of the response.
   for (int round = 0; round < (tilts ? 2 : 1); ++round) {
     GroupReadings gaps = readings;
     for (Eigen::Index group = 0; group < gaps.cols(); ++group) {

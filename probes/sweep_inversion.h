@@ -1,21 +1,22 @@
-// From mean gaps to the five errors of the swept axis in the names of ISO 230-1, at the target and
-// at the axis reference.
+// The five errors of the swept axis in the names of ISO 230-1 from mean gaps, at the target and at
+// the axis reference.
 //
-//   1. reading -> gap: tilt response and stray capacitance of the electrode
-//   2. Delta = (zero_gap - gap) / gain; the zero is the machine file's, else the mean of the first
-//   station
-//   3. exact inversion with full rotations, for the body that the chain lets move -> errors in H
-//   4. turned into the machine frame M: for Y, roll = EBY, pitch = -EAY, yaw = ECY
-//   5. from the target, where a straightness is measured, to the axis reference, where the map
-//   wants it:
-//      t_reference = t_target - w x r, for X: EYX = EYX_target - r_x ECX + r_z EAX
+//   1. reading -> gap: inverse response of the electrode to tilt and stray capacitance
+//   2. Delta = (zero_gap - gap) / gain; zero_gap is that of the machine file, else the mean of the
+//      first station
+//   3. errors in H: exact inversion with full rotations, for the body that the chain moves
+//   4. errors in the machine frame M: for Y, roll = EBY, pitch = -EAY, yaw = ECY
+//   5. from the target, where a straightness is measured, to the axis reference of the error map:
 //
-// r is the head's origin at the start of the sweep, seen from the reference point of the swept
-// axis' carriage, which has moved with the axes between it and the bed. Angles are the same at
-// both.
+//        t_reference = t_target - w x r,   for X:   EYX = EYX_target - r_x ECX + r_z EAX
+//
+// w are the three angles. r goes from the reference point of the swept axis's carriage to the
+// origin of the head, both at the start of the sweep; the axes that move that carriage have moved
+// its reference point. Angles are the same at both places.
 //
 // Units: m, rad. Failure: InputError when the head has no frame for the axis, or where the
-// electrode response has no inverse.
+// electrode response has no inverse; NumericalError for readings that no small motion gives.
+// Source: docs/theory-head.md.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,8 +33,7 @@ namespace abbe::probes {
 
 inline constexpr int kComponents = 5;
 
-// What the rows of an error matrix are, e.g. for X: EAX EBX ECX EYX EZX; for Z: EAZ EBZ ECZ EXZ
-// EYZ.
+// A row of an error matrix. Order for X: EAX EBX ECX EYX EZX; for Z: EAZ EBZ ECZ EXZ EYZ.
 struct Component {
   std::string name;
   std::string kind;  // "roll", "pitch", "yaw" or "straightness"
@@ -60,14 +60,14 @@ class SweepInversion {
 
   // How far the carriage has gone towards +u since the start, m.
   double Travel(double position) const { return sense_ * (position - start_); }
-  // +1 where the carriage goes towards +u as the number rises, else -1 (machine/chain.h).
+  // +1 where the carriage moves towards +u as the axis position increases, else -1
+  // (machine/chain.h).
   double sense() const { return sense_; }
 
-  // Errors per group, before any gauge. `first` groups, the first ones, belong to the first
-  // station.
+  // Errors per group, before any gauge. The first `first` groups belong to the first station.
   GroupErrors Errors(const GroupReadings& readings, const Eigen::VectorXd& positions,
                      Eigen::Index first) const;
-  // The derivative of Errors by Delta, group by group, by central differences.
+  // The derivatives of Errors with respect to Delta, group by group, by central differences.
   std::vector<GroupJacobian> Jacobians(const GroupReadings& readings,
                                        const Eigen::VectorXd& positions, Eigen::Index first) const;
 

@@ -137,8 +137,7 @@ class ComponentEvaluation {
             .slope = {w.dot(raw), std::sqrt(std::max(0.0, w.dot(raw_V * w)))}};
   }
 
-  // The degrees of freedom of Welch and Satterthwaite; all sources but the noise are known as they
-  // are stated.
+  // Effective degrees of freedom by Welch and Satterthwaite; only the noise has finitely many.
   double Freedom(double noise, double total) const {
     if (noise <= 0.0 || means_.noise.u_dof <= 0.0) return kKnown;
     return means_.noise.u_dof * std::pow(total / noise, 4.0);
@@ -164,8 +163,8 @@ int PassesOf(const std::vector<Dwell>& dwells) {
   return static_cast<int>(passes.size());
 }
 
-// What the place of the head moves, in um for each mm of it: the straightness that the measured
-// angles make at the end of that lever.
+// The effect of an error in the position of the head, in um per mm: the straightness that the
+// measured angles produce at the end of such a lever.
 std::string LeverText(const SweepResult& result, const GroupErrors& errors,
                       const SweepGauge& gauge) {
   std::string text;
@@ -182,7 +181,7 @@ std::string LeverText(const SweepResult& result, const GroupErrors& errors,
       }
       const Eigen::VectorXd bow = gauge.StationMeans(gauge.Apply(SweepGauge::Kind::kLine, moved));
       text += fmt::format("{} {:.2g}", along == 0 ? "" : ",",
-                          (bow.maxCoeff() - bow.minCoeff()) * 1e3);  // um for a mm
+                          (bow.maxCoeff() - bow.minCoeff()) * 1e3);  // um per mm
     }
   }
   return text;

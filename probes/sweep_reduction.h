@@ -1,15 +1,15 @@
-// The reduction of an axis sweep: from a recording of five gaps to five error motions with
-// uncertainty.
+// The reduction of an axis sweep: five error motions with uncertainty from a recording of five
+// gaps.
 //
 //   const auto document = settings::Document::Read("machine.toml");
 //   const SweepSetup setup = ReadSweepSetup(document.Root());
 //   const SweepResult result = ReduceSweep(recording::Read("sweep_X.csv"), setup);
 //
 // Steps, one header each: sweep_dwells.h (rows -> dwells), sweep_stations.h (dwells -> station
-// means), sweep_inversion.h (means -> errors), sweep_gauge.h, sweep_uncertainty.h. What is in the
-// result: sweep_result.h. The page for users: docs/sweep.md.
+// means), sweep_inversion.h (means -> errors), sweep_gauge.h, sweep_uncertainty.h. sweep_result.h
+// describes the result, docs/sweep.md the use.
 //
-// Failure: InputError for a recording that is no sweep, an impossible gap, fewer than three
+// Failure: InputError for a recording of another kind, an impossible gap, fewer than three
 // stations; NumericalError for readings that no small motion gives.
 #pragma once
 
@@ -28,6 +28,7 @@ struct SweepSetup {
   ProbeNoise noise;
 };
 
+// InputError with file, line and key.
 SweepSetup ReadSweepSetup(const settings::Table& root);
 
 SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup& setup);

@@ -1,8 +1,8 @@
-// What the reduction of one sweep found.
+// The result of the reduction of one sweep.
 //
 // Errors are actual - nominal in the symbols of ISO 230-1, in the machine frame. Gauge: an angle is
 // zero at the first station, a straightness is the deviation from its least-squares line over the
-// stations. u is a standard uncertainty that holds the whole budget; U95 = coverage * u.
+// stations. u is the combined standard uncertainty of all sources; U95 = coverage * u.
 // Units: m, rad, s. Shapes: one value per station unless said otherwise; lists per dwell are in the
 // order of time.
 #pragma once
@@ -27,13 +27,14 @@ struct Uncertain {
   double u = 0.0;
 };
 
-// forward - backward (ISO: up - down). Where there is none at all, one of the fifteen means of
-// three axes is `seen` in 1 % of all machines (Bonferroni), as far as the noise model holds.
+// The reversal error, forward - backward (ISO: up - down). On a machine without any, the
+// probability that one or more of the fifteen means of three axes are `seen` is 1 % (Bonferroni),
+// if the noise model holds.
 struct Reversal {
   Eigen::VectorXd value, u;
   Uncertain mean;
   Uncertain largest;  // by magnitude, with its sign
-  bool seen;          // the mean is beyond chance
+  bool seen;          // the mean is significant
 };
 
 // A reference line through ComponentResult::value over the stations, and the error about it.
@@ -45,7 +46,7 @@ struct LineFigure {
 struct StraightnessFigures {
   LineFigure end_points, least_squares, minimum_zone;
   double u;         // m, of the error about the least-squares line
-  Uncertain slope;  // rad: of the least-squares line over the positions, which the gauge took off
+  Uncertain slope;  // rad: of the least-squares line over the positions, removed by the gauge
 };
 
 struct ComponentResult {
@@ -56,9 +57,8 @@ struct ComponentResult {
   std::optional<Reversal> reversal;  // both directions measured
   std::optional<Uncertain> range;    // of an angle: largest - smallest
   std::optional<StraightnessFigures> straightness;
-  std::array<double, kSources>
-      budget;       // rms over the stations of the standard uncertainty by source
-  double coverage;  // of U95: Student's t at the effective degrees of freedom
+  std::array<double, kSources> budget;  // standard uncertainty by source, rms over the stations
+  double coverage;                      // of U95: Student's t at the effective degrees of freedom
 };
 
 struct SweepResult {
@@ -67,7 +67,7 @@ struct SweepResult {
   MovingBody moving = MovingBody::kTarget;
   double sense = 1.0;    // of the axis: CarriageSense, machine/chain.h
   std::string positive;  // "tool" or "carriage": how its control counts
-  std::string mounting;  // as the header says it; empty when it does not
+  std::string mounting;  // as stated in the header, else empty
   SweepConditions conditions;
   std::vector<double> stations;  // m, ascending
   int passes = 0;
@@ -76,7 +76,7 @@ struct SweepResult {
   std::vector<Dwell> dwells;
   GroupReadings residual;  // per dwell: dwell - mean of its station and direction
   NoiseFigures noise;
-  std::vector<std::string> notes;  // what the user must know, one sentence each
+  std::vector<std::string> notes;  // for the user, one sentence each
 };
 
 }  // namespace abbe::probes

@@ -74,7 +74,7 @@ void RefuseNoGaps(const std::string& name, const SweepDwells& sweep, const HeadS
       head.probes.front().range / kMicrometre));
 }
 
-// The names of the probes of which `is` holds: "probe_a, probe_c".
+// The names of the probes for which `is` returns true: "probe_a, probe_c".
 template <typename Is>
 std::string ProbesThat(Is is) {
   std::string names;

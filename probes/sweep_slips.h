@@ -1,13 +1,13 @@
-// What a sweep shows when its numbers are not those of the axes and the probes: registers that are
-// misread, units that are mistaken, an amplifier that is off.
+// Checks of a sweep for readings that are not those of its axes and probes: wrong registers, wrong
+// units, an amplifier that is switched off.
 //
-// Refused, for no error can follow from them: positions far outside the travels
-// (machine/plausible_position.h), probes that show the same in every dwell, five gaps that are next
-// to nothing beside the probes' ranges. Said in a note, for they may be true: no noise at all,
-// noise a hundred times what the machine file states or a hundredth of it, passes that agree far
-// better than their noise allows.
+// RefuseSlips throws where no result is possible: positions far outside the travels
+// (machine/plausible_position.h), a probe with the same reading in every dwell, five gaps that are
+// below 1/500 of the ranges. SlipNotes warns where the readings may be true: no noise at all, noise
+// a hundred times that of the machine file or a hundredth of it, passes that agree far better than
+// their noise allows.
 //
-// Failure: InputError naming the recording, the row or the probe, and what to do.
+// Failure: InputError with the recording, the row or the probe, and what to do.
 #pragma once
 
 #include <string>
@@ -20,11 +20,11 @@
 
 namespace abbe::probes {
 
-// `name` stands for the recording in messages.
+// `name` is the recording in messages.
 void RefuseSlips(const std::string& name, const SweepDwells& sweep, const machine::Machine& machine,
                  const HeadSettings& head);
 
-// One sentence each.
+// Warnings for the user, one sentence each.
 std::vector<std::string> SlipNotes(const SweepDwells& sweep, const NoiseFigures& noise,
                                    const ProbeNoise& stated);
 

@@ -17,7 +17,7 @@ namespace abbe::probes {
 namespace {
 
 constexpr double kSignificance = 0.99;
-constexpr double kFewDwells = 10.0;  // degrees of freedom within the dwells that give a scatter
+constexpr double kFewDwells = 10.0;  // fewest degrees of freedom within the dwells for a scatter
 constexpr double kLeastVariance = 1e-24;  // m^2: a noise-free recording is known to 1 pm
 
 Eigen::Index Row(std::size_t probe) { return static_cast<Eigen::Index>(probe); }
@@ -106,12 +106,11 @@ class DwellFit {
   int group_count_ = 0;
 };
 
-// The variance of a dwell's mean from the scatter within the dwells. The mean over a dwell of
-// length T has s^2 T / (3 tau) less of the drift's variance than the drift at one time, to first
-// order in T / tau.
+// The variance of a dwell's mean from the scatter within the dwells. Averaging over the length T of
+// a dwell reduces the drift's variance S^2 by S^2 T / (3 tau), to first order in T / tau.
 Eigen::MatrixXd WhiteFromWithin(const StationMeans& means, const PerProbe<Scatter>& scatter,
                                 const ProbeNoise& noise) {
-  constexpr double kLeastShare = 0.1;  // of the white variance stays where the drift dominates
+  constexpr double kLeastShare = 0.1;  // of the white variance is kept where the drift dominates
   Eigen::MatrixXd white(means.dwells.size(), kProbes);
   for (std::size_t probe = 0; probe < kProbes; ++probe) {
     const double r = std::clamp(scatter[probe].lag1, 0.0, 0.99);
@@ -132,7 +131,7 @@ Eigen::MatrixXd Constant(const StationMeans& means, double variance) {
                                    std::max(variance, kLeastVariance));
 }
 
-// The variance of a dwell that makes the scatter between the passes as large as it is: chi2 = dof.
+// The variance of a dwell for which the scatter between the passes has chi2 = dof.
 double WhiteFromPasses(const DwellFit& fit, StationMeans& means) {
   double low = 1e-12, high = 1e-3;  // m
   for (int step = 0; step < 50; ++step) {
@@ -170,7 +169,8 @@ Eigen::MatrixXd ChooseWhite(const SweepDwells& sweep, const ProbeNoise& noise, c
   return Constant(means, noise.probe * noise.probe);
 }
 
-// The scatter between the passes checks the model; it may say that the model promises too much.
+// Tests the noise model against the scatter between the passes; where that is significantly larger,
+// scales the covariances up.
 void CheckAgainstPasses(double chi2, double dof, StationMeans& means) {
   means.noise.chi2 = chi2;
   means.noise.dof = dof;
@@ -183,11 +183,11 @@ void CheckAgainstPasses(double chi2, double dof, StationMeans& means) {
   means.noise.scale = std::sqrt(chi2 / dof);
   means.noise.u_dof = dof;
   for (Eigen::MatrixXd& covariance : means.covariance) covariance *= chi2 / dof;
-  means.notes.push_back(
-      fmt::format("the passes scatter {:.2f} times more than the noise model says: the noise part "
-                  "of u is scaled "
-                  "up by it; look for drift, vibration or a loose mounting, or correct [noise]",
-                  means.noise.scale));
+  means.notes.push_back(fmt::format(
+      "the passes scatter {:.2f} times more than the noise model predicts: the noise part "
+      "of u is scaled "
+      "up by it; look for drift, vibration or a loose mounting, or correct [noise]",
+      means.noise.scale));
 }
 
 void FillResidualsAndFigures(const SweepDwells& sweep, const DwellFit& fit, StationMeans& means) {

@@ -1,7 +1,7 @@
-// From the dwells of a sweep to one mean gap per station, direction of approach and probe, with the
+// The mean gap per station, direction of approach and probe from the dwells of a sweep, with the
 // covariance of these means.
 //
-// Generalised least squares: a dwell is its group's mean + the drift of the probe at that time +
+// Generalised least squares. A dwell is its group's mean + the drift of the probe at that time +
 // white noise. The drift is the Ornstein-Uhlenbeck process of the machine file, independent for
 // each probe; the white variance of a dwell is
 //
@@ -9,10 +9,10 @@
 //
 //   s, r    scatter and lag-1 correlation of the readings within the dwells, pooled over all dwells
 //   n, T    readings and length of the dwell
-//   S, tau  standard deviation and time of the drift, part of which the mean over T takes out
+//   S, tau  standard deviation and correlation time of the drift, which averaging over T reduces
 //
-// Recordings with one reading per dwell have no such scatter: the variance is then taken from the
-// scatter between the passes, or, with one pass, from the machine file.
+// With one reading per dwell there is no such scatter: the variance is then that of the scatter
+// between the passes or, with one pass, that of the machine file.
 //
 // Groups are numbered station * directions + k, k in the order of `directions`. Units: m, s.
 // Failure: InputError when fewer than three stations were approached from every direction of the
@@ -31,7 +31,7 @@ namespace abbe::probes {
 struct ProbeFigures {
   double white;  // m, standard deviation of one reading
   double lag1;   // correlation of neighbouring readings
-  double drift;  // m, standard deviation of the dwells about their group beyond the white noise
+  double drift;  // m, standard deviation of the dwells about their group, white noise subtracted
 };
 
 struct NoiseFigures {
@@ -53,12 +53,12 @@ struct StationMeans {
       residual;           // m, per dwell: dwell - mean of its group
   Eigen::MatrixXd white;  // m^2, dwells x probes: variance of a dwell without its drift
   NoiseFigures noise;
-  std::vector<std::string> notes;  // what the user must know, one sentence each
+  std::vector<std::string> notes;  // for the user, one sentence each
 
   Eigen::Index groups() const { return position.size(); }
 };
 
-// `name` stands for the recording in messages.
+// `name` is the recording in messages.
 StationMeans FitStations(const std::string& name, const SweepDwells& sweep,
                          const ProbeNoise& noise);
 

@@ -33,7 +33,7 @@ SweepUncertainty::SweepUncertainty(const machine::Machine& machine, const HeadSe
   const auto errors = [&](const HeadSettings& changed) {
     return SweepInversion(machine, changed, axis, start).Errors(means.gap, means.position, first_);
   };
-  // The parameter is reached in a copy of the head.
+  // `parameter` selects the value to vary, in a copy of the head.
   const auto add = [&](Columns& columns, double sd,
                        const std::function<double&(HeadSettings&)>& parameter) {
     if (sd == 0.0) return;

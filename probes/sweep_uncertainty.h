@@ -5,17 +5,17 @@
 //   position      of each probe in the fixture (head.tolerance.probe_position)
 //   installation  of the head: three angles, three offsets (head.tolerance)
 //   form          of the target: a Gaussian process over each face with standard deviation
-//   target.form
-//                 and correlation exp(-(distance / form_length)^2 / 2), seen where each measuring
-//                 line meets the face: at u - d where the target moves, at u + d where the head
-//                 moves, so probes that follow each other along one line see the same form one
-//                 after the other
+//                 target.form and correlation exp(-(distance / form_length)^2 / 2)
 //
-// The inversion is exactly determined (five readings, five errors), so no source can be told from
-// the errors by the data and all enter as stated. Sources beyond the noise are normal with the
-// standard deviations of the machine file; their columns are central differences of the exact
-// inversion over
-// +-1 standard deviation. Checked by GUM Supplement 1 Monte Carlo through the exact inversion.
+// A reading contains the form at the point where its measuring line meets the face: at u - d where
+// the target moves, at u + d where the head moves. Probes that follow each other along one line
+// therefore read the same form one after the other.
+//
+// The inversion is exactly determined (five readings, five errors), so the data cannot separate a
+// source from the errors and every source enters with its stated uncertainty. The sources other
+// than noise and form are normal with the standard deviations of the machine file; their columns
+// are central differences of the exact inversion over +-1 standard deviation. The tests check the
+// sum against a Monte Carlo through the exact inversion (GUM Supplement 1).
 //
 // Units: rad^2 for an angle, m^2 for a straightness. Shapes: groups x groups.
 // Validity: second order in the tolerances is neglected, 1e-3 of each column at 500 urad and 10 um.
@@ -49,7 +49,7 @@ class SweepUncertainty {
  private:
   using Columns = std::vector<GroupErrors>;  // one per parameter, times its standard deviation
 
-  // The covariance of Delta by the form of the face that two probes look at.
+  // The covariance of Delta of two probes by the form of the face that both read.
   struct FormOfPair {
     std::size_t p, q;
     Eigen::MatrixXd V;
@@ -59,8 +59,8 @@ class SweepUncertainty {
   Eigen::MatrixXd NoiseCovariance(Eigen::Index row) const;
   Eigen::MatrixXd FormCovariance(Eigen::Index row) const;
   Eigen::MatrixXd ColumnCovariance(const Columns& columns, Eigen::Index row) const;
-  // V of one pair of probes as it reaches Delta: the mean of the first station is taken off where
-  // it serves as the zero.
+  // Turns the covariance V of the gaps of two probes into that of their Delta: subtracts the mean
+  // of the first station where that is the zero.
   void TakeZero(std::size_t row_probe, std::size_t column_probe, Eigen::MatrixXd& V) const;
   Eigen::VectorXd Sensitivity(Eigen::Index row, std::size_t probe) const;
 

@@ -16,7 +16,7 @@
 namespace abbe::relm {
 namespace {
 
-// Of each angle in (-pi, pi].
+// Each angle in (-pi, pi].
 Eigen::VectorXd Principal(Eigen::VectorXd angles) {
   for (double& angle : angles) {
     angle = std::remainder(angle, 2 * std::numbers::pi);
@@ -71,7 +71,7 @@ std::optional<Eigen::VectorXd> ChainInverse::Find(const Eigen::Vector3d& p_BT,
   }
   if (!p_BT.allFinite() || !near.allFinite()) return std::nullopt;
   Search search = Run(p_BT, near);
-  // A search that stops at rounding is met; 16 eps of the reach is what the forward sum can hold.
+  // The remaining distance may be rounding: 16 eps of the reach is that of the forward sum.
   const double met = std::max(options_.tolerance, 16 * std::numeric_limits<double>::epsilon());
   if (!(search.miss <= met * reach_) || search.singular < options_.singular * reach_) {
     return std::nullopt;
@@ -101,7 +101,7 @@ Eigen::VectorXd ChainInverse::Angles(const Eigen::Vector3d& p_BT,
 std::vector<Eigen::VectorXd> ChainInverse::Branches(const Eigen::Vector3d& p_BT) const {
   if (chain_.joints() != 3) {
     throw InputError(fmt::format(
-        "linkage: branches are told for three joints, this chain has {}; give a start to Angles",
+        "linkage: branches are found for three joints, this chain has {}; give a start to Angles",
         chain_.joints()));
   }
   constexpr std::array kStarts{-2.7, -1.6, -0.5, 0.5, 1.6, 2.7};

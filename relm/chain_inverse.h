@@ -5,15 +5,16 @@
 //   const std::vector<Eigen::VectorXd> branches = inverse.Branches(p_BT);
 //
 // A chain has no closed form in general. The search starts at `near` and takes damped Gauss-Newton
-// steps until the ball is met; so a start on the right branch stays on it (follow a path from pose
-// to pose). With more joints than three the solution of least change from the start is one of many.
+// steps until the ball is reached. It stays on the branch of a start that is near: a path is
+// followed from pose to pose. With more than three joints the solution is one of many.
 // Branches() starts from a fixed set of angles and returns the distinct solutions, for chains of
 // three joints; their order is that of the first angle, then the second, then the third.
 // Units: m, rad; angles in (-pi, pi] from Branches, near the start from Angles.
-// Failure: Angles throws NumericalError with the distance that is left (out of reach) or the pose
-// that is singular: smallest singular value of J_tip_q below `singular` times the reach; Find and
+// Failure: Angles throws NumericalError with the remaining distance (out of reach) or for a
+// singular pose: smallest singular value of J_tip_q below `singular` times the reach; Find and
 // Branches return nothing instead. Never NaN. InputError when `near` has the wrong number of
-// angles. Source: Levenberg-Marquardt as in Nocedal, Wright, "Numerical Optimization" (2006),
+// angles, and from Branches for a chain that has not three joints.
+// Source: Levenberg-Marquardt as in Nocedal, Wright, "Numerical Optimization" (2006),
 // chapter 10. Validity: residual below `tolerance`; a branch whose basin none of the starts meets
 // is missed (none in the tests).
 #pragma once
@@ -27,7 +28,7 @@
 namespace abbe::relm {
 
 struct InverseOptions {
-  double tolerance = 1e-12;  // of the reach: when the ball counts as met
+  double tolerance = 1e-12;  // of the reach: remaining distance at which the ball is reached
   double singular = 1e-6;    // of the reach
   int max_steps = 100;
 };

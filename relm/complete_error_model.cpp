@@ -1,5 +1,5 @@
-// Every small motion of every axis of any chain, and what the encoders, the bearings, gravity and
-// warmth add.
+// Every small motion of every axis of any chain, and the errors by encoders, bearings, gravity and
+// temperature.
 
 #include <cmath>
 
@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kLeastAcross = 1e-9;  // m
 
-// The coordinate direction that stands best across `axis`, made exactly so.
+// The coordinate direction nearest to perpendicular to `axis`, made perpendicular.
 Vector3d AnyAcross(const Vector3d& axis) {
   Index smallest = 0;
   axis.cwiseAbs().minCoeff(&smallest);

@@ -24,10 +24,11 @@ std::string ErrorModelName(ErrorModel model) {
 }
 
 ErrorModel ErrorModelNamed(std::string name) {
+  const std::string text = name;
   std::ranges::replace(name, ' ', '-');
   const auto found = std::ranges::find(kErrorModelNames, name);
   if (found == kErrorModelNames.end()) {
-    throw InputError(fmt::format("\"{}\" is no error model of the linkage; write one of {}", name,
+    throw InputError(fmt::format("\"{}\" is no error model of the linkage; write one of {}", text,
                                  ErrorModelNames()));
   }
   return static_cast<ErrorModel>(found - kErrorModelNames.begin());

@@ -9,22 +9,22 @@
 // PublishedErrorModel (Boelens (2006)), the displacement equation of segments 0 ... S-1:
 //   blocks  link: segment_1 ... | tilt: head_x head_y | radial_angle: pivot_1 ... segment_... |
 //           bearing: pivot_1_sin_1 pivot_1_cos_1 pivot_1_sin_2 ... (with bearing only)
-//   With six segments and three encoders these are 5 + 2 + 5 = 12 and 12 more with two harmonics.
-//   The document counts the twelve but does not list them. The five radial angles here are the
-//   angles of the encoders and the turn of each later pivot about the longest segment before it:
-//   with them the twelve are the eleven of the RELM paper and the offset of pivot 3.
+//   Six segments and three encoders have 5 + 2 + 5 = 12 of them, two harmonics add 12. Boelens
+//   counts the twelve but does not list them. The five radial angles here are the angles of the
+//   encoders and the twist of each later pivot about the longest segment before it; with them the
+//   twelve are the eleven of the RELM paper and the offset of pivot 3.
 //
 // CompleteErrorModel, any chain of n joints, every small motion of every axis:
 //   blocks  tilt: pivot_i_u pivot_i_v | shift: pivot_i_u pivot_i_v | ball: along across axial |
 //           encoder_offset | eccentricity: pivot_i_sin pivot_i_cos | graduation |
 //           bearing: pivot_i_u_sin_1 pivot_i_u_cos_1 ... pivot_i_v_sin_1 ... |
 //           compliance | expansion: after_pivot_i
-//   A tilt or a shift of an axis carries the axis and all that is mounted on it. A bearing shifts
-//   its axis in both directions across it, as the part that carries the pivot sees them.
-//   4 per joint and 3 of the ball leave no geometric error out. An encoder offset is a combination
-//   of those, but it has a tolerance of its own, so it has a parameter of its own; the prior
-//   decides what the data cannot tell apart. u is the direction across the axis nearest to the
-//   link that arrives there, v = axis x u.
+//   A tilt or a shift of an axis moves the axis and all that is mounted on it. The run-out of a
+//   bearing shifts its axis in both directions across it, in the frame of the part that carries
+//   the pivot. 4 parameters per joint and 3 of the ball describe every geometric error. An encoder
+//   offset is a combination of these; it is a parameter because it has a tolerance of its own, and
+//   the priors separate what the data cannot. u is the direction across the axis nearest to the
+//   link that ends there, v = axis x u.
 //
 // Angles in rad, lengths in m. Link lengths have their nominal length as value, all other
 // parameters are deviations from zero. Failure: InputError when the settings lack what a model

@@ -1,12 +1,11 @@
-// The one seam between the error models of the linkage and those who use them: an estimator, a
-// simulation or a report asks for names, priors, tips and derivatives and does not know which model
-// it holds.
+// The common interface of the error models of the linkage: an estimator, a simulation or a report
+// asks for names, priors, tips and derivatives and does not depend on the model.
 //
 //   const LinkageModel model = MakeLinkageModel(settings, ErrorModel::kComplete);
 //   problem.Add(block) for each of model.blocks();
 //   model.Tips(readings, x, tips, &J_tip_x);       // x: all entries of all blocks, in order
 //
-// Frames: B, the nominal linkage base; T, the ball centre. The pose X_MB of the base is no part of
+// Frames: B, the nominal linkage base; T, the ball centre. The pose X_MB of the base is not part of
 // a model: it belongs to the run.
 // Units: m, rad, K. Shapes: tips 3 x poses; the Jacobian by the parameters has the rows x, y, z of
 // pose 0, then those of pose 1, ... and one column per parameter.
@@ -28,8 +27,8 @@ namespace abbe::relm {
 
 using estimation::RowMatrix;
 
-// What the encoders say in some poses, one column each, and how much warmer than the reference
-// temperature the links are (empty: not at all).
+// The encoder angles of some poses, one column each, and the temperature of the links above the
+// reference (empty: zero).
 struct LinkageReadings {
   Eigen::MatrixXd angles;  // joints x poses, rad
   Eigen::VectorXd warmth;  // K
@@ -39,7 +38,7 @@ struct LinkageReadings {
 struct TipDerivatives {
   Eigen::Vector3d tip;  // p_BT, m
   RowMatrix J_tip_x;    // 3 x parameters
-  RowMatrix J_tip_q;    // 3 x joints, by the encoder angles
+  RowMatrix J_tip_q;    // 3 x joints, with respect to the encoder angles
 };
 
 class LinkageModel {
@@ -53,9 +52,10 @@ class LinkageModel {
   const SerialChain& chain() const { return motions_.chain(); }  // without errors
   Eigen::Index joints() const { return chain().joints(); }
   Eigen::Index parameters() const { return motions_.parameters(); }
-  Eigen::VectorXd Values() const;          // x as the blocks have it; nominal when just made
+  Eigen::VectorXd Values() const;          // x of the blocks; nominal at first
   std::vector<std::string> Names() const;  // "block.entry", in the order of x
 
+  // One pose; `warmth`: K above the reference temperature.
   Eigen::Vector3d Tip(const Eigen::VectorXd& angles, double warmth, const Eigen::VectorXd& x) const;
   TipDerivatives Differentiate(const Eigen::VectorXd& angles, double warmth,
                                const Eigen::VectorXd& x) const;

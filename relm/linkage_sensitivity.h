@@ -1,4 +1,5 @@
-// What the tolerances of a linkage do to the tip: one parameter at a time, and Sobol's indices.
+// The effect of the tolerances of a linkage on its tip: one parameter at a time, and Sobol's
+// indices.
 //
 //   const SensitivityVolume cube{.size = {0.025, 0.025, 0.050}};
 //   const auto poses = PosesInVolume(settings, cube);
@@ -11,8 +12,8 @@
 // Frames: the volume stands in M as the workpiece carries it (linkage_settings.h, NominalTip).
 // Units: m, rad. Failure: InputError for a volume without size or fewer than two points an edge;
 // NumericalError when a pose is out of reach or singular.
-// Source: estimation/sobol_indices.h. Validity: the links at their reference temperature unless
-// `warmth` says otherwise: without warmth the expansion does nothing.
+// Source: estimation/sobol_indices.h. Validity: with `warmth` 0 the links are at their reference
+// temperature, and the expansion has no effect.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,7 +33,7 @@ struct SensitivityVolume {
   int points = 3;                                    // along each edge
 };
 
-// What the encoders of the nominal linkage say at the points of the volume; its centre first.
+// The encoder angles of the nominal linkage at the points of the volume; its centre first.
 LinkageReadings PosesInVolume(const LinkageSettings& settings, const SensitivityVolume& volume,
                               double warmth = 0);
 
@@ -47,9 +48,9 @@ struct ParameterSensitivity {
   std::string name;  // "block.entry"
   estimation::PrintUnit unit;
   double tolerance;  // SI: the prior's standard deviation
-  double alone;      // m: tip error, root mean square over the poses, when only this one is off by
-                     // its tolerance
-  double worst;      // m: the largest of them
+  double alone;      // m: tip error, root mean square over the poses, when only this parameter
+                     // deviates, by its tolerance
+  double worst;      // m: the largest of these tip errors
   estimation::SobolIndex share;  // of the mean squared tip error of all parameters together
 };
 

@@ -69,8 +69,8 @@ std::vector<int> ReadOrders(const Table& table, const char* key,
 }
 
 // Two links and three pivots as six segments with the encoders on theta 0, phi 2 and phi 4. The
-// segments 1, 3 and 5 have no length: pivot 2 beside pivot 1, pivot 3 above the end of link 1, and
-// the ball beside link 2, along the axis of pivot 3.
+// segments 1, 3 and 5 have zero length: pivot 2 beside pivot 1, pivot 3 above the end of link 1,
+// and the ball beside link 2, along the axis of pivot 3.
 std::vector<Segment> SegmentsOf(const PivotLinkage& linkage) {
   return {{.encoder = SegmentEncoder::kTheta},
           {.phi = kRightAngle},
@@ -119,7 +119,7 @@ SerialChain ReadAxes(const Table& linkage) {
   return SerialChain(std::move(axes), Triple(linkage.Quantities("ball_mm", 3)));
 }
 
-// The chain of one of the forms, with what the form knows besides.
+// The chain of one of the forms, with its closed form and segments where it has them.
 struct Form {
   std::optional<PivotLinkage> pivots;
   std::vector<Segment> segments;
@@ -143,7 +143,7 @@ Form ReadForm(const Table& table) {
     return {std::nullopt, {}, form == "axes" ? ReadAxes(table) : ReadRows(table)};
   } catch (const InputError& error) {
     const std::string_view message = error.what();
-    constexpr std::string_view kOwn = "linkage: ";  // of the chain, which knows no file
+    constexpr std::string_view kOwn = "linkage: ";  // prefix of the chain, which has no file
     if (!message.starts_with(kOwn)) throw;
     throw table.Error("", message.substr(kOwn.size()));
   }

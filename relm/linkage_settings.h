@@ -8,7 +8,7 @@
 // perfect machine stands at p_MT = (sx x, sy y, sz z) for the axis positions (x, y, z), s = -1 for
 // an axis that carries the workpiece, +1 for one that carries the tool. SI units.
 // Failure: InputError with file, line and key, also for an unknown key in [linkage].
-// Every key stands in docs/machine-file.md.
+// docs/machine-file.md lists every key.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,7 +38,7 @@ struct LinkageTolerance {
   double base_position;   // m: of the base in the machine, each direction
   double base_angle;      // rad: about each axis
   double ball;            // m: of the ball's centre across the last link
-  double compliance;      // rad: given up by a pivot under a horizontal link
+  double compliance;      // rad: deflection of a pivot under a horizontal link
   double thermal;         // 1/K: of the coefficient of expansion
 };
 
@@ -52,7 +52,7 @@ struct LinkageNoise {
 struct LinkageSettings {
   SerialChain chain;
   std::optional<PivotLinkage> pivots;  // form "pivots": the closed form of the same chain
-  Branch branch;                       // where the linkage works; form "pivots" only
+  Branch branch;                       // of the workspace; form "pivots" only
   std::vector<Segment> segments;       // forms "pivots" and "segments"
   geometry::Transform<double> X_MB;    // nominal
   Eigen::Vector3d down_M;              // the direction of gravity
@@ -69,7 +69,7 @@ struct LinkageSettings {
 
 LinkageSettings ReadLinkageSettings(const settings::Table& root);
 
-// Where the ball of a perfect machine stands in M.
+// p_MT, m: the ball of a perfect machine.
 Eigen::Vector3d NominalTip(const machine::Chain& chain, const Eigen::Vector3d& axis_positions);
 
 // The parameters of each model: error_models.h. InputError when `settings` lack what it needs.

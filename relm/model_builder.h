@@ -1,5 +1,5 @@
-// Puts an error model together: first the motions from base to ball, then the parameters block by
-// block, each with what it does. Used by the error models only.
+// Builds an error model: first the motions from base to ball, then the parameters block by block,
+// each with its effect. Used by the error models only.
 //
 //   ModelBuilder model(settings);
 //   const int tilt = model.motions.Turn(point, direction);
@@ -7,7 +7,7 @@
 //   model.Entry("pivot_1_x", settings.tolerance.pivot_angle, {.motion = tilt});
 //   return model.Build("pivots");
 //
-// A tolerance of zero says that the parameter is known: it is held.
+// A parameter with a tolerance of zero is known: it is held.
 #pragma once
 
 #include <string>
@@ -23,13 +23,13 @@ class ModelBuilder {
  public:
   explicit ModelBuilder(const LinkageSettings& settings);
 
-  // Begins a block; one that gets no entry is left out.
+  // Begins a block; a block without entries is left out.
   void Block(const std::string& name, const estimation::PrintUnit& unit);
   // A deviation from zero with the prior `sd`; `effect.parameter` is filled in.
   void Entry(const std::string& name, double sd, Effect effect);
   // A parameter with a nominal value, whose effects vanish at `rest`.
   void Entry(const std::string& name, double sd, Effect effect, double nominal, double rest);
-  // Sine and cosine of the harmonics of a joint's angle, "<prefix>_sin_<order>".
+  // Sine and cosine amplitudes of harmonics of a joint's angle, "<prefix>_sin_<order>".
   void HarmonicEntries(const std::string& prefix, double sd, int motion, int joint,
                        const std::vector<int>& orders);
 

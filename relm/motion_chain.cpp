@@ -89,7 +89,7 @@ void MotionChain::Amounts(const double* angles, double warmth, const double* x,
 void MotionChain::LeanSlopes(const double* angles, Workspace& w) const {
   w.lean_slopes.setZero(joints(), joints());
   if (!gravity_) return;
-  Eigen::Matrix3Xd slopes(3, joints());  // of the direction of gravity as the link sees it
+  Eigen::Matrix3Xd slopes(3, joints());  // of the direction of gravity in the frame of the link
   Vector3d down = down_B_;
   for (Eigen::Index i = 0; i < joints(); ++i) {
     const Vector3d& axis = chain_.axes()[At(i)].direction;
@@ -121,7 +121,7 @@ double MotionChain::BasisSlope(const Effect& effect, Eigen::Index joint, const W
 Vector3d MotionChain::Differentiate(const double* angles, double warmth, const double* x,
                                     double* J_tip_x, double* J_tip_q, Workspace& w) const {
   Amounts(angles, warmth, x, w);
-  // Outwards: where each line stands once the motions before it are done.
+  // From the base outwards: each line as moved by the motions before it.
   const auto count = static_cast<Eigen::Index>(motions_.size());
   w.lines.resize(3, count);
   w.points.resize(3, count);
@@ -143,7 +143,7 @@ Vector3d MotionChain::Differentiate(const double* angles, double warmth, const d
   }
   const Vector3d tip = R * chain_.tip() + p;
 
-  // What each motion does to the tip replaces its line.
+  // The derivative of the tip by each amount replaces its line.
   for (Eigen::Index k = 0; k < count; ++k) {
     if (motions_[At(k)].kind == MotionKind::kTurn) {
       w.lines.col(k) = Vector3d(w.lines.col(k)).cross(tip - w.points.col(k));

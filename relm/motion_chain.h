@@ -1,8 +1,8 @@
 // A chain of small and large motions whose amounts depend linearly on error parameters: the common
 // form of every error model of the linkage.
 //
-// A motion is a turn about a line or a shift along a direction, both fixed in B while nothing has
-// moved; the ball is carried by all of them, from the last to the first:
+// A motion is a turn about a line or a shift along a direction, both given in B for amounts of
+// zero. The ball is moved by all of them, from the last to the first:
 //
 //   p_BT = M1 M2 ... Mk p_BT(0)
 //
@@ -16,7 +16,7 @@
 // Frames: B, the linkage base; T, the ball. Units: m, rad, K. Shapes: `angles` one per joint, `x`
 // one per parameter; T is any scalar, also ceres::Jet. Failure: none; a wrong index is a
 // programming error. Source: docs/theory-linkage.md. Validity: the lean under gravity is taken on
-// the nominal chain at the encoder angles: what an error of 1 mrad changes in it is 0.1 % of the
+// the nominal chain at the encoder angles: an error of 1 mrad changes it by 0.1 % of the
 // compliance.
 #pragma once
 
@@ -69,8 +69,8 @@ class MotionChain {
   Eigen::Index joints() const { return chain_.joints(); }
   Eigen::Index parameters() const { return static_cast<Eigen::Index>(rest_.size()); }
 
-  // The first link after a joint that stands across its axis: a unit vector across the axis, in B
-  // at zero angles; zero where there is none.
+  // The direction of the first link after a joint that is not parallel to its axis: a unit vector
+  // across the axis, in B at zero angles; zero without such a link.
   Eigen::Vector3d ArmAfter(int joint) const;
   // Whether that arm ever leans about the joint under gravity.
   bool FeelsGravity(int joint) const;
@@ -90,7 +90,7 @@ class MotionChain {
                                 double* J_tip_x, double* J_tip_q, Workspace& workspace) const;
 
  private:
-  // Of the multiples 0 ... orders_ - 1 of each angle: joint * orders_ + order.
+  // Sine and cosine of the multiples 0 ... orders_ - 1 of each angle, at joint * orders_ + order.
   template <typename T>
   void Harmonics(const T* angles, T* sines, T* cosines) const;
   template <typename T>
@@ -130,7 +130,7 @@ void MotionChain::Harmonics(const T* angles, T* sines, T* cosines) const {
   }
 }
 
-// lean_i = (axis_i x arm_i) . g_i, where g_i is the direction of gravity as link i sees it.
+// lean_i = (axis_i x arm_i) . g_i, where g_i is the direction of gravity in the frame of link i.
 template <typename T>
 void MotionChain::Leans(const T* angles, T* leans) const {
   if (!gravity_) return;

@@ -1,10 +1,10 @@
-// What the encoders of a perfect linkage say with the ball in a given place.
+// The encoder angles of a perfect linkage for a ball position.
 //
 //   const Eigen::VectorXd angles = NominalAngles(settings, settings.X_MB.Inverse() * p_MT);
 //
-// Form "pivots" takes the closed form on the branch of the machine file. Any other chain is
-// searched from `near`, or from half a radian at each joint: give the angles of a neighbouring pose
-// to stay on a branch.
+// Form "pivots" takes the closed form on the branch of the machine file. For any other chain a
+// search starts at `near`, without it at half a radian for each joint: give the angles of a
+// neighbouring pose to stay on a branch.
 // Frames: B, the linkage base; T, the ball. Units: m, rad. Failure: NumericalError when the ball is
 // out of reach or the pose singular, with what to do. Validity: pivot_linkage.h, chain_inverse.h.
 #pragma once

@@ -2,7 +2,7 @@
 //
 //   const PivotLinkage linkage(0.120, 0.120);
 //   const Eigen::Vector3d p_BT = linkage.Tip({q1, q2, q3});
-//   const PivotPose pose = linkage.Angles(p_BT, {Elbow::kUp});      // throws when out of reach
+//   const Eigen::Vector3d angles = linkage.Angles(p_BT, {Elbow::kUp});   // throws out of reach
 //
 // Frames: B, the linkage base: z along pivot 1, pivots 1 and 2 meet in its origin; T, the ball
 // centre. q1 turns about z, q2 about the y axis that q1 has turned (q2 > 0 lowers link 1), q3 about
@@ -13,11 +13,12 @@
 //
 // Units: m, rad. Shapes: angles [q1 q2 q3], one pose a column in the batch functions.
 // Failure: the constructor throws InputError for a length that is not positive and finite; Angles
-// throws NumericalError that says how far off the ball is. The batch functions throw nothing: a
+// throws NumericalError with the distance of the ball. The batch functions do not throw: a
 // pose without solution has its Reach and zeros, never NaN. The forward function always succeeds.
-// Source: the RELM paper, equations 1 to 3; its printed inverse is lost, docs/theory-linkage.md
-// derives this one. Validity: exact. Tip of single poses is correct to rounding; the batch
-// functions may use the C library's vector functions (4 units in the last place).
+// Source: the RELM paper, equations 1 to 3; its inverse is missing from the copy at hand,
+// docs/theory-linkage.md derives this one. Validity: exact. Tip of single poses is correct to
+// rounding; the batch functions may use the C library's vector functions (4 units in the last
+// place).
 #pragma once
 
 #include <Eigen/Core>
@@ -32,7 +33,7 @@ namespace abbe::relm {
 enum class Elbow { kUp, kDown };
 
 // One of the four solutions. `reach_over`: q1 points away from the ball and the arm bends back over
-// the axis of pivot 1; the ball and the elbow stand where they stand without it.
+// the axis of pivot 1; ball and elbow are at the same places as without it.
 struct Branch {
   Elbow elbow = Elbow::kUp;
   bool reach_over = false;
@@ -60,12 +61,12 @@ class PivotLinkage {
   // Whether a ball position has angles; a pose nearer to singular than sin(angle) = kSingular
   // counts as singular.
   Reach ReachOf(const Eigen::Vector3d& p_BT) const;
-  // The angles of a branch: q1 and q2 in (-pi, pi], q3 in (-pi, pi].
+  // The angles of a branch, each in (-pi, pi].
   Eigen::Vector3d Angles(const Eigen::Vector3d& p_BT, const Branch& branch) const;
   // The same without exception: empty when the pose has no angles or is singular.
   std::optional<Eigen::Vector3d> FindAngles(const Eigen::Vector3d& p_BT,
                                             const Branch& branch) const;
-  // The branch on which a pose stands, to continue on it.
+  // The branch of a pose, to continue on it.
   Branch BranchOf(const Eigen::Vector3d& angles) const;
 
   // Many poses: one column each. Outputs are resized. Returns how many poses were reached.

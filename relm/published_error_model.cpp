@@ -14,9 +14,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kAcrossFrom = 0.5;  // sine of the angle from which a segment stands across an axis
+constexpr double kAcrossFrom = 0.5;  // least sine between an axis and a segment across it
 
-// A segment as it stands in B at encoder zero.
+// A segment in B at encoder zero.
 struct PlacedSegment {
   Vector3d start;
   Vector3d direction;
@@ -89,8 +89,8 @@ Motions AddMotions(const LinkageSettings& settings, const std::vector<PlacedSegm
   return motions;
 }
 
-// A segment of no length stands for an offset, and for what leans that the model does not have do
-// at the end of a link.
+// A segment of zero length represents an offset, and the effect at the end of a link of tilts that
+// the model lacks.
 double OffsetDeviation(const LinkageSettings& settings) {
   double longest = 0.0;
   for (const Segment& segment : settings.segments) longest = std::max(longest, segment.length);
@@ -118,7 +118,7 @@ void AddGeometry(const LinkageSettings& settings, const Motions& motions, ModelB
   }
 }
 
-// The run-out of a pivot lengthens the first segment after it that stands across its axis.
+// The run-out of a pivot lengthens the first segment after it that lies across its axis.
 void AddBearing(const LinkageSettings& settings, const std::vector<PlacedSegment>& placed,
                 const Motions& motions, ModelBuilder& model) {
   model.Block("bearing", kMicrometres);

@@ -72,8 +72,8 @@ double SerialChain::Reach() const {
 }
 
 Eigen::Matrix3Xd SerialChain::JacobianTipAngles(const Eigen::VectorXd& angles) const {
-  // From the tip inwards: a turn by q_i moves the tip by axis x arm, and everything before joint i
-  // only turns that.
+  // From the tip inwards: a turn by q_i moves the tip by axis x arm; the joints before i rotate
+  // that derivative.
   Eigen::Matrix3Xd J(3, joints());
   Vector3d p = tip_;
   for (Eigen::Index i = joints(); i-- > 0;) {

@@ -4,8 +4,8 @@
 //   const Eigen::Vector3d p_BT = arm.Tip(angles);
 //   const Eigen::Matrix3Xd J_tip_q = arm.JacobianTipAngles(angles);
 //
-// Frames: B, the linkage base; T, the ball centre. A joint axis is the line in B on which the joint
-// stands while all angles are zero; a positive angle turns what follows by the right-hand rule
+// Frames: B, the linkage base; T, the ball centre. A joint axis is the line of the joint in B with
+// all angles at zero; a positive angle turns what follows by the right-hand rule
 // about `direction`. With the tip p_BT(0) the chain is complete:
 //
 //   p_BT = exp([s1] q1) exp([s2] q2) ... exp([sn] qn) p_BT(0)
@@ -32,8 +32,8 @@ struct JointAxis {
   Eigen::Vector3d direction;  // in B, a unit vector
 };
 
-// One segment of Boelens (2006): S = Rz(theta) Ry(phi), then L along the new z. Where an angle
-// carries an encoder, the number is what the angle is at encoder zero.
+// One segment of Boelens (2006): S = Rz(theta) Ry(phi), then L along the new z. The value of an
+// angle with an encoder is the angle at encoder zero.
 enum class SegmentEncoder { kNone, kTheta, kPhi };
 struct Segment {
   double length = 0;  // m

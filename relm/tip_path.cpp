@@ -28,7 +28,7 @@ std::vector<Column> AngleColumns(const recording::Recording& recording, Eigen::I
   return columns;
 }
 
-// Empty when the settings name none or the recording lacks it.
+// The temperature of the links; empty when the settings name no column or the recording lacks it.
 Column TemperatureColumn(const recording::Recording& recording, const LinkageSettings& settings) {
   if (settings.temperature.empty()) return {};
   return recording.Find(settings.temperature).value_or(Column{});
@@ -41,8 +41,8 @@ double Finite(const recording::Recording& recording, Column column, std::size_t 
                                recording.first_row + row + 1, name));
 }
 
-// An encoder turns less than half a turn from row to row, or its counter has wrapped or slipped;
-// how long it had is not known where the header says that only the order of the rows is.
+// An encoder turns by less than half a turn from row to row, or its counter has wrapped or slipped.
+// Not checked where the header states that only the order of the rows is known, not their times.
 void RefuseJump(const recording::Recording& recording, const GoodReadings& good,
                 Eigen::Index pose) {
   if (pose == 0 || recording.HeaderText("time").value_or("") == "order") return;

@@ -1,17 +1,17 @@
-// From a recording to the path of the ball: direct evaluation, no fit.
+// The path of the ball from a recording of the encoders, by direct evaluation.
 //
 //   const TipPath path = EvaluateTipPath(recording, settings, model, model.Values());
 //   path.tips            // 3 x poses, in B
 //   InFrame(X_MB, path.tips)
 //
-// Takes the columns pivot_1_rad ... pivot_N_rad, the temperature of the settings where the
-// recording has it, and leaves out rows with a flag other than 0. `rows` tells which rows of the
-// recording are left, so that positions, pass and direction are found again.
+// Reads the columns pivot_1_rad ... pivot_N_rad and, where the recording has it, the temperature
+// column of the settings. Rows with a flag other than 0 are left out; `rows` are the indices of the
+// others, for their positions, pass and direction.
 // Frames: B, the linkage base; T the ball. Units: m, rad, s. Shapes: one column per pose.
 // Failure: InputError with the recording's name for a missing column, an angle that is not finite
-// in a row without a flag, or no good row at all. A step of more than half a turn between
-// neighbouring rows is an InputError too: the encoder has wrapped or slipped there. Validity: that
-// of the model.
+// in a row without a flag, or no such row. A step of more than half a turn between
+// neighbouring rows is an InputError too: the encoder has wrapped or slipped there.
+// Validity: that of the model.
 #pragma once
 
 #include <Eigen/Core>

@@ -2,19 +2,18 @@
 // squarenesses.
 //
 // Population: each function is a stationary Gaussian process (gaussian_field.h) with the standard
-// deviation and the correlation length of the machine file, and after the draw
+// deviation and the correlation length of the machine file. After the draw
 //  - every function is shifted to be zero at the axis reference, the end of the travel where the
-//    carriage stands lowest in M;
+//    carriage is lowest in M;
 //  - a straightness loses the slope of its least-squares line over the full travel (uniform
-//  weight),
-//    because the slope of an axis is its squareness;
+//    weight), because the slope of an axis is its squareness;
 //  - a positioning error gains the slope of the axis's scale error.
 //
 // Order: [EXX EYX EZX EAX EBX ECX] and alike for Y and Z, m then rad, in the machine frame: for
-// every axis entry 0, 1, 2 is the translation along x, y, z and 3, 4, 5 the turn about x, y, z.
-// The positioning error is counted as the controller counts the axis (rig_settings.h), the other
-// five in M; the functions are drawn over where the carriage stands, so a machine that is counted
-// the other way is the same machine.
+// every axis entry 0, 1, 2 is the translation along x, y, z and 3, 4, 5 the turn about x, y, z. The
+// positioning error has the sign of the axis as the controller counts it (rig_settings.h), the
+// other five that of M. The functions are drawn over the position of the carriage in M, so a
+// machine whose controller counts the other way has the same errors.
 // Squareness: the X line is the primary, the XY plane the secondary: a positive C0Y turns the Y
 // line about +z, A0Z and B0Z turn the Z line about +x and +y.
 #pragma once
@@ -41,7 +40,7 @@ class AxisErrors {
  public:
   AxisErrors(const RigSettings& settings, int axis, std::uint64_t seed);
 
-  // At a position as the controller counts, m; defined also outside the travel.
+  // At a position of the controller, m; defined also outside the travel.
   Motions At(double position) const;
   double scale() const { return scale_; }
 
@@ -49,11 +48,11 @@ class AxisErrors {
   int axis_;
   double sense_;
   double smoothness_;
-  double low_, high_;  // m, where the carriage stands at the ends of its travel
+  double low_, high_;  // m, of the carriage in M at the ends of its travel
   double scale_;
   std::vector<GaussianProcess> functions_;
   Motions offsets_ = Motions::Zero();  // value of the processes at the reference
-  Motions slopes_ = Motions::Zero();   // taken off
+  Motions slopes_ = Motions::Zero();   // subtracted
 };
 
 struct Squareness {
@@ -64,8 +63,8 @@ struct Squareness {
   Eigen::Vector3d LineOf(int axis) const;
 };
 
-// Where a carriage takes what it carries, seen from what carries it: the line, the error motion and
-// the turn act at the reference point, which travels with the carriage.
+// The displacement of what a carriage carries, relative to what carries the carriage: line, error
+// motion and turn act at the reference point, which travels with the carriage.
 Displacement CarriageDisplacement(const Eigen::Vector3d& line, const Eigen::Vector3d& reference,
                                   double position, const Motions& errors);
 

@@ -31,7 +31,7 @@ constexpr double kWarmer = 3.0;            // K
 constexpr double kTargetShift = 3e-3;      // m
 constexpr std::uint64_t kFirstRun = 0x40;  // its noise is that of no single recording
 
-// What is smaller in a reduced campaign.
+// The sizes that differ between a whole and a reduced campaign.
 struct Size {
   std::size_t stations;  // of a sweep, at most; 0: those of the machine file
   double sweep_rate;     // Hz; no divisor of the mains in a reduced campaign
@@ -43,7 +43,7 @@ struct Size {
 const Size kWhole{0, 200.0, 0.0, {7, 7, 12}, 100.0, 0.5, 0.0};
 const Size kReduced{16, 1.0 / 0.047, 180.0, {4, 4, 5}, 50.0, 0.1, 4e-3};
 
-// One recording to be made.
+// One recording of the plan.
 struct Step {
   std::string name;
   double duration;  // s, at most
@@ -56,7 +56,7 @@ struct Step {
   std::string started = {};
 };
 
-// Which head, target, elbow and base; what the headers say of them.
+// The mounting of head and target, elbow and base of the linkage; their header entries.
 struct Place {
   Mounting mounting = {};
   const char* id = "first";
@@ -100,7 +100,7 @@ class CampaignMaker {
   }
 
  private:
-  // ---- what is recorded, in its order
+  // ---- the recordings, in order
   void AddRuns() {
     const bool standard = plan_.kind != CampaignKind::kMinimal;
     for (const char axis : {'X', 'Y', 'Z'}) AddSweep(axis, standard ? 5 : 1, kAsMounted);
@@ -268,7 +268,7 @@ class CampaignMaker {
     steps_.push_back({std::move(name), duration, probes, linkage, std::move(record)});
   }
 
-  // ---- when
+  // ---- their times
   void Schedule() {
     double begin = 0.0;
     bool warm = false;
@@ -301,7 +301,7 @@ class CampaignMaker {
   }
   double UpdateStep() const { return 1.0 / machine_.rig.update_rate; }
 
-  // ---- on what
+  // ---- their machines
   const World& WorldOf(const Place& place) {
     auto& world = worlds_[place.mounting.number];
     if (!world) world = std::make_unique<World>(machine_.rig, seed_, made_.hidden, place.mounting);
@@ -336,7 +336,7 @@ class CampaignMaker {
     return smallest;
   }
 
-  // ---- what the headers say
+  // ---- their headers
   static std::string HeadText(const Mounting& mounting) {
     return fmt::format("head = \"{}\"\ntarget_shift_mm = {:.1f}\ntarget_reversed = {}\n",
                        mounting.head_turned ? "180deg" : "0deg",

@@ -1,19 +1,19 @@
 // A whole campaign of measurements on the rig, made in memory: sweeps, courses of the linkage,
-// lengths and standstills, one after the other, on one machine that hides what it was told to.
+// lengths and standstills, one after the other, on one machine with hidden effects.
 //
 //   const CampaignMachine machine = ReadCampaignMachine(document.Root());
 //   HiddenEffects hidden = {ParseHidden("backlash:object=X", 7, machine.sensors)};
-//   const Campaign campaign = RecordCampaign(machine, 7, hidden, {.kind =
-//   CampaignKind::kStandard});
-//   // campaign.recordings: "01_sweep_X", "02_sweep_Y", ...; campaign.hidden: with all its numbers
+//   const Campaign campaign =
+//       RecordCampaign(machine, 7, hidden, {.kind = CampaignKind::kStandard});
+//   // campaign.recordings: "01_sweep_X", "02_sweep_Y", ...; campaign.hidden: with all values drawn
 //
-// docs/virtual-rig.md lists the recordings of each kind and what their headers say. The machine is
-// switched on when the first recording begins: warm-up and instants count from there through all of
-// them, and the temperatures go on from one to the next. Runs that the machine file has no table
-// for (a sweep, the linkage) are left out. `reduced`: the same structure of fewer stations, places
-// and rows, for statistics. The same (machine file, seed, hidden effects, plan) gives the same
+// docs/virtual-rig.md lists the recordings of each kind and their headers. The machine is switched
+// on when the first recording begins; warm-up and instants count from there through all of them,
+// and temperatures continue from one to the next. Runs without a table in the machine file (a
+// sweep, the linkage) are left out. `reduced`: the same structure with fewer stations, places and
+// rows, for statistics. The same (machine file, seed, hidden effects, plan) gives the same
 // campaign, and without effects the same machine as abbe rig serves.
-// Failure: InputError when nothing can be recorded, or a place is out of the linkage's reach.
+// Failure: InputError when nothing can be recorded, or a position is out of the linkage's reach.
 #pragma once
 
 #include <chrono>
@@ -36,8 +36,8 @@ struct CampaignPlan {
 };
 
 struct Campaign {
-  std::vector<recording::Recording> recordings;  // named by number and what they are
-  HiddenEffects hidden;                          // nothing left open
+  std::vector<recording::Recording> recordings;  // named by number and kind
+  HiddenEffects hidden;                          // with all values drawn
 };
 
 Campaign RecordCampaign(const CampaignMachine& machine, std::uint64_t seed, HiddenEffects hidden,

@@ -1,4 +1,4 @@
-// What a campaign of measurements needs of the machine file.
+// The parts of the machine file that a campaign needs.
 //
 // Units: SI. Failure: InputError with file, line and key.
 #pragma once
@@ -21,7 +21,7 @@ struct CampaignMachine {
 };
 CampaignMachine ReadCampaignMachine(const settings::Table& root);
 
-// Leaves about `stations` of the stations of each sweep, the first and the last among them.
+// Keeps about `stations` of the stations of each sweep, with the first and the last.
 void ThinSweeps(CampaignMachine& machine, std::size_t stations);
 
 }  // namespace abbe::rig

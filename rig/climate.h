@@ -1,9 +1,8 @@
-// The temperatures around the machine: a mean and a slow drift of each sensor (noise.h), and what
-// the shop is warmer than usual.
+// The temperatures around the machine: a mean and a slow drift of each sensor (noise.h), and an
+// offset of all of them.
 //
-// A sensor is known by the name of its column; one that is asked for the first time gets the next
-// stream of numbers. Time is s since the start of the recording, or of the campaign whose
-// recordings share a climate. degC.
+// A sensor is identified by the name of its column; a new name gets the next random stream. Time is
+// s since the start of the recording, or of the campaign whose recordings share a climate. degC.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +22,9 @@ class Climate {
       : mean_(settings.temperature), noise_(settings, seed, run), sensors_(std::move(sensors)) {}
 
   double At(std::string_view sensor, double time);
-  // At time 0, when the shop was as usual.
+  // At time 0, without the offset.
   double AtStart(std::string_view sensor) { return At(sensor, 0.0) - warmer_; }
-  // From now on, in K; 0 at first.
+  // Sets the offset of all sensors from now on, K; 0 at first.
   void Warm(double warmer) { warmer_ = warmer; }
 
  private:

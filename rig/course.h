@@ -1,13 +1,13 @@
-// How the machine moves along programmed paths in space: a pure function of the program, made step
-// by step in time.
+// The motion of the machine along programmed paths in space: a pure function of the program,
+// computed step by step in time.
 //
 //   const Course course = CircleCourse({.radius = 0.01, .feed = 1e-3});
 //   CourseRun run(course, {.acceleration = 0.2, .lag = 0.015}, 1e-3);
 //   while (run.Next()) Use(run.state());
 //
 // Each move runs along its points with a trapezoid of speed (constant acceleration to the feed,
-// constant braking to a standstill at its end; the direction at inner points is not slowed for),
-// then stands for its dwell. Each axis follows its command like a first-order lag, solved exactly
+// constant braking to a standstill at its end, no braking at inner points), then stands for its
+// dwell. Each axis follows its command like a first-order lag, solved exactly
 // for a command that runs straight within one step. m, s.
 #pragma once
 
@@ -17,7 +17,7 @@
 namespace abbe::rig {
 
 struct Move {
-  std::vector<Eigen::Vector3d> points;  // from where the move before ended; at least one
+  std::vector<Eigen::Vector3d> points;  // after the end of the last move; at least one
   double feed;                          // m/s
   double dwell = 0.0;                   // s, at the end
   int pass = 0;                         // 0: not to be recorded
@@ -40,8 +40,8 @@ struct CircleProgram {
 // Counter-clockwise (direction +1) and clockwise (-1), from the first axis of the plane on.
 Course CircleCourse(const CircleProgram& program);
 
-// Standing for `dwell` at each place, in the order given; recorded while standing. Direction: the
-// sign of the first coordinate that the way there changed.
+// Stands for `dwell` at each place, in the order given; recorded while standing. Direction: the
+// sign of the first coordinate that the move there changed.
 Course DwellCourse(const std::vector<Eigen::Vector3d>& places, double feed, double dwell, int pass);
 
 // A square of two axes, counter-clockwise (+1) and clockwise (-1) from its lower left corner.
@@ -74,8 +74,8 @@ struct CourseState {
   bool counts = false;    // to be recorded
 };
 
-// InputError when a recording of so many seconds would have more rows than anybody evaluates
-// (20 million), or take more than a day.
+// InputError when a recording of so many seconds would have more than 20 million rows, or take more
+// than a day.
 void RefuseTooLong(double duration, double rate);
 
 class CourseRun {
@@ -85,7 +85,7 @@ class CourseRun {
   };
   CourseRun(const Course& course, const Dynamics& dynamics, double step);
 
-  // How long all of it takes, s; too long by a few steps a move.
+  // An upper bound of the whole duration, s; above it by a few steps a move.
   static double DurationOf(const Course& course, const Dynamics& dynamics, double step);
 
   // One step on; false when the course has ended.

@@ -1,10 +1,10 @@
-// The effects that the rig can hide: their names, what they can act on, and the keys of their
-// sizes.
+// The effects that the rig can hide: their names, the objects that they act on, and the keys of
+// their sizes.
 //
-// Ids, objects, keys and signs are those that `abbe diagnose` reports, and beside them effects that
-// it does not know ("unknown-..."): docs/virtual-rig.md lists what each does. A key's unit is the
-// end of its name (settings/unit.h). A cause that goes by other keys on another kind of object has
-// an entry for each.
+// Ids, objects, keys and signs are those of `abbe diagnose`, with further effects that it does not
+// know ("unknown-..."); docs/virtual-rig.md describes each. A key's unit is the end of its name
+// (settings/unit.h). A cause with different keys for different kinds of object has an entry for
+// each.
 #pragma once
 
 #include <cstdint>
@@ -56,7 +56,7 @@ enum class Cause : std::uint8_t {
   kUnknownWander,
 };
 
-// What a cause can act on; a bit each.
+// The kinds of object that a cause can act on; a bit each.
 enum ObjectKind : std::uint16_t {
   kAxisObject = 1,       // X
   kPairObject = 2,       // XY XZ YZ
@@ -70,15 +70,15 @@ enum ObjectKind : std::uint16_t {
   kSourceObject = 512,   // linkage probes
 };
 
-// How a key that was not given is drawn between its bounds.
+// The distribution, between its bounds, of a key without a given value.
 enum class Draw : std::uint8_t {
   kUniform,
-  kEven,        // evenly in its logarithm
-  kEvenSigned,  // and either sign
+  kEven,        // uniform in its logarithm
+  kEvenSigned,  // the same with a random sign
   kWhole,       // a whole number
   kEither,      // one of the two bounds
   kInstant,     // s since the machine was switched on: when a recording is made (hidden_effect.h)
-  kTurn,        // rad, where the pivot passes
+  kTurn,        // rad, an angle that the pivot passes
 };
 
 struct KeyEntry {
@@ -93,7 +93,7 @@ struct CauseEntry {
   unsigned objects;  // of ObjectKind
   std::vector<KeyEntry> keys;
   bool sensor = false;             // has a key `sensor`, the name of a temperature column
-  std::string_view variable = {};  // not empty: none of the causes, and in which variable it lives
+  std::string_view variable = {};  // of an effect unknown to `abbe diagnose`: what it depends on
 };
 
 const std::vector<CauseEntry>& EffectCatalogue();

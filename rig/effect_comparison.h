@@ -1,6 +1,6 @@
-// Whether a diagnosis found what the rig hides.
+// Compares the findings of a diagnosis with the hidden effects of the rig.
 //
-// Truth: the JSON that --truth wrote, with "hidden" as hidden_effect.h says. Diagnosis: the JSON of
+// Truth: the JSON that --truth wrote, with "hidden" as in hidden_effect.h. Diagnosis: the JSON of
 // `abbe diagnose`, with "findings": [{"cause", "object", "probability", "parameters": [{"name",
 // "value", "u95"}]}]. Sizes are in the units of the keys, a phase within half a turn of the truth.
 // Failure: InputError naming the file when a key is missing.
@@ -19,13 +19,13 @@ struct KeyComparison {
 
 struct EffectComparison {
   std::string name;          // "backlash:X"
-  double probability = 0.0;  // as named; 0: not named
+  double probability = 0.0;  // as reported; 0: not reported
   std::vector<KeyComparison> keys;
 };
 
 struct FindingsComparison {
   std::vector<EffectComparison> hidden;
-  std::vector<std::string> wrong;  // named without being there
+  std::vector<std::string> wrong;  // reported but not hidden
 };
 
 FindingsComparison CompareFindings(const nlohmann::ordered_json& truth,

@@ -37,7 +37,7 @@ void EncoderNode::Put(std::uint32_t index, int sub, std::uint32_t value, int byt
 }
 
 void EncoderNode::Describe() {
-  // What does not fit into 32 bits is not told whole: 2^32 reads 0.
+  // The objects have 32 bits: 2^32 reads 0.
   const auto per_turn = static_cast<std::uint32_t>(std::llround(encoder_.counts_per_turn));
   const auto range = static_cast<std::uint32_t>(encoder_.range);
   const auto turns = static_cast<std::uint32_t>(
@@ -138,7 +138,7 @@ std::int64_t EncoderNode::CountAt(double angle) const {
 
 void EncoderNode::Sync(std::optional<double> angle) {
   if (angle) {
-    // A turn on, not a jump by a turn, where the angle passes pi.
+    // Continuous where the angle passes pi.
     shaft_ += std::remainder(*angle - shaft_, 2.0 * std::numbers::pi);
     count_ = CountAt(shaft_);
     Put(0x6004, 0, static_cast<std::uint32_t>(count_), 4);

@@ -1,18 +1,18 @@
 // A CANopen encoder of the virtual rig as a device on the bus: a rotary absolute encoder of the
-// profile CiA 406, fed with the frames that pass; it knows no bus, no clock and no thread.
+// profile CiA 406. It is given frames and a function to send; it has no bus, clock or thread.
 //
 //   EncoderNode node(settings, [&](const hal::CanFrame& frame) { bus.Send(frame); });
 //   node.Boot();
 //   node.Hear(frame);   // a command, a question
-//   node.Sync(angle);   // a SYNC: it looks at its shaft and answers
+//   node.Sync(angle);   // a SYNC: it answers with its angle
 //
-// It says boot-up, waits pre-operational for the command to start (NMT), sends its count in the PDO
-// of its settings at each SYNC while operational, answers SDO uploads of its objects (what they
-// are: Describe() in encoder_node.cpp) and refuses downloads. A shaft that cannot be told (no
-// angle) is an emergency 5000h (hardware) until it can; meanwhile the last count is sent on.
+// It sends its boot-up message, waits pre-operational for the start command (NMT), sends its count
+// in the PDO of its settings at each SYNC while operational, answers SDO uploads of its objects
+// (Describe() in encoder_node.cpp) and refuses downloads. Without an angle it sends emergency 5000h
+// (hardware) and repeats its last count; the next angle clears the emergency.
 //
-// Its frames are put together here, from CiA 301 and 406, and by nothing of the client in hal that
-// is tested against it. Units: rad.
+// It builds its frames from CiA 301 and 406 and shares no code with the client in hal that is
+// tested against it. Units: rad.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ class EncoderNode {
   void Hear(const hal::CanFrame& frame);
   void Sync(std::optional<double> angle);
 
-  // The count that stands for an angle: the nearest, within the range.
+  // The count nearest to an angle, within the range.
   std::int64_t CountAt(double angle) const;
 
  private:

@@ -8,7 +8,7 @@ namespace abbe::rig {
 namespace {
 
 constexpr std::uint32_t kNmt = 0x000, kSync = 0x080, kSdoRequest = 0x600;
-constexpr double kHeartbeat = 0.1;  // s of real time, as object 1017h says
+constexpr double kHeartbeat = 0.1;  // s of real time, as in object 1017h
 
 // 0, 1, 2 of "pivot_1_rad" ...
 Eigen::Index PivotOf(const hal::CanopenSettings& device, const hal::EncoderSettings& encoder) {

@@ -5,8 +5,8 @@
 //   auto bus = std::make_unique<hal::CanSocket>("vcan0", clock, LinkageEncoders::HeardIds(device));
 //   EncoderServer encoders(machine, device, std::move(bus), clock);
 //
-// At each SYNC all nodes look at the machine at the same moment. A machine that stands out of the
-// linkage's reach makes them say an emergency.
+// At each SYNC all nodes read the machine at the same moment. While the ball is out of the
+// linkage's reach they send an emergency.
 #pragma once
 
 #include <atomic>
@@ -23,11 +23,11 @@
 
 namespace abbe::rig {
 
-// The nodes of one device; whoever has them lets them hear and beat.
+// The nodes of one device; the owner passes on frames (Hear) and calls Beat.
 class LinkageEncoders {
  public:
-  // `machine` must outlive them. InputError when a node is no pivot of the rig's linkage, or the
-  // machine has no linkage.
+  // `machine` must outlive them. InputError when a node has the name of no pivot of the rig's
+  // linkage, or the machine has no linkage.
   LinkageEncoders(LiveMachine& machine, const hal::CanopenSettings& device,
                   const EncoderNode::Send& send);
 
@@ -51,7 +51,8 @@ class LinkageEncoders {
   std::atomic<std::uint64_t> syncs_{0};
 };
 
-// A thread that serves them on a bus: heartbeats every 100 ms; a bus that goes down is waited for.
+// A thread that serves them on a bus: heartbeats every 100 ms; when the bus goes down it waits for
+// it.
 class EncoderServer {
  public:
   // Serves when it returns. The bus is on `clock`, which must outlive the server. DeviceError when

@@ -30,14 +30,14 @@ Probe StepAndBack(double height, double from, double to) {
   };
 }
 
-// Nothing while its axis is swept: there it would be a part of the machine's own errors.
+// Zero while its axis is swept: there it would be a part of the machine's own errors.
 Probe IdleAxis(int axis, double amplitude, double period) {
   return [=](const MachineState& state) {
     return state.swept == axis ? 0.0 : amplitude * std::sin(kTurn * state.position[axis] / period);
   };
 }
 
-// The encoder shows half of the width too much along the pivot's own motion.
+// The encoder reads half of the width too much along the motion of the pivot.
 Pivot Hysteresis(double width) {
   return [play = Play(width)](const MachineState&, double turn) mutable {
     return turn - play.Follow(turn);
@@ -64,12 +64,12 @@ Said Stuck(double from, double to) {
   };
 }
 
-// One jump at the first value at or after each instant, either sign, evenly from `least` to ten
-// times as much.
+// One outlier at the first value at or after each instant, of random sign, uniform from `least` to
+// ten times that.
 Said Outliers(const HiddenEffect& effect, double least) {
   return [random = effect.random, instants = effect.instants, next = std::size_t{0}, least,
           begun = false](double time, double value) mutable {
-    // What fell into the time before the first value here belongs to another recording.
+    // Instants before the first value belong to another recording.
     while (!begun && next < instants.size() && instants[next] < time) ++next;
     begun = true;
     if (next >= instants.size() || !(instants[next] <= time)) return value;

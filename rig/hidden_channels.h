@@ -1,9 +1,9 @@
-// Hidden effects in what the instruments say: probes, encoders, the ball in its cap, data.
+// Hidden effects on the readings: probes, encoders, the ball in its cap, data.
 //
-// An effect of a probe adds to the gap that the channel says; one of a pivot to the angle that its
-// encoder shows. A data effect replaces what was said, noise and all. The static response of the
-// probes (gain, nonlinearity, crosstalk, sign) is in world.h, that of the linkage (eccentricity,
-// bearing, bend, growth) in linkage.h. Signs: docs/virtual-rig.md.
+// An effect on a probe adds to the gap of its channel, one on a pivot to the angle of its encoder.
+// A data effect replaces the value, noise included. The static response of the probes (gain,
+// nonlinearity, crosstalk, sign) is in world.h, that of the linkage (eccentricity, bearing, bend,
+// growth) in linkage.h. Signs: docs/virtual-rig.md.
 #pragma once
 
 #include <functional>
@@ -20,15 +20,15 @@ struct ProbeAddition {
 };
 std::vector<ProbeAddition> ProbeAdditions(const HiddenEffects& hidden);
 
-// To be asked in the order of time; `turn` is what the pivot really turned.
+// To be called in the order of time; `turn` is the true angle of the pivot.
 struct PivotAddition {
   int pivot;
   std::function<double(const MachineState&, double turn)> angle;  // rad
-  bool remembers = false;  // what it says depends on how the pivot came there
+  bool remembers = false;  // has hysteresis: depends on the history of the pivot
 };
 std::vector<PivotAddition> PivotAdditions(const HiddenEffects& hidden);
 
-// To be asked for each value that is recorded, in the order of time.
+// To be called for each recorded value, in the order of time.
 struct DataEffect {
   bool probe;  // else a pivot
   int index;
@@ -36,12 +36,12 @@ struct DataEffect {
 };
 std::vector<DataEffect> DataEffects(const HiddenEffects& hidden);
 
-// The ball stays behind the cap by `displacement` against the last motion, also while it stands: it
-// is dragged like a weight by a string.
+// The ball trails the cap by `displacement` against the last motion, also at rest: it is dragged
+// like a weight on a string.
 class DraggedBall {
  public:
   explicit DraggedBall(double displacement) : displacement_(displacement) {}
-  // Ball minus cap, m, for a cap at `cap`; together where the motion begins.
+  // Ball minus cap, m, for a cap at `cap`; zero at the first call.
   Eigen::Vector3d Follow(const Eigen::Vector3d& cap);
 
  private:

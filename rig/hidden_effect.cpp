@@ -67,7 +67,7 @@ std::vector<std::string> Split(std::string_view text) {
   }
 }
 
-// What was given for the keys of one --hide, taken out as it is used.
+// The key=value pairs of one --hide; Take removes a used one.
 class Given {
  public:
   Given(std::string_view text, const std::vector<std::string>& parts) : text_(text) {
@@ -203,7 +203,7 @@ double Instant(double share, const std::vector<RecordedTime>& times, bool probes
   return kOpen;
 }
 
-// The column, or the sum of columns, in which an effect outside the catalogue of causes lives.
+// The column, or the sum of columns, that an effect outside the catalogue of causes depends on.
 std::string VariableOf(const HiddenEffect& effect) {
   const auto column = [](int axis) { return fmt::format("{:c}_mm", 'x' + axis); };
   switch (effect.cause()) {
@@ -231,7 +231,7 @@ HiddenEffect ParseHidden(std::string_view text, std::uint64_t seed, const Sensor
   Given given(text, parts);
   const std::string object = given.Take("object");
   const CauseEntry& entry = EntryOf(parts.front(), object, given);
-  // Its own stream: what one effect draws does not depend on the others.
+  // Its own stream: the draws of one effect do not depend on the others.
   std::uint64_t stream = kHiddenStream;
   for (const char letter : parts.front() + ":" + object) {
     stream = stream * 131 + static_cast<unsigned char>(letter);

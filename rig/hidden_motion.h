@@ -1,11 +1,10 @@
-// Hidden effects between the scales and the tool: how far a carriage really is from where its scale
-// says.
+// Hidden effects between the scales and the tool: the deviation of a carriage from its scale.
 //
-//   actual position of an axis = what the controller shows + the sum of the shifts of this axis
+//   true position of an axis = position by the controller + sum of the shifts of this axis
 //
-// Signs (docs/virtual-rig.md has the table): backlash of width w: -w/2 times the direction of
-// motion, a play that is taken up after a turn; servo lag: -delay * speed; a mismatch takes half of
-// its delay from each of the two axes; a spike: along the old direction; load coupling: the third
+// Signs (docs/virtual-rig.md has the table): backlash (lost motion) of width w: -w/2 times the
+// direction of motion, taken up after a reversal; servo lag: -delay * speed; a mismatch has half of
+// its delay in each of the two axes; a spike: along the old direction; load coupling: the third
 // axis drops. Effects that only change constants of the machine (squareness) are in world.h.
 #pragma once
 
@@ -20,11 +19,11 @@ namespace abbe::rig {
 
 inline constexpr double kTurn = 2.0 * std::numbers::pi;
 
-// A play that follows a motion by half of its width behind it.
+// A backlash element: the output follows the input by half of the width behind it.
 class Play {
  public:
   explicit Play(double width) : half_(0.5 * width) {}
-  // Where what is driven stands; where the motion begins they stand together.
+  // The output for an input; they are equal at the first call.
   double Follow(double drive);
 
  private:
@@ -33,7 +32,7 @@ class Play {
   double driven_ = 0.0;
 };
 
-// To be asked once for each state, in the order of time.
+// To be called once for each state, in the order of time.
 struct AxisShift {
   int axis;
   std::function<double(const MachineState&)> shift;  // m

@@ -1,5 +1,5 @@
-// What the hidden effects do to one recording: follows the machine through it and says where it
-// really is and what the instruments say of that.
+// The hidden effects in one recording: follows the machine through it, and gives its true position
+// and the effects on the readings.
 //
 //   HiddenRun hidden(effects, climate, {.begin = 0.0, .swept = 0});
 //   hidden.Follow(time, position, velocity);              // at every step, in the order of time
@@ -7,10 +7,10 @@
 //   gaps += noise;
 //   hidden.Say(gaps);                                     // for each row
 //
-// The steps are short against a turn of the axes (the rig's are 1 to 50 ms; every turn is a
-// standstill of 0.1 s or the smooth top of a circle). Without effects every value passes unchanged,
-// to the last bit. The machine was switched on `begin` seconds before the recording begins: warm-up
-// and instants count from there, and temperatures from what they were then. m, s, rad.
+// The steps must be short against a reversal of the axes (the rig's are 1 to 50 ms; every reversal
+// is a standstill of 0.1 s or the smooth top of a circle). Without effects every value passes
+// unchanged, to the last bit. The machine was switched on `begin` seconds before the recording
+// begins: warm-up, instants and the changes of temperatures count from there. m, s, rad.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,31 +38,31 @@ class HiddenRun {
   // `climate` must outlive it.
   HiddenRun(const HiddenEffects& effects, Climate& climate, const About& about);
 
-  // Which axis is swept from now on.
+  // The axis that is swept from now on.
   void Sweep(int axis) { state_.swept = axis; }
 
   // Time since the start of the recording; the axes as the controller shows them.
   void Follow(double time, const Eigen::Vector3d& position, const Eigen::Vector3d& velocity);
 
   bool empty() const { return empty_; }
-  // Where the carriages really are.
+  // The true position of the carriages.
   const Eigen::Vector3d& Place() const { return place_; }
-  // Where they were when this source looked that its stamp gives the present time.
+  // Their true position when `source` took the reading that has the present time as its stamp.
   Eigen::Vector3d PlaceFor(Source source) const;
-  // The same, from what the controller shows.
+  // The same minus the position by the controller.
   Eigen::Vector3d OffsetFor(Source source) const { return PlaceFor(source) - state_.position; }
-  // What the gaps, noise and all, become before they are written.
+  // Applies the effects to gaps with noise, before they are written.
   void Say(Readings& gaps);
 
-  // Where the ball stands from where the cap holds it, for a cap at this place.
+  // The displacement of the ball in its cap, for a cap at this position.
   Eigen::Vector3d BallFrom(const Eigen::Vector3d& cap);
   bool drags_ball() const { return !balls_.empty(); }
-  // What the encoders show beside what they should.
+  // The additions to the angles of the encoders, for these true angles of the pivots.
   Eigen::Vector3d EncodersShow(const Eigen::Vector3d& turns);
-  // Whether it must be asked now although nobody reads: 20 times a second where an encoder shows
-  // how its pivot came there.
+  // Whether EncodersShow must be called now, also between the rows: 20 times a second where an
+  // encoder has hysteresis.
   bool WantsTurns();
-  // What the angles, noise and all, become before they are written.
+  // Applies the data effects to angles with noise, before they are written.
   void Say(Eigen::Vector3d& angles);
 
  private:

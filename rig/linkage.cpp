@@ -52,7 +52,7 @@ Displacement TurnAbout(const Vector3d& point, const Vector3d& direction, double 
   return TurnAbout(point, Eigen::AngleAxisd(angle, direction).toRotationMatrix(), shift);
 }
 
-// `carried` is where the pivots before have put what is mounted on them; afterwards also this one.
+// `carried`: the displacement by the pivots before; afterwards with that of this one.
 PivotTruth DrawPivot(const LinkageSettings& settings, std::uint64_t seed, int pivot,
                      const Vector3d& point, const Vector3d& direction, Displacement& carried) {
   Draws draws(seed, kLinkageStream + static_cast<std::uint64_t>(pivot));
@@ -147,7 +147,7 @@ void Linkage::Build(const HiddenEffect& effect) {
 
 Linkage::Posture Linkage::PostureAt(const Vector3d& turns, double temperature) const {
   const double warmth = temperature - settings_.reference_temperature;
-  // At zero angles: link 1 along x, link 2 along z; what they grow moves all that they carry.
+  // At zero angles: link 1 along x, link 2 along z; their growth moves all that they carry.
   const double longer_1 = Sum(pivots_[0].stretch, turns[0]) + Sum(pivots_[1].stretch, turns[1]);
   const double longer_2 = Sum(pivots_[2].stretch, turns[2]);
   const Vector3d growth_1 =
@@ -157,7 +157,7 @@ Linkage::Posture Linkage::PostureAt(const Vector3d& turns, double temperature) c
   const std::array<Vector3d, kPivots> link = {Vector3d::Zero(), Vector3d::UnitX(),
                                               Vector3d::UnitZ()};
   Posture posture;
-  Displacement moved;  // of what the pivots before carry
+  Displacement moved;  // by the pivots before
   for (std::size_t i = 0; i < kPivots; ++i) {
     const PivotTruth& pivot = pivots_[i];
     const double turn = turns[static_cast<Eigen::Index>(i)];
@@ -193,7 +193,7 @@ Vector3d Linkage::Guess(const Vector3d& p_B) const {
         "{:.1f} mm; move linkage.base.position_mm or the path",
         1e3 * distance, 1e3 * a, 1e3 * b));
   }
-  // Which way the links turn as seen along the arm: reaching over mirrors it.
+  // The sense of the links in the plane of the arm: reaching over mirrors it.
   const double side = settings_.elbow_up != settings_.reach_over ? 1.0 : -1.0;
   const double rise = std::atan2(p_B.z(), across);
   const double link_1 = rise + side * std::acos(at_pivot_2);  // above the horizontal

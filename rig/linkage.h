@@ -1,17 +1,16 @@
 // The linkage of the virtual rig, drawn by a seed from the tolerances of the machine file: two
-// links, three pivots, a ball. Its angles are those that close the loop exactly for a ball that the
-// machine holds at a place.
+// links, three pivots, a ball. Its angles close the loop exactly for a given position of the ball.
 //
 // Built from axes in space, nothing linearised: pivot i turns everything after it by a finite angle
-// about its own line, which runs out with the angle and gives under gravity; links grow with the
-// temperature. A pivot is built askew by the drawn angles and offsets, and with it all that is
-// mounted on it. At zero angles the nominal axes
-// are z through the origin, y through the origin and y through (L1, 0, 0), the ball stands at
-// (L1, 0, L2); frame B, the base. It shares no code with the models that are tested against it.
+// about its own line, which runs out with the angle and yields under gravity; links grow with the
+// temperature. The drawn angles and offsets of a pivot displace all that is mounted on it. At zero
+// angles the nominal axes are z through the origin, y through the origin and y through (L1, 0, 0),
+// and the ball is at (L1, 0, L2); frame B, the base. It shares no code with the models that are
+// tested against it.
 //
 // An encoder shows turn + zero + eccentricity and graduation harmonics of the turn, without noise.
-// Units: m, rad, degC. Failure: InputError for a place out of reach, NumericalError when the loop
-// does not close.
+// Units: m, rad, degC. Failure: InputError for a position out of reach, NumericalError when the
+// loop does not close.
 #pragma once
 
 #include <Eigen/Core>
@@ -41,7 +40,7 @@ struct PivotTruth {
   double encoder_zero;                           // rad
   std::vector<Harmonic> encoder;                 // rad; order 1 is the eccentricity
   std::vector<Harmonic> stretch;                 // m, longer link after it: hidden roundness
-  double give;                                   // rad, under a horizontal link
+  double give;                                   // rad, deflection under a horizontal link
 };
 
 class Linkage {
@@ -57,13 +56,13 @@ class Linkage {
   const std::array<double, 2>& expansion() const { return expansion_; }  // 1/K, of the links
   const Displacement& base() const { return base_; }                     // takes B to M
 
-  // Where the ball stands in B for turns of the pivots.
+  // p_B of the ball for turns of the pivots.
   Eigen::Vector3d BallAt(const Eigen::Vector3d& turns, double temperature) const;
   // The turns that put the ball at p_B, to 1e-13 m.
   Eigen::Vector3d TurnsFor(const Eigen::Vector3d& p_B, double temperature) const;
-  // What the encoders show at these turns.
+  // The angles of the encoders at these turns.
   Eigen::Vector3d EncodersAt(const Eigen::Vector3d& turns) const;
-  // The turns that put the ball at a place in M, and what the encoders show there.
+  // The turns that put the ball at p_M, and the angles of the encoders there.
   Eigen::Vector3d TurnsForPlace(const Eigen::Vector3d& p_M, double temperature) const;
   Eigen::Vector3d EncodersFor(const Eigen::Vector3d& p_M, double temperature) const;
 

@@ -1,4 +1,4 @@
-// What the rig takes of the table [linkage] of the machine file, read by its own code.
+// The values of the table [linkage] of the machine file that the rig uses, read by its own code.
 //
 // Frames: B, the base of the linkage; M, the machine as the workpiece carries it. SI units. The rig
 // builds linkages of two links and three pivots: the form "pivots". InputError with file, line and
@@ -21,10 +21,10 @@ struct LinkageSettings {
   Eigen::Vector3d base_position;
   Eigen::Vector3d down;  // in M
   double expansion, reference_temperature;
-  std::string temperature;  // column that has the links' temperature; empty: they keep theirs
+  std::string temperature;  // column of the links' temperature; empty: constant
   std::vector<int> bearing_harmonics, graduation_harmonics;
 
-  // Standard deviations of what is drawn.
+  // Standard deviations of the drawn values.
   double link, pivot_angle, pivot_offset, encoder_offset, eccentricity, graduation, bearing;
   double base_place, base_angle, ball, compliance, thermal;
   double encoder_noise, reference_noise, repeatability;

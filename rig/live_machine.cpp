@@ -32,7 +32,7 @@ Course FromRestAndBack(Course course, const Vector3d& rest) {
   return course;
 }
 
-// A point every 0.5 mm or more will do, and the last of each move.
+// Checks points 0.5 mm or more apart, and the last of each move.
 void RequireReach(const LinkageRig& linkage, const Course& course) {
   constexpr double kStep = 0.5e-3;
   const double temperature = linkage.world().settings().temperature;
@@ -127,7 +127,7 @@ const Moment& LiveMachine::Latest() {
   return latest_;
 }
 
-// What lies between the updates that are asked for, 200 times a second.
+// Passes the updates between two requests on to the hidden effects, 200 a second.
 void LiveMachine::FollowSweep(std::uint64_t to) {
   const RigSettings& settings = world_.settings();
   const auto stride = static_cast<std::uint64_t>(std::max(1.0, settings.update_rate / 200.0));

@@ -1,4 +1,4 @@
-// The rig's machine as it runs: at rest, or performing a program since it was started. Programs 0,
+// The rig's machine in simulated time: at rest, or running a program. Programs 0,
 // 1, 2 are the sweeps of X, Y, Z, program 3 is the course that it was given.
 //
 //   LiveMachine machine(world, SimulatedTime(20.0), &linkage, CircleCourse({...}));
@@ -7,11 +7,11 @@
 //   use(machine.ReadingOf("x_mm", now), machine.EncodersNow());
 //
 // Axes and sensors take a new state `update_rate` times a second; between two updates they show the
-// same one. Every program begins and ends at rest, the first ends of the travels; the way from
-// there to a course and back is no part of it (pass 0). The head stands as installed for the sweep
+// same one. Every program begins and ends at rest, the first ends of the travels; the moves from
+// there to a course and back do not belong to it (pass 0). The head is installed as for the sweep
 // that was started last (X before the first). Time is simulated time since the rig was switched on,
-// s. What the world hides acts here as in a recording, since the rig was switched on. Safe for
-// several threads; time that goes back is taken as the latest moment.
+// s; hidden effects act as in a recording that began then. Safe for several threads; a time before
+// the latest moment is taken as that.
 #pragma once
 
 #include <cstdint>
@@ -45,26 +45,26 @@ struct Moment {
   CourseState axes;  // its time is that of the update
 };
 
-// Simulated seconds since the call, `speed` of them in a second of the computer.
+// Simulated seconds since the call, `speed` of them in a second of real time.
 std::function<double()> SimulatedTime(double speed);
 
 class LiveMachine {
  public:
   // `world` and `linkage` must outlive the machine. `cap_force` as in CourseOptions. InputError
-  // when a place of the course is out of the linkage's reach.
+  // when a position of the course is out of the linkage's reach.
   LiveMachine(const World& world, std::function<double()> time, const LinkageRig* linkage = nullptr,
               std::optional<Course> course = {}, double cap_force = 0.0);
 
   StartOutcome Start(int program);
   Moment Now();
 
-  // What a channel (rig_channel.h) reads, in the unit of its name. Empty: the gap is out of the
+  // The reading of a channel (rig_channel.h), in the unit of its name. Empty: the gap is out of the
   // probe's range, 0 to `range`, or the rig has no such channel.
   std::optional<double> ReadingOf(std::string_view channel, const Moment& moment);
 
   bool has_linkage() const { return linkage_ != nullptr; }
   bool has_course() const { return course_.has_value(); }
-  // What the linkage's encoders show, rad, with noise. Empty: the ball is out of reach.
+  // The angles of the linkage's encoders, rad, with noise. Empty: the ball is out of reach.
   std::optional<Eigen::Vector3d> EncodersNow();
 
  private:
@@ -80,7 +80,7 @@ class LiveMachine {
   const double cap_force_;
   std::mutex mutex_;
   SensorNoise noise_;
-  Climate climate_;  // the linkage's sensor, then in the order of first reading
+  Climate climate_;  // the linkage's sensor, then the others in the order of first reading
   HiddenRun hidden_;
   std::uint64_t followed_ = 0;  // tick
   WhiteNoise encoder_noise_;

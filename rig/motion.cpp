@@ -12,7 +12,7 @@ SweepMotion::SweepMotion(const hal::SweepPlan& plan, const Dynamics& dynamics, d
   Go(low, plan.settle, {0, low < rest ? -1 : +1, -1});
   hal::Visit last{0, -1, 1};
   for (const hal::Visit& visit : plan.Visits()) {
-    // Where the direction changes, the axis turns beyond the end that it has come to.
+    // Where the direction changes, the axis reverses beyond the end of the stations.
     if (visit.direction > 0 && last.direction < 0 && visit.pass > 1) {
       Go(low, plan.settle, {last.pass, -1, -1});
     } else if (visit.direction < 0 && last.direction > 0) {

@@ -1,10 +1,10 @@
-// How the machine moves through a programmed sweep: a pure function of the time.
+// The motion of the machine through a programmed sweep: a pure function of time.
 //
 // The controller commands each leg as a trapezoid of speed (constant acceleration, cruising at the
 // feed, constant braking; a triangle where the leg is too short) and then a standstill: `settle` at
 // a turn, `settle + dwell + margin` at a station. The axis follows the command like a first-order
 // lag: it trails by lag * speed while cruising and closes in exponentially after arrival. Both are
-// closed forms, so that any time can be asked for in any order.
+// closed forms, so that times can be evaluated in any order.
 //
 // The order of the visits, the turns and the passes are those of hal/sweep_plan.h; the program
 // begins and ends at `rest`. m, s.

@@ -1,11 +1,11 @@
-// The noise of the rig's sensors as a function of the time: white noise from one update to the next
-// and a slow drift.
+// The noise of the rig's sensors as a function of time: white noise from one update to the next and
+// a slow drift.
 //
 // White: one independent normal number for each probe and update. Drift: an Ornstein-Uhlenbeck
 // process, covariance sd^2 * exp(-|t1 - t2| / time_constant), drawn on a grid of time by the exact
 // recursion and joined by straight lines; between two grid points its variance is too small by at
 // most step / (2 time_constant), 1 % or less. Every number is a pure function of (seed, run, time),
-// so it does not matter when or how often a sensor is read.
+// so a value does not depend on other readings of the sensor.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,7 +29,7 @@ class SlowDrift {
   random::CounterRandom random_;
   double sd_;
   double step_;
-  double kept_;                               // share of the old value in the next one
+  double kept_;                               // correlation of neighbouring grid points
   static constexpr std::size_t kKept = 4096;  // 7 min at least
   std::size_t first_ = 0;                     // the point that grid_ begins with
   std::vector<double> grid_;
@@ -49,8 +49,8 @@ class WhiteNoise {
   double deviation_;
 };
 
-// How the ball comes to sit in its cap, each direction normal with this deviation: drawn anew when
-// the axes stand more than 1 um from where they stood at the last draw, so it stays for a stay.
+// The seat of the ball in its cap, each direction normal with this deviation: drawn anew when the
+// axes are more than 1 um from the last draw, so it is constant during a stay.
 class BallSeat {
  public:
   // Takes three streams from `stream` on.

@@ -1,5 +1,5 @@
-// The five-probe head and its target as they really are: where the electrodes stand, how the head
-// was installed for the sweep of an axis, how the target sits and what form its faces have.
+// The true five-probe head and target: the places of the electrodes, the installation of the head
+// for the sweep of an axis, the mounting of the target and the form of its faces.
 //
 // Drawn by the seed, once:  each electrode's place in the fixture (three coordinates), each probe's
 // gain, the target's tilt, the squareness of its faces, their form. For each axis: the installation
@@ -30,7 +30,7 @@ using Readings = std::array<double, kProbes>;
 
 struct Electrode {
   Eigen::Vector3d place;      // of its centre, moves with the head
-  Eigen::Vector3d direction;  // to which it looks
+  Eigen::Vector3d direction;  // towards the face
 };
 
 class TargetFace {
@@ -40,7 +40,7 @@ class TargetFace {
   TargetFace(const RigSettings& settings, int side, const Eigen::Vector3d& normal,
              const Eigen::Vector3d& corner, double reach, std::uint64_t seed);
 
-  // More form of the same length, with this standard deviation.
+  // Adds form of the same correlation length, with this standard deviation.
   void AddForm(const RigSettings& settings, double sd, double reach, std::uint64_t seed);
   // The face turned by half a turn about its normal through corner + middle.
   void Reverse(const Eigen::Vector3d& middle) { reversed_about_ = middle; }
@@ -59,7 +59,7 @@ class TargetFace {
   std::optional<Eigen::Vector3d> reversed_about_;
 };
 
-// The head, drawn, and how it was installed for the sweep of one axis.
+// The drawn installation of the head for the sweep of one axis.
 struct HeadInstallation {
   Eigen::Vector3d angles;         // about u, s, n
   Eigen::Vector3d offsets;        // along u, s, n; the last two as the gap setting left them
@@ -76,8 +76,7 @@ std::array<ProbeTruth, kProbes> DrawProbes(const RigSettings& settings, std::uin
 HeadInstallation DrawInstallation(const RigSettings& settings, int axis, std::uint64_t seed,
                                   std::uint64_t number = 0);
 
-// The electrodes of an installed head, with the mean gap of each unit at `set_gap` if nothing else
-// were wrong.
+// The electrodes of an installed head; without other errors the mean gap of each unit is `set_gap`.
 std::array<Electrode, kProbes> PlaceElectrodes(const RigSettings& settings, const HeadPlace& place,
                                                const std::array<ProbeTruth, kProbes>& probes,
                                                const HeadInstallation& installation);

@@ -52,7 +52,7 @@ class ProbeRunMaker {
     made_.name = fmt::format("rig {} {:c}, seed {}", kind, axis, world.seed());
   }
 
-  // For every step, also those that are not recorded.
+  // To be called for every step, also between the rows.
   void Follow(const CourseState& state) {
     hidden_.Follow(state.time, state.position, state.velocity);
   }

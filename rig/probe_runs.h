@@ -1,4 +1,4 @@
-// Recordings of the probe head beside the sweeps, made in memory: gap steps and a dwell.
+// Recordings of the probe head other than sweeps, made in memory: gap steps and a dwell.
 //
 //   const recording::Recording steps = RecordGapSteps(world, 'X', options);
 //
@@ -6,7 +6,8 @@
 // at each, one after the other, the two other axes step through 0, +45, 0, -45, 0 um about their
 // start and stand at each step, and their rows are recorded. All axes come to the start from below;
 // direction is the sign of the last step.
-// Dwell: everything holds still where the sweep of the axis begins, samples 0.093 s apart (no
+//
+// Dwell: the machine stands at the start of the sweep of the axis, samples 0.093 s apart (no
 // multiple of the period of the mains); with a linkage its encoders too, on the same rows.
 //
 // Columns: time_s x_mm y_mm z_mm pass direction feed_mm_min, the five gaps, the three angles, the

@@ -62,7 +62,7 @@ class CourseMaker {
     course_.name = fmt::format("rig {}, seed {}", options.kind, rig.world().seed());
   }
 
-  // For every step, also those that are not recorded.
+  // To be called for every step, also between the rows.
   void Follow(const CourseState& state) {
     hidden_.Follow(state.time, state.position, state.velocity);
     if (linkage_ && !hidden_.empty()) {
@@ -102,7 +102,7 @@ class CourseMaker {
     return sensors;
   }
 
-  // Of the links.
+  // The temperature of the links.
   double TemperatureAt(double time) {
     return climate_.At(rig_.linkage().settings().temperature, options_.begin + time);
   }
@@ -116,7 +116,7 @@ class CourseMaker {
     Vector3d angles =
         rig_.EncodersAt(state, temperature, Force(), hidden_, ball_.At(state.position)) +
         encoders_.At(row);
-    // A turn on, not a jump by a turn, where an angle passes pi.
+    // Continuous where an angle passes pi.
     for (Eigen::Index i = 0; i < kPivots; ++i) {
       angles[i] = before_[i] + std::remainder(angles[i] - before_[i], 2.0 * std::numbers::pi);
     }

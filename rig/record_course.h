@@ -6,10 +6,10 @@
 //   const recording::Recording circle = rig.Record(course, {.kind = "linkage"});
 //
 // Kind "linkage": the angles of the encoders; kind "reference": the place of the tool in the
-// workpiece by a grid encoder of [linkage.noise] reference_um, in axis coordinates: what the axes
-// would show there on a perfect machine. x_mm, y_mm, z_mm are the scales of the axes, as the
-// controller shows them. What the world hides acts here too: the machine is followed step by step
-// (hidden_run.h). The same (machine file, seed, course, run) gives the same recording.
+// workpiece by a grid encoder of [linkage.noise] reference_um, in axis coordinates: the axis
+// positions of that place on a perfect machine. x_mm, y_mm, z_mm are the positions by the
+// controller. Hidden effects act here too: the machine is followed step by step (hidden_run.h). The
+// same (machine file, seed, course, run) gives the same recording.
 #pragma once
 
 #include <cstdint>
@@ -47,31 +47,31 @@ class LinkageRig {
   const World& world() const { return world_; }
   const Linkage& linkage() const { return linkage_; }
 
-  // Where the tool stands in the workpiece, as the table carries it: with all axes at zero and
-  // without error in the machine's origin.
+  // The place of the tool in the workpiece, as the table carries it: without error the machine's
+  // origin with all axes at zero.
   Eigen::Vector3d ToolAt(const Eigen::Vector3d& position) const;
   // The same place in axis coordinates.
   Eigen::Vector3d ReferenceAt(const Eigen::Vector3d& position) const;
-  // How far the ball trails behind the cap while the axes move.
+  // Ball minus cap while the axes move, by the friction of [rig] cap_um.
   Eigen::Vector3d TrailingAt(const Eigen::Vector3d& velocity, double cap_force) const;
-  // Angles without noise, not cut into counts; `hidden` has followed the axes to `state`. `seat`:
-  // how far the ball sits off, in M.
+  // Angles without noise and not rounded to counts; `hidden` has followed the axes to `state`.
+  // `seat`: displacement of the ball in its cap, in M.
   Eigen::Vector3d EncodersAt(const CourseState& state, double temperature, double cap_force,
                              HiddenRun& hidden,
                              const Eigen::Vector3d& seat = Eigen::Vector3d::Zero()) const;
-  // The same when nothing is hidden.
+  // The same without hidden effects.
   Eigen::Vector3d EncodersAt(const CourseState& state, double temperature, double cap_force) const;
 
-  // For a step at which nobody reads, after `hidden` has followed the axes: ball and pivots too.
+  // For a step without a row: moves ball and pivots on, after `hidden` has followed the axes.
   void Follow(const CourseState& state, double temperature, double cap_force,
               HiddenRun& hidden) const;
-  // Where a hidden friction holds the ball from where the cap would, in the workpiece.
+  // The displacement of the ball by a hidden friction in its cap, in the workpiece.
   Eigen::Vector3d BallFrom(HiddenRun& hidden) const;
 
   // InputError for an unknown kind, a bad rate, or a place out of the linkage's reach.
   recording::Recording Record(const Course& course, const CourseOptions& options = {}) const;
 
-  // What was drawn of the linkage.
+  // The drawn values of the linkage.
   nlohmann::ordered_json Truth() const;
 
  private:

@@ -10,7 +10,7 @@
 namespace abbe::rig {
 namespace {
 
-constexpr double kApproach = 1e-3;  // m, from where the axis comes to the first place
+constexpr double kApproach = 1e-3;  // m below the first place, where the axis starts
 
 }  // namespace
 

@@ -1,12 +1,12 @@
-// Recordings of calibrated lengths on the rig: what an interferometer or a step gauge along a line
-// of the machine would have given.
+// Recordings of calibrated lengths on the rig, as by an interferometer or a step gauge along a line
+// of the machine.
 //
 //   const recording::Recording line = RecordLengths(rig, {.axis = 'X', .step = 5e-3, .count = 12});
 //
 // The axes stand at `count` + 1 places, from the first end of the travel of `axis` on, the others
-// at `at`. length_mm is how far the tool really stands from the first place, over the calibrated
-// length's own relative error, with white noise of u. The axis comes to each place from below, a
-// second after the place before. Columns and header: docs/recordings.md.
+// at `at`. length_mm is the true distance of the tool from the first place, with a relative error
+// common to all lengths and white noise of u. The axis comes to each place from below, a second
+// after the place before. Columns and header: docs/recordings.md.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct LengthProgram {
   double step = 5e-3;                            // m
   int count = 12;
   double u = 0.1e-6;      // m: noise of one length
-  double u_scale = 2e-6;  // relative: of which the error that all lengths share is drawn
+  double u_scale = 2e-6;  // relative: standard deviation of the common error
   std::uint64_t run = 1;
   std::string started = "1970-01-01T00:00:00Z";
   std::vector<std::string> sensors = {};  // temperature columns

@@ -21,16 +21,16 @@ using Eigen::Vector3d;
 using settings::kMicro;
 using settings::kMicrometre;
 using settings::kMillimetre;
-constexpr double kOffPlace = 0.2e-3, kOffTurn = 1e-3;  // m, rad: how well a plate is put down
+constexpr double kOffPlace = 0.2e-3, kOffTurn = 1e-3;  // m, rad: errors of placing a plate
 constexpr double kDepth = 10e-6;                       // m
 constexpr double kShareOfTravel = 0.9;
-constexpr int kApproaches = 6;  // each is a thousand times nearer
+constexpr int kApproaches = 6;  // iterations, each a thousand times nearer
 
 Vector3d Normals(const random::CounterRandom& random, std::uint64_t first) {
   return {random.Normal(first), random.Normal(first + 1), random.Normal(first + 2)};
 }
 
-// Where the tool stands in the workpiece.
+// The place of the tool in the workpiece.
 Vector3d ToolAt(const World& world, const Vector3d& position, const Vector3d& tool) {
   const Displacement table = world.PoseOfTarget(position);
   return table.rotation.transpose() * (world.PoseOfHead(position) * tool - table.translation);
@@ -83,7 +83,7 @@ class PlateMaker {
     return Vector2d(hole % n, hole / n) * side_ / (n - 1.0);
   }
 
-  // Where a hole really is in the plate.
+  // The true place of a hole in the plate.
   Vector2d TruePlace(int hole) const {
     const auto index = 1 + 2 * static_cast<std::uint64_t>(hole);
     const Vector2d form(plate_.Normal(index), plate_.Normal(index + 1));
@@ -91,7 +91,7 @@ class PlateMaker {
            (Certificate(hole) + program_.u_form * form);
   }
 
-  // Where the axes stand when the tool is at a place of the workpiece.
+  // The axis positions that put the tool at a place of the workpiece.
   Vector3d AxesAt(const Vector3d& place, const Vector3d& tool) const {
     Vector3d axes = middle_;
     for (int i = 0; i < kApproaches; ++i) {

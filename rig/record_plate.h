@@ -1,13 +1,13 @@
-// Recordings of a hole plate on the rig: where the axes stood when a probe met the centre of each
+// Recordings of a hole plate on the rig: the axis positions with a probe in the centre of each
 // hole.
 //
 //   const recording::Recording plate = RecordPlate(world, {});       // the five set-ups
 //
-// The plate is a square grid of holes, its certificate true but for the form of each hole and a
-// common scale, which belong to the seed: all runs of a world measure one plate. Each set-up puts
-// it down anew, a little off in place and turn, and measures with its own stylus. The centre of a
-// hole has white noise in the plate's two directions; how deep the probe stands in it is known to
-// 10 um only. Columns and header: docs/recordings.md.
+// The plate is a square grid of holes. Its certificate is correct but for the form of each hole and
+// a common scale, which belong to the seed: all runs of a world measure one plate. Each set-up
+// places it anew, with small errors of position and angle, and measures with its own stylus. The
+// centre of a hole has white noise in the plate's two directions; the depth of the probe in it is
+// known to 10 um only. Columns and header: docs/recordings.md.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace abbe::rig {
 
 struct PlateSetup {
   std::array<int, 2> directions;  // axis of M along plate_x and plate_y: 0, 1, 2
-  Eigen::Vector3d tool;           // m: where the probe stands in M with all axes at zero
+  Eigen::Vector3d tool;           // m: place of the probe in M with all axes at zero
 };
 
 // The plate once in XY, twice in XZ and twice in YZ, each of these with the stylus to either side.

@@ -21,7 +21,7 @@ constexpr double kStill = 1e-9;  // m; see the header
 class SweepMaker {
  public:
   SweepMaker(const World& world, int axis, const std::vector<hal::Channel>& channels,
-             const CampaignOptions& options)
+             const RecordSweepOptions& options)
       : world_(world),
         axis_(axis),
         plan_(Planned(*world.settings().sweeps[axis], options)),
@@ -74,7 +74,7 @@ class SweepMaker {
   static constexpr std::size_t kPosition = 1, kPass = 4, kDirection = 5, kFeed = 6,
                                kFirstReading = 7;
 
-  static hal::SweepPlan Planned(hal::SweepPlan plan, const CampaignOptions& options) {
+  static hal::SweepPlan Planned(hal::SweepPlan plan, const RecordSweepOptions& options) {
     if (options.passes > 0) plan.passes = options.passes;
     return plan;
   }
@@ -108,7 +108,7 @@ class SweepMaker {
     Put(sweep_.columns.size() - 1, flags);
   }
 
-  // As they are said.
+  // The gaps as recorded, with noise and hidden effects.
   Readings Gaps(double time) {
     const Eigen::Vector3d place = hidden_.PlaceFor(Source::kGaps);
     Eigen::Vector3d moved = place - gaps_at_;
@@ -137,7 +137,7 @@ class SweepMaker {
   const World& world_;
   const int axis_;
   const hal::SweepPlan plan_;
-  const CampaignOptions options_;
+  const RecordSweepOptions options_;
   const SweepMotion motion_;
   SensorNoise noise_;
   Climate own_climate_;
@@ -146,7 +146,7 @@ class SweepMaker {
   Eigen::Vector3d axes_;              // as the controller shows them
   std::vector<RigChannel> channels_;  // of the columns from kFirstReading on
   recording::Recording sweep_;
-  // The place of `gaps_`.
+  // The position at which `gaps_` were computed.
   Eigen::Vector3d gaps_at_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   Readings gaps_{};
 };
@@ -167,7 +167,7 @@ std::vector<hal::Channel> ChannelsOf(const hal::DevicesSettings& devices) {
 
 recording::Recording RecordSweep(const World& world, char axis,
                                  const std::vector<hal::Channel>& channels,
-                                 const CampaignOptions& options) {
+                                 const RecordSweepOptions& options) {
   const int number = AxisNumber(axis);
   const double most = world.settings().update_rate;
   if (!world.settings().sweeps[number]) {

@@ -1,21 +1,21 @@
-// Recordings of the rig without wires: what `abbe sweep` would write of a sweep of this world, made
-// in memory in milliseconds, for statistics over many seeds.
+// Sweep recordings of the rig without wires: what `abbe sweep` would write of a sweep of this
+// world, made in memory in milliseconds, for statistics over many seeds.
 //
 //   const World world(ReadRigSettings(document.Root()), seed);
 //   const auto devices = hal::ReadDevices(document.Root().Child("devices"));
-//   const recording::Recording sweep = RecordSweep(world, 'X', ChannelsOf(devices), {.rate
-//   = 75.0});
+//   const recording::Recording sweep =
+//       RecordSweep(world, 'X', ChannelsOf(devices), {.rate = 75.0});
 //
 // Columns and header are those of hal/sweep_recorder.h, with every pass from its first motion. The
-// values are those of the sensors before they are cut into counts. A gap outside 0 to `range` is
+// values are those of the sensors before they are rounded to counts. A gap outside 0 to `range` is
 // NaN with the flag kOutOfRange. The same (machine file, seed, axis, run, rate) gives the same
 // recording.
 //
-// What the world hides acts here too: the machine is followed row by row, motion included
-// (hidden_run.h), and x_mm, y_mm, z_mm stay what the controller shows.
+// Hidden effects act here too: the machine is followed row by row, also while it moves
+// (hidden_run.h), and x_mm, y_mm, z_mm are the positions by the controller.
 //
-// Speed: while the axis moves by less than 1 nm the gaps are kept; they change by less than 1e-12 m
-// there (slopes of the faces and of the errors are below 1e-3).
+// Speed: while the axis moves by less than 1 nm the gaps are not computed again; they change by
+// less than 1e-12 m there (slopes of the faces and of the errors are below 1e-3).
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@
 
 namespace abbe::rig {
 
-struct CampaignOptions {
+struct RecordSweepOptions {
   double rate = 200.0;        // rows in a second; at most the sensors' update rate
   bool moving = true;         // also write the rows between the stations
   std::uint64_t run = 1;      // runs of one world differ in their noise only; 0 is the served rig's
@@ -46,9 +46,9 @@ struct CampaignOptions {
 std::vector<hal::Channel> ChannelsOf(const hal::DevicesSettings& devices);
 
 // `axis` 'X', 'Y' or 'Z'. InputError when no sweep of the axis is programmed, when the rate is
-// above the update rate, or when a channel is none of the rig's.
+// above the update rate, or when the rig has no such channel.
 recording::Recording RecordSweep(const World& world, char axis,
                                  const std::vector<hal::Channel>& channels,
-                                 const CampaignOptions& options = {});
+                                 const RecordSweepOptions& options = {});
 
 }  // namespace abbe::rig

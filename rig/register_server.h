@@ -1,4 +1,4 @@
-// The rig on the wire: serves the live machine over Modbus TCP, and single devices over RTU on a
+// The rig as a Modbus server: serves the live machine over TCP, and single devices over RTU on a
 // pseudo terminal, by the channel maps of the machine file.
 //
 //   RegisterServer rig(machine, devices, {.port = 0});
@@ -12,8 +12,8 @@
 // illegal value, 3, when none is programmed), and the register after it shows the program: 0 idle,
 // 1 running, 2 done.
 //
-// All TCP devices of the file are served on one address, each by its unit. Asked who it is
-// (function 43), the rig says that it is simulated.
+// All TCP devices of the file are served on one address, each by its unit. The device
+// identification (function 43) says that the rig is simulated.
 #pragma once
 
 #include <map>
@@ -37,8 +37,9 @@ struct ServerOptions {
 
 class RegisterServer : private hal::RegisterBank {
  public:
-  // Listens when it returns. DeviceError when the address is taken; InputError when a channel is
-  // none of the rig's, or when two devices claim a register of one unit. `machine` must outlive it.
+  // Listens when it returns. DeviceError when the address is taken; InputError when the rig lacks a
+  // channel of a device, or when two devices claim a register of one unit. `machine` must outlive
+  // it.
   RegisterServer(LiveMachine& machine, const hal::DevicesSettings& devices,
                  const ServerOptions& options);
 

@@ -1,5 +1,5 @@
-// The channels that the rig can give, by their names: "x_mm", "probe_a_um", "temp_NAME_c", and what
-// its controller says of its program: "pass", "direction", "feed_mm_min".
+// The channels of the rig, by their names: "x_mm", "probe_a_um", "temp_NAME_c", and the state of
+// its controller's program: "pass", "direction", "feed_mm_min".
 #pragma once
 
 #include <optional>

@@ -78,7 +78,7 @@ void ReadMachine(const Table& root, RigSettings& rig) {
   const auto reference = root.Quantities("reference_mm", 3, std::vector{0.0, 0.0, 0.0});
   rig.reference = Eigen::Vector3d(reference[0], reference[1], reference[2]);
   for (int axis = 0; axis < kAxes; ++axis) {
-    rig.travels[axis] = {0.0, 0.0};  // of an axis that there is not
+    rig.travels[axis] = {0.0, 0.0};  // without such an axis
     if ((rig.workpiece_axes + rig.tool_axes).find(*kAxisNames[axis]) == std::string::npos) continue;
     const auto ends = root.Child("axis").Child(kAxisNames[axis]).Quantities("travel_mm", 2);
     rig.travels[axis] = {ends[0], ends[1]};

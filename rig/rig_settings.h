@@ -1,15 +1,15 @@
-// What the rig takes from the machine file: the tables that describe the machine, its population of
-// errors, the head, the target and the noise, read by the rig's own code, and its own table [rig].
+// The values of the machine file that the rig uses: the machine, its population of errors, the
+// head, the target and the noise, read by the rig's own code, and its own table [rig].
 //
 // SI units. Frames: M, the machine; H, the head: u along the sweep, s along the outward normal of
 // the target's side face, n along that of its top face.
 //
 // [rig] (all optional): acceleration_mm_s2 (200), lag_ms (15), update_hz (1000), target_tilt_urad
 // (100), gap_setting_um (10), electrode_mm (0: no tilt response), temperature_c (20),
-// temperature_drift_c (0.1), cap_um (1: how far the ball trails in its cap at high feed),
-// cap_feed_mm_min (10: the feed of half of that), cap_force_n (8.5: the force for which cap_um
-// holds), encoder_counts (4194304 a turn). InputError with file, line and key; keys of shared
-// tables that the rig does not need are left to their owners.
+// temperature_drift_c (0.1), cap_um (1: lag of the ball in its cap at high feed), cap_feed_mm_min
+// (10: the feed of half of that), cap_force_n (8.5: the force for which cap_um holds),
+// encoder_counts (4194304 a turn). InputError with file, line and key; keys of shared tables that
+// the rig does not use are not checked.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -44,7 +44,7 @@ struct ProbePlace {
   double range;   // largest gap
 };
 
-// Where the head stands for the sweep of one axis.
+// The pose of the head for the sweep of one axis.
 struct HeadPlace {
   Eigen::Matrix3d rotation;  // columns u, s, n in M
   Eigen::Vector3d position;  // of the head's origin in M, at the start of the sweep
@@ -56,9 +56,9 @@ struct RigSettings {
   std::string tool_axes;                  // "Z": from the bed to the tool
   Eigen::Vector3d reference;              // in M: where the error motions act
   std::array<AxisTravel, kAxes> travels;  // as the controller counts
-  // Which way a carriage goes as the controller's number rises: +1 towards + of M, -1 towards -.
-  // An axis with the workpiece on it that is counted after ISO 841 goes towards -. The world stands
-  // where the carriages are; programs, scales and recordings hold the controller's numbers.
+  // Direction of a carriage in M as the controller's position increases: +1 or -1, which is that of
+  // an axis that carries the workpiece and is counted after ISO 841. The world uses the positions
+  // of the carriages; programs, scales and recordings those of the controller.
   std::array<double, kAxes> sense = {1.0, 1.0, 1.0};
   ErrorPopulation population;
 
@@ -82,12 +82,12 @@ struct RigSettings {
   double encoder_counts;            // a turn
 
   bool CarriesTarget(int axis) const;
-  // Which way the tool goes in the workpiece as the controller's number rises: +1 or -1.
+  // Direction of the tool in the workpiece as the controller's position increases: +1 or -1.
   double ToolWay(int axis) const { return CarriesTarget(axis) ? -sense[axis] : sense[axis]; }
-  // The command at which the sweep of an axis begins to count: its first station, the other axes at
-  // the first ends of their travels.
+  // The command at the start of the sweep of an axis: its first station, the other axes at the
+  // first ends of their travels.
   Eigen::Vector3d StartOf(int axis) const;
-  // How far the axes have moved the target, and the head, nominally and in M, at a command.
+  // The nominal displacement of the target, and of the head, in M at a command.
   Eigen::Vector3d TargetTravel(const Eigen::Vector3d& command) const;
   Eigen::Vector3d HeadTravel(const Eigen::Vector3d& command) const;
 

@@ -24,8 +24,7 @@ inline Eigen::Matrix3d FullRotation(const Eigen::Vector3d& angles) {
   return FullRotation(angles.x(), angles.y(), angles.z());
 }
 
-// How a body moved: a point of the body that stood at p before stands at rotation * p +
-// translation.
+// The displacement of a body: it moves the point p to rotation * p + translation.
 struct Displacement {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
@@ -33,7 +32,7 @@ struct Displacement {
   Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
     return rotation * point + translation;
   }
-  // First `first`, then this.
+  // `first`, followed by this.
   Displacement operator*(const Displacement& first) const {
     return {rotation * first.rotation, rotation * first.translation + translation};
   }

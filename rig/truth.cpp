@@ -106,7 +106,7 @@ std::vector<double> Interpolated(const std::vector<double>& stations,
   return found;
 }
 
-// Takes off what a sweep does not define: the first value of an angle, the line of a straightness.
+// Removes what a sweep does not define: the first value of an angle, the line of a straightness.
 void Reduce(bool angle, const std::vector<double>& stations, std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
   double offset = values.front(), slope = 0.0, middle = 0.0;

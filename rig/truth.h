@@ -1,5 +1,4 @@
-// What the rig knows and a measurement must not: the drawn errors as JSON, and how near a result
-// came.
+// The drawn errors of the rig as JSON, and the deviation of a result from them.
 //
 // Truth: {"machine", "seed", "axes": {"X": {"stations_m": [], "EXX": [], ... "ECX": []}, ...},
 // "scale": {"X": ...}, "squareness": {"A0Z", "B0Z", "C0Y"}, "head": {drawn values}, "hidden": [as
@@ -11,8 +10,8 @@
 // {"EYX": {"value": [], "u": []}, ...}. An angle is compared relative to the first station, a
 // straightness as the deviation from its own least-squares line over the stations, truth and result
 // alike, so that only what a sweep defines is compared. Truth between its stations is interpolated
-// linearly. A station that is zero by definition (u = 0 and no error, the first one of an angle)
-// does not count in what is said about u.
+// linearly. A station that is zero by definition (u = 0 and no error, the first one of an angle) is
+// left out of rms_pull and share_inside_2u.
 #pragma once
 
 #include <cstdint>

@@ -12,8 +12,8 @@ namespace {
 // thousand times closer.
 constexpr int kSettingRounds = 4;
 
-// Half of the extent over which the form of a face is kept: beyond it the same form costs more
-// time.
+// Half of the extent over which the form of a face is stored: beyond it the same form takes longer
+// to compute.
 double FaceReach(const RigSettings& settings, int axis) {
   double arm = 0.0;
   for (const ProbePlace& probe : settings.probes) {
@@ -36,7 +36,7 @@ World::World(const RigSettings& settings, std::uint64_t seed, HiddenEffects hidd
     : settings_(settings),
       seed_(seed),
       hidden_(std::move(hidden)),
-      set_up_(mounting),
+      head_and_target_(mounting),
       squareness_(Squareness::Draw(settings, seed)),
       probes_(DrawProbes(settings, seed)),
       mounting_(TargetMounting::Draw(settings, seed, mounting.number)) {
@@ -92,10 +92,10 @@ World::InstalledHead World::Mount(int axis, HeadPlace& place) const {
   place = settings_.head[axis];
   const Eigen::Vector3d along = place.rotation.col(0);
   Eigen::Vector3d corner = place.position - settings_.TargetTravel(start);
-  corner += set_up_.target_shift * along;
+  corner += head_and_target_.target_shift * along;
   place.position -= settings_.HeadTravel(start);
-  if (set_up_.head_turned) place.rotation.leftCols<2>() *= -1.0;
-  InstalledHead head{DrawInstallation(settings_, axis, seed_, set_up_.number), {}, {}};
+  if (head_and_target_.head_turned) place.rotation.leftCols<2>() *= -1.0;
+  InstalledHead head{DrawInstallation(settings_, axis, seed_, head_and_target_.number), {}, {}};
   head.installation.angles += hidden_angles_;
   head.installation.offsets += hidden_offsets_;
   for (const int direction : {2, 1}) {  // n: the top face, s: the side face
@@ -106,8 +106,8 @@ World::InstalledHead World::Mount(int axis, HeadPlace& place) const {
       if (effect.cause() != Cause::kTargetForm || effect.place() != 2 - direction) continue;
       face.AddForm(settings_, effect.At("rms_um"), FaceReach(settings_, axis), seed_);
     }
-    if (set_up_.target_reversed) {
-      // About the middle of what the head passes.
+    if (head_and_target_.target_reversed) {
+      // About the middle of the stretch that the head passes.
       const double length = settings_.sweeps[axis]
                                 ? settings_.sweeps[axis]->last() - settings_.sweeps[axis]->first()
                                 : settings_.travels[axis].last - settings_.travels[axis].first;
@@ -173,7 +173,7 @@ std::array<World::Sight, kProbes> World::SightsOf(const InstalledHead& head,
                                                   const Eigen::Vector3d& command) const {
   const Displacement target = PoseOfTarget(command);
   const Displacement tool = PoseOfHead(command);
-  // The head as the target sees it.
+  // The head in the frame of the target.
   const Eigen::Matrix3d back = target.rotation.transpose();
   std::array<Sight, kProbes> sights{};
   for (int probe = 0; probe < kProbes; ++probe) {
@@ -210,7 +210,7 @@ Readings World::ReadingsAt(int axis, const Eigen::Vector3d& command) const {
 }
 
 Readings World::ResponseOf(const InstalledHead& head, const Readings& readings) const {
-  Readings change{}, shown{};  // d, true and as it is shown
+  Readings change{}, shown{};  // d, true and as read
   for (std::size_t i = 0; i < kProbes; ++i) change[i] = head.at_start[i] - readings[i];
   for (std::size_t i = 0; i < kProbes; ++i) {
     double said = change[i] + response_.quadratic[i] * change[i] * change[i];

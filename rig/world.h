@@ -1,24 +1,24 @@
 // The world of the virtual rig: one machine with its head and target, drawn by a seed from the
-// population of the machine file, that answers what the five probes read at any commanded position.
+// population of the machine file, with the readings of the five probes at any commanded position.
 //
 // Nothing here is linearised: full rotations, the product of the carriages' displacements in the
 // order of the chain, and the intersection of each probe's axis with the target's real face. It
 // shares no code with the models that are tested against it.
 //
-// How a reading comes about, stage by stage:
-//   machine motion    PoseOfTarget, PoseOfHead: what the carriages do at a command
+// The stages of a reading:
+//   machine motion    PoseOfTarget, PoseOfHead: displacements by the carriages at a command
 //   probe geometry    SightsOf: electrode to face along the probe's axis
-//   probe response    ResponseTo: tilt response, gain about the middle of the range; then, where it
-//                     is hidden, what is no gain of one probe alone (ResponseOf)
-//   noise             noise.h, a function of the time
-// The motion in time is motion.h; what becomes of the numbers on the wire is server.h.
+//   probe response    ResponseTo: tilt response, gain about the middle of the range; then
+//                     ResponseOf: hidden nonlinearity, crosstalk and inverted signs
+//   noise             noise.h, a function of time
+// motion.h has the motion in time, register_server.h the numbers on the wire.
 // Hidden effects that are constants of machine, head or target are built in here; those that depend
-// on time, motion or temperature come from hidden_run.h, as another command and other readings.
+// on time, motion or temperature come from hidden_run.h, as changed commands and readings.
 //
-// Frames: M, the machine. A point that moves with the target (the head) is named by where it stands
-// in M when all axes are at zero and without error; the pose takes it to where it stands now.
+// Frames: M, the machine. The coordinates of a point that moves with the target (the head) are
+// those in M with all axes at zero and without error; the pose takes it to its present place.
 // Command: [x y z] in m. Each error motion acts at the machine's reference point, which travels
-// with its carriage, so Abbe arms arise by themselves.
+// with its carriage: this includes the effect of Abbe offsets.
 #pragma once
 
 #include <array>
@@ -37,9 +37,9 @@ namespace abbe::rig {
 struct Mounting {
   std::uint64_t number = 0;      // each draws the target's tilt and the head's installation anew
   double target_shift = 0.0;     // m, of the target along u
-  bool target_reversed = false;  // each face turned by half a turn about its normal, so that what
-                                 // was seen first is seen last
-  bool head_turned = false;      // by half a turn about n: the side unit looks at the other side
+  bool target_reversed = false;  // each face turned by half a turn about its normal, so that its
+                                 // first part is measured last
+  bool head_turned = false;      // by half a turn about n: the side unit faces the other side
 };
 
 class World {
@@ -66,17 +66,17 @@ class World {
   Readings ReadingsAt(int axis, const Eigen::Vector3d& command) const;
 
  private:
-  // The head as it was installed for the sweep of one axis, and the two faces that it looks at.
+  // The head as installed for the sweep of one axis, and its two faces of the target.
   struct InstalledHead {
     HeadInstallation installation;
     std::array<Electrode, kProbes> electrodes;
     std::vector<TargetFace> faces;  // top, side
-    Readings at_start{};            // where the hidden response of the probes has its zero
+    Readings at_start{};            // zero of the hidden response of the probes
 
     const TargetFace& FaceOf(const ProbePlace& probe) const { return faces[probe.top ? 0 : 1]; }
   };
 
-  // What is hidden in the response of the probes, in d = gap at the start - gap.
+  // The hidden response of the probes, in d = gap at the start - gap.
   struct Response {
     Readings quadratic{};                                   // 1/m
     std::array<std::array<double, kProbes>, kProbes> of{};  // of[i][k]: of d of k in the reading i
@@ -90,7 +90,7 @@ class World {
   InstalledHead Mount(int axis, HeadPlace& place) const;
   Readings ResponseOf(const InstalledHead& head, const Readings& readings) const;
   Displacement PoseOf(const std::string& axes_from_bed, const Eigen::Vector3d& command) const;
-  // What lies before each probe.
+  // The face in front of a probe.
   struct Sight {
     double gap;   // m, along the probe's axis
     double tilt;  // rad, between the probe's axis and the face's normal
@@ -103,7 +103,7 @@ class World {
   RigSettings settings_;
   std::uint64_t seed_;
   HiddenEffects hidden_;
-  Mounting set_up_;
+  Mounting head_and_target_;
   std::vector<AxisErrors> errors_;
   Squareness squareness_;
   std::array<ProbeTruth, kProbes> probes_;

@@ -1,15 +1,15 @@
-// Any set of runs of the linkage as one estimation problem: the one way in which runs are fitted.
+// Any set of runs of the linkage as one estimation problem; every fit of such runs uses it.
 //
 //   Problem problem = MakeLinkageProblem(simulation, runs, {});
 //   problem.Block(problem.Find("graduation")).Hold();        // which blocks are free
 //   const Result result = SolveLinkage(problem);
 //   const VectorXd x = ParametersOf(result.blocks, runs[0].mounting);   // for the simulation
 //
-// Each run is a source; its rows are the gaps of simulation/linkage/linkage_gaps.h. Runs of one mounting
-// share the pose of the base; every mounting has base blocks of its own (fusion/calibration.h),
-// with the priors of the machine file. The displacement form knows nothing of the base position
-// beforehand: its prior is left out. That is the same as to use differences from a first pose, but
-// without the noise of that pose in every difference.
+// Each run is a source; its rows are the gaps of simulation/linkage/linkage_gaps.h. Runs of one
+// mounting share the pose of the base; every mounting has base blocks of its own
+// (fusion/calibration.h), with the priors of the machine file. The displacement form has no prior
+// for the base position. That is equivalent to differences from a first pose, without the noise of
+// that pose in all of them.
 // Failure: InputError for no run or a run without poses.
 #pragma once
 
@@ -24,15 +24,14 @@ namespace abbe::simulation {
 
 struct LinkageProblemOptions {
   bool displacement = false;
-  // Beyond 3 standard deviations a row pulls no more than there; costs normal data 0.1 %.
+  // Huber threshold in standard deviations; efficiency loss on normal data 0.1 %.
   estimation::RobustLoss loss = estimation::RobustLoss::Huber(3.0);
 };
 
-// A ten-thousandth of a standard uncertainty is settled, if nothing is said: a robust loss gets no
-// nearer on few poses.
-// Nearly always a few passes from the nominal linkage do; where they do not, as with a base that is
-// known to some decimetres only, the trust region goes before them. Failure: that of
-// Problem::Solve.
+// Solves by a few passes from the nominal linkage; where these do not converge, as with a base
+// known to some decimetres only, with the trust region. `settled`: remaining distance to the
+// solution, in standard uncertainties; with a robust loss few poses do not come much nearer than
+// the default. Failure: that of Problem::Solve.
 estimation::Result SolveLinkage(const estimation::Problem& problem, int threads = 0,
                                 bool weak_directions = true, double settled = 1e-4);
 
@@ -40,14 +39,14 @@ estimation::Problem MakeLinkageProblem(const simulation::LinkageSimulation& simu
                                        const std::vector<simulation::LinkageRun>& runs,
                                        const LinkageProblemOptions& options);
 
-// In the order of first appearance.
+// The mountings of the runs, in the order of first appearance.
 std::vector<std::string> MountingsOf(const std::vector<simulation::LinkageRun>& runs);
 
-// x of LinkageSimulation for a mounting.
+// The parameters of LinkageSimulation for a mounting.
 Eigen::VectorXd ParametersOf(const std::vector<estimation::ParameterBlock>& blocks,
                              const std::string& mounting);
 
-// Where the entries of that x are among the free parameters `names`; -1: held.
+// The index of each of these parameters in the free parameters `names`; -1: held.
 std::vector<int> ColumnsOf(const std::vector<estimation::ParameterBlock>& blocks,
                            const std::string& mounting, const std::vector<std::string>& names);
 

@@ -126,8 +126,8 @@ class Circle(ProgramCase):
 
     def test_a_radius_of_another_circle_is_refused(self):
         plain = linkage_runs.write(self.path / "plain.csv", circle(perfect), reference=True, linkage=False)
-        self.refuse(plain, "--radius", 20, saying=["plain.csv", "--radius says a radius of 20 mm", "10 mm"])
-        for said, saying in (("5", "radius_mm of the header says a radius of 5 mm"), ("-5", "radius_mm = -5"),
+        self.refuse(plain, "--radius", 20, saying=["plain.csv", "--radius states a radius of 20 mm", "10 mm"])
+        for said, saying in (("5", "radius_mm of the header states a radius of 5 mm"), ("-5", "radius_mm = -5"),
                              ('"ten"', "radius_mm")):
             wrong = linkage_runs.write(self.path / "wrong.csv", circle(perfect), reference=True, linkage=False,
                                        header=[f"# radius_mm = {said}"])

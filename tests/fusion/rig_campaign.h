@@ -52,7 +52,8 @@ struct Campaign {
             rig::Linkage(rig::ReadLinkage(document.Root()), seed)) {}
 
   recording::Recording SweepRecording(char axis, std::uint64_t run = 1) const {
-    const rig::CampaignOptions options{.rate = 50.0, .moving = false, .run = run, .mounting = "A"};
+    const rig::RecordSweepOptions options{
+        .rate = 50.0, .moving = false, .run = run, .mounting = "A"};
     auto recording = rig::RecordSweep(rig.world(), axis, channels, options);
     recording.name = fmt::format("sweep {}", axis);
     return recording;

@@ -138,7 +138,7 @@ TEST(SquarenessOfSweeps, IsRefusedWhenAConditionFails) {
   EXPECT_EQ(RefusalOf(x, y, setup.target), "accepted");
   EXPECT_THAT(RefusalOf(x, x, setup.target), testing::HasSubstr("both sweep the X axis"));
   const SweepResult bare = Lean(setup, 'Y', 1e-5, 1e-5, level, "");
-  EXPECT_THAT(RefusalOf(x, bare, setup.target), testing::HasSubstr("does not say `mounting`"));
+  EXPECT_THAT(RefusalOf(x, bare, setup.target), testing::HasSubstr("does not state `mounting`"));
   const SweepResult moved = Lean(setup, 'Y', 1e-5, 1e-5, level, "[mounting]\nid = \"A18\"\n");
   EXPECT_THAT(RefusalOf(x, moved, setup.target), testing::HasSubstr("mounted anew"));
   TargetSettings target = setup.target;

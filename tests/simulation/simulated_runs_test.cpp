@@ -84,7 +84,7 @@ TEST(SimulatedRuns, SweepFollowsTheHandCalculation) {
   const Campaign plain(
       CampaignMachine({{"step_mm = 4.0", "step_mm = 10.0"}, {"form_nm = 10.0", "form_nm = 0.0"}}),
       3);
-  rig::CampaignOptions options;
+  rig::RecordSweepOptions options;
   options.rate = 50.0;
   options.moving = false;
   auto recording = rig::RecordSweep(plain.rig.world(), 'X', plain.channels, options);
