@@ -21,21 +21,21 @@ namespace abbe::apps {
 // Adds the option --causes to a command.
 CLI::Option* AddCausesOption(CLI::App& command, std::filesystem::path& path);
 
-// Which seats of causes a command takes out.
+// Which causes a command corrects (simulation/causes/cause.h).
 using Corrections = std::vector<simulation::CorrectedBy>;
-// What the machine itself does is to be measured.
+// For measuring the machine: its own errors stay.
 inline const Corrections kForMeasuring{simulation::CorrectedBy::kInstrument};
-// A map holds and corrects what is a function of position.
+// For a map, which contains the errors that are functions of position.
 inline const Corrections kForMaps{simulation::CorrectedBy::kInstrument,
                                   simulation::CorrectedBy::kMotion};
-// The machine is the reference.
+// For calibrating, where the machine is the reference.
 inline const Corrections kForCalibrating{simulation::CorrectedBy::kInstrument,
                                          simulation::CorrectedBy::kMotion,
                                          simulation::CorrectedBy::kMap};
 
 class CauseCorrection {
  public:
-  // An empty path takes nothing out.
+  // An empty path corrects nothing.
   CauseCorrection(const std::filesystem::path& path, const MachineFile& file,
                   const Corrections& taken);
 
