@@ -10,7 +10,8 @@
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/machine_file.h"
-#include "hal/candump_recording.h"
+#include "hal/can/candump_recording.h"
+#include "hal/can/canopen_device.h"
 #include "recording/csv_table.h"
 #include "recording/import.h"
 #include "recording/monitor_log.h"
@@ -37,8 +38,8 @@ struct ConvertOptions {
 bool IsLog(const std::filesystem::path& path) { return path.extension() == ".log"; }
 
 // The encoders that a log of CAN traffic is about.
-const hal::CanopenSettings& EncodersOf(const MachineFile& file, const std::string& device) {
-  const auto& all = file.devices.canopen;
+hal::CanopenSettings EncodersOf(const MachineFile& file, const std::string& device) {
+  const auto all = hal::SettingsOf<hal::CanopenDevice>(file.devices);
   if (device.empty() && all.size() == 1) return all.front();
   for (const hal::CanopenSettings& one : all) {
     if (one.name == device) return one;

@@ -91,8 +91,8 @@ class Table {
   Table Child(std::string_view key) const;
   // An array of tables; empty when absent.
   std::vector<Table> Children(std::string_view key) const;
-  // Every table below this one that has a name of the user's choice, e.g. the devices. Keys that
-  // were asked for by name before are not among them.
+  // Every table below this one that has a name of the user's choice, e.g. the devices, in the order
+  // of the file. Keys that were asked for by name before are not among them.
   std::vector<Table> Named() const;
 
   // Throws when this table (not the tables below it) holds a key that was not asked for.

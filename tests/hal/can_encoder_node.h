@@ -7,9 +7,9 @@
 #include <memory>
 #include <utility>
 
-#include "hal/can_in_process.h"
-#include "hal/canopen_frame.h"
-#include "hal/canopen_settings.h"
+#include "hal/can/can_in_process.h"
+#include "hal/can/canopen_frame.h"
+#include "hal/can/canopen_settings.h"
 
 namespace abbe::hal {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "child_process.h"
-#include "hal/can_socket.h"
+#include "hal/can/can_socket.h"
 #include "hal/clock.h"
 
 namespace abbe::hal {

@@ -1,4 +1,4 @@
-#include "hal/can_in_process.h"
+#include "hal/can/can_in_process.h"
 
 #include <gtest/gtest.h>
 

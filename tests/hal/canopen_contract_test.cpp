@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "can_encoder_node.h"
-#include "hal/canopen_source.h"
+#include "hal/can/canopen_source.h"
 #include "sample_source_contract.h"
 
 namespace abbe::hal {
