@@ -17,7 +17,7 @@ class Sink : public hal::CanBus {
     Require(frame.size <= 8 && frame.id < 0x800, "what is sent is a frame");
     return true;
   }
-  std::optional<hal::CanReceived> Receive(double) override { return {}; }
+  std::optional<hal::ReceivedFrame> Receive(double) override { return {}; }
   hal::CanState state() const override { return hal::CanState::kActive; }
   std::string Fault() const override { return {}; }
   std::uint64_t lost() const override { return 0; }

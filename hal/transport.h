@@ -2,13 +2,13 @@
 //
 // To add one: a folder hal/NAME/ with
 //
-//   a Device           what the table says
-//   a DeviceSource     the device when it is open
-//   a function         that makes the Device of the table
-//   a CMakeLists.txt   its sources, and the libraries that only they use
+//   a Device           the settings of the table
+//   a DeviceSource     the open device
+//   a function         that reads the table into a Device
+//   a CMakeLists.txt   the sources, and the libraries that only they use
 //
-// and one line in transports.cpp, which gives the function its name. No other file knows the name.
-// tests/hal/transport_contract_test.cpp holds every transport to what is said here.
+// and one line in transports.cpp, which gives the function the transport's name. No other file may
+// compare it. tests/hal/transport_contract_test.cpp checks this contract for every transport.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@
 
 namespace abbe::hal {
 
-// Its samples are those of SampleSource's contract.
+// An open device. The contract of SampleSource holds.
 class DeviceSource : public SampleSource {
  public:
   // DeviceError, with the device, its address, its answer and the remedy, unless every channel can
@@ -39,6 +39,7 @@ class DeviceSource : public SampleSource {
   virtual void StartCycle(int /*program*/) {}
 };
 
+// A device as its table describes it.
 class Device {
  public:
   virtual ~Device() = default;

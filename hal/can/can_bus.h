@@ -32,7 +32,7 @@ struct CanFrame {
   friend bool operator==(const CanFrame&, const CanFrame&) = default;
 };
 
-struct CanReceived {
+struct ReceivedFrame {
   CanFrame frame;
   double time_s = 0.0;  // when it passed the bus, by the clock of the measurement
   bool own = false;     // sent by this participant
@@ -58,7 +58,7 @@ class CanBus {
   virtual bool Send(const CanFrame& frame) = 0;
   // The next frame; none when none arrived by `until_s` of the clock, or the bus does not work.
   // A time in the past does not wait.
-  virtual std::optional<CanReceived> Receive(double until_s) = 0;
+  virtual std::optional<ReceivedFrame> Receive(double until_s) = 0;
 
   virtual CanState state() const = 0;
   // Why the bus carries no frames, in one line: "can0: bus-off"; empty when it works.

@@ -7,13 +7,13 @@
 
 namespace abbe::hal {
 
-struct CanInProcess::OnTheWay {
+struct CanInProcess::DelayedFrame {
   CanFrame frame;
   double due_s;
   const Participant* sender;
 };
 
-struct CanInProcess::Acting {
+struct CanInProcess::ActiveTrouble {
   CanTrouble trouble;
   int seen = 0;
 
@@ -38,19 +38,19 @@ class CanInProcess::Participant : public CanBus {
     return true;
   }
 
-  std::optional<CanReceived> Receive(double until_s) override {
+  std::optional<ReceivedFrame> Receive(double until_s) override {
     while (true) {
       const double now = wire_.clock_.Now();
       wire_.DeliverDue(now);
       std::unique_lock lock(wire_.mutex_);
       if (!queue.empty()) {
-        const CanReceived received = queue.front();
+        const ReceivedFrame received = queue.front();
         queue.pop_front();
         return received;
       }
       if (now >= until_s) return {};
       double wake_s = until_s;
-      if (!wire_.on_the_way_.empty()) wake_s = std::min(wake_s, wire_.on_the_way_.front().due_s);
+      if (!wire_.delayed_.empty()) wake_s = std::min(wake_s, wire_.delayed_.front().due_s);
       wire_.clock_.WaitUntil(wake_s, lock, wire_.arrival_);
     }
   }
@@ -70,7 +70,7 @@ class CanInProcess::Participant : public CanBus {
   std::uint64_t errors() const override { return 0; }
 
   const Hear hear;
-  std::deque<CanReceived> queue;  // under the mutex of the wire, as is the next
+  std::deque<ReceivedFrame> queue;  // under the mutex of the wire, as is the next
   std::uint64_t lost_frames = 0;
 
  private:
@@ -112,9 +112,9 @@ void CanInProcess::Transmit(const CanFrame& frame, const Participant* sender) {
   {
     const std::lock_guard lock(mutex_);
     ++sent_;
-    OnTheWay message{frame, now, sender};
+    DelayedFrame message{frame, now, sender};
     int copies = 1;
-    for (Acting& acting : troubles_) {
+    for (ActiveTrouble& acting : troubles_) {
       if (!acting.Strikes(frame, now)) continue;
       const CanTrouble& trouble = acting.trouble;
       switch (trouble.kind) {
@@ -137,19 +137,18 @@ void CanInProcess::Transmit(const CanFrame& frame, const Participant* sender) {
           break;
       }
     }
-    const auto later = [](double due_s, const OnTheWay& other) { return due_s < other.due_s; };
-    on_the_way_.insert(
-        std::upper_bound(on_the_way_.begin(), on_the_way_.end(), message.due_s, later),
-        static_cast<std::size_t>(copies), message);
+    const auto later = [](double due_s, const DelayedFrame& other) { return due_s < other.due_s; };
+    delayed_.insert(std::upper_bound(delayed_.begin(), delayed_.end(), message.due_s, later),
+                    static_cast<std::size_t>(copies), message);
   }
   DeliverDue(now);
 }
 
 void CanInProcess::DeliverDue(double now_s) {
   std::unique_lock lock(mutex_);
-  while (!on_the_way_.empty() && on_the_way_.front().due_s <= now_s) {
-    const OnTheWay message = on_the_way_.front();
-    on_the_way_.erase(on_the_way_.begin());
+  while (!delayed_.empty() && delayed_.front().due_s <= now_s) {
+    const DelayedFrame message = delayed_.front();
+    delayed_.erase(delayed_.begin());
     std::vector<Participant*> called;
     for (Participant* participant : participants_) {
       const bool own = participant == message.sender;

@@ -4,7 +4,7 @@
 //   CanInProcess wire(clock);
 //   const auto master = wire.Join();
 //   std::unique_ptr<CanBus> node =
-//       wire.Join([&](const CanReceived& heard) { ... node->Send(...); });
+//       wire.Join([&](const ReceivedFrame& heard) { ... node->Send(...); });
 //   wire.Inject({.kind = CanTrouble::Kind::kLost, .id = 0x182, .from_s = 10, .to_s = 20});
 //
 // Participants may live in different threads. One with a callback `hear` is called at once, in the
@@ -46,7 +46,7 @@ struct CanTrouble {
 
 class CanInProcess {
  public:
-  using Hear = std::function<void(const CanReceived& heard)>;
+  using Hear = std::function<void(const ReceivedFrame& heard)>;
 
   // `queue`: frames that wait for one participant; beyond it the newest are lost and counted.
   // `clock` must outlive the bus, and the bus its participants.
@@ -64,8 +64,8 @@ class CanInProcess {
 
  private:
   class Participant;
-  struct OnTheWay;
-  struct Acting;
+  struct DelayedFrame;
+  struct ActiveTrouble;
   void Transmit(const CanFrame& frame, const Participant* sender);
   void DeliverDue(double now_s);
 
@@ -74,8 +74,8 @@ class CanInProcess {
   mutable std::mutex mutex_;
   std::condition_variable arrival_;
   std::vector<Participant*> participants_;
-  std::vector<OnTheWay> on_the_way_;  // in the order of their arrival
-  std::vector<Acting> troubles_;
+  std::vector<DelayedFrame> delayed_;  // in the order of their arrival
+  std::vector<ActiveTrouble> troubles_;
   CanState state_ = CanState::kActive;
   std::uint64_t sent_ = 0;
 };

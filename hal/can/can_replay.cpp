@@ -30,12 +30,12 @@ double CanReplay::NextTime() const {
   return start_s_ + frames_[std::min(next_, frames_.size() - 1)].time_s;
 }
 
-std::optional<CanReceived> CanReplay::Receive(double until_s) {
+std::optional<ReceivedFrame> CanReplay::Receive(double until_s) {
   if (Ended()) return {};
   const double time = start_s_ + frames_[next_].time_s;
   clock_.SleepUntil(std::min(time, until_s));
   if (clock_.Now() < time) return {};
-  return CanReceived{frames_[next_++].frame, time, false};
+  return ReceivedFrame{frames_[next_++].frame, time, false};
 }
 
 }  // namespace abbe::hal

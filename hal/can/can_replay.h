@@ -21,7 +21,7 @@ class CanReplay : public CanBus {
   CanReplay(const CandumpLog& log, const std::string& interface, Clock& clock);
 
   bool Send(const CanFrame&) override { return false; }
-  std::optional<CanReceived> Receive(double until_s) override;
+  std::optional<ReceivedFrame> Receive(double until_s) override;
   CanState state() const override { return CanState::kActive; }
   std::string Fault() const override { return {}; }
   std::uint64_t lost() const override { return 0; }

@@ -57,7 +57,7 @@ constexpr std::size_t kBatch = 8;  // frames fetched by one system call
 }  // namespace
 
 // A frame as the kernel hands it over.
-struct CanSocket::Letter {
+struct CanSocket::MessageBuffer {
   can_frame wire;
   iovec part;
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t))];
@@ -66,7 +66,7 @@ struct CanSocket::Letter {
 };
 
 struct CanSocket::Batch {
-  std::array<Letter, kBatch> letters;
+  std::array<MessageBuffer, kBatch> letters;
   double calendar_s, clock_s;  // when they were fetched
 };
 
@@ -158,11 +158,11 @@ bool CanSocket::Send(const CanFrame& frame) {
   return false;
 }
 
-std::optional<CanReceived> CanSocket::Receive(double until_s) {
+std::optional<ReceivedFrame> CanSocket::Receive(double until_s) {
   if (!Works(state_)) Recover();
   while (true) {
     while (next_ < fetched_) {
-      CanReceived received;
+      ReceivedFrame received;
       if (Understand(batch_->letters[next_++], received)) return received;
     }
     if (socket_ < 0) return {};
@@ -187,7 +187,7 @@ bool CanSocket::Wait(double until_s) {
 void CanSocket::Fetch() {
   std::array<mmsghdr, kBatch> messages{};
   for (std::size_t i = 0; i < kBatch; ++i) {
-    Letter& letter = batch_->letters[i];
+    MessageBuffer& letter = batch_->letters[i];
     letter.part = {&letter.wire, sizeof(letter.wire)};
     messages[i].msg_hdr.msg_iov = &letter.part;
     messages[i].msg_hdr.msg_iovlen = 1;
@@ -208,7 +208,7 @@ void CanSocket::Fetch() {
   batch_->clock_s = clock_.Now();
 }
 
-bool CanSocket::Understand(Letter& letter, CanReceived& received) {
+bool CanSocket::Understand(MessageBuffer& letter, ReceivedFrame& received) {
   const can_frame& wire = letter.wire;
   if (letter.size != sizeof(wire)) return false;
   double age_s = 0.0;

@@ -28,14 +28,14 @@ class CanSocket : public CanBus {
   CanSocket& operator=(const CanSocket&) = delete;
 
   bool Send(const CanFrame& frame) override;
-  std::optional<CanReceived> Receive(double until_s) override;
+  std::optional<ReceivedFrame> Receive(double until_s) override;
   CanState state() const override { return state_; }
   std::string Fault() const override;
   std::uint64_t lost() const override { return lost_; }
   std::uint64_t errors() const override { return errors_; }
 
  private:
-  struct Letter;
+  struct MessageBuffer;
   struct Batch;
 
   void Open();
@@ -45,7 +45,7 @@ class CanSocket : public CanBus {
   bool InterfaceUp() const;
   void Fetch();  // into the batch
   // False when it is not to be returned.
-  bool Understand(Letter& letter, CanReceived& received);
+  bool Understand(MessageBuffer& letter, ReceivedFrame& received);
   void HearErrorFrame(std::uint32_t id, const std::uint8_t* data);
   double TimeOf(double age_s);
   bool Wait(double until_s);  // false: the time is over

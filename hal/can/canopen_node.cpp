@@ -47,7 +47,7 @@ bool CanopenNode::HearState(NmtState state) {
   return true;
 }
 
-bool CanopenNode::Hear(const CanReceived& received) {
+bool CanopenNode::Hear(const ReceivedFrame& received) {
   if (received.own) return false;
   if (const auto heartbeat = HeartbeatOf(received.frame)) {
     if (heartbeat->node != encoder_.node) return false;

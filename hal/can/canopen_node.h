@@ -24,7 +24,7 @@ class CanopenNode {
   CanopenNode(const EncoderSettings& encoder, const CanopenTimes& times, double speed, bool asks);
 
   // Takes any frame of the bus but PDOs. True when it shows that the node has restarted.
-  bool Hear(const CanReceived& received);
+  bool Hear(const ReceivedFrame& received);
   // A PDO of the node: only an operational one sends it.
   void HearPdo() { state_ = NmtState::kOperational; }
   // Sends the next request if one is due: a question, or the command to start. `silent`: it has not

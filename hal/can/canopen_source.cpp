@@ -143,12 +143,12 @@ void CanopenSource::Collect() {
                                      : Span(kBetweenCycles));
   bool begun = produces();
   while (!Complete(now) && Works(bus_->state())) {
-    std::optional<CanReceived> received;
+    std::optional<ReceivedFrame> received;
     std::swap(received, ahead_);
     if (!received) received = bus_->Receive(until);
     if (!received) break;
     now = received->time_s;
-    if (Hear(*received) == Heard::kNextCycle) {
+    if (Hear(*received) == Cycle::kNext) {
       ahead_ = received;
       break;
     }
@@ -160,7 +160,7 @@ void CanopenSource::Collect() {
   }
 }
 
-CanopenSource::Heard CanopenSource::Hear(const CanReceived& received) {
+CanopenSource::Cycle CanopenSource::Hear(const ReceivedFrame& received) {
   if (IsSync(received.frame)) return HearSync(received);
   for (Encoder& encoder : encoders_) {
     const EncoderSettings& settings = encoder.settings;
@@ -172,38 +172,38 @@ CanopenSource::Heard CanopenSource::Hear(const CanReceived& received) {
     ++counts_.restarts;
     encoder.judge.LoseReference();
   }
-  return Heard::kAll;
+  return Cycle::kThis;
 }
 
-CanopenSource::Heard CanopenSource::HearSync(const CanReceived& received) {
+CanopenSource::Cycle CanopenSource::HearSync(const ReceivedFrame& received) {
   ++counts_.syncs;
   if (produces()) {
     if (!sync_due_) {
       foreign_sync_ = true;
-      return Heard::kAll;
+      return Cycle::kThis;
     }
     sync_due_ = false;
   } else if (sync_s_ || std::any_of(encoders_.begin(), encoders_.end(),
                                     [](const Encoder& e) { return e.answer; })) {
     --counts_.syncs;  // it is handled again in the next cycle
-    return Heard::kNextCycle;
+    return Cycle::kNext;
   }
   sync_heard_ = true;
   sync_s_ = received.time_s;
-  return Heard::kAll;
+  return Cycle::kThis;
 }
 
-CanopenSource::Heard CanopenSource::HearPdo(Encoder& encoder, const CanReceived& received) {
+CanopenSource::Cycle CanopenSource::HearPdo(Encoder& encoder, const ReceivedFrame& received) {
   encoder.node.HearPdo();
   const bool follows_sync = produces() || sync_heard_;
-  if (!follows_sync && encoder.answer) return Heard::kNextCycle;
+  if (!follows_sync && encoder.answer) return Cycle::kNext;
   if (encoder.answer || (follows_sync && !sync_s_)) {
     ++counts_.unasked;
     encoder.owes = false;
-    return Heard::kAll;
+    return Cycle::kThis;
   }
   encoder.answer = received;
-  return Heard::kAll;
+  return Cycle::kThis;
 }
 
 Sample CanopenSource::SampleOf(Encoder& encoder, bool torn, double now_s) {

@@ -64,17 +64,17 @@ class CanopenSource : public DeviceSource {
     EncoderSettings settings;
     CanopenNode node;
     EncoderJudge judge;
-    std::optional<CanReceived> answer;  // to the present SYNC
-    bool silent = false;                // has not answered the SYNC before
-    bool owes = false;                  // that answer may still arrive
+    std::optional<ReceivedFrame> answer;  // to the present SYNC
+    bool silent = false;                  // has not answered the SYNC before
+    bool owes = false;                    // that answer may still arrive
     bool too_short = false;
   };
-  enum class Heard { kAll, kNextCycle };
+  enum class Cycle { kThis, kNext };  // to which a frame belongs
   bool produces() const { return part_ == Part::kMaster && settings_.times.sync > 0.0; }
   double Span(double seconds) const { return seconds * clock_.speed(); }  // of real time
-  Heard Hear(const CanReceived& received);
-  Heard HearSync(const CanReceived& received);
-  Heard HearPdo(Encoder& encoder, const CanReceived& received);
+  Cycle Hear(const ReceivedFrame& received);
+  Cycle HearSync(const ReceivedFrame& received);
+  Cycle HearPdo(Encoder& encoder, const ReceivedFrame& received);
   void Listen(double until_s);  // handles all frames until then
   void AwaitLateAnswers();
   void Command();  // sends the requests that are due, then the SYNC
@@ -92,12 +92,12 @@ class CanopenSource : public DeviceSource {
   Part part_;
   std::vector<Encoder> encoders_;
   std::vector<Channel> channels_;
-  std::optional<double> sync_s_;      // of the present SYNC
-  double sent_s_ = 0.0;               // of the last one sent
-  bool sync_heard_ = false;           // ever
-  bool sync_due_ = false;             // sent and not yet received
-  bool foreign_sync_ = false;         // received one that was not sent
-  std::optional<CanReceived> ahead_;  // the frame that began the next cycle (listener)
+  std::optional<double> sync_s_;        // of the present SYNC
+  double sent_s_ = 0.0;                 // of the last one sent
+  bool sync_heard_ = false;             // ever
+  bool sync_due_ = false;               // sent and not yet received
+  bool foreign_sync_ = false;           // received one that was not sent
+  std::optional<ReceivedFrame> ahead_;  // the frame that began the next cycle (listener)
   std::uint64_t lost_before_ = 0, lost_now_ = 0;
   bool errors_ = false;  // the controller has counted many, and the bus still works
   std::uint64_t sequence_ = 0;

@@ -240,7 +240,7 @@ TEST_F(ThreeEncoders, SyncsKeepTheirDistance) {
 
 TEST_F(ThreeEncoders, ASecondMasterIsNoticed) {
   Open().Require();
-  const auto other = wire_.Join([](const CanReceived&) {});
+  const auto other = wire_.Join([](const ReceivedFrame&) {});
   clock_.Advance(0.01);
   other->Send(SyncFrame());
   EXPECT_FALSE(source_->Read().AllGood());
@@ -252,7 +252,7 @@ TEST_F(ThreeEncoders, ASecondMasterIsNoticed) {
 // A bus that another commands: every SYNC of it is one reading, at its own time.
 TEST_F(ThreeEncoders, AListenerTakesTheSyncsOfAnother) {
   Open(CanopenSource::Part::kListener);
-  const auto other = wire_.Join([](const CanReceived&) {});
+  const auto other = wire_.Join([](const ReceivedFrame&) {});
   other->Send(NmtFrame(NmtCommand::kStart, 0));
   for (int i = 0; i < 5; ++i) {
     clock_.Advance(0.01);

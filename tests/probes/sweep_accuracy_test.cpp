@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "hal/modbus/modbus_device.h"
 #include "probes/sweep_reduction.h"
 #include "random/counter_random.h"
 #include "rig/record_sweep.h"

@@ -85,7 +85,7 @@ TEST(LinkageEncoders, ACircleIsRecordedAndEvaluatedAsTheRigRanIt) {
   std::unique_ptr<hal::CanBus> bus;
   LinkageEncoders encoders(machine, EncodersOnCan(),
                            [&bus](const hal::CanFrame& frame) { bus->Send(frame); });
-  bus = wire.Join([&encoders](const hal::CanReceived& heard) { encoders.Hear(heard.frame); });
+  bus = wire.Join([&encoders](const hal::ReceivedFrame& heard) { encoders.Hear(heard.frame); });
   encoders.Boot();
 
   hal::ModbusSettings positions = hal::SettingsOf<hal::ModbusDevice>(Devices()).at(1);
