@@ -56,7 +56,7 @@ constexpr std::size_t kBatch = 8;  // frames fetched by one system call
 
 }  // namespace
 
-// A frame as the kernel hands it over.
+// A frame as recvmmsg() returns it.
 struct CanSocket::MessageBuffer {
   can_frame wire;
   iovec part;
@@ -66,7 +66,7 @@ struct CanSocket::MessageBuffer {
 };
 
 struct CanSocket::Batch {
-  std::array<MessageBuffer, kBatch> letters;
+  std::array<MessageBuffer, kBatch> buffers;
   double calendar_s, clock_s;  // when they were fetched
 };
 
@@ -163,7 +163,7 @@ std::optional<ReceivedFrame> CanSocket::Receive(double until_s) {
   while (true) {
     while (next_ < fetched_) {
       ReceivedFrame received;
-      if (Understand(batch_->letters[next_++], received)) return received;
+      if (Understand(batch_->buffers[next_++], received)) return received;
     }
     if (socket_ < 0) return {};
     const bool in_time = !drained_ || !Works(state_) || Wait(until_s);
@@ -187,12 +187,12 @@ bool CanSocket::Wait(double until_s) {
 void CanSocket::Fetch() {
   std::array<mmsghdr, kBatch> messages{};
   for (std::size_t i = 0; i < kBatch; ++i) {
-    MessageBuffer& letter = batch_->letters[i];
-    letter.part = {&letter.wire, sizeof(letter.wire)};
-    messages[i].msg_hdr.msg_iov = &letter.part;
+    MessageBuffer& buffer = batch_->buffers[i];
+    buffer.part = {&buffer.wire, sizeof(buffer.wire)};
+    messages[i].msg_hdr.msg_iov = &buffer.part;
     messages[i].msg_hdr.msg_iovlen = 1;
-    messages[i].msg_hdr.msg_control = letter.control;
-    messages[i].msg_hdr.msg_controllen = sizeof(letter.control);
+    messages[i].msg_hdr.msg_control = buffer.control;
+    messages[i].msg_hdr.msg_controllen = sizeof(buffer.control);
   }
   const int count = recvmmsg(socket_, messages.data(), kBatch, 0, nullptr);
   next_ = 0;
@@ -201,19 +201,19 @@ void CanSocket::Fetch() {
   if (count < 0 && errno != EAGAIN && errno != EINTR) return Fail(errno);
   if (fetched_ == 0) return;
   for (std::size_t i = 0; i < fetched_; ++i) {
-    batch_->letters[i].header = messages[i].msg_hdr;
-    batch_->letters[i].size = messages[i].msg_len;
+    batch_->buffers[i].header = messages[i].msg_hdr;
+    batch_->buffers[i].size = messages[i].msg_len;
   }
   batch_->calendar_s = RealTimeNow();
   batch_->clock_s = clock_.Now();
 }
 
-bool CanSocket::Understand(MessageBuffer& letter, ReceivedFrame& received) {
-  const can_frame& wire = letter.wire;
-  if (letter.size != sizeof(wire)) return false;
+bool CanSocket::Understand(MessageBuffer& buffer, ReceivedFrame& received) {
+  const can_frame& wire = buffer.wire;
+  if (buffer.size != sizeof(wire)) return false;
   double age_s = 0.0;
-  for (cmsghdr* at = CMSG_FIRSTHDR(&letter.header); at != nullptr;
-       at = CMSG_NXTHDR(&letter.header, at)) {
+  for (cmsghdr* at = CMSG_FIRSTHDR(&buffer.header); at != nullptr;
+       at = CMSG_NXTHDR(&buffer.header, at)) {
     if (at->cmsg_level != SOL_SOCKET) continue;
     if (at->cmsg_type == SO_TIMESTAMPNS) {
       timespec stamp{};
@@ -232,7 +232,7 @@ bool CanSocket::Understand(MessageBuffer& letter, ReceivedFrame& received) {
     return false;
   }
   if (state_ == CanState::kBusOff) state_ = CanState::kActive;
-  received = {FromWire(wire), TimeOf(age_s), (letter.header.msg_flags & MSG_CONFIRM) != 0};
+  received = {FromWire(wire), TimeOf(age_s), (buffer.header.msg_flags & MSG_CONFIRM) != 0};
   return true;
 }
 

@@ -45,7 +45,7 @@ class CanSocket : public CanBus {
   bool InterfaceUp() const;
   void Fetch();  // into the batch
   // False when it is not to be returned.
-  bool Understand(MessageBuffer& letter, ReceivedFrame& received);
+  bool Understand(MessageBuffer& buffer, ReceivedFrame& received);
   void HearErrorFrame(std::uint32_t id, const std::uint8_t* data);
   double TimeOf(double age_s);
   bool Wait(double until_s);  // false: the time is over
