@@ -18,7 +18,7 @@ const hal::SweepPlan& MachineFile::SweepPlanOf(char axis) const {
 }
 
 void MachineFile::RequireDevices() const {
-  if (!devices.devices.empty() || !devices.canopen.empty()) return;
+  if (!devices.devices.empty()) return;
   throw InputError(
       fmt::format("{}: has no table [devices.NAME]; describe the devices to read (docs/devices.md)",
                   document.name()));

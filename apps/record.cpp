@@ -41,11 +41,10 @@ void Select(const RecordCommand& options, hal::DevicesSettings& devices) {
   if (options.devices.empty()) return;
   std::set<std::string> unknown(options.devices.begin(), options.devices.end());
   const auto unwanted = [&](const auto& device) {
-    unknown.erase(device.name);
-    return std::ranges::find(options.devices, device.name) == options.devices.end();
+    unknown.erase(device->name());
+    return std::ranges::find(options.devices, device->name()) == options.devices.end();
   };
   std::erase_if(devices.devices, unwanted);
-  std::erase_if(devices.canopen, unwanted);
   if (unknown.empty()) return;
   throw InputError(fmt::format("--devices: {} has no table [devices.{}]; name one of its devices",
                                options.machine, *unknown.begin()));

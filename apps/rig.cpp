@@ -17,7 +17,6 @@
 #include "apps/result_file.h"
 #include "apps/rig_compare.h"
 #include "apps/rig_course.h"
-#include "hal/can_socket.h"
 #include "hal/device_settings.h"
 #include "hal/sweep_recorder.h"
 #include "recording/instant.h"
@@ -96,13 +95,7 @@ struct Rig {
 };
 
 rig::ServerOptions PlaceToListen(const Rig& rig, const RigOptions& options) {
-  rig::ServerOptions server;
-  for (const hal::DeviceSettings& device : rig.devices.devices) {
-    if (device.transport != hal::Transport::kModbusTcp) continue;
-    server.host = device.host;
-    server.port = device.port;
-    break;
-  }
+  rig::ServerOptions server = rig::AddressOf(rig.devices);
   if (options.port) server.port = *options.port;
   return server;
 }
@@ -171,19 +164,12 @@ class Served {
   }
 
   void ServeCan(const Rig& rig, const RigOptions& options) {
-    if (rig.devices.canopen.empty()) {
-      throw InputError(
-          fmt::format("--can: {} has no encoders; add a table [devices.NAME] with "
-                      "transport = \"canopen\"",
-                      options.machine));
-    }
-    for (hal::CanopenSettings device : rig.devices.canopen) {
-      if (!options.can->empty()) device.interface = *options.can;
-      auto bus = std::make_unique<hal::CanSocket>(device.interface, clock_,
-                                                  rig::LinkageEncoders::HeardIds(device));
-      encoders_.push_back(
-          std::make_unique<rig::EncoderServer>(machine_, device, std::move(bus), clock_));
-    }
+    encoders_ = rig::ServeEncoders(machine_, rig.devices, *options.can, clock_);
+    if (!encoders_.empty()) return;
+    throw InputError(
+        fmt::format("--can: {} has no encoders; add a table [devices.NAME] with "
+                    "transport = \"canopen\"",
+                    options.machine));
   }
 
   void Start(const RigOptions& options) {

@@ -80,20 +80,20 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
   hal::DevicesSettings wanted = file.devices;
   wanted.canopen.clear();  // the linkage is not mounted together with the head
   const hal::OpenedDevices devices =
-      hal::OpenDevices(wanted, clock, hal::Presence::kRequired, [&](const std::string& line) {
-        if (opened) fmt::print(stderr, "abbe: {}\n", line);
-      });
+      hal::OpenDevices(hal::WithoutEncoders(file.devices), clock, hal::Presence::kRequired,
+                       [&](const std::string& line) {
+                         if (opened) fmt::print(stderr, "abbe: {}\n", line);
+                       });
   opened = true;
   hal::PlausibleSource source(*devices.source, PlausibleChannels(file));
   for (const std::string& warning : source.Require(kFirstReadings, clock, file.devices.rate)) {
     fmt::print(stderr, "abbe: {}\n", warning);
   }
-  const hal::SweepAbout about{file.sweep_setup.machine.name,
-                              recording::UtcNow(),
-                              "modbus",
-                              options.mounting,
-                              ProtocolText(file.document, options.operator_name),
-                              devices.transport};
+  const hal::SweepAbout about{.machine = file.sweep_setup.machine.name,
+                              .started = recording::UtcNow(),
+                              .mounting = options.mounting,
+                              .more = ProtocolText(file.document, options.operator_name),
+                              .transport = devices.transport};
   const auto& channels = source.channels();
   const auto writer = recording::Writer::Create(path, hal::SweepHeader(plan, about, channels),
                                                 hal::SweepColumns(channels));

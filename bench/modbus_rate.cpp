@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "hal/modbus_client.h"
-#include "hal/modbus_server.h"
+#include "hal/modbus/modbus_client.h"
+#include "hal/modbus/modbus_server.h"
 
 namespace {
 
@@ -57,8 +57,8 @@ class OurClient {
   }
 
  private:
-  static abbe::hal::DeviceSettings Device() {
-    abbe::hal::DeviceSettings device;
+  static abbe::hal::ModbusSettings Device() {
+    abbe::hal::ModbusSettings device;
     device.name = "bench";
     device.host = "127.0.0.1";
     device.port = Server().port();

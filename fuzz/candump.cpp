@@ -1,6 +1,6 @@
-// `hal/candump_log.h` and what becomes of a log as a recording (`hal/candump_recording.h`).
+// `hal/can/candump_log.h` and what becomes of a log as a recording (`hal/can/candump_recording.h`).
 #include "fuzz/target.h"
-#include "hal/candump_recording.h"
+#include "hal/can/candump_recording.h"
 
 namespace abbe::fuzz::candump {
 

@@ -1,10 +1,10 @@
-// What a CANopen node says (`hal/canopen_node.h`). Each frame of the input has 14 bytes: a time
+// What a CANopen node says (`hal/can/canopen_node.h`). Each frame of the input has 14 bytes: a time
 // step in milliseconds, the identifier (11 bits) with two flags, the size, the place and number of
 // bits of a value, the data.
 #include <algorithm>
 
 #include "fuzz/target.h"
-#include "hal/canopen_node.h"
+#include "hal/can/canopen_node.h"
 
 namespace abbe::fuzz::canopen {
 
@@ -17,7 +17,7 @@ class Sink : public hal::CanBus {
     Require(frame.size <= 8 && frame.id < 0x800, "what is sent is a frame");
     return true;
   }
-  std::optional<hal::CanReceived> Receive(double) override { return {}; }
+  std::optional<hal::ReceivedFrame> Receive(double) override { return {}; }
   hal::CanState state() const override { return hal::CanState::kActive; }
   std::string Fault() const override { return {}; }
   std::uint64_t lost() const override { return 0; }

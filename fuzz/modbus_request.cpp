@@ -1,4 +1,4 @@
-// What a client may send to the server of the virtual rig (`hal/modbus_server.h`), over TCP:
+// What a client may send to the server of the virtual rig (`hal/modbus/modbus_server.h`), over TCP:
 // whatever it was, what comes back are replies of the protocol, and the next client is served as
 // ever.
 #include <arpa/inet.h>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fuzz/target.h"
-#include "hal/modbus_server.h"
+#include "hal/modbus/modbus_server.h"
 
 namespace abbe::fuzz::modbus_request {
 

@@ -1,8 +1,8 @@
-// The one monotonic clock of a measurement, behind a seam.
+// The one monotonic clock of a measurement, as an interface.
 //
-// Time is seconds since the clock was made. Every stamp of every sample comes from the same clock.
-// Deadlines on sockets do not: a device answers in real time, whatever this clock says. Both go on
-// while the computer sleeps, and neither heeds its calendar being set.
+// Time is seconds since the clock was made. All samples are stamped by the same clock. Deadlines on
+// sockets are in real time instead, because devices answer in real time. Both go on while the
+// computer sleeps, and setting its calendar changes neither.
 #pragma once
 
 #include <chrono>

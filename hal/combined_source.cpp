@@ -2,10 +2,6 @@
 
 #include <algorithm>
 
-#include "hal/can_socket.h"
-#include "hal/canopen_source.h"
-#include "hal/modbus_source.h"
-
 namespace abbe::hal {
 
 CombinedSource::CombinedSource(std::vector<std::unique_ptr<SampleSource>> parts, double max_skew_s,
@@ -48,36 +44,17 @@ std::string CombinedSource::Fault() const {
 }
 
 OpenedDevices OpenDevices(const DevicesSettings& devices, Clock& clock, Presence presence,
-                          const Log& log, const BusOf& bus_of) {
+                          const Log& log) {
   OpenedDevices opened;
   std::vector<std::unique_ptr<SampleSource>> parts;
-  for (const DeviceSettings& device : devices.devices) {
-    auto source = std::make_unique<ModbusSource>(device, devices.stale, clock, log);
+  for (const auto& device : devices.devices) {
+    auto source = device->Open(clock, devices.stale, log);
     if (presence == Presence::kRequired) source->Require();
-    const std::string& identity = source->identity();
-    opened.transport[device.name] = identity.empty() ? "modbus" : "modbus, " + identity;
-    if (device.cycle_start) {
-      opened.start_cycle = [it = source.get()](int program) {
-        it->StartCycle(static_cast<std::uint16_t>(program));
-      };
+    opened.transport[device->name()] = source->Description();
+    if (source->HasCycleStart()) {
+      opened.start_cycle = [it = source.get()](int program) { it->StartCycle(program); };
     }
     parts.push_back(std::move(source));
-  }
-  std::vector<CanopenSource*> encoders;
-  for (const CanopenSettings& device : devices.canopen) {
-    auto bus = bus_of ? bus_of(device.interface, clock)
-                      : std::make_unique<CanSocket>(device.interface, clock);
-    auto source =
-        std::make_unique<CanopenSource>(device, devices.stale, std::move(bus), clock, log);
-    if (presence == Presence::kRequired) source->Require();
-    opened.transport[device.name] = "canopen";
-    encoders.push_back(source.get());
-    parts.push_back(std::move(source));
-  }
-  if (!encoders.empty()) {
-    opened.confirm_reference = [encoders] {
-      for (CanopenSource* source : encoders) source->ConfirmReference();
-    };
   }
   opened.source = std::make_unique<CombinedSource>(std::move(parts), devices.max_skew, clock);
   return opened;

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "hal/can_bus.h"
 #include "hal/clock.h"
 #include "hal/device_settings.h"
 #include "hal/sample_source.h"
@@ -42,27 +41,17 @@ class CombinedSource : public SampleSource {
 // The devices of a machine file as one source.
 struct OpenedDevices {
   std::unique_ptr<SampleSource> source;
-  // Starts a program of the machine by its cycle_start register: 1, 2, 3 are the sweeps of X, Y, Z;
-  // empty when no device has one. DeviceError when the device does not take it.
+  // DeviceSource::StartCycle of the last device that has one; empty when none has.
   std::function<void(int program)> start_cycle;
-  // Believes encoders again that have lost their reference (CanopenSource::ConfirmReference);
-  // empty when there are none.
-  std::function<void()> confirm_reference;
-  // How each device is read, for a header: "modbus", "modbus, Moxa E1240 2.1", "canopen".
-  std::map<std::string, std::string> transport;
+  std::map<std::string, std::string> transport;  // DeviceSource::Description by device
 };
-
-// The bus behind an interface's name.
-using BusOf = std::function<std::unique_ptr<CanBus>(const std::string& interface, Clock& clock)>;
 
 enum class Presence { kRequired, kAwaited };
 
 // With kRequired every device must answer now, else DeviceError; with kAwaited those that do not
 // answer yet give bad samples until they do. DeviceError in any case for a host name that does not
 // resolve.
-//
-// CAN interfaces are those of the computer unless `bus_of` gives other ones (a bus in memory).
 OpenedDevices OpenDevices(const DevicesSettings& devices, Clock& clock, Presence presence,
-                          const Log& log = {}, const BusOf& bus_of = {});
+                          const Log& log = {});
 
 }  // namespace abbe::hal

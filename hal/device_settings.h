@@ -1,102 +1,42 @@
 // The devices as the machine file describes them: tables [devices] and [devices.NAME]. Every key,
 // with unit and default, is in docs/devices.md.
 //
-// A channel is a number in the registers of a block: value = raw * scale + offset, in the unit that
-// the channel's name ends in ("probe_a_um"). Addresses here are those on the wire, from 0;
-// `address_base` of the file is taken off at reading. One block is one request.
-//
-// The virtual rig encodes with the same channels: StoreValue() is the inverse of RawOf() and
-// ValueOf().
+//   const DevicesSettings devices = ReadDevices(document.Root().Child("devices"));
+//   const OpenedDevices opened = OpenDevices(devices, clock, Presence::kRequired);
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
+#include <memory>
 #include <vector>
 
-#include "hal/canopen_settings.h"
-#include "hal/register_table.h"
-#include "hal/serial_line.h"
-#include "hal/word_codec.h"
+#include "hal/transports.h"
 #include "settings/document.h"
 
 namespace abbe::hal {
 
-// A register that says whether a channel is to be believed: (word & mask) must be one of `ok`.
-struct StatusRule {
-  int address = 0;  // on the wire, in a block of the same device
-  RegisterTable table = RegisterTable::kInput;
-  std::uint16_t mask = 0xFFFF;
-  std::vector<std::uint16_t> ok;
-};
-
-struct ChannelSettings {
-  std::string name;
-  int at = 0;  // first register, counted from the start of the block
-  WordType type = WordType::kUint16;
-  WordOrder order = WordOrder::kABCD;
-  double scale = 1.0;
-  double offset = 0.0;
-  std::vector<double> sentinels;           // raw numbers that mean "no value"
-  std::optional<double> minimum, maximum;  // of the value; outside is out of range
-  bool may_freeze = false;                 // an unchanging register is no fault
-  std::optional<StatusRule> status;
-};
-
-struct BlockSettings {
-  RegisterTable table = RegisterTable::kInput;
-  int address = 0;
-  int count = 1;  // 1 to 125
-  std::vector<ChannelSettings> channels;
-};
-
-// Seconds.
-struct DeviceTimes {
-  double response = 0.2;       // from the request to the first byte, and to connect
-  double byte = 0.05;          // between two bytes of a reply
-  double deadline = 0.5;       // a reading of all blocks of the device, whatever happens
-  double backoff_first = 0.1;  // before the second attempt to reconnect (the first is at once)
-  double backoff_most = 1.0;   // doubled up to this
-  double wait = 0.0;           // silence between two requests
-};
-
-struct CycleStart {
-  int address = 0;  // a holding register; abbe writes 1 for X, 2 for Y, 3 for Z to start the sweep
-};
-
-enum class Transport { kModbusTcp, kModbusRtu };
-
-struct DeviceSettings {
-  std::string name;
-  Transport transport = Transport::kModbusTcp;
-  std::string host;   // TCP: a numeric address or a host name
-  int port = 502;     // TCP
-  SerialLine serial;  // RTU
-  int unit = 1;
-  DeviceTimes times;
-  std::vector<BlockSettings> blocks;
-  std::optional<CycleStart> cycle_start;
-};
-
 struct DevicesSettings {
-  double rate = 200.0;                   // Hz, readings of all devices wanted
-  double max_skew = 0.02;                // s, within one set of samples
-  double stale = 1.0;                    // s, older or unchanged for longer is not good
-  std::vector<DeviceSettings> devices;   // over Modbus
-  std::vector<CanopenSettings> canopen;  // over CAN
+  double rate = 200.0;     // Hz, readings of all devices wanted
+  double max_skew = 0.02;  // s, within one set of samples
+  double stale = 1.0;      // s, older or unchanged for longer is not good
+  std::vector<std::shared_ptr<const Device>> devices;  // in the order of the file
 };
 
 // Reads the table [devices]. InputError with file, line and key.
-DevicesSettings ReadDevices(const settings::Table& devices);
+DevicesSettings ReadDevices(const settings::Table& devices,
+                            const std::vector<Transport>& transports = Transports());
 
-// `block` holds the registers of the channel's block.
-double RawOf(const ChannelSettings& channel, std::span<const std::uint16_t> block);
-double ValueOf(const ChannelSettings& channel, double raw);
-// Stores the raw number nearest to `value`; beyond the ends of an integer type it stays at the end.
-void StoreValue(const ChannelSettings& channel, double value, std::span<std::uint16_t> block);
+// `devices` without those whose channels are all angles ("..._rad"): the encoders of a linkage,
+// which is not on the machine while the probe head is.
+DevicesSettings WithoutEncoders(DevicesSettings devices);
 
-// "127.0.0.1 port 1502, unit 1" or "/dev/ttyUSB0, unit 1".
-std::string PlaceOf(const DeviceSettings& device);
+// The settings of the devices of one class, such as ModbusDevice: for a server of its protocol.
+template <class OneDevice>
+std::vector<typename OneDevice::Settings> SettingsOf(const DevicesSettings& devices) {
+  std::vector<typename OneDevice::Settings> settings;
+  for (const auto& device : devices.devices) {
+    const auto* one = dynamic_cast<const OneDevice*>(device.get());
+    if (one != nullptr) settings.push_back(one->settings());
+  }
+  return settings;
+}
 
 }  // namespace abbe::hal

@@ -1,9 +1,8 @@
 // The steady pace of a recorder, and whether it was kept.
 //
 // A recorder that is suspended (SIGSTOP, a laptop's lid) or gets no processor takes its next
-// reading late. The reading is none the worse, but time has gone on by more than it should: its row
-// is flagged (Cause::kClockJump). What a suspension does to a reading that is under way is the
-// source's matter.
+// reading late. The reading is valid, but the interval before it is longer than planned: its row is
+// flagged (Cause::kClockJump). The source detects a suspension during a reading.
 //
 //   while (...) {
 //     const bool kept = pace.Await();
@@ -28,8 +27,8 @@ class Pace {
   // The next reading is due now.
   void Begin() { next_s_ = free_s_ = clock_.Now(); }
 
-  // Returns when the next reading is due: false when that was more than kLate ago although nothing
-  // was under way.
+  // Returns when the next reading is due: false when it is more than kLate overdue although no
+  // reading was in progress.
   bool Await() {
     const double due_s = std::max(next_s_, free_s_);
     clock_.SleepUntil(due_s);

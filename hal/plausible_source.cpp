@@ -70,7 +70,7 @@ std::string PlausibleSource::Fault() const {
   return fault.empty() ? slip_ : fault;
 }
 
-// Of channels that cannot all be next to nothing.
+// For channels that cannot all be close to zero.
 void PlausibleSource::RefuseNothing(const std::vector<First>& first) const {
   const First* any = nullptr;
   for (const First& one : first) {
@@ -80,8 +80,8 @@ void PlausibleSource::RefuseNothing(const std::vector<First>& first) const {
   }
   if (any == nullptr) return;
   throw InputError(fmt::format(
-      "{} and the like read {:.3g} at most, next to nothing, and {}: an amplifier that is off, or "
-      "a slip of units; check them and `scale` and `at` of these channels in the machine file",
+      "{} and the like read {:.3g} at most, close to zero, and {}: an amplifier that is off, or "
+      "wrong units; check them and `scale` and `at` of these channels in the machine file",
       any->channel->name, any->highest, any->channel->because));
 }
 
@@ -110,8 +110,8 @@ std::vector<std::string> PlausibleSource::Require(int count, Clock& clock, doubl
           readings, one.highest));
     } else if (std::abs(std::log(deviation / one.channel->noise)) > std::log(kOtherUnit)) {
       warnings.push_back(
-          fmt::format("{}: a noise of {:.3g}, the machine file says {:.3g}: a slip of units?",
-                      readings, deviation, one.channel->noise));
+          fmt::format("{}: a noise of {:.3g}, the machine file says {:.3g}: wrong units?", readings,
+                      deviation, one.channel->noise));
     }
   }
   return warnings;

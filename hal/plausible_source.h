@@ -1,10 +1,10 @@
-// A source whose numbers are held against what they can be.
+// A source whose values are checked against the travel of the machine and the range of the probes,
+// which the judge of a single channel does not know.
 //
-// The judge of a channel knows its registers; what the machine can do, and how far a probe sees, it
-// does not. A number outside `good` becomes bad (out of range), so that no row holds it; one
-// outside `possible` is no measurement at all but a slip of the machine file (word order, type,
-// scale, unit, another register), and Fault() says so as long as it lasts. Require() looks at the
-// first readings before anything is recorded.
+// A value outside `good` becomes bad (out of range) and is not recorded. A value outside `possible`
+// is no measurement but an error in the machine file (word order, type, scale, unit, another
+// register), which Fault() reports while it lasts. Require() checks the first readings before
+// anything is recorded.
 //
 //   PlausibleSource source(*devices.source, ranges);
 //   for (const std::string& warning : source.Require(50, clock, rate)) ...
@@ -29,8 +29,9 @@ struct PlausibleChannel {
   std::string name;
   Interval good, possible;
   std::string because;  // "the travel is 0 to 60 mm"
-  double least = 0.0;  // the channels with one: first readings below it, on all of them, are a slip
-  double noise = 0.0;  // standard deviation that a reading has; 0: nobody knows
+  // First readings below `least` on all channels that have one are an error in the machine file.
+  double least = 0.0;
+  double noise = 0.0;  // standard deviation of a reading; 0: not known
 };
 
 class PlausibleSource : public SampleSource {
@@ -43,10 +44,9 @@ class PlausibleSource : public SampleSource {
   bool Ended() const override { return source_.Ended(); }
   std::string Fault() const override;
 
-  // Reads `count` sets at `rate` Hz of the clock. InputError when they are a slip of the machine
-  // file (one set alone is not asked whether all gaps are next to nothing). Returns what else is
-  // strange about them, one line each: channels without any noise, and noise a hundred times what
-  // it should be, or a hundredth.
+  // Reads `count` sets at `rate` Hz of the clock. InputError when they show an error in the machine
+  // file (`least` is not checked on one set alone). Returns a warning for each channel without any
+  // noise, or with a hundred times the stated noise, or a hundredth.
   std::vector<std::string> Require(int count, Clock& clock, double rate);
 
  private:

@@ -17,7 +17,7 @@ std::vector<std::size_t> ColumnsOf(const SampleSource& source) {
   return columns;
 }
 
-// Where the source says which pass is under way.
+// The index of the channel "pass".
 std::optional<std::size_t> PassOf(const SampleSource& source) {
   const auto pass = std::ranges::find(source.channels(), "pass", &Channel::name);
   if (pass == source.channels().end()) return {};
@@ -43,7 +43,7 @@ RecordOutcome Record(SampleSource& source, Clock& clock, recording::Writer& writ
       const SampleSet set = source.Read();
       pace.Done();
       const double set_s = set.time_s - start_s;
-      if (!(set_s > row_s)) continue;  // the very same set again is no new row
+      if (!(set_s > row_s)) continue;  // the same set again is no new row
       if (pass && set.samples[*pass].value == 0.0) continue;
       row[0] = row_s = set_s;
       row.back() = samples.Fill(set, row, std::exchange(jumped, false));

@@ -17,11 +17,11 @@ using settings::kMicrometre;
 using settings::kMillimetre;
 using settings::Quoted;
 
-// Columns that every sweep has, whatever the devices give.
+// Columns that every sweep has, with or without a channel of a device.
 const std::vector<std::string> kOfSweep = {"time_s", "x_mm",      "y_mm",       "z_mm",
                                            "pass",   "direction", "feed_mm_min"};
 
-// The table [sources]: what each device gives, and by which way.
+// The table [sources]: the description and the channels of each device.
 std::string SourcesText(const std::vector<Channel>& channels,
                         const std::map<std::string, std::string>& transport) {
   std::map<std::string, std::string> by_device;
@@ -36,7 +36,7 @@ std::string SourcesText(const std::vector<Channel>& channels,
   return text;
 }
 
-// What a device says of itself stays with its readings to the very end.
+// Readings of a device that identifies itself as simulated are marked so in every result.
 std::string SimulatedText(const std::map<std::string, std::string>& transport) {
   const auto says = [](const auto& one) {
     return one.second.find("simulated") != std::string::npos;

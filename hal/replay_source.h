@@ -1,12 +1,12 @@
 // A recording as if it were measured again.
 //
-// The clock decides the pace: each row is handed over when the clock has come to its time (the
-// first at once), so a SteadyClock(1) replays in real time, SteadyClock(20) twenty times faster,
-// and a HandClock as fast as possible. No row is left out, however slow the reader.
+// The clock sets the pace: a row is returned when the clock reaches its time (the first at once).
+// A SteadyClock(1) replays in real time, SteadyClock(20) twenty times faster, and a HandClock as
+// fast as possible. No row is left out, however slow the reader.
 //
-// The recording's flags are the judgement of the source that measured: NaN is bad, with the cause
-// that the flag of its row says; a flagged row without a NaN does not say which channel is meant,
-// so all of it is bad (or uncertain, when the flag is only "interpolated" or "clock jump").
+// The flags of the recording are those of the source that measured: NaN is bad, with the cause that
+// the flag of its row gives. A flagged row without a NaN does not name the channel, so all of it is
+// bad (or uncertain, when the flag is only "interpolated" or "clock jump").
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// One reading of one channel, and whether it may be believed.
+// One reading of one channel, with its quality.
 //
 // Only `good` is a measurement. A bad sample carries NaN, so that its number cannot be used by
 // mistake, and exactly one cause; an uncertain one carries a number that was not measured as it
@@ -21,7 +21,7 @@ enum class Cause {
   kFrozen,         // the register has not changed for longer than allowed
   kOutOfRange,     // saturated, or outside minimum..maximum
   kSentinel,       // the device's own sign for "no value"
-  kSensorFault,    // the status register says so
+  kSensorFault,    // reported by the status register
   kNotANumber,     // NaN or infinite in the register
   kNoReply,        // link down, time-out, or a reply that is not to be trusted
   kRefused,        // an exception code
@@ -29,7 +29,7 @@ enum class Cause {
   kReferenceLost,  // the encoder has started anew or has another zero: its angle means nothing yet
   kMismatch,       // the device is not the one that the machine file describes
   kIncoherent,     // too far in time from the other samples of its set
-  kInterpolated,   // uncertain: made from neighbours, by whoever wrote the recording
+  kInterpolated,   // uncertain: interpolated before it was recorded
   kClockJump,      // time went on by more than it should: when it was measured is not known
 };
 
@@ -43,7 +43,7 @@ struct Sample {
   Cause cause = Cause::kWaiting;
   double time_s = 0.0;         // when it was measured, by the clock of the measurement
   std::uint64_t sequence = 0;  // counts the readings of this channel; 0: none yet
-  double age_s = 0.0;          // at the moment it was handed over
+  double age_s = 0.0;          // when it was returned
   double within_s = 0.0;       // it was measured within time_s -+ this
 
   static Sample Good(double value, double time_s, std::uint64_t sequence) {

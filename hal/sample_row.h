@@ -1,4 +1,4 @@
-// Sets of samples as rows of a recording, and what is to be said of them at the end.
+// Sets of samples as rows of a recording, with counts of the bad ones.
 //
 // A sample that is not good becomes NaN (an uncertain one its number), and its cause a bit of the
 // row's flags.

@@ -1,4 +1,4 @@
-// Where in its plan the machine is, told from the position of the swept axis alone.
+// The progress of a sweep in its plan, from the position of the swept axis alone.
 //
 // The direction turns when the axis has come back from its farthest point by two windows; overshoot
 // of a servo is less. A pass begins where the axis turns forward in the lower half of the sweep
@@ -30,7 +30,7 @@ class SweepFollower {
   // all readings taken there are good.
   const SweepState& Step(std::optional<double> position, double time_s, bool good);
 
-  // The last visit has had its dwell, or the machine has begun a pass that the plan does not have.
+  // The last visit has had its dwell, or the machine has begun a pass beyond those of the plan.
   bool complete() const { return complete_; }
   bool moved() const { return state_.direction != 0; }
   double last_motion_s() const { return last_motion_s_; }  // the first step counts as motion

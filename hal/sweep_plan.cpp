@@ -10,7 +10,7 @@
 namespace abbe::hal {
 namespace {
 
-// Two neighbours must be told apart by a window around each, with as much room between.
+// Windows around two neighbouring stations must be disjoint, with as much room between.
 constexpr double kWindowsBetween = 4.0;
 // A step divides the length when the remainder is below a rounding of decimal fractions in the
 // file.

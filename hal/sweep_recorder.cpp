@@ -26,7 +26,7 @@ std::vector<std::size_t> ColumnsOf(const std::vector<Channel>& channels) {
   std::vector<std::size_t> columns;
   std::size_t column = kFirstReading;
   for (const Channel& channel : channels) {
-    // What the controller says of its program: the follower knows better (Write()).
+    // The controller's own pass, direction and feed are replaced by the follower's (Write()).
     const auto own = std::ranges::find(kOwn, channel.name);
     if (own != kOwn.end()) {
       columns.push_back(kPass + static_cast<std::size_t>(own - kOwn.begin()));
@@ -87,7 +87,7 @@ class SweepRecorder {
   }
 
   void Write(int pass, int direction, std::uint32_t flags) {
-    if (!(set_s_ > row_s_)) return;  // the very same set again is no new row
+    if (!(set_s_ > row_s_)) return;  // the same set again is no new row
     row_[kTime] = row_s_ = set_s_;
     row_[kPass] = pass;
     row_[kDirection] = direction;

@@ -6,14 +6,14 @@
 //   const SweepOutcome outcome = RecordSweep(source, plan, clock, *writer, options);
 //
 // The sweep is followed by the channel of the swept axis ("x_mm"); where `prompt` is set, the
-// operator says when the axis stands; a position that a device gives must then be within `window`
-// of the station, or the operator is asked again, and one that no device gives is that of the plan.
+// operator confirms that the axis stands; its position must then be within `window` of the station,
+// or the operator is asked again. Without a channel of the axis the position is that of the plan.
 // The recording begins with the first pass, so no row has direction 0. Axes without a channel are
 // written as `rest`.
 //
 // A sample that is not good is written as NaN (an uncertain one as its number) and its cause is a
-// bit of `flags`. A device that is away costs flagged rows, not the sweep. Memory does not grow
-// with its length.
+// bit of `flags`. While a device does not answer, rows are flagged and the sweep goes on. Memory
+// does not grow with its length.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ struct SweepProgress {
   std::size_t visits_done;
   std::size_t visits_total;
   double elapsed_s;
-  std::string fault;  // of the source, empty when all is well
+  std::string fault;  // of the source, empty when there is none
 };
 
 struct SweepOptions {
@@ -71,14 +71,14 @@ std::vector<std::string> SweepColumns(const std::vector<Channel>& channels);
 struct SweepAbout {
   std::string machine;
   std::string started;        // "2026-11-21T09:00:00Z"
-  std::string source;         // where the readings of a device come from that has no `transport`
+  std::string source = {};    // of the readings of a device without an entry in `transport`
   std::string mounting = {};  // which set-up of head and target this is; empty: not stated
   std::string more = {};      // further lines of TOML
-  std::map<std::string, std::string> transport = {};  // of each device, "modbus, maker's name"
+  std::map<std::string, std::string> transport = {};  // DeviceSource::Description by device
 };
 
 // The header of the recording: kind, machine, axis, started, the sources of the channels, the plan;
-// "simulated = true" where a device says so.
+// "simulated = true" where a device identifies itself so.
 std::string SweepHeader(const SweepPlan& plan, const SweepAbout& about,
                         const std::vector<Channel>& channels);
 

@@ -21,8 +21,8 @@
 #include <optional>
 #include <string>
 
-#include "hal/can_bus.h"
-#include "hal/canopen_settings.h"
+#include "hal/can/can_bus.h"
+#include "hal/can/canopen_settings.h"
 
 namespace abbe::rig {
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "failure/failure.h"
+#include "hal/can/can_socket.h"
+#include "hal/can/canopen_device.h"
 
 namespace abbe::rig {
 namespace {
@@ -100,6 +102,20 @@ std::string EncoderServer::MapText() const {
                         encoder.node, encoder.name, encoder.counts_per_turn, device_.name);
   }
   return text;
+}
+
+std::vector<std::unique_ptr<EncoderServer>> ServeEncoders(LiveMachine& machine,
+                                                          const hal::DevicesSettings& devices,
+                                                          const std::string& interface,
+                                                          hal::Clock& clock) {
+  std::vector<std::unique_ptr<EncoderServer>> servers;
+  for (hal::CanopenSettings& device : hal::SettingsOf<hal::CanopenDevice>(devices)) {
+    if (!interface.empty()) device.interface = interface;
+    auto bus = std::make_unique<hal::CanSocket>(device.interface, clock,
+                                                LinkageEncoders::HeardIds(device));
+    servers.push_back(std::make_unique<EncoderServer>(machine, device, std::move(bus), clock));
+  }
+  return servers;
 }
 
 }  // namespace abbe::rig

@@ -1,7 +1,7 @@
 // The rig on the CAN bus: the encoders of its linkage as CANopen nodes, one for each
 // [[devices.NAME.node]] of a device of the machine file.
 //
-//   const hal::CanopenSettings& device = devices.canopen[0];
+//   const auto device = hal::SettingsOf<hal::CanopenDevice>(devices).front();
 //   auto bus = std::make_unique<hal::CanSocket>("vcan0", clock, LinkageEncoders::HeardIds(device));
 //   EncoderServer encoders(machine, device, std::move(bus), clock);
 //
@@ -15,9 +15,10 @@
 #include <thread>
 #include <vector>
 
-#include "hal/can_bus.h"
-#include "hal/canopen_settings.h"
+#include "hal/can/can_bus.h"
+#include "hal/can/canopen_settings.h"
 #include "hal/clock.h"
+#include "hal/device_settings.h"
 #include "rig/encoder_node.h"
 #include "rig/live_machine.h"
 
@@ -77,5 +78,12 @@ class EncoderServer {
   std::atomic<bool> stopped_{false};
   std::thread thread_;
 };
+
+// A server for each device with CANopen encoders, on the computer's CAN interface of that name, or
+// that of the device where it is empty.
+std::vector<std::unique_ptr<EncoderServer>> ServeEncoders(LiveMachine& machine,
+                                                          const hal::DevicesSettings& devices,
+                                                          const std::string& interface,
+                                                          hal::Clock& clock);
 
 }  // namespace abbe::rig

@@ -155,12 +155,9 @@ class SweepMaker {
 
 std::vector<hal::Channel> ChannelsOf(const hal::DevicesSettings& devices) {
   std::vector<hal::Channel> channels;
-  for (const hal::DeviceSettings& device : devices.devices) {
-    for (const hal::BlockSettings& block : device.blocks) {
-      for (const hal::ChannelSettings& channel : block.channels) {
-        channels.push_back({channel.name, device.name});
-      }
-    }
+  const hal::DevicesSettings read = hal::WithoutEncoders(devices);
+  for (const auto& device : read.devices) {
+    for (const std::string& name : device->channels()) channels.push_back({name, device->name()});
   }
   return channels;
 }

@@ -42,7 +42,7 @@ struct RecordSweepOptions {
   Climate* climate = nullptr;  // of a campaign; none: its own, and `begin` is 0
 };
 
-// The channels that the devices of a machine file give, in their order.
+// The channels of a sweep with the devices of a machine file, in their order.
 std::vector<hal::Channel> ChannelsOf(const hal::DevicesSettings& devices);
 
 // `axis` 'X', 'Y' or 'Z'. InputError when no sweep of the axis is programmed, when the rate is

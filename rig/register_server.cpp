@@ -13,7 +13,7 @@ namespace {
 using hal::Answer;
 using hal::BlockSettings;
 using hal::ChannelSettings;
-using hal::DeviceSettings;
+using hal::ModbusSettings;
 using hal::RegisterTable;
 using hal::WordType;
 
@@ -34,8 +34,8 @@ double SentinelOf(const ChannelSettings& channel) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-void CheckChannels(const hal::DevicesSettings& devices) {
-  for (const DeviceSettings& device : devices.devices) {
+void CheckChannels(const std::vector<ModbusSettings>& devices) {
+  for (const ModbusSettings& device : devices) {
     for (const BlockSettings& block : device.blocks) {
       for (const ChannelSettings& channel : block.channels) {
         if (ParseChannel(channel.name)) continue;
@@ -50,11 +50,18 @@ void CheckChannels(const hal::DevicesSettings& devices) {
 
 }  // namespace
 
+ServerOptions AddressOf(const hal::DevicesSettings& devices) {
+  for (const ModbusSettings& device : hal::SettingsOf<hal::ModbusDevice>(devices)) {
+    if (device.framing == hal::ModbusFraming::kTcp) return {device.host, device.port};
+  }
+  return {};
+}
+
 RegisterServer::RegisterServer(LiveMachine& machine, const hal::DevicesSettings& devices,
                                const ServerOptions& options)
-    : devices_(devices), machine_(machine) {
+    : devices_(hal::SettingsOf<hal::ModbusDevice>(devices)), machine_(machine) {
   CheckChannels(devices_);
-  for (const DeviceSettings& device : devices_.devices) {
+  for (const ModbusSettings& device : devices_) {
     const auto claim = [&](RegisterTable table, int address, int count) {
       for (int i = 0; i < count; ++i) {
         if (registers_.emplace(Place{device.unit, table, address + i}, 0).second) continue;
@@ -77,7 +84,7 @@ std::uint64_t RegisterServer::requests() const {
 }
 
 std::string RegisterServer::OpenRtu(const std::string& device_name) {
-  for (const DeviceSettings& device : devices_.devices) {
+  for (const ModbusSettings& device : devices_) {
     if (device.name != device_name) continue;
     rtu_.push_back(hal::ModbusServer::OpenPty(device.unit, *this));
     return rtu_.back()->device();
@@ -107,7 +114,7 @@ Answer RegisterServer::Read(int unit, RegisterTable table, int address,
 }
 
 Answer RegisterServer::Write(int unit, int address, std::span<const std::uint16_t> words) {
-  for (const DeviceSettings& device : devices_.devices) {
+  for (const ModbusSettings& device : devices_) {
     if (device.unit != unit || !device.cycle_start || device.cycle_start->address != address) {
       continue;
     }
@@ -125,7 +132,7 @@ std::vector<std::string> RegisterServer::Identity(int) {
 
 void RegisterServer::Refresh() {
   const Moment now = machine_.Now();
-  for (const DeviceSettings& device : devices_.devices) {
+  for (const ModbusSettings& device : devices_) {
     for (const BlockSettings& block : device.blocks) RefreshBlock(device, block, now);
     if (!device.cycle_start) continue;
     const int address = device.cycle_start->address;
@@ -137,7 +144,7 @@ void RegisterServer::Refresh() {
   RefreshStatus(now);
 }
 
-void RegisterServer::RefreshBlock(const DeviceSettings& device, const BlockSettings& block,
+void RegisterServer::RefreshBlock(const ModbusSettings& device, const BlockSettings& block,
                                   const Moment& now) {
   std::vector<std::uint16_t> words(static_cast<std::size_t>(block.count));
   for (const ChannelSettings& channel : block.channels) {
@@ -156,7 +163,7 @@ void RegisterServer::RefreshBlock(const DeviceSettings& device, const BlockSetti
 // A register that several channels share is bad when one of them is.
 void RegisterServer::RefreshStatus(const Moment& now) {
   for (const bool good : {true, false}) {
-    for (const DeviceSettings& device : devices_.devices) {
+    for (const ModbusSettings& device : devices_) {
       for (const BlockSettings& block : device.blocks) {
         for (const ChannelSettings& channel : block.channels) {
           if (!channel.status || machine_.ReadingOf(channel.name, now).has_value() != good)
@@ -174,7 +181,7 @@ void RegisterServer::RefreshStatus(const Moment& now) {
 
 std::string RegisterServer::MapText() const {
   std::string text;
-  for (const DeviceSettings& device : devices_.devices) {
+  for (const ModbusSettings& device : devices_) {
     for (const BlockSettings& block : device.blocks) {
       text += fmt::format("  unit {} {} registers {} to {} ({}):", device.unit,
                           block.table == RegisterTable::kInput ? "input" : "holding", block.address,

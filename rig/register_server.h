@@ -25,7 +25,8 @@
 #include <vector>
 
 #include "hal/device_settings.h"
-#include "hal/modbus_server.h"
+#include "hal/modbus/modbus_device.h"
+#include "hal/modbus/modbus_server.h"
 #include "rig/live_machine.h"
 
 namespace abbe::rig {
@@ -34,6 +35,9 @@ struct ServerOptions {
   std::string host = "127.0.0.1";
   int port = 0;  // 0: a free one
 };
+
+// Host and port of the first TCP device of a machine file; without one the default.
+ServerOptions AddressOf(const hal::DevicesSettings& devices);
 
 class RegisterServer : private hal::RegisterBank {
  public:
@@ -61,11 +65,11 @@ class RegisterServer : private hal::RegisterBank {
   hal::Answer Write(int unit, int address, std::span<const std::uint16_t> words) override;
   std::vector<std::string> Identity(int unit) override;
   void Refresh();
-  void RefreshBlock(const hal::DeviceSettings& device, const hal::BlockSettings& block,
+  void RefreshBlock(const hal::ModbusSettings& device, const hal::BlockSettings& block,
                     const Moment& now);
   void RefreshStatus(const Moment& now);
 
-  hal::DevicesSettings devices_;
+  const std::vector<hal::ModbusSettings> devices_;
   LiveMachine& machine_;
   std::mutex mutex_;  // of the registers
   std::map<Place, std::uint16_t> registers_;

@@ -290,6 +290,7 @@ std::vector<Table> Table::Named() const {
     named.push_back(Table(state_, std::move(below), Join(path_, key.str()),
                           Join(requested_path_, "[]"), std::string(key.str())));
   }
+  std::ranges::stable_sort(named, {}, [](const Table& table) { return table.node_->line; });
   return named;
 }
 

@@ -184,7 +184,7 @@ class SweepTest(unittest.TestCase):
     def test_slips_are_refused_before_the_machine_moves(self):
         for changed, says in ((("order = \"ABCD\"", "order = \"CDAB\""), "the travel is 0 to 60 mm"),
                               (("scale = 0.0030517578125", "scale = 3.0517578125"), "range is 0 to 200 um"),
-                              (("scale = 0.0030517578125", "scale = 0.0000030517578125"), "next to nothing")):
+                              (("scale = 0.0030517578125", "scale = 0.0000030517578125"), "close to zero")):
             server = RawServer(Machine())
             path = self.machine_file(server.port)
             path.write_text(path.read_text().replace(*changed))

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Holds every include of the project against the arrows that the architecture allows.
+"""Holds every include of the project against the arrows that the architecture allows, and every source
+but those of a transport against its name.
 
     arrows.py SOURCE_FOLDER
 
-Prints each include that goes against an arrow and exits with 1 when there is one.
+Prints each include or name that is not allowed and exits with 1 when there is one.
 """
 import pathlib
 import re
@@ -33,11 +34,13 @@ ARROWS = {
     "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis report rig",
 }
 
-# header of a library -> the files that may include it; everybody else goes through them.
+# header of a library or of a transport -> the files that may include it; everybody else goes through them.
 GATES = {
-    "modbus.h": r"hal/modbus_.*",
-    "modbus/modbus.h": r"hal/modbus_.*",
-    "linux/can.h": r"hal/can_socket.*",
+    "hal/modbus/": r"hal/(modbus/.*|transports\.cpp)|rig/register_server\..*",
+    "hal/can/": r"hal/(can/.*|transports\.cpp)|rig/encoder_.*|apps/convert\.cpp",
+    "modbus.h": r"hal/modbus/.*",
+    "modbus/modbus.h": r"hal/modbus/.*",
+    "linux/can.h": r"hal/can/can_socket.*",
     "hdf5.h": r"(recording|map)/hdf5_.*",
     "ceres/": r"estimation/.*",
     "Random123/": r"random/.*",
@@ -45,7 +48,15 @@ GATES = {
     "openssl/": r"apps/file_hash\.cpp",
 }
 
+TRANSPORT = re.compile(r'\{"([\w-]+)", Read\w+\}')  # a line of hal/transports.cpp
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
+
+
+def sources(root, folder):
+    """Yields the name and the text of each source of a folder."""
+    for file in sorted((root / folder).glob("**/*")):
+        if file.suffix in (".h", ".cpp") and "node_modules" not in file.parts:
+            yield file.relative_to(root).as_posix(), file.read_text()
 
 
 def broken_arrows(root):
@@ -53,11 +64,8 @@ def broken_arrows(root):
     root = pathlib.Path(root)
     for folder, allowed in ARROWS.items():
         reachable = set(allowed.split()) | {folder}
-        for file in sorted((root / folder).glob("**/*")):
-            if file.suffix not in (".h", ".cpp") or "node_modules" in file.parts:
-                continue
-            name = file.relative_to(root).as_posix()
-            for header in INCLUDE.findall(file.read_text()):
+        for name, text in sources(root, folder):
+            for header in INCLUDE.findall(text):
                 target = header.split("/")[0]
                 if target in ARROWS and "/" in header and target not in reachable:
                     yield f'{name}: includes "{header}", but {folder} may not use {target}'
@@ -65,6 +73,17 @@ def broken_arrows(root):
                     is_gated = header.startswith(gate) if gate.endswith("/") else header == gate
                     if is_gated and not re.fullmatch(may, name):
                         yield f"{name}: includes <{header}>, which only {may} may"
+
+
+def named_transports(root):
+    """Yields a line for each source outside of the transports' folders that knows one by its name."""
+    root = pathlib.Path(root)
+    registry = "hal/transports.cpp"
+    names = TRANSPORT.findall((root / registry).read_text())
+    for folder in ARROWS:
+        for name, text in sources(root, folder):
+            if name != registry and not re.match("hal/[a-z]+/", name):
+                yield from (f'{name}: names the transport "{one}"' for one in names if f'"{one}"' in text)
 
 
 def strangers(root):
@@ -77,6 +96,6 @@ def strangers(root):
 
 
 if __name__ == "__main__":
-    found = [*broken_arrows(sys.argv[1]), *strangers(sys.argv[1])]
+    found = [*broken_arrows(sys.argv[1]), *named_transports(sys.argv[1]), *strangers(sys.argv[1])]
     print("\n".join(found) or "every include follows the arrows")
     sys.exit(1 if found else 0)

@@ -31,6 +31,14 @@ class ArrowsTest(unittest.TestCase):
         root = self.house({"probes/sweep.cpp": '#include "recording/recording.h"\n#include <vector>\n'})
         self.assertEqual(list(arrows.broken_arrows(root)), [])
 
+    def test_a_transport_known_by_name_is_found(self):
+        root = self.house({
+            "hal/transports.cpp": '      {"gauge", ReadGauge},\n',
+            "hal/gauge/gauge_source.cpp": 'return "gauge";\n',
+            "apps/record.cpp": 'if (device.transport == "gauge") return;\n',
+        })
+        self.assertEqual(list(arrows.named_transports(root)), ['apps/record.cpp: names the transport "gauge"'])
+
     def test_a_folder_without_arrows_is_found(self):
         root = self.house({"helpers/things.h": ""})
         self.assertEqual(len(list(arrows.strangers(root))), 1)

@@ -7,9 +7,9 @@
 #include <memory>
 #include <utility>
 
-#include "hal/can_in_process.h"
-#include "hal/canopen_frame.h"
-#include "hal/canopen_settings.h"
+#include "hal/can/can_in_process.h"
+#include "hal/can/canopen_frame.h"
+#include "hal/can/canopen_settings.h"
 
 namespace abbe::hal {
 
@@ -24,7 +24,7 @@ class CanEncoderNode {
                 {{0x1018, 4}, static_cast<std::uint32_t>(1000 + encoder.node)}},
         encoder_(encoder),
         count_(std::move(count)) {
-    bus_ = wire.Join([this](const CanReceived& heard) { Hear(heard.frame); });
+    bus_ = wire.Join([this](const ReceivedFrame& heard) { Hear(heard.frame); });
   }
 
   void Beat() {

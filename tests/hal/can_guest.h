@@ -8,7 +8,7 @@
 #include <string>
 
 #include "child_process.h"
-#include "hal/can_socket.h"
+#include "hal/can/can_socket.h"
 #include "hal/clock.h"
 
 namespace abbe::hal {
@@ -28,7 +28,7 @@ class CanGuest : public testing::Test {
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
   }
   // Receives until a frame with this id comes; nothing within 20 s.
-  std::optional<CanReceived> Await(CanBus& bus, std::uint32_t id) {
+  std::optional<ReceivedFrame> Await(CanBus& bus, std::uint32_t id) {
     const double until = clock_.Now() + 20.0;
     while (clock_.Now() < until) {
       const auto received = bus.Receive(clock_.Now() + 0.1);

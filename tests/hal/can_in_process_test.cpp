@@ -1,4 +1,4 @@
-#include "hal/can_in_process.h"
+#include "hal/can/can_in_process.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@ CanFrame Frame(std::uint32_t id, std::uint8_t first) {
   return frame;
 }
 
-std::vector<CanReceived> Drain(CanBus& bus, double until_s = 0.0) {
-  std::vector<CanReceived> all;
+std::vector<ReceivedFrame> Drain(CanBus& bus, double until_s = 0.0) {
+  std::vector<ReceivedFrame> all;
   while (const auto received = bus.Receive(until_s)) all.push_back(*received);
   return all;
 }
@@ -93,7 +93,7 @@ TEST(CanInProcess, AListenerAnswersFromWithinTheCall) {
   CanInProcess wire(clock);
   const auto master = wire.Join();
   std::unique_ptr<CanBus> node;
-  node = wire.Join([&](const CanReceived& heard) {
+  node = wire.Join([&](const ReceivedFrame& heard) {
     if (heard.frame.id == 0x80) node->Send(Frame(0x181, 42));
   });
   master->Send({.id = 0x80});

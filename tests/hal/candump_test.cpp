@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "failure/failure.h"
-#include "hal/can_replay.h"
-#include "hal/candump_recording.h"
+#include "hal/can/can_replay.h"
+#include "hal/can/candump_recording.h"
 
 namespace abbe::hal {
 namespace candump_test {

@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "can_encoder_node.h"
-#include "hal/canopen_source.h"
+#include "hal/can/canopen_source.h"
 #include "sample_source_contract.h"
 
 namespace abbe::hal {
@@ -34,7 +34,7 @@ class CanRig : public ContractRig {
       nodes_.back()->objects.erase({0x6001, 0});  // no whole number of counts a turn
       nodes_.back()->Beat();
     }
-    flood_ = wire_.Join([](const CanReceived&) {});
+    flood_ = wire_.Join([](const ReceivedFrame&) {});
     source_ = std::make_unique<CanopenSource>(settings, kStale, wire_.Join(), clock_);
     for (auto& node : nodes_) node->Beat();
     source_->Require();

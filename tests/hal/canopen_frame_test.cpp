@@ -1,4 +1,4 @@
-#include "hal/canopen_frame.h"
+#include "hal/can/canopen_frame.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

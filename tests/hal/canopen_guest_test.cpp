@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "can_guest.h"
-#include "hal/canopen_source.h"
+#include "hal/can/canopen_device.h"
+#include "hal/can/canopen_source.h"
 #include "hal/combined_source.h"
-#include "hal/modbus_server.h"
+#include "hal/modbus/modbus_device.h"
+#include "hal/modbus/modbus_server.h"
 
 namespace abbe::hal {
 namespace canopen_guest_test {
@@ -253,7 +255,7 @@ TEST_F(CanopenGuest, ReadsProbesAndEncodersAsOneSet) {
   const auto server = ModbusServer::ListenTcp("127.0.0.1", 0, image);
   DevicesSettings devices;
   devices.max_skew = 1.0;
-  DeviceSettings head;
+  ModbusSettings head;
   head.name = "head";
   head.host = "127.0.0.1";
   head.port = server->port();
@@ -261,8 +263,8 @@ TEST_F(CanopenGuest, ReadsProbesAndEncodersAsOneSet) {
   probe.name = "probe_a_um";
   probe.may_freeze = true;
   head.blocks.push_back({RegisterTable::kInput, 0, 1, {probe}});
-  devices.devices.push_back(head);
-  devices.canopen.push_back(settings_);
+  devices.devices = {std::make_shared<ModbusDevice>(head),
+                     std::make_shared<CanopenDevice>(settings_)};
   const OpenedDevices opened = OpenDevices(devices, clock_, Presence::kRequired);
   ASSERT_EQ(opened.source->channels().size(), 4u);
   EXPECT_EQ(opened.source->channels()[3].name, "pivot_3_rad");

@@ -1,4 +1,4 @@
-#include "hal/canopen_settings.h"
+#include "hal/can/canopen_settings.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -7,13 +7,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "hal/can/canopen_device.h"
 #include "hal/device_settings.h"
 
 namespace abbe::hal {
 namespace canopen_settings_test {
 
-DevicesSettings Read(const std::string& text) {
-  return ReadDevices(settings::Document::Parse(text, "m.toml").Root().Child("devices"));
+std::vector<CanopenSettings> Read(const settings::Document& file) {
+  return SettingsOf<CanopenDevice>(ReadDevices(file.Root().Child("devices")));
+}
+std::vector<CanopenSettings> Read(const std::string& text) {
+  return Read(settings::Document::Parse(text, "m.toml"));
 }
 
 std::string Refusal(const std::string& node) {
@@ -27,9 +31,9 @@ std::string Refusal(const std::string& node) {
 
 TEST(CanopenSettings, ReadsTheDemonstrationMachine) {
   const auto file = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
-  const DevicesSettings all = ReadDevices(file.Root().Child("devices"));
-  ASSERT_EQ(all.canopen.size(), 1u);
-  const CanopenSettings& linkage = all.canopen[0];
+  const auto all = Read(file);
+  ASSERT_EQ(all.size(), 1u);
+  const CanopenSettings& linkage = all[0];
   EXPECT_EQ(linkage.name, "linkage");
   EXPECT_EQ(linkage.interface, "vcan0");
   EXPECT_DOUBLE_EQ(linkage.times.sync, 1e-3);
@@ -47,7 +51,7 @@ TEST(CanopenSettings, EveryKeyIsRead) {
           "'pivot_1_rad'\ntpdo = 2\nat_bit = 16\nbits = 25\nsigned = true\ncounts_per_turn = 4096\n"
           "range = 33554432\nsense = -1\nzero = -12\nfastest_rad_s = 3\nmay_freeze = false\n"
           "serial = 4294967295\n")
-          .canopen.at(0)
+          .at(0)
           .encoders.at(0);
   EXPECT_EQ(encoder.node, 9);
   EXPECT_EQ(encoder.tpdo, 2);

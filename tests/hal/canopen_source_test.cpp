@@ -1,4 +1,4 @@
-#include "hal/canopen_source.h"
+#include "hal/can/canopen_source.h"
 
 #include <gtest/gtest.h>
 
@@ -165,13 +165,13 @@ TEST_P(Restarted, HasLostItsReferenceUntilItIsConfirmed) {
     flowed_again = flowed_again || nodes_[2]->state == NmtState::kOperational;
   }
   EXPECT_TRUE(flowed_again);
-  EXPECT_NE(source_->Fault().find("node 3 (pivot_3_rad) has started anew"), std::string::npos);
+  EXPECT_NE(source_->Fault().find("node 3 (pivot_3_rad) has restarted"), std::string::npos);
   EXPECT_EQ(source_->counts().restarts, 1u);
   source_->ConfirmReference();
   EXPECT_TRUE(Next().AllGood());
   EXPECT_EQ(source_->Fault(), "");
   ASSERT_EQ(log_.size(), 4u);  // waiting for them to start, well, lost, well
-  EXPECT_EQ(log_.back(), "device \"linkage\" (memory): all is well again");
+  EXPECT_EQ(log_.back(), "device \"linkage\" (memory): has recovered");
 }
 
 INSTANTIATE_TEST_SUITE_P(WithOrWithoutABootUpFrame, Restarted, testing::Bool());
@@ -240,7 +240,7 @@ TEST_F(ThreeEncoders, SyncsKeepTheirDistance) {
 
 TEST_F(ThreeEncoders, ASecondMasterIsNoticed) {
   Open().Require();
-  const auto other = wire_.Join([](const CanReceived&) {});
+  const auto other = wire_.Join([](const ReceivedFrame&) {});
   clock_.Advance(0.01);
   other->Send(SyncFrame());
   EXPECT_FALSE(source_->Read().AllGood());
@@ -252,7 +252,7 @@ TEST_F(ThreeEncoders, ASecondMasterIsNoticed) {
 // A bus that another commands: every SYNC of it is one reading, at its own time.
 TEST_F(ThreeEncoders, AListenerTakesTheSyncsOfAnother) {
   Open(CanopenSource::Part::kListener);
-  const auto other = wire_.Join([](const CanReceived&) {});
+  const auto other = wire_.Join([](const ReceivedFrame&) {});
   other->Send(NmtFrame(NmtCommand::kStart, 0));
   for (int i = 0; i < 5; ++i) {
     clock_.Advance(0.01);

@@ -1,4 +1,4 @@
-#include "hal/channel_judge.h"
+#include "hal/modbus/channel_judge.h"
 
 #include <gtest/gtest.h>
 

@@ -5,11 +5,14 @@
 #include <array>
 #include <string>
 
+#include "hal/modbus/modbus_device.h"
+
 namespace abbe::hal {
 namespace device_settings_test {
 
-DevicesSettings Read(const std::string& text) {
-  return ReadDevices(settings::Document::Parse(text, "m.toml").Root().Child("devices"));
+std::vector<ModbusSettings> Read(const std::string& text) {
+  return SettingsOf<ModbusDevice>(
+      ReadDevices(settings::Document::Parse(text, "m.toml").Root().Child("devices")));
 }
 
 std::string Refusal(const std::string& text) {
@@ -32,8 +35,9 @@ TEST(DeviceSettings, ReadsTheDemonstrationMachine) {
   EXPECT_EQ(all.rate, 200.0);
   EXPECT_DOUBLE_EQ(all.max_skew, 0.02);
   EXPECT_EQ(all.stale, 1.0);
-  ASSERT_EQ(all.devices.size(), 2u);
-  const DeviceSettings& head = all.devices[0];
+  const auto over_modbus = SettingsOf<ModbusDevice>(all);
+  ASSERT_EQ(over_modbus.size(), 2u);
+  const ModbusSettings& head = over_modbus[0];
   EXPECT_EQ(head.name, "head");
   EXPECT_EQ(PlaceOf(head), "127.0.0.1 port 1502, unit 1");
   ASSERT_EQ(head.blocks.size(), 1u);
@@ -44,18 +48,36 @@ TEST(DeviceSettings, ReadsTheDemonstrationMachine) {
   EXPECT_EQ(probe.sentinels, std::vector<double>{65535});
   const std::array<std::uint16_t, 5> words{0, 0, 0, 0, 32768};
   EXPECT_EQ(ValueOf(probe, RawOf(probe, words)), 100.0);  // half of 65536 steps over 200 um
-  const DeviceSettings& machine = all.devices[1];
+  const ModbusSettings& machine = over_modbus[1];
   ASSERT_TRUE(machine.cycle_start.has_value());
   EXPECT_EQ(machine.cycle_start->address, 100);
   EXPECT_TRUE(machine.blocks[0].channels[0].may_freeze);
 }
 
+TEST(DeviceSettings, KeepsTheOrderOfTheFileAndLeavesEncodersOut) {
+  const auto file = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
+  const DevicesSettings all = ReadDevices(file.Root().Child("devices"));
+  const auto names = [](const DevicesSettings& devices) {
+    std::vector<std::string> list;
+    for (const auto& device : devices.devices) list.push_back(device->name());
+    return list;
+  };
+  EXPECT_EQ(names(all), (std::vector<std::string>{"head", "machine", "linkage"}));
+  EXPECT_EQ(names(WithoutEncoders(all)), (std::vector<std::string>{"head", "machine"}));
+  // A device that only starts the machine's program has no channel, and stays.
+  const auto starter = settings::Document::Parse(
+      "[devices.a]\nhost = 'h'\nblock = [{address = 0, count = 1}]\n[devices.b]\nhost = 'h'\nblock "
+      "= [{address = 0, count = 1, channel = [{name = 'x_mm', at = 0, type = 'int16'}]}]\n",
+      "m.toml");
+  EXPECT_EQ(WithoutEncoders(ReadDevices(starter.Root().Child("devices"))).devices.size(), 2u);
+}
+
 TEST(DeviceSettings, StoresWhatItReads) {
-  const DevicesSettings all =
+  const auto all =
       Read(WithBlock("function = 'holding'\naddress = 0\ncount = 2\n"
                      "channel = [{name = 'x_mm', at = 0, type = 'int32', order = 'CDAB', scale = "
                      "1e-5, offset = 2}]"));
-  const ChannelSettings& channel = all.devices[0].blocks[0].channels[0];
+  const ChannelSettings& channel = all[0].blocks[0].channels[0];
   std::array<std::uint16_t, 2> block{};
   StoreValue(channel, 2.0 - 1e-5, block);  // raw -1
   EXPECT_EQ(block, (std::array<std::uint16_t, 2>{0xFFFF, 0xFFFF}));
@@ -65,13 +87,13 @@ TEST(DeviceSettings, StoresWhatItReads) {
 }
 
 TEST(DeviceSettings, TakesTheAddressBaseOffEveryAddress) {
-  const DevicesSettings all = Read(
+  const auto all = Read(
       "[devices.d]\nhost = 'h'\naddress_base = 1\n"
       "cycle_start = {function = 'holding', address = 101}\n"
       "[[devices.d.block]]\nfunction = 'input'\naddress = 9\ncount = 60\n"
       "channel = [{name = 'a_um', at = 2, type = 'float32', status = {address = 61, ok = [0, "
       "1]}}]");
-  const DeviceSettings& device = all.devices[0];
+  const ModbusSettings& device = all[0];
   EXPECT_EQ(device.blocks[0].address, 8);
   EXPECT_EQ(device.cycle_start->address, 100);
   EXPECT_EQ(device.blocks[0].channels[0].status->address, 60);
@@ -79,16 +101,16 @@ TEST(DeviceSettings, TakesTheAddressBaseOffEveryAddress) {
 }
 
 TEST(DeviceSettings, ReadsASerialLine) {
-  const DevicesSettings all = Read(
+  const auto all = Read(
       "[devices.d]\ntransport = 'modbus-rtu'\nunit = 7\n"
       "serial = {device = '/dev/ttyUSB0', baud = 9600, parity = 'none', stop_bits = 2}\n"
       "[[devices.d.block]]\naddress = 0\ncount = 1\nchannel = [{name = 'a', at = 0, type = "
       "'int16'}]");
-  EXPECT_EQ(PlaceOf(all.devices[0]), "/dev/ttyUSB0, unit 7");
-  EXPECT_EQ(all.devices[0].serial.baud, 9600);
-  EXPECT_EQ(all.devices[0].serial.parity, 'N');
-  EXPECT_EQ(all.devices[0].serial.stop_bits, 2);
-  EXPECT_DOUBLE_EQ(all.devices[0].times.wait, 5e-3);
+  EXPECT_EQ(PlaceOf(all[0]), "/dev/ttyUSB0, unit 7");
+  EXPECT_EQ(all[0].serial.baud, 9600);
+  EXPECT_EQ(all[0].serial.parity, 'N');
+  EXPECT_EQ(all[0].serial.stop_bits, 2);
+  EXPECT_DOUBLE_EQ(all[0].times.wait, 5e-3);
 }
 
 TEST(DeviceSettings, RefusesWithLineKeyAndRemedy) {

@@ -2,15 +2,15 @@
 // say; every key that the readers ask for is on the page.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <numbers>
 #include <sstream>
 #include <vector>
 
-#include "hal/channel_judge.h"
+#include "hal/can/canopen_device.h"
 #include "hal/device_settings.h"
+#include "hal/modbus/channel_judge.h"
+#include "hal/modbus/modbus_device.h"
 #include "hal/sweep_plan.h"
 
 namespace abbe::hal {
@@ -23,22 +23,23 @@ std::string Page() {
   return text.str();
 }
 
-DevicesSettings Examples() {
+// The settings of the devices of one class in all examples.
+template <class OneDevice>
+std::vector<typename OneDevice::Settings> Examples() {
   const std::string page = Page(), open = "```toml\n";
-  DevicesSettings examples;
+  std::vector<typename OneDevice::Settings> examples;
   for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at)) {
     at += open.size();
     const std::string text = page.substr(at, page.find("```", at) - at);
     const auto document = settings::Document::Parse(text, "docs/devices.md");
-    const DevicesSettings read = ReadDevices(document.Root().Child("devices"));
-    std::copy(read.devices.begin(), read.devices.end(), std::back_inserter(examples.devices));
-    std::copy(read.canopen.begin(), read.canopen.end(), std::back_inserter(examples.canopen));
+    const auto read = SettingsOf<OneDevice>(ReadDevices(document.Root().Child("devices")));
+    examples.insert(examples.end(), read.begin(), read.end());
   }
   return examples;
 }
 
 // What the first channel of an example makes of the registers of its block.
-Sample Judged(const DeviceSettings& device,
+Sample Judged(const ModbusSettings& device,
               const std::vector<std::pair<int, std::uint16_t>>& words) {
   const BlockSettings& block = device.blocks[0];
   std::vector<std::uint16_t> registers(static_cast<std::size_t>(block.count));
@@ -55,7 +56,7 @@ Sample Judged(const DeviceSettings& device,
 }
 
 TEST(DevicesPage, TheGenericModuleReadsItsWholeRange) {
-  const DeviceSettings module = Examples().devices.at(0);
+  const ModbusSettings module = Examples<ModbusDevice>().at(0);
   EXPECT_NEAR(Judged(module, {{0, 65534}}).value, 200.0 * 65534 / 65535, 1e-4);
   EXPECT_NEAR(Judged(module, {{0, 32768}}).value, 100.0, 2e-3);
   EXPECT_EQ(Judged(module, {{0, 65535}}).cause, Cause::kSentinel);
@@ -63,14 +64,14 @@ TEST(DevicesPage, TheGenericModuleReadsItsWholeRange) {
 }
 
 TEST(DevicesPage, TheMoxaReadsVoltsAndItsStatus) {
-  const DeviceSettings moxa = Examples().devices.at(1);
+  const ModbusSettings moxa = Examples<ModbusDevice>().at(1);
   EXPECT_EQ(Judged(moxa, {{8, 0x40A0}, {9, 0x0000}}).value, 100.0);  // 40A00000h = 5.0 V
   EXPECT_EQ(Judged(moxa, {{8, 0x40A0}, {60, 1}}).cause, Cause::kSensorFault);
   EXPECT_EQ(moxa.blocks[0].channels[4].status->address, 64);
 }
 
 TEST(DevicesPage, TheWagoReadsItsModuleAndTheStatusBits) {
-  const DeviceSettings wago = Examples().devices.at(2);
+  const ModbusSettings wago = Examples<ModbusDevice>().at(2);
   EXPECT_EQ(Judged(wago, {{0, 0x4000}}).value, 100.0);  // 5 V
   EXPECT_EQ(Judged(wago, {{0, 0x8000}}).value, -200.0);
   EXPECT_EQ(Judged(wago, {{0, 0x7FF9}}).cause, Cause::kSensorFault);
@@ -78,7 +79,7 @@ TEST(DevicesPage, TheWagoReadsItsModuleAndTheStatusBits) {
 }
 
 TEST(DevicesPage, TheEncodersGoTheirWay) {
-  const CanopenSettings linkage = Examples().canopen.at(0);
+  const CanopenSettings linkage = Examples<CanopenDevice>().at(0);
   ASSERT_EQ(linkage.encoders.size(), 3u);
   EXPECT_EQ(linkage.encoders[0].range, std::int64_t{1} << 30);  // 4096 turns
   EXPECT_EQ(CountOf(linkage.encoders[0], std::numbers::pi), 131072);

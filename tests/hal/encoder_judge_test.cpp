@@ -1,4 +1,4 @@
-#include "hal/encoder_judge.h"
+#include "hal/can/encoder_judge.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

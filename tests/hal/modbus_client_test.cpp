@@ -2,13 +2,13 @@
 // that it recovers without help. Time is bounded by the test's own limit, never asserted tightly; a
 // computer that was too busy to look while a reply was due (kSuspended) has not shown the fault,
 // and it is tried again.
-#include "hal/modbus_client.h"
+#include "hal/modbus/modbus_client.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "hal/modbus_server.h"
+#include "hal/modbus/modbus_server.h"
 #include "scripted_modbus_server.h"
 
 namespace abbe::hal {
@@ -16,8 +16,8 @@ namespace modbus_client_test {
 
 using Kind = ModbusFault::Kind;
 
-DeviceSettings Device(int port) {
-  DeviceSettings device;
+ModbusSettings Device(int port) {
+  ModbusSettings device;
   device.name = "head";
   device.host = "127.0.0.1";
   device.port = port;
@@ -68,7 +68,7 @@ TEST_P(ModbusClientFault, IsNamedAndRecoveredFrom) {
 bool ModbusClientFault::Shown() {
   const Row& row = GetParam();
   ScriptedModbusServer server({Misdeed::kNone, row.misdeed});
-  DeviceSettings device = Device(server.port());
+  ModbusSettings device = Device(server.port());
   const bool waited_for = row.kind == Kind::kTimeout;
   if (waited_for) {
     device.times.response = 0.2;
@@ -133,7 +133,7 @@ TEST(ModbusClient, TakesAReplyThatDripsInWithinTheDeadline) {
 
 TEST(ModbusClient, GivesUpAReplyThatDripsPastTheDeadline) {
   ScriptedModbusServer server({Misdeed::kDrip});  // 19 bytes in 380 ms
-  DeviceSettings device = Device(server.port());
+  ModbusSettings device = Device(server.port());
   device.times.deadline = 0.25;
   ModbusClient client(device);
   std::array<std::uint16_t, 5> words{};
@@ -172,7 +172,7 @@ TEST(ModbusClient, APortWhereNobodyListensIsNamedAndBackedOffFrom) {
     const ScriptedModbusServer gone({});
     port = gone.port();
   }
-  DeviceSettings device = Device(port);
+  ModbusSettings device = Device(port);
   device.times.backoff_first = device.times.backoff_most = 60.0;
   ModbusClient client(device);
   std::array<std::uint16_t, 5> words{};
@@ -202,8 +202,8 @@ class LateOnceBank : public RegisterBank {
 TEST(ModbusClient, ALateSerialReplyIsNeverTakenForTheNextOne) {
   LateOnceBank bank;
   const auto server = ModbusServer::OpenPty(1, bank);
-  DeviceSettings device = Device(0);
-  device.transport = Transport::kModbusRtu;
+  ModbusSettings device = Device(0);
+  device.framing = ModbusFraming::kRtu;
   device.serial = {server->device(), 115200, 'N', 1};
   device.times.response = 0.4;
   ModbusClient client(device);
@@ -222,7 +222,7 @@ TEST(ModbusClient, ALateSerialReplyIsNeverTakenForTheNextOne) {
 }
 
 TEST(ModbusClient, AHostThatDoesNotExistIsADeviceError) {
-  DeviceSettings device = Device(502);
+  ModbusSettings device = Device(502);
   device.host = "no-such-host.invalid";
   try {
     const ModbusClient client(device);
@@ -235,7 +235,7 @@ TEST(ModbusClient, AHostThatDoesNotExistIsADeviceError) {
 
 TEST(ModbusClient, TakesAHostName) {
   ScriptedModbusServer server({});
-  DeviceSettings device = Device(server.port());
+  ModbusSettings device = Device(server.port());
   device.host = "localhost";
   try {
     ModbusClient client(device);

@@ -1,6 +1,6 @@
 // Frames are those printed in the Modbus application protocol V1.1b3 (the examples of
 // sections 6.3, 6.4 and 6.6); the CRC value is the published check value of CRC-16/MODBUS.
-#include "hal/modbus_frame.h"
+#include "hal/modbus/modbus_frame.h"
 
 #include <gtest/gtest.h>
 

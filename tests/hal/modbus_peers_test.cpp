@@ -9,7 +9,7 @@
 
 #include "child_process.h"
 #include "hal/combined_source.h"
-#include "hal/modbus_server.h"
+#include "hal/modbus/modbus_server.h"
 
 namespace abbe::hal {
 namespace modbus_peers_test {

@@ -1,6 +1,6 @@
 // A Modbus device over real sockets and a pseudo terminal: the contract, the messages, the
 // recovery.
-#include "hal/modbus_source.h"
+#include "hal/modbus/modbus_source.h"
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -12,7 +12,8 @@
 #include <thread>
 
 #include "hal/combined_source.h"
-#include "hal/modbus_server.h"
+#include "hal/modbus/modbus_device.h"
+#include "hal/modbus/modbus_server.h"
 #include "sample_source_contract.h"
 
 namespace abbe::hal {
@@ -42,8 +43,8 @@ class TroubledBank : public RegisterBank {
   std::atomic<int> tick_{0};
 };
 
-DeviceSettings TwoProbes() {
-  DeviceSettings device;
+ModbusSettings TwoProbes() {
+  ModbusSettings device;
   device.name = "head";
   device.host = "127.0.0.1";
   device.times.backoff_first = device.times.backoff_most = 1e-3;
@@ -54,15 +55,21 @@ DeviceSettings TwoProbes() {
   return device;
 }
 
+DevicesSettings Only(const ModbusSettings& device) {
+  DevicesSettings devices;
+  devices.devices = {std::make_shared<ModbusDevice>(device)};
+  return devices;
+}
+
 class ModbusRig : public ContractRig {
  public:
-  ModbusRig(Trouble trouble, Transport transport) : bank_(trouble) {
-    DeviceSettings device = TwoProbes();
-    device.transport = transport;
+  ModbusRig(Trouble trouble, ModbusFraming framing) : bank_(trouble) {
+    ModbusSettings device = TwoProbes();
+    device.framing = framing;
     // A lost reply is waited for; every other one may take as long as a busy computer needs.
     device.times.response = trouble == Trouble::kLost ? kLostReply : 2.0;
     device.times.deadline = 5.0;
-    if (transport == Transport::kModbusTcp) {
+    if (framing == ModbusFraming::kTcp) {
       server_ = ModbusServer::ListenTcp("127.0.0.1", 0, bank_);
       device.port = server_->port();
     } else {
@@ -93,11 +100,11 @@ class ModbusRig : public ContractRig {
 std::vector<ContractCase> Cases() {
   std::vector<ContractCase> cases;
   const auto add = [&](const std::string& name, Trouble trouble, Cause cause, bool fault) {
-    for (const auto& [prefix, transport] :
-         {std::pair{"Tcp", Transport::kModbusTcp}, std::pair{"Rtu", Transport::kModbusRtu}}) {
+    for (const auto& [prefix, framing] :
+         {std::pair{"Tcp", ModbusFraming::kTcp}, std::pair{"Rtu", ModbusFraming::kRtu}}) {
       cases.push_back(
           {prefix + name,
-           [=, way = transport] { return std::make_unique<ModbusRig>(trouble, way); },
+           [trouble, way = framing] { return std::make_unique<ModbusRig>(trouble, way); },
            // A computer that is too busy to look does not know whether a reply was lost.
            {cause, trouble == Trouble::kLost ? Cause::kClockJump : cause},
            true,
@@ -137,7 +144,7 @@ class ModbusSourceTest : public testing::Test {
   RegisterImage image_;
   std::unique_ptr<ModbusServer> server_;
   int port_ = 0;
-  DeviceSettings device_;
+  ModbusSettings device_;
   HandClock clock_;
   std::vector<std::string> log_;
 };
@@ -209,11 +216,9 @@ TEST_F(ModbusSourceTest, AStatusRegisterInAnotherBlockDecides) {
 }
 
 TEST_F(ModbusSourceTest, OpeningSaysWhichDeviceWhatItAnsweredAndWhatWasTried) {
-  DevicesSettings all;
-  all.devices = {device_};
-  all.devices[0].unit = 9;
+  device_.unit = 9;
   try {
-    OpenDevices(all, clock_, Presence::kRequired);
+    OpenDevices(Only(device_), clock_, Presence::kRequired);
     FAIL() << "opened";
   } catch (const DeviceError& error) {
     EXPECT_EQ(
@@ -223,22 +228,20 @@ TEST_F(ModbusSourceTest, OpeningSaysWhichDeviceWhatItAnsweredAndWhatWasTried) {
             "registers from 0; its gateway does not reach it: check `unit`, that it is on, and "
             "the line behind the gateway");
   }
-  all.devices[0].unit = 1;
+  device_.unit = 1;
   server_.reset();
-  EXPECT_THROW(OpenDevices(all, clock_, Presence::kRequired), DeviceError);
-  const OpenedDevices awaited = OpenDevices(all, clock_, Presence::kAwaited);
+  EXPECT_THROW(OpenDevices(Only(device_), clock_, Presence::kRequired), DeviceError);
+  const OpenedDevices awaited = OpenDevices(Only(device_), clock_, Presence::kAwaited);
   EXPECT_EQ(ReadFrom(*awaited.source).samples[0].cause, Cause::kNoReply);
 }
 
 TEST_F(ModbusSourceTest, StartsTheCycleWithTheNumberOfTheAxis) {
-  DevicesSettings all;
-  all.devices = {device_};
-  EXPECT_FALSE(OpenDevices(all, clock_, Presence::kRequired).start_cycle);
-  all.devices[0].cycle_start = CycleStart{50};
-  OpenDevices(all, clock_, Presence::kRequired).start_cycle(3);
+  EXPECT_FALSE(OpenDevices(Only(device_), clock_, Presence::kRequired).start_cycle);
+  device_.cycle_start = CycleStart{50};
+  OpenDevices(Only(device_), clock_, Presence::kRequired).start_cycle(3);
   EXPECT_EQ(image_.Get(1, RegisterTable::kHolding, 50), 3);
-  all.devices[0].cycle_start = CycleStart{51};
-  EXPECT_THROW(OpenDevices(all, clock_, Presence::kRequired).start_cycle(1), DeviceError);
+  device_.cycle_start = CycleStart{51};
+  EXPECT_THROW(OpenDevices(Only(device_), clock_, Presence::kRequired).start_cycle(1), DeviceError);
 }
 
 // Refuses with an exception a few times, then answers; takes what is written with "acknowledge".
@@ -270,7 +273,7 @@ class BusyDevice : public testing::Test {
   }
   BusyBank bank_;
   std::unique_ptr<ModbusServer> server_;
-  DeviceSettings device_;
+  ModbusSettings device_;
   HandClock clock_;
 };
 
@@ -282,7 +285,7 @@ TEST_F(BusyDevice, IsAskedAgainAndKeepsItsLink) {
     source.Require();
     EXPECT_EQ(source.Fault(), "");
     EXPECT_EQ(source.connections(), 1u);
-    EXPECT_EQ(source.identity(), "Maker Converter 8 2.1");
+    EXPECT_EQ(source.Description(), "modbus, Maker Converter 8 2.1");
     // While a recording goes on a refusal costs the reading and nothing else.
     bank_.refusals = 1;
     clock_.Advance(0.1);
@@ -315,9 +318,7 @@ TEST_F(BusyDevice, ThatAcknowledgesAStartHasTakenIt) {
 }
 
 TEST_F(BusyDevice, IsNamedInTheHeader) {
-  DevicesSettings all;
-  all.devices = {device_};
-  const OpenedDevices opened = OpenDevices(all, clock_, Presence::kRequired);
+  const OpenedDevices opened = OpenDevices(Only(device_), clock_, Presence::kRequired);
   EXPECT_EQ(opened.transport.at("head"), "modbus, Maker Converter 8 2.1");
 }
 
@@ -338,9 +339,8 @@ TEST_F(ModbusSourceTest, AReadingIsKnownToWithinItsExchange) {
   SlowBank bank(clock_);
   bank.Set(1, RegisterTable::kInput, 0, {100, 200});
   const auto server = ModbusServer::ListenTcp("127.0.0.1", 0, bank);
-  DevicesSettings all;
-  all.devices = {device_};
-  all.devices[0].port = server->port();
+  device_.port = server->port();
+  DevicesSettings all = Only(device_);
   all.max_skew = 0.4;
   {
     const OpenedDevices opened = OpenDevices(all, clock_, Presence::kAwaited);
@@ -358,13 +358,14 @@ TEST_F(ModbusSourceTest, AReadingIsKnownToWithinItsExchange) {
 
 TEST_F(ModbusSourceTest, TwoUnitsOfOneServerAreOneCoherentSet) {
   image_.Set(2, RegisterTable::kInput, 0, {7, 8});
-  DevicesSettings all;
+  ModbusSettings machine = device_;
+  machine.name = "machine";
+  machine.unit = 2;
+  machine.blocks[0].channels[0].name = "x_mm";
+  machine.blocks[0].channels[1].name = "y_mm";
+  DevicesSettings all = Only(device_);
+  all.devices.push_back(std::make_shared<ModbusDevice>(machine));
   all.max_skew = 1e9;
-  all.devices = {device_, device_};
-  all.devices[1].name = "machine";
-  all.devices[1].unit = 2;
-  all.devices[1].blocks[0].channels[0].name = "x_mm";
-  all.devices[1].blocks[0].channels[1].name = "y_mm";
   const OpenedDevices opened = OpenDevices(all, clock_, Presence::kRequired);
   const SampleSet set = ReadFrom(*opened.source);
   ASSERT_EQ(set.samples.size(), 4u);
@@ -406,7 +407,7 @@ TEST(ModbusServer, AHalfRequestHoldsUpNobody) {
   RegisterImage image;
   image.Set(1, RegisterTable::kInput, 0, {1, 2});
   const auto server = ModbusServer::ListenTcp("127.0.0.1", 0, image);
-  DeviceSettings device = TwoProbes();
+  ModbusSettings device = TwoProbes();
   device.port = server->port();
   bool answered = false;
   for (int attempt = 0; attempt < 10 && !answered; ++attempt) {  // a busy computer may take 0.5 s
@@ -429,7 +430,7 @@ TEST(ModbusServer, ServesSeveralClientsAndGivesItsPlaceAway) {
   RegisterImage image;
   image.Set(1, RegisterTable::kInput, 0, {1, 2});
   const auto server = ModbusServer::ListenTcp("127.0.0.1", 0, image);
-  DeviceSettings device = TwoProbes();
+  ModbusSettings device = TwoProbes();
   device.port = server->port();
   device.times.response = device.times.deadline = 5.0;
   std::vector<std::unique_ptr<ModbusClient>> clients;

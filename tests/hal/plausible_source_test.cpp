@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "failure/failure.h"
-#include "hal/fake_source.h"
+#include "hal/modbus/fake_source.h"
 
 namespace abbe::hal {
 namespace plausible_source_test {
@@ -84,10 +84,10 @@ TEST(PlausibleSource, RefusesGapsAThousandTimesOff) {
   readings.truth = [](const std::string& name, double t) {
     return name == "x_mm" ? 30.0 : 1e-3 * (100.0 + 0.03 * std::sin(1e4 * t));
   };
-  EXPECT_THAT(readings.Refusal(), HasSubstr("next to nothing"));
+  EXPECT_THAT(readings.Refusal(), HasSubstr("close to zero"));
   readings.truth = [](const std::string& name, double) { return name == "x_mm" ? 30.0 : 0.0; };
   EXPECT_THAT(readings.Refusal(), HasSubstr("an amplifier that is off"));
-  // One probe at the target, or in the air, is no slip of units.
+  // One probe at the target, or in the air, shows no wrong units.
   readings.truth = [](const std::string& name, double t) {
     return name == "x_mm" ? 30.0 : name == "probe_a_um" ? 0.0 : 250.0 + 0.03 * std::sin(1e4 * t);
   };

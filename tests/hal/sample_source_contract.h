@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "hal/clock.h"
-#include "hal/device_settings.h"
+#include "hal/modbus/modbus_settings.h"
 #include "hal/sample_source.h"
 
 namespace abbe::hal {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "hal/combined_source.h"
-#include "hal/fake_source.h"
+#include "hal/modbus/fake_source.h"
 #include "hal/replay_source.h"
 
 namespace abbe::hal {

@@ -8,7 +8,8 @@
 #include <thread>
 
 #include "hal/combined_source.h"
-#include "hal/modbus_server.h"
+#include "hal/modbus/modbus_device.h"
+#include "hal/modbus/modbus_server.h"
 #include "hal/sweep_recorder.h"
 #include "recording/instant.h"
 #include "swept_machine.h"
@@ -53,14 +54,14 @@ channel = [{ name = "x_mm", at = 0, type = "int32", scale = 0.00001, may_freeze 
 // Probes and scale of a machine that moves by the clock.
 class MovingBank : public RegisterBank {
  public:
-  MovingBank(const DevicesSettings& devices, const SweepPlan& plan, Clock& clock)
+  MovingBank(const std::vector<ModbusSettings>& devices, const SweepPlan& plan, Clock& clock)
       : devices_(devices), machine_(plan, 0.0, 0.5), clock_(clock) {}
   const SweptMachine& machine() const { return machine_; }
 
   Answer Read(int unit, RegisterTable, int, std::span<std::uint16_t> words) override {
     const double now = clock_.Now();
     for (const ChannelSettings& channel :
-         devices_.devices[static_cast<std::size_t>(unit - 1)].blocks[0].channels) {
+         devices_[static_cast<std::size_t>(unit - 1)].blocks[0].channels) {
       const double value = channel.name == "x_mm" ? 1e3 * machine_.PositionAt(now)
                                                   : 100.0 + 10.0 * std::sin(50.0 * now);
       StoreValue(channel, value, words);
@@ -69,7 +70,7 @@ class MovingBank : public RegisterBank {
   }
 
  private:
-  const DevicesSettings& devices_;
+  const std::vector<ModbusSettings>& devices_;
   SweptMachine machine_;
   Clock& clock_;
 };
@@ -81,10 +82,15 @@ TEST(SweepOverModbus, GoesOnWhenTheServerVanishesAndReturns) {
   SweepPlan plan = SmallPlan();
   plan.passes = 1;
   SteadyClock clock(2.0);
-  MovingBank bank(devices, plan, clock);
+  const std::vector<ModbusSettings> probes_and_scale = SettingsOf<ModbusDevice>(devices);
+  MovingBank bank(probes_and_scale, plan, clock);
   auto server = ModbusServer::ListenTcp("127.0.0.1", 0, bank);
   const int port = server->port();
-  for (DeviceSettings& device : devices.devices) device.port = port;
+  devices.devices.clear();
+  for (ModbusSettings device : probes_and_scale) {
+    device.port = port;
+    devices.devices.push_back(std::make_shared<ModbusDevice>(device));
+  }
   const OpenedDevices opened = OpenDevices(devices, clock, Presence::kRequired);
 
   const auto path =

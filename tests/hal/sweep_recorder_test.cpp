@@ -8,7 +8,7 @@
 #include <limits>
 #include <set>
 
-#include "hal/fake_source.h"
+#include "hal/modbus/fake_source.h"
 #include "hal/replay_source.h"
 #include "hal/sweep_follower.h"
 #include "swept_machine.h"

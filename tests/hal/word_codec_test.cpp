@@ -1,6 +1,6 @@
 // Byte patterns are written by hand from the IEEE 754 and two's complement definitions (and equal
 // Python's struct.pack of the same numbers), never from the codec itself.
-#include "hal/word_codec.h"
+#include "hal/modbus/word_codec.h"
 
 #include <gtest/gtest.h>
 

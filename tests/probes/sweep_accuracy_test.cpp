@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "hal/modbus/modbus_device.h"
 #include "probes/sweep_reduction.h"
 #include "random/counter_random.h"
 #include "rig/record_sweep.h"
@@ -17,7 +18,7 @@ constexpr double kRate = 100.0;  // readings in a second
 
 // Cuts every reading into the counts of its register.
 void Digitise(const hal::DevicesSettings& devices, recording::Recording& sweep) {
-  for (const hal::DeviceSettings& device : devices.devices) {
+  for (const hal::ModbusSettings& device : hal::SettingsOf<hal::ModbusDevice>(devices)) {
     for (const hal::BlockSettings& block : device.blocks) {
       for (const hal::ChannelSettings& channel : block.channels) {
         for (recording::Column& column : sweep.columns) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hal/canopen_frame.h"
+#include "hal/can/canopen_frame.h"
 
 namespace abbe::rig {
 namespace encoder_node_test {

@@ -10,9 +10,11 @@
 #include <memory>
 #include <string>
 
-#include "hal/can_in_process.h"
-#include "hal/canopen_source.h"
+#include "hal/can/can_in_process.h"
+#include "hal/can/canopen_device.h"
+#include "hal/can/canopen_source.h"
 #include "hal/combined_source.h"
+#include "hal/modbus/modbus_device.h"
 #include "hal/recorder.h"
 #include "machine/machine.h"
 #include "paths/circle_run.h"
@@ -60,6 +62,9 @@ class SharedHandClock : public hal::Clock {
 };
 
 hal::DevicesSettings Devices() { return hal::ReadDevices(DemoMill().Root().Child("devices")); }
+hal::CanopenSettings EncodersOnCan() {
+  return hal::SettingsOf<hal::CanopenDevice>(Devices()).at(0);
+}
 
 paths::CircleRun OneRun(const paths::MeasuredPath& path) {
   const auto runs = paths::CircleRuns({path});
@@ -78,20 +83,23 @@ TEST(LinkageEncoders, ACircleIsRecordedAndEvaluatedAsTheRigRanIt) {
   const RegisterServer registers(machine, Devices(), {});
   hal::CanInProcess wire(clock);
   std::unique_ptr<hal::CanBus> bus;
-  LinkageEncoders encoders(machine, Devices().canopen[0],
+  LinkageEncoders encoders(machine, EncodersOnCan(),
                            [&bus](const hal::CanFrame& frame) { bus->Send(frame); });
-  bus = wire.Join([&encoders](const hal::CanReceived& heard) { encoders.Hear(heard.frame); });
+  bus = wire.Join([&encoders](const hal::ReceivedFrame& heard) { encoders.Hear(heard.frame); });
   encoders.Boot();
 
-  hal::DevicesSettings settings_of_devices = Devices();
-  std::erase_if(settings_of_devices.devices, [](const auto& each) { return each.name == "head"; });
-  settings_of_devices.devices[0].port = registers.port();
-  settings_of_devices.devices[0].times.response = 5.0;
-  settings_of_devices.devices[0].times.deadline = 10.0;
-  settings_of_devices.canopen[0].times.heartbeat = 0.0;  // nobody beats while time stands
-  const hal::OpenedDevices devices =
-      hal::OpenDevices(settings_of_devices, clock, hal::Presence::kRequired, {},
-                       [&wire](const std::string&, hal::Clock&) { return wire.Join(); });
+  hal::ModbusSettings positions = hal::SettingsOf<hal::ModbusDevice>(Devices()).at(1);
+  ASSERT_EQ(positions.name, "machine");
+  positions.port = registers.port();
+  positions.times.response = 5.0;
+  positions.times.deadline = 10.0;
+  hal::CanopenSettings pivots = EncodersOnCan();
+  pivots.times.heartbeat = 0.0;  // nobody beats while time stands
+  hal::DevicesSettings both = Devices();
+  both.devices = {std::make_shared<hal::ModbusDevice>(positions),
+                  std::make_shared<hal::CanopenDevice>(
+                      pivots, [&wire](const std::string&, hal::Clock&) { return wire.Join(); })};
+  const hal::OpenedDevices devices = hal::OpenDevices(both, clock, hal::Presence::kRequired);
   const auto& channels = devices.source->channels();
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / "linkage_encoders_circle.csv";
@@ -154,7 +162,7 @@ class EncoderServerTest : public testing::Test {
   hal::SteadyClock clock_;
   hal::CanInProcess wire_{clock_};
   LiveMachine machine_{world_, [this] { return clock_.Now(); }, &linkage_, course_};
-  hal::CanopenSettings device_ = Devices().canopen[0];
+  hal::CanopenSettings device_ = EncodersOnCan();
 };
 
 TEST_F(EncoderServerTest, AnswersEverySyncThreeTimes) {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "hal/modbus_client.h"
+#include "hal/modbus/modbus_client.h"
 #include "tests/rig/demo_rig.h"
 
 namespace abbe::rig {
@@ -30,8 +30,8 @@ class Served {
         head(At(0)),
         machine(At(1)) {}
 
-  hal::DeviceSettings At(std::size_t device) {
-    hal::DeviceSettings settings = devices.devices[device];
+  hal::ModbusSettings At(std::size_t device) const {
+    hal::ModbusSettings settings = hal::SettingsOf<hal::ModbusDevice>(devices)[device];
     settings.port = server.port();
     settings.times.response = 5.0;  // as long as a busy computer needs
     settings.times.deadline = 10.0;
@@ -147,14 +147,16 @@ TEST(RegisterServer, RefusesAChannelThatTheRigHasNot) {
   const World world(DemoRig(), 1);
   LiveMachine machine(world, [] { return 0.0; });
   auto devices = hal::ReadDevices(DemoMill().Root().Child("devices"));
-  devices.devices[0].blocks[0].channels[0].name = "force_n";
+  hal::ModbusSettings head = hal::SettingsOf<hal::ModbusDevice>(devices)[0];
+  head.blocks[0].channels[0].name = "force_n";
+  devices.devices = {std::make_shared<hal::ModbusDevice>(head)};
   EXPECT_THROW(RegisterServer(machine, devices, {}), InputError);
 }
 
 TEST(RegisterServer, ServesADeviceOverRtu) {
   Served rig(DemoRig());
-  hal::DeviceSettings device = rig.devices.devices[0];
-  device.transport = hal::Transport::kModbusRtu;
+  hal::ModbusSettings device = rig.At(0);
+  device.framing = hal::ModbusFraming::kRtu;
   device.serial = {rig.server.OpenRtu("head"), 115200, 'N', 1};
   device.times.wait = 0.005;
   ModbusClient serial(device);

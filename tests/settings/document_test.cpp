@@ -192,14 +192,14 @@ TEST(DocumentTest, AcceptsInlineTablesInAnArray) {
 
 TEST(DocumentTest, GivesTheTablesThatTheUserNamed) {
   const Table root = Parse(
-      "[devices]\nrate_hz = 10\n[devices.shared]\nx = 1\n[devices.head]\nport = "
+      "[devices]\nrate_hz = 10\n[devices.shared]\nx = 1\n[devices.tool]\nport = "
       "1\n[devices.mill]\nprt = 2\n");
   const Table devices = root.Child("devices");
   devices.Number("rate_hz");
   devices.Child("shared").Number("x");
   const std::vector<Table> named = devices.Named();
   ASSERT_EQ(named.size(), 2u);
-  EXPECT_EQ(named[0].key(), "head");
+  EXPECT_EQ(named[0].key(), "tool") << "the order is that of the file";
   EXPECT_EQ(named[0].Integer("port"), 1);
   EXPECT_EQ(named[1].key(), "mill");
   named[1].Integer("port", {.fallback = 502.0});

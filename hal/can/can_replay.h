@@ -1,0 +1,44 @@
+// A log of CAN traffic as if the bus carried it again: a bus on which one can only listen.
+//
+// The clock sets the pace, as with ReplaySource: a SteadyClock replays in real time, a HandClock
+// as fast as possible. Stamps are those of the log, counted from the clock's time at the first
+// frame.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hal/can/can_bus.h"
+#include "hal/can/candump_log.h"
+#include "hal/clock.h"
+
+namespace abbe::hal {
+
+class CanReplay : public CanBus {
+ public:
+  // Only the frames of `interface`. InputError, naming those that are there, when it has none.
+  // `clock` must outlive the bus.
+  CanReplay(const CandumpLog& log, const std::string& interface, Clock& clock);
+
+  bool Send(const CanFrame&) override { return false; }
+  std::optional<ReceivedFrame> Receive(double until_s) override;
+  CanState state() const override { return CanState::kActive; }
+  std::string Fault() const override { return {}; }
+  std::uint64_t lost() const override { return 0; }
+  std::uint64_t errors() const override { return 0; }
+  bool Ended() const override { return next_ == frames_.size(); }
+  // The time of the next frame by the clock; after the last frame, its time.
+  double NextTime() const;
+
+ private:
+  struct Passage {
+    double time_s;
+    CanFrame frame;
+  };
+  std::vector<Passage> frames_;
+  Clock& clock_;
+  double start_s_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace abbe::hal
