@@ -2,7 +2,7 @@
 //
 //   Campaign campaign(setup);
 //   for (const recording::Recording& recording : recordings) campaign.Add(recording);
-//   const Scene scene = campaign.scene();
+//   const simulation::Scene scene = campaign.scene();
 //
 // Readings that are none (data_integrity.h) are found first and left out.
 // Sweeps enter dwell by dwell, so that what changes from pass to pass stays visible. No row is

@@ -1,11 +1,11 @@
 // The gain of an extended simulation on data that it did not see.
 //
 //   const HeldOutGain gain = HoldOut(campaign, recordings, causes);
-//   gain.after / gain.before
+//   gain.after / gain.before;
 //
 // Every other pass of each sweep and of each run with a reference instrument is held out, and every
 // other run of the linkage on one base; where it has fewer than three, every other pass, or every
-// other of kBlocks blocks in time (also of a run of a shaft), so that neighbouring rows stay
+// other of 8 blocks in time (also of a run of a shaft), so that neighbouring rows stay
 // together. Of an arm, whose poses are measured one by one, every fourth. A sweep with one pass
 // and runs of other kinds take no part. The simulation is fitted to the rest, once as it is, once
 // with the causes and once with all but each of them, and asked for the rows that were held out:

@@ -2,7 +2,7 @@
 // warm. From this a cause works out what it does to each row.
 //
 //   const Trace trace = TraceOf(recording, run);         // of a sweep or of a linkage
-//   trace.heading(0, row)                                // which way the X axis last moved
+//   trace.heading(0, row);                               // which way the X axis last moved
 //
 // Units: m, s, rad, K. Shapes: one column or entry per row of the run; an axis or a pivot that has
 // not moved yet has heading 0 and has last reversed `kLongAgo` metres ago. Temperatures are
