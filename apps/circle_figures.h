@@ -1,7 +1,7 @@
 // The figures of a circle by name, and how well each is known.
 //
 //   const FigureUncertainties u = UncertaintiesOf(run, shifted, figures, options);
-//   u[i].calibration, u[i].noise        // of kCircleFigures[i], standard uncertainties, m
+//   u[i].calibration, u[i].noise;       // of kCircleFigures[i], standard uncertainties, m
 //
 // `calibration` comes from what the calibration of the linkage leaves open: `shifted` holds the run
 // as it would be with each independent error of it, and the squares of what they change add up.

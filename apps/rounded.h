@@ -1,8 +1,8 @@
 // Numbers beside their uncertainty: both with the decimals that leave two significant digits of U.
 //
 //   const Decimals decimals(U);                         // U = 0.1234
-//   decimals(31.41593)                                  // "31.42"
-//   PlusMinus(31.41593, 0.1234)                         // "31.42 +- 0.12"
+//   decimals(31.41593);                                 // "31.42"
+//   PlusMinus(31.41593, 0.1234);                        // "31.42 +- 0.12"
 //
 // Any unit, the same for value and U. A U of 10 and more leaves whole numbers; without one (0, not
 // finite) there are `fallback` decimals. Source: JCGM 100:2008, 7.2.6.

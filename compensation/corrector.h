@@ -3,7 +3,7 @@
 //
 //   const Corrector corrector(map, p_TQ);
 //   const Eigen::Vector3d command = corrector.Command(wanted);
-//   corrector.Made(command) == wanted                               // to rounding
+//   corrector.Made(command);                                        // wanted, to rounding
 //
 // Frames: positions are axis positions [X Y Z] as commanded and read off the scales. What holds is
 // the place of the tool in the workpiece: `wanted` is where the axes of a perfect machine would

@@ -1,6 +1,6 @@
 // Some rows of another residual: to hold the others out.
 //
-//   run.residual = std::make_shared<ChosenRows>(run.residual, rows);
+//   const auto some = std::make_shared<ChosenRows>(all, rows);
 //
 // Shapes: the rows in the order in which they are named. Cost: that of all rows.
 #pragma once

@@ -1,9 +1,8 @@
 // A problem made linear at one point: residuals and derivatives of the free parameters, whitened.
 //
 // Two views of the same rows:
-//   VisitRows    hands out the whitened rows of one residual after the other, for whoever wants
-//   them
-//                (a projection, a score for a candidate cause);
+//   VisitRows    hands out the whitened rows of one residual after the other (for a projection, a
+//                score for a candidate cause),
 //   Linearize    sums them up to J'J, J'r and chi-square per source: n x n each, no matter how many
 //                rows there are. It runs on all cores and is the same for any number of them.
 //

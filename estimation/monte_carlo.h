@@ -6,10 +6,10 @@
 // numerical tolerance delta = 10^l / 2, where u = c * 10^l and c has the wanted number of digits.
 // The figures returned are then taken from all h M draws together.
 //
-//   const CounterRandom length(seed, 0), temperature(seed, 1);
+//   const random::CounterRandom length(seed, 0), temperature(seed, 1);
 //   const auto result = PropagateDistributions(1, [&](std::uint64_t draw, std::span<double> out) {
-//     out[0] = (1.0 + 3e-7 * length.Normal(draw)) * (1.0 + kAlpha * temperature.Uniform(draw, -1,
-//     1));
+//     out[0] = (1.0 + 3e-7 * length.Normal(draw)) *
+//              (1.0 + kAlpha * temperature.Uniform(draw, -1.0, 1.0));
 //   });
 //   result.outputs[0].standard_uncertainty;  result.draws;  result.stabilised;
 //

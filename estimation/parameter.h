@@ -5,8 +5,9 @@
 // links, the coefficients of one error function, the offsets of one run. A parameter is addressed
 // by its full name "block.entry", never by a position in a mask.
 //
-//   ParameterBlock links{"link", {"mm", 1e-3}, {{"length_1", 0.200, 50e-6}, {"length_2", 0.180,
-//   50e-6}}}; links["length_2"].held = true;      // keeps its value, is not estimated
+//   ParameterBlock links{"link", {"mm", 1e-3},
+//                        {{"length_1", 0.200, 50e-6}, {"length_2", 0.180, 50e-6}}};
+//   links["length_2"].held = true;      // keeps its value, is not estimated
 //   links.Values();                     // [0.200 0.180], m
 //
 // Units: SI (or any one coherent set; estimation/ knows no metrology). `unit` is for printing only.

@@ -9,7 +9,7 @@
 // if it stood k scales away: no value, however wrong, pulls with more than that.
 //
 //   const RobustMean dwell = HuberMean(readings);
-//   // dwell.mean +- dwell.standard_error, dwell.outliers of dwell.count look wrong
+//   dwell.mean, dwell.standard_error;      // and dwell.outliers of dwell.count look wrong
 //
 // Tuning: k = 2.0 has the variance of the plain mean times 1.010 at normal data (efficiency 99.0 %;
 // a median has 64 %); with a share e of wrong values, all on one side and as far as they like, the

@@ -1,6 +1,6 @@
 // The calibration of the linkage: from runs to parameters, with what they can be believed.
 //
-//   const CalibrationReport report = Calibrate(chain, linkage, runs, {.model = kComplete});
+//   const CalibrationReport report = Calibrate(chain, linkage, runs, {});
 //   WriteCalibration(report.calibration, "linkage.toml");
 //   report.held_out.rms;               // m: of ball positions that took no part
 //

@@ -1,7 +1,9 @@
 // What made a circle as it is: all causes of the signature table in one joint fit.
 //
 //   const CircleCauses causes = FitCircleCauses({&slow, &fast}, {});
-//   for (const CauseEstimate& one : causes.causes) one.cause, one.object, one.value, one.u;
+//   for (const CauseEstimate& one : causes.causes) {
+//     fmt::print("{}: {} +- {}\n", one.cause, one.value, one.u);
+//   }
 //
 // The runs are of one instrument, plane and radius, in both senses and at two feeds where that was
 // measured: a reading of the causes one harmonic at a time takes one for another

@@ -15,8 +15,8 @@
 //
 // Frames: M, B, T as in LinkageSimulation; the grid runs along the axes of M. Units: m, rad.
 // Failure: InputError when the positions form no grid of at least 3 x 3 x 3 points (it says how
-// many levels were found), or a cell has fewer than kFewestPoses of its 13 poses; NumericalError
-// when a cell does not converge. Source: Boelens, "Error Parameter Model that made three
+// many levels were found), or has fewer poses than a quarter of its points; NumericalError when a
+// cell does not converge. Source: Boelens, "Error Parameter Model that made three
 // dimensional tool path measurement in the micron domain possible" (2006), section "Mapping of the
 // parameters"; the spacing of its grid is not stated, 7 x 7 x 12 over 25 x 25 x 50 mm gives its
 // 530 mm^3. When not to use: a model that leaves nothing out is better global (docs/calibrate.md).

@@ -3,8 +3,9 @@
 //
 //   CanInProcess wire(clock);
 //   const auto master = wire.Join();
-//   std::unique_ptr<CanBus> node = wire.Join([&](const CanReceived& heard) { ... node->Send(...);
-//   }); wire.Inject({.kind = CanTrouble::Kind::kLost, .id = 0x182, .from_s = 10, .to_s = 20});
+//   std::unique_ptr<CanBus> node;
+//   node = wire.Join([&](const CanReceived& heard) { node->Send(AnswerTo(heard.frame)); });
+//   wire.Inject({.kind = CanTrouble::Kind::kLost, .id = 0x182, .from_s = 10, .to_s = 20});
 //
 // Participants may live in different threads. One that gave `hear` is called at once, in the thread
 // of the sender, and may send from there; the others fetch from their queue with Receive(), which

@@ -4,9 +4,10 @@
 // `truth` is encoded by the channel's settings, a fault acts on the words or on the way,
 // ChannelJudge decides.
 //
-//   FakeSource source(channels, [](const std::string&, double t) { return 50 + std::sin(t); }, 1.0,
-//   clock); source.Inject({.kind = FakeFault::Kind::kFrozen, .from_s = 10, .to_s = 20, .channel =
-//   "probe_c_um"});
+//   const auto truth = [](const std::string&, double t) { return 50 + std::sin(t); };
+//   FakeSource source(channels, truth, 1.0, clock);
+//   source.Inject({.kind = FakeFault::Kind::kFrozen, .from_s = 10, .to_s = 20,
+//                  .channel = "probe_c_um"});
 #pragma once
 
 #include <array>

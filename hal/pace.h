@@ -5,7 +5,7 @@
 // is flagged (Cause::kClockJump). What a suspension does to a reading that is under way is the
 // source's matter.
 //
-//   while (...) {
+//   while (goes_on) {
 //     const bool kept = pace.Await();
 //     const SampleSet set = source.Read();
 //     pace.Done();

@@ -3,18 +3,18 @@
 //   const AxisTables tables = Tabulate(map, p_TQ, {31, 31, 31});
 //   const ErrorMap back = MapOfTables(tables);
 //
-// Order of the tables: error_motion.h. Units: SI. A table without positions is an error that the
+// Order of the tables: machine/error_motion.h. Units: SI. A table without positions is an error that the
 // file does not hold: zero.
 //
-// The tables state the errors of the carriages, volumetric_error.h, as their header says. Axes that
+// The tables state the errors of the carriages, as machine/volumetric_error.h says. Axes that
 // carry the workpiece and count as the tool goes (ISO 841) are for a control axes of the tool:
 // where all of them do, Tabulate gives the errors of the same machine with its axes on the tool's
 // side, chain and all, and every error in the file is then one of the tool against the workpiece.
 // The volumetric error is the same, exactly. Failure: InputError for an axis without any table, a
 // table of one position or whose positions do not increase, and for a file that does not say its
 // chain or how it counts. Validity: between the positions straight lines. Tables are taken as they
-// stand, constants and slopes included (Gauge::kNone, error_function.h): nothing of the volumetric
-// error is lost.
+// stand, constants and slopes included (Gauge::kNone, machine/error_function.h): nothing of the
+// volumetric error is lost.
 #pragma once
 
 #include <Eigen/Core>

@@ -2,7 +2,7 @@
 // uses HDF5) with a writer and a reader, and one line in exporter.cpp.
 //
 //   const Export done = ExportMap(map, FormatNamed("isg"), {}, "out/mill.csv");
-//   done.discrepancy.largest     // how far what the file says lies from the map, m
+//   done.discrepancy.largest;    // how far what the file says lies from the map, m
 //
 // The discrepancy is found by reading the files just written, with the format's own reader, and
 // comparing what they say with the map over the whole travels (Compare, map_grid.h): it is what a

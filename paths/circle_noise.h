@@ -2,7 +2,7 @@
 // to them, and the more the more points there are.
 //
 //   const double noise = ReadingNoise(run);
-//   EvaluateCircle(WithNoise(run, std::sqrt(3.0) * noise, 1))      // as if it were twice as large
+//   EvaluateCircle(WithNoise(run, std::sqrt(3.0) * noise, 1));     // as if it were twice as large
 //
 // The noise of a radius is told from third differences of neighbouring readings, which a smooth
 // path does not reach. A range grows with the noise: from once to twice as much by as much as it

@@ -1,12 +1,12 @@
 // Where an instrument saw the tool go, beside where it was sent: what every path test starts from.
 //
-//   const MeasuredPath path = LinkagePath(recording, chain, readings.rows, p_MT);
-//   const MeasuredPath path = ReferencePath(recording);
+//   const MeasuredPath path = LinkagePath(recording, chain, rows, p_MT);
+//   const MeasuredPath reference = ReferencePath(recording);
 //
 // Frames: axis coordinates [x y z], as the columns x_mm y_mm z_mm have them: an error is measured -
 // commanded along each axis. The linkage gives p_MT in the machine frame as the workpiece carries
-// it (linkage_settings.h); an axis that carries the workpiece counts the other way there, and is
-// turned here. Units: m, s, m/s. Shapes: one column or entry a pose. Rows with a flag are left out.
+// it (relm/linkage_settings.h); an axis that carries the workpiece counts the other way there, and
+// is turned here. Units: m, s, m/s. Shapes: one column or entry a pose. Rows with a flag are left out.
 // Failure: InputError with the recording's name for a missing column, a row without a flag that
 // holds no number, or no row at all.
 #pragma once

@@ -5,8 +5,8 @@
 //
 // Three inversions, each for both bodies that may move. Frames, units, signs and the order of the
 // readings are those of head_model.h; `exx` is the positioning error where it is known.
-//   SimplifiedInversion  first order in the errors: the published equations, for any layout;
-//   DocumentInversion    exact for DocumentReadings;
+//   SimplifiedInversion  first order in the errors: the published equations, for any layout,
+//   DocumentInversion    exact for DocumentReadings,
 //   RigidInversion       exact for RigidReadings, for any measuring lines.
 // The exact ones are closed forms, not iterations: three readings fix the top plane, two more the
 // side plane, and what remains is a quadratic in the yaw (document) or the rotation of two known

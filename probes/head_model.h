@@ -7,7 +7,7 @@
 //
 // Two models, each for both bodies that may move:
 //   DocumentReadings  the source's model: the pose of the moved body is d plus the small-angle
-//                     matrix I + [EAX EBX ECX]x, which is solved exactly but is no rotation;
+//                     matrix I + [EAX EBX ECX]x, which is solved exactly but is no rotation,
 //   RigidReadings     the moved body turns by the full rotation exp([EAX EBX ECX]x), which knows no
 //                     order of the three angles; the plane of the target is cut by the measuring
 //                     line of the probe, whichever way the line points.

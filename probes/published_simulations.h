@@ -7,7 +7,7 @@
 // A draw: EAX, EBX, ECX uniform in +-1 mrad, EYX, EZX uniform in +-50 um; DocumentReadings of the
 // nominal layout with a moving target; an inversion; error = estimated - true. Draw i stands at
 // station i mod 61 of the travel, so 61 draws in a row are one run of the source. EXX = 0.
-//   kOne  d = 0 ... 60 mm, the head as drawn;
+//   kOne  d = 0 ... 60 mm, the head as drawn,
 //   kTwo  d = 0 ... 10 mm, every probe off its place by 10 um in a random direction, the head
 //         installed with yaw = pitch = 2 mrad and 50 um along u, s and n (roll and the turn of the
 //         measuring lines play no part in the source's model). The inversion knows the nominal

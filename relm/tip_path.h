@@ -1,8 +1,8 @@
 // From a recording to the path of the ball: direct evaluation, no fit.
 //
 //   const TipPath path = EvaluateTipPath(recording, settings, model, model.Values());
-//   path.tips            // 3 x poses, in B
-//   InFrame(X_MB, path.tips)
+//   path.tips;                     // 3 x poses, in B
+//   InFrame(X_MB, path.tips);      // in M
 //
 // Takes the columns pivot_1_rad ... pivot_N_rad, the temperature of the settings where the
 // recording has it, and leaves out rows with a flag other than 0. `rows` tells which rows of the

@@ -3,8 +3,8 @@
 //
 //   const CampaignMachine machine = ReadCampaignMachine(document.Root());
 //   HiddenEffects hidden = {ParseHidden("backlash:object=X", 7, machine.sensors)};
-//   const Campaign campaign = RecordCampaign(machine, 7, hidden, {.kind =
-//   CampaignKind::kStandard});
+//   const Campaign campaign =
+//       RecordCampaign(machine, 7, hidden, {.kind = CampaignKind::kStandard});
 //   // campaign.recordings: "01_sweep_X", "02_sweep_Y", ...; campaign.hidden: with all its numbers
 //
 // docs/virtual-rig.md lists the recordings of each kind and what their headers say. The machine is

@@ -1,10 +1,10 @@
 // The rig's machine as it runs: at rest, or performing a program since it was started. Programs 0,
 // 1, 2 are the sweeps of X, Y, Z, program 3 is the course that it was given.
 //
-//   LiveMachine machine(world, SimulatedTime(20.0), &linkage, CircleCourse({...}));
+//   LiveMachine machine(world, SimulatedTime(20.0), &linkage, CircleCourse({.radius = 0.01}));
 //   machine.Start(kCourseProgram);
 //   const Moment now = machine.Now();
-//   use(machine.ReadingOf("x_mm", now), machine.EncodersNow());
+//   machine.ReadingOf("x_mm", now);  machine.EncodersNow();
 //
 // Axes and sensors take a new state `update_rate` times a second; between two updates they show the
 // same one. Every program begins and ends at rest, the first ends of the travels; the way from

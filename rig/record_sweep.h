@@ -3,8 +3,8 @@
 //
 //   const World world(ReadRigSettings(document.Root()), seed);
 //   const auto devices = hal::ReadDevices(document.Root().Child("devices"));
-//   const recording::Recording sweep = RecordSweep(world, 'X', ChannelsOf(devices), {.rate
-//   = 75.0});
+//   const recording::Recording sweep = RecordSweep(world, 'X', ChannelsOf(devices),
+//                                                 {.rate = 75.0});
 //
 // Columns and header are those of hal/sweep_recorder.h, with every pass from its first motion. The
 // values are those of the sensors before they are cut into counts. A gap outside 0 to `range` is

@@ -11,7 +11,7 @@
 //   probe response    ResponseTo: tilt response, gain about the middle of the range; then, where it
 //                     is hidden, what is no gain of one probe alone (ResponseOf)
 //   noise             noise.h, a function of the time
-// The motion in time is motion.h; what becomes of the numbers on the wire is server.h.
+// The motion in time is motion.h; what becomes of the numbers on the wire is register_server.h.
 // Hidden effects that are constants of machine, head or target are built in here; those that depend
 // on time, motion or temperature come from hidden_run.h, as another command and other readings.
 //

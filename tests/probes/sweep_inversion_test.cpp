@@ -39,7 +39,7 @@ TEST(SweepInversion, NamesTheErrorsByIso) {
   EXPECT_EQ(names('Z'), "EAZ EBZ ECZ EXZ EYZ ");
 }
 
-// models.md 1: X frame (x, y, z).
+// The head frame (u, s, n) of X is (x, y, z).
 TEST(SweepInversion, XAtTheTargetIsTheHeadFrame) {
   const GroupErrors errors = Recovered(TestSetup(), 'X', kErrors, 30e-3, Eigen::Vector3d::Zero());
   EXPECT_NEAR(errors(5, 1), kErrors.eax, kAngle);
@@ -49,7 +49,7 @@ TEST(SweepInversion, XAtTheTargetIsTheHeadFrame) {
   EXPECT_NEAR(errors(9, 1), kErrors.ezx, kLength);
 }
 
-// models.md 1: Y frame (y, -x, z): roll = EBY, pitch = -EAY, yaw = ECY; s is -x.
+// That of Y is (y, -x, z): roll = EBY, pitch = -EAY, yaw = ECY; s is -x.
 TEST(SweepInversion, YTurnsRollIntoEBY) {
   const GroupErrors errors = Recovered(TestSetup(), 'Y', kErrors, 30e-3, Eigen::Vector3d::Zero());
   EXPECT_NEAR(errors(5, 1), -kErrors.ebx, kAngle);
@@ -59,7 +59,7 @@ TEST(SweepInversion, YTurnsRollIntoEBY) {
   EXPECT_NEAR(errors(9, 1), kErrors.ezx, kLength);
 }
 
-// models.md 1: Z frame (z, y, -x), the head moves.
+// That of Z is (z, y, -x), and the head moves.
 TEST(SweepInversion, ZMovesTheHeadAndLooksAlongMinusX) {
   const GroupErrors errors = Recovered(TestSetup(), 'Z', kErrors, 30e-3, Eigen::Vector3d::Zero());
   EXPECT_NEAR(errors(5, 1), -kErrors.ecx, kAngle);
@@ -69,7 +69,7 @@ TEST(SweepInversion, ZMovesTheHeadAndLooksAlongMinusX) {
   EXPECT_NEAR(errors(9, 1), kErrors.eyx, kLength);
 }
 
-// models.md 1: EYX_target = EYX + x0 ECX - z0 EAX, EZX_target = EZX - x0 EBX + y0 EAX, with
+// EYX_target = EYX + x0 ECX - z0 EAX, EZX_target = EZX - x0 EBX + y0 EAX, with
 // (x0, y0, z0) = head - reference - the travels at the start of X and of Y, which carries X.
 TEST(SweepInversion, TheReferenceIsReachedByTheAbbeArms) {
   const Eigen::Vector3d start(2e-3, 7e-3, 9e-3);
@@ -110,7 +110,7 @@ TEST(SweepInversion, InstallationGainAndElectrodeAreCorrected) {
   EXPECT_NEAR(errors(9, 1), kErrors.ezx, 1e-11);
 }
 
-// models.md 1, its first-order inversion.
+// The Jacobian of the first-order inversion (docs/theory-head.md).
 TEST(SweepInversion, ItsJacobianIsThatOfTheFirstOrderModel) {
   const SweepSetup setup = TestSetup();
   const double d = 30e-3, arm = 10e-3, high = 20e-3;
