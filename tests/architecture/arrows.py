@@ -3,6 +3,8 @@
 
     arrows.py SOURCE_FOLDER
 
+A header that a folder's CMakeLists.txt names INTERNAL is for that folder alone.
+
 Prints each include that goes against an arrow and exits with 1 when there is one.
 """
 import pathlib
@@ -67,6 +69,28 @@ def broken_arrows(root):
                         yield f"{name}: includes <{header}>, which only {may} may"
 
 
+def internal(root):
+    """The headers that the folders keep to themselves, as "folder/file.h"."""
+    for folder in ARROWS:
+        lists = root / folder / "CMakeLists.txt"
+        for names in re.findall(r"INTERNAL((?:\s+[\w/]+\.h)+)", lists.read_text() if lists.exists() else ""):
+            yield from (f"{folder}/{name}" for name in names.split())
+
+
+def open_doors(root):
+    """Yields a line for each include of an internal header by another folder or by a header that is installed."""
+    root = pathlib.Path(root)
+    kept = set(internal(root))
+    for folder in ARROWS:
+        for file in sorted((root / folder).glob("**/*")):
+            name = file.relative_to(root).as_posix()
+            if file.suffix not in (".h", ".cpp") or name in kept:
+                continue
+            for header in sorted(kept & set(INCLUDE.findall(file.read_text()))):
+                if file.suffix == ".h" or not header.startswith(folder + "/"):
+                    yield f"{name}: includes {header}, which is INTERNAL"
+
+
 def strangers(root):
     """Yields a line for each folder with sources that has no line in ARROWS."""
     outside = {"tests", "bench", "build", "fuzz", "out"}
@@ -77,6 +101,6 @@ def strangers(root):
 
 
 if __name__ == "__main__":
-    found = [*broken_arrows(sys.argv[1]), *strangers(sys.argv[1])]
+    found = [*broken_arrows(sys.argv[1]), *open_doors(sys.argv[1]), *strangers(sys.argv[1])]
     print("\n".join(found) or "every include follows the arrows")
     sys.exit(1 if found else 0)
