@@ -3,7 +3,7 @@
 //   estimation::Problem problem = MakeLinkageProblem(simulation, runs, {});
 //   problem.Block(problem.Find("graduation")).Hold();        // which blocks are free
 //   const estimation::Result result = SolveLinkage(problem);
-//   const Eigen::VectorXd x = ParametersOf(result.blocks, runs[0].mounting);   // for the simulation
+//   const Eigen::VectorXd x = ParametersOf(result.blocks, runs[0].mounting);
 //
 // Each run is a source; its rows are the gaps of simulation/linkage/linkage_gaps.h. Runs of one mounting
 // share the pose of the base; every mounting has base blocks of its own (fusion/calibration.h),

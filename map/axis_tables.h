@@ -3,8 +3,8 @@
 //   const AxisTables tables = Tabulate(map, p_TQ, {31, 31, 31});
 //   const ErrorMap back = MapOfTables(tables);
 //
-// Order of the tables: machine/error_motion.h. Units: SI. A table without positions is an error that the
-// file does not hold: zero.
+// Order of the tables: machine/error_motion.h. Units: SI. A table without positions is an error that
+// the file does not hold: zero.
 //
 // The tables state the errors of the carriages, as machine/volumetric_error.h says. Axes that
 // carry the workpiece and count as the tool goes (ISO 841) are for a control axes of the tool:

@@ -2,7 +2,7 @@
 //
 //   const PivotLinkage linkage(0.120, 0.120);
 //   const Eigen::Vector3d p_BT = linkage.Tip({q1, q2, q3});
-//   const Eigen::Vector3d angles = linkage.Angles(p_BT, {Elbow::kUp});      // throws when out of reach
+//   const Eigen::Vector3d angles = linkage.Angles(p_BT, {Elbow::kUp});  // throws if out of reach
 //
 // Frames: B, the linkage base: z along pivot 1, pivots 1 and 2 meet in its origin; T, the ball
 // centre. q1 turns about z, q2 about the y axis that q1 has turned (q2 > 0 lowers link 1), q3 about

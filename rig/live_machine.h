@@ -1,7 +1,8 @@
 // The rig's machine as it runs: at rest, or performing a program since it was started. Programs 0,
 // 1, 2 are the sweeps of X, Y, Z, program 3 is the course that it was given.
 //
-//   LiveMachine machine(world, SimulatedTime(20.0), &linkage, CircleCourse({.radius = 0.01}));
+//   const Course circle = CircleCourse({.radius = 0.01, .feed = 1e-3});
+//   LiveMachine machine(world, SimulatedTime(20.0), &linkage, circle);
 //   machine.Start(kCourseProgram);
 //   const Moment now = machine.Now();
 //   machine.ReadingOf("x_mm", now);  machine.EncodersNow();
