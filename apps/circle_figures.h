@@ -1,7 +1,7 @@
 // The figures of a circle by name, with their standard uncertainties.
 //
 //   const FigureUncertainties u = UncertaintiesOf(run, shifted, figures, options);
-//   u[i].calibration, u[i].noise        // of kCircleFigures[i], standard uncertainties, m
+//   u[i].calibration, u[i].noise;       // of kCircleFigures[i], standard uncertainties, m
 //
 // `calibration` is the uncertainty from the calibration of the linkage: `shifted` holds the run
 // with each independent error of the calibration, and their changes of a figure add up in squares.

@@ -3,6 +3,10 @@
 // in its footer, and gives it a callback that parses, calls the library, prints and sets the exit
 // code; failures are thrown and mapped to exit codes in main.cpp.
 //
+//   struct ConvertOptions {
+//     std::filesystem::path from, to;
+//   };
+//   int Convert(const ConvertOptions& options) { return kDone; }
 //   void AddConvert(CLI::App& program, int& exit_code) {
 //     auto options = std::make_shared<ConvertOptions>();
 //     CLI::App* command = program.add_subcommand("convert", "CSV <-> HDF5, losslessly");

@@ -1,10 +1,12 @@
-# abbe_folder(NAME [SOURCES file...] [PUBLIC target...] [PRIVATE target...])
+# abbe_folder(NAME [SOURCES file...] [PUBLIC target...] [PRIVATE target...] [INTERNAL header...] [OF_THE_PROGRAM])
 #
 # One library per folder of the architecture: target abbe_NAME, alias abbe::NAME. Headers are included
 # as "NAME/file.h". Each folder is seen through a directory of its own that holds one link to it, so a
 # target finds the headers of the folders it links and of no other: a wrong arrow does not build.
+# All headers are installed but those that are INTERNAL, for use within the folder. A folder OF_THE_PROGRAM
+# is no part of the package.
 function(abbe_folder name)
-  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "OF_THE_PROGRAM" "" "SOURCES;PUBLIC;PRIVATE;INTERNAL" ${ARGN})
   set(view ${PROJECT_BINARY_DIR}/view/${name})
   file(MAKE_DIRECTORY ${view})
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${name} ${view}/${name} SYMBOLIC)
@@ -22,9 +24,19 @@ function(abbe_folder name)
   target_include_directories(abbe_${name} ${scope} $<BUILD_INTERFACE:${view}>
                              $<INSTALL_INTERFACE:include/abbe>)
   set_target_properties(abbe_${name} PROPERTIES EXPORT_NAME ${name})
+  if(arg_OF_THE_PROGRAM)
+    return()
+  endif()
   install(TARGETS abbe_${name} EXPORT abbeTargets ARCHIVE DESTINATION lib)
+  set(stay_home PATTERN "node_modules" EXCLUDE)
+  foreach(header IN LISTS arg_INTERNAL)
+    if(NOT EXISTS ${PROJECT_SOURCE_DIR}/${name}/${header})
+      message(FATAL_ERROR "${name}/CMakeLists.txt: INTERNAL ${header}: there is no such header")
+    endif()
+    list(APPEND stay_home PATTERN "${name}/${header}" EXCLUDE)
+  endforeach()
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${name}/ DESTINATION include/abbe/${name}
-          FILES_MATCHING PATTERN "*.h" PATTERN "node_modules" EXCLUDE)
+          FILES_MATCHING PATTERN "*.h" ${stay_home})
 endfunction()
 
 # abbe_tests(NAME LABEL label SOURCES file... LINKS target... [SEEDS n [LONG_SEEDS n]])

@@ -3,7 +3,7 @@
 //
 //   const Corrector corrector(map, p_TQ);
 //   const Eigen::Vector3d command = corrector.Command(wanted);
-//   corrector.Made(command) == wanted                               // to rounding
+//   corrector.Made(command);                                        // wanted, to rounding
 //
 // Frames: positions are axis positions [X Y Z] as commanded and read from the scales; a position of
 // the tool in the workpiece is given by the axis positions of a perfect machine for it. The error E

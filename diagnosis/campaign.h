@@ -2,7 +2,7 @@
 //
 //   Campaign campaign(instruments);
 //   for (const recording::Recording& recording : recordings) campaign.Add(recording);
-//   const Scene scene = campaign.scene();
+//   const simulation::Scene scene = campaign.scene();
 //
 // Invalid readings (invalid_readings.h) are found first and left out. Rows enter in full detail
 // (simulation/run_kind.h), so that what changes from pass to pass stays visible, and no row is

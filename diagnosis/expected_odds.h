@@ -1,6 +1,7 @@
 // What the odds between rivals will be after runs that are only planned.
 //
-//   const Eigen::MatrixXd before = ..., after = ...;     // linear_runs.h, without and with the run
+//   const Eigen::MatrixXd before = linear.Information(recorded);     // linear_runs.h
+//   const Eigen::MatrixXd after = linear.Information(with_the_run);
 //   ExpectedProbability(before, after, rivals);          // of the right one among them
 //
 // When rival t is true with its estimated coefficients a, the score of rival x is normal with mean

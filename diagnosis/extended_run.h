@@ -1,8 +1,8 @@
 // A simulated run that knows causes: its residual less what they add, with their coefficients as
 // parameters of their own (block "cause backlash:X").
 //
-//   const LinearRun at = LinearAt(run, x);
-//   const SimulatedRun knows = Extend(run, at, causes);
+//   const LinearRun at = LinearAt(run, x, left);         // left: what the run leaves at x
+//   const simulation::SimulatedRun knows = Extend(run, at, causes);
 //
 // The columns are those of the run at `x`, the parameters of its own blocks; the coefficients have
 // their plausible deviation as prior. A cause that is there or not has no parameter; one that

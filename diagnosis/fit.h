@@ -39,7 +39,7 @@ class Fit {
   const estimation::Result& result() const { return result_; }
   const std::vector<Candidate>& taken_in() const { return taken_in_; }
   double chi_square() const;  // of the runs, by their stated noise
-  // The same of the runs of arms, of rows that took no part: each of kBlocks blocks of poses is
+  // The same of the runs of arms, of rows that took no part: each of 16 blocks of poses is
   // held against the fit to all others, to first order.
   double left_out() const { return left_out_; }
   // Logarithm of the marginal likelihood of the data, by Laplace's approximation at the fit; all

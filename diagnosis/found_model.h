@@ -1,8 +1,10 @@
 // What a diagnosis found, as an extended model for the other commands.
 //
 //   simulation::ExtendedModel model = FoundModel(diagnosis, campaign, gain);
-//   model.sources = ...;                                  // the files, which only the caller knows
-//   WriteText(simulation::ExtendedModelText(model), "mill.causes.toml");
+//   model.sources = files;                                // which only the caller knows
+//   recording::WholeFile file("mill.causes.toml");
+//   file.Append(simulation::ExtendedModelText(model));
+//   file.Finish();
 //
 // Rows that are no readings (stuck channels, outliers) are no part of a model. Units: SI.
 #pragma once

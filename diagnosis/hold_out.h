@@ -1,7 +1,7 @@
 // The gain of an extended simulation on data that it did not see.
 //
 //   const HeldOutGain gain = HoldOut(campaign, recordings, causes);
-//   gain.after / gain.before
+//   gain.after / gain.before;
 //
 // Which rows are held out the kind of a run says (simulation/run_kind.h): every other pass, where
 // there are several; every other of 8 blocks in time, so that neighbouring rows stay together; every

@@ -3,8 +3,7 @@
 //
 //   const LinearRuns linear(campaign, runs, ValuesOf(fit.result()));
 //   const RunSums first = linear.SumsOf(linear.At(0), candidates);
-//   linear.Information({&first, &second});          // S of fit.h, of all coefficients in
-//   order
+//   linear.Information({&first, &second});      // S of fit.h, of all coefficients in order
 //
 // The simulation of the runs with all its unknowns and their priors is that of fit.h; nothing
 // is fitted and no reading counts. Unknowns of runs that are left out take no part.

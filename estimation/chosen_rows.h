@@ -1,6 +1,6 @@
 // A selection of the rows of another residual; the others are held out.
 //
-//   run.residual = std::make_shared<ChosenRows>(run.residual, rows);
+//   const auto some = std::make_shared<ChosenRows>(all, rows);
 //
 // Shapes: `rows` are indices from 0 into the other residual; the result keeps their order. Cost:
 // that of all rows.

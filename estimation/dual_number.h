@@ -1,6 +1,7 @@
 // A dual number, value and derivatives, for models that differentiate row by row.
 //
-//   DualNumber<6> x(0.3); x.v[0] = 1.0;         // seed: d/dx_0
+//   DualNumber<6> x(0.3);
+//   x.v[0] = 1.0;                                // seed: d/dx_0
 //   const auto y = sin(x);                       // y.a the value, y.v the derivatives
 //
 // Where a whole residual is one template, use autodiff_residual.h. Cost: each model costs about 3 s

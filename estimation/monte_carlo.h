@@ -9,7 +9,7 @@
 //
 // The figures returned come from all h M draws together.
 //
-//   const CounterRandom length(seed, 0), temperature(seed, 1);
+//   const random::CounterRandom length(seed, 0), temperature(seed, 1);
 //   const auto result = PropagateDistributions(1, [&](std::uint64_t draw, std::span<double> out) {
 //     out[0] = (1.0 + 3e-7 * length.Normal(draw)) *
 //              (1.0 + kAlpha * temperature.Uniform(draw, -1.0, 1.0));

@@ -6,12 +6,15 @@
 //
 //   class LineResidual : public Residual {           // x = [offset slope]
 //    public:
-//     LineResidual(VectorXd at, VectorXd y) : at_(at), y_(y) {}
+//     LineResidual(Eigen::VectorXd at, Eigen::VectorXd y) : at_(at), y_(y) {}
 //     Eigen::Index Rows() const override { return y_.size(); }
-//     void Evaluate(const VectorXd& x, VectorXd& values, RowMatrix* jacobian) const override {
+//     void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& values,
+//                   RowMatrix* jacobian) const override {
 //       values = x[0] + x[1] * at_.array() - y_.array();
-//       if (jacobian) *jacobian << VectorXd::Ones(Rows()), at_;
+//       if (jacobian) *jacobian << Eigen::VectorXd::Ones(Rows()), at_;
 //     }
+//    private:
+//     Eigen::VectorXd at_, y_;
 //   };
 //
 // Many rows in one residual are cheap, many residuals of one row are not: put the readings of a run

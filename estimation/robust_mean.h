@@ -9,7 +9,7 @@
 // were k scales away: the influence of any outlier is bounded.
 //
 //   const RobustMean dwell = HuberMean(readings);
-//   // dwell.mean +- dwell.standard_error, dwell.outliers of dwell.count look wrong
+//   dwell.mean, dwell.standard_error;      // and dwell.outliers of dwell.count look wrong
 //
 // Tuning: k = 2.0 has the variance of the plain mean times 1.010 at normal data (efficiency 99.0 %;
 // a median has 64 %); with a share e of outliers, all on one side and arbitrarily far away, the

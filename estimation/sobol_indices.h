@@ -6,7 +6,9 @@
 //
 //   const SobolResult result = SobolIndices(3, 1,
 //       [&](std::uint64_t draw, std::span<double> x) {
-//         for (std::size_t i = 0; i < x.size(); ++i) x[i] = CounterRandom(seed, i).Uniform(draw);
+//         for (std::size_t i = 0; i < x.size(); ++i) {
+//           x[i] = random::CounterRandom(seed, i).Uniform(draw);
+//         }
 //       },
 //       [](std::span<const double> x, std::span<double> y) { y[0] = x[0] + x[1] * x[2]; });
 //   result.inputs[0].first;

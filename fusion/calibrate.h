@@ -1,7 +1,7 @@
 // The calibration of the linkage: its parameters from runs, with uncertainty, observability and
 // held-out residuals.
 //
-//   const CalibrationReport report = Calibrate(chain, linkage, runs, {.model = kComplete});
+//   const CalibrationReport report = Calibrate(chain, linkage, runs, {});
 //   WriteCalibration(report.calibration, "linkage.toml");
 //   report.held_out.rms;               // m: of held-out ball positions
 //

@@ -1,7 +1,9 @@
 // The causes of a circle's deviations: all causes of the signature table in one joint fit.
 //
 //   const CircleCauses causes = FitCircleCauses({&slow, &fast}, {});
-//   for (const CauseEstimate& one : causes.causes) one.cause, one.object, one.value, one.u;
+//   for (const CauseEstimate& one : causes.causes) {
+//     fmt::print("{}: {} +- {}\n", one.cause, one.value, one.u);
+//   }
 //
 // The runs are of one instrument, plane and radius, in both senses and at two feeds where that was
 // measured. The fit is joint because causes share harmonics (standards/circle_signatures.h). Its

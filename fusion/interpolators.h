@@ -2,7 +2,8 @@
 // and the neural network of Ha and Khanh.
 //
 //   const auto checks = CompareInterpolators(mill, smoothness, setups, 4);
-//   const VolumetricModel networks = AsNetworks(model, stations, NetworkBias::kWithBias, nullptr);
+//   const machine::VolumetricModel networks =
+//       AsNetworks(model, StationsOf(setups), machine::NetworkBias::kWithBias, nullptr);
 //
 // Every `folds`-th hole is left out in turn, in all set-ups; the rest is fitted, with B-splines. As
 // in the paper, a network then learns each error function from its values at the stations, the axis

@@ -3,7 +3,9 @@
 //   const PoseInformation candidates(simulation, run, x);
 //   const PoseChoice choice = ChoosePoses(candidates, 40);
 //   choice.poses;                       // indices into the run
-//   for (const EnoughRow& row : HowManyPoses(candidates, {10, 20, 40, 80})) ...
+//   for (const EnoughRow& row : HowManyPoses(candidates, {10, 20, 40, 80})) {
+//     fmt::print("{}\n", row.poses);
+//   }
 //
 // Background: pose i brings the information J_i' J_i (J_i: 3 x parameters, whitened). The choice of
 // N poses that makes det(P^-1 + sum J_i' J_i) largest makes the volume of the uncertainty smallest

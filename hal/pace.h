@@ -4,7 +4,7 @@
 // reading late. The reading is valid, but the interval before it is longer than planned: its row is
 // flagged (Cause::kClockJump). The source detects a suspension during a reading.
 //
-//   while (...) {
+//   while (goes_on) {
 //     const bool kept = pace.Await();
 //     const SampleSet set = source.Read();
 //     pace.Done();

@@ -7,7 +7,9 @@
 // anything is recorded.
 //
 //   PlausibleSource source(*devices.source, ranges);
-//   for (const std::string& warning : source.Require(50, clock, rate)) ...
+//   for (const std::string& warning : source.Require(50, clock, rate)) {
+//     fmt::print(stderr, "{}\n", warning);
+//   }
 #pragma once
 
 #include <optional>

@@ -1,8 +1,9 @@
 // Records an axis sweep: reads a source at a steady rate and writes every row of every pass, motion
 // included, as it comes.
 //
-//   const auto writer = recording::Writer::Create("sweep_X.csv", SweepHeader(plan, about),
-//                                                 SweepColumns(source.channels()));
+//   const std::string header = SweepHeader(plan, about, source.channels());
+//   const auto writer =
+//       recording::Writer::Create("sweep_X.csv", header, SweepColumns(source.channels()));
 //   const SweepOutcome outcome = RecordSweep(source, plan, clock, *writer, options);
 //
 // The sweep is followed by the channel of the swept axis ("x_mm"); where `prompt` is set, the

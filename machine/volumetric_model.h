@@ -1,7 +1,7 @@
 // The machine error model: a chain, 18 error functions, three squarenesses.
 //
 //   VolumetricModel model(mill.chain, mill.travels);               // a perfect machine
-//   const auto form = MakeBSplineForm(BSplineBasis::Uniform(3, 0.0, 0.06, 8));
+//   const auto form = MakeBSplineForm(geometry::BSplineBasis::Uniform(3, 0.0, 0.06, 8));
 //   model.SetForm(0, 4, form);                                     // EBX
 //   model.SetParameters(p);
 //   const Eigen::Vector3d error = model.Error({0.03, 0.02, 0.05}, p_TQ);

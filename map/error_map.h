@@ -5,7 +5,8 @@
 //   const Eigen::Vector3d error = map.Error({0.03, 0.02, 0.05}, map.origin().tool);
 //   const Eigen::Matrix3d cov_ee = map.Covariance({0.03, 0.02, 0.05}, map.origin().tool);
 //
-// Frames: error is p_WQ - nominal along the axes of the workpiece frame W, volumetric_error.h;
+// Frames: error is p_WQ - nominal along the axes of the workpiece frame W
+// (machine/volumetric_error.h);
 // position is [X Y Z] as the axes are commanded; p_TQ is the tool point from the reference point.
 // Units: SI. Shapes: the covariance of the parameters is P x P in the order of
 // VolumetricModel::Parameters(); 0 x 0 for a map that states no uncertainty, as an imported one.
@@ -32,7 +33,7 @@ enum class Source { kPrior, kSweep, kLinkage, kReference, kPlate, kLength };
 inline constexpr std::array<std::string_view, 6> kSourceNames = {"prior",     "sweep", "linkage",
                                                                  "reference", "plate", "length"};
 
-// The 21 errors: 18 motions in the order of error_motion.h, then A0Z, B0Z, C0Y.
+// The 21 errors: 18 motions in the order of machine/error_motion.h, then A0Z, B0Z, C0Y.
 inline constexpr int kErrors = machine::kAxes * machine::kMotions + 3;
 // "EXX" ... "C0Y"; InputError for a number outside 0 ... kErrors - 1.
 std::string ErrorName(int error);

@@ -2,7 +2,7 @@
 // increases them, and the more, the more points there are.
 //
 //   const double noise = ReadingNoise(run);
-//   EvaluateCircle(WithNoise(run, std::sqrt(3.0) * noise, 1))      // as if it were twice as large
+//   EvaluateCircle(WithNoise(run, std::sqrt(3.0) * noise, 1));     // as if it were twice as large
 //
 // The noise of a radius is estimated from third differences of neighbouring readings, to which a
 // smooth path contributes little. The figure without noise follows by extrapolation: doubling the

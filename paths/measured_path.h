@@ -1,7 +1,7 @@
 // A measured path with the commanded one: the input of every path test.
 //
-//   const MeasuredPath path = LinkagePath(recording, chain, readings.rows, p_MT);
-//   const MeasuredPath path = ReferencePath(recording);
+//   const MeasuredPath path = LinkagePath(recording, chain, rows, p_MT);
+//   const MeasuredPath reference = ReferencePath(recording);
 //
 // Frames: axis coordinates [x y z], as the columns x_mm y_mm z_mm have them: an error is measured -
 // commanded along each axis. The linkage gives p_MT in the machine frame as the workpiece carries

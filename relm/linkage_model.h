@@ -2,7 +2,7 @@
 // asks for names, priors, tips and derivatives and does not depend on the model.
 //
 //   const LinkageModel model = MakeLinkageModel(settings, ErrorModel::kComplete);
-//   problem.Add(block) for each of model.blocks();
+//   for (const auto& block : model.blocks()) problem.Add(block);
 //   model.Tips(readings, x, tips, &J_tip_x);       // x: all entries of all blocks, in order
 //
 // Frames: B, the nominal linkage base; T, the ball centre. The pose X_MB of the base is not part of

@@ -5,7 +5,7 @@
 //   const int tilt = model.motions.Turn(point, direction);
 //   model.Block("tilt", kMicroradians);
 //   model.Entry("pivot_1_x", settings.tolerance.pivot_angle, {.motion = tilt});
-//   return model.Build("pivots");
+//   const LinkageModel built = model.Build("pivots");
 //
 // A parameter with a tolerance of zero is known: it is held.
 #pragma once

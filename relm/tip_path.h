@@ -1,8 +1,8 @@
 // The path of the ball from a recording of the encoders, by direct evaluation.
 //
 //   const TipPath path = EvaluateTipPath(recording, settings, model, model.Values());
-//   path.tips            // 3 x poses, in B
-//   InFrame(X_MB, path.tips)
+//   path.tips;                     // 3 x poses, in B
+//   InFrame(X_MB, path.tips);      // in M
 //
 // Reads the columns pivot_1_rad ... pivot_N_rad and, where the recording has it, the temperature
 // column of the settings. Rows with a flag other than 0 are left out; `rows` are the indices of the

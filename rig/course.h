@@ -3,7 +3,7 @@
 //
 //   const Course course = CircleCourse({.radius = 0.01, .feed = 1e-3});
 //   CourseRun run(course, {.acceleration = 0.2, .lag = 0.015}, 1e-3);
-//   while (run.Next()) Use(run.state());
+//   while (run.Next()) states.push_back(run.state());
 //
 // Each move runs along its points with a trapezoid of speed (constant acceleration to the feed,
 // constant braking to a standstill at its end, no braking at inner points), then stands for its

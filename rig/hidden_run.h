@@ -4,7 +4,7 @@
 //   HiddenRun hidden(effects, climate, {.begin = 0.0, .swept = 0});
 //   hidden.Follow(time, position, velocity);              // at every step, in the order of time
 //   gaps = world.ReadingsAt(0, hidden.PlaceFor(Source::kGaps));
-//   gaps += noise;
+//   for (double& gap : gaps) gap += noise();
 //   hidden.Say(gaps);                                     // for each row
 //
 // The steps must be short against a reversal of the axes (the rig's are 1 to 50 ms; every reversal

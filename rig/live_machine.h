@@ -1,10 +1,11 @@
 // The rig's machine in simulated time: at rest, or running a program. Programs 0,
 // 1, 2 are the sweeps of X, Y, Z, program 3 is the course that it was given.
 //
-//   LiveMachine machine(world, SimulatedTime(20.0), &linkage, CircleCourse({...}));
+//   const Course circle = CircleCourse({.radius = 0.01, .feed = 1e-3});
+//   LiveMachine machine(world, SimulatedTime(20.0), &linkage, circle);
 //   machine.Start(kCourseProgram);
 //   const Moment now = machine.Now();
-//   use(machine.ReadingOf("x_mm", now), machine.EncodersNow());
+//   machine.ReadingOf("x_mm", now);  machine.EncodersNow();
 //
 // Axes and sensors take a new state `update_rate` times a second; between two updates they show the
 // same one. Every program begins and ends at rest, the first ends of the travels; the moves from

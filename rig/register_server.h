@@ -2,7 +2,7 @@
 // pseudo terminal, by the channel maps of the machine file.
 //
 //   RegisterServer rig(machine, devices, {.port = 0});
-//   use(rig.port());
+//   rig.port();
 //
 // Registers: those of the blocks of [devices.*]; a register of a block without a channel reads 0. A
 // gap out of range reads the channel's first sentinel, without sentinels all ones (NaN for

@@ -1,6 +1,7 @@
 // A recorded run made again, with one thing changed.
 //
-//   Recording slower = AtFeed(Again(run, {.machine = "demo-mill", .started = tomorrow}), 0.2);
+//   const AgainAbout about{.machine = "demo-mill", .started = tomorrow};
+//   const recording::Recording slower = AtFeed(Again(run, about), 0.2);
 //
 // The rows are those of the recording, readings included (planned_run.h replaces them). The header
 // keeps what a simulation asks for: kind, axis, the rule of the dwells, and the mounting unless

@@ -1,6 +1,7 @@
 // A run together with its simulation, ready to be fitted: what the estimator in fusion/ takes.
 //
-//   for (const SimulatedRun& run : runs) AddToProblem(run);      // fusion/machine_problem.h
+//   const std::vector<SimulatedRun> runs{SimulateSweep(model, reference, instrument, sweep)};
+//   estimation::Problem problem = fusion::MakeMachineProblem(mill, model, prior, runs);
 //
 // The residual is whitened: measured minus simulated reading, of standard deviation 1. Its x are
 // the entries of `blocks`, one block after the other. Blocks are shared by name: the functions of

@@ -1,7 +1,7 @@
 // The figures of a circular test after ISO 230-4.
 //
 //   Circularity figures = EvaluateCircularity({.radius = 0.010, .cw = cw, .ccw = ccw});
-//   figures.cw->G;  figures.G_b;  figures.F_max;  figures.D;
+//   figures.cw->G;  figures.both->G;  figures.F_max;  figures.D;
 //
 // Frames: x and y are the coordinates of the measured path in the plane of the test, from the
 // nominal centre (the set-up centre). Counter-clockwise turns the first axis of the plane towards

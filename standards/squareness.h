@@ -5,8 +5,8 @@
 // of E_VU over u) and that of axis V's in direction U. The result is the rotation of the later axis
 // away from its right angle to the earlier one, positive by the right-hand rule about the third
 // axis:
-//   C0Y > 0: Y leans towards -X (the angle from +X to +Y is more than 90 degrees);
-//   B0Z > 0: Z leans towards +X (the angle from +Z to +X is less than 90 degrees);
+//   C0Y > 0: Y leans towards -X (the angle from +X to +Y is more than 90 degrees),
+//   B0Z > 0: Z leans towards +X (the angle from +Z to +X is less than 90 degrees),
 //   A0Z > 0: Z leans towards -Y (the angle from +Y to +Z is more than 90 degrees).
 // Units: slopes and result in rad. Failure: none.
 // Source: ISO 230-1:2012, clause 3 (definition and symbols; not checked against its text); signs

@@ -2,7 +2,7 @@
 // bus, no clock. Masters and tests speak with it; the virtual rig has its own.
 //
 //   bus.Send(NmtFrame(NmtCommand::kStart, 2));
-//   if (const auto reply = SdoReplyOf(frame)) use(reply->node, reply->value);
+//   if (const auto reply = SdoReplyOf(frame)) values[reply->node] = reply->value;
 //
 // Source: CiA 301 (object identifiers, NMT, SYNC, EMCY, SDO, heartbeat), CiA 406 (encoders).
 // All integers on the wire are little-endian. Node ids are 1 to 127.

@@ -4,7 +4,7 @@
 //   RegisterImage image;                                     // or an own RegisterBank
 //   image.Set(1, RegisterTable::kInput, 0, {1000, 2000});    // unit 1
 //   const auto server = ModbusServer::ListenTcp("127.0.0.1", 0, image);
-//   use(server->port());                                     // the free port that was found
+//   server->port();                                          // the free port that was found
 //
 // The bank is called on the server's own thread, one call at a time, at the moment of the request.
 // A client that sends half a request, or takes no reply, does not delay the others; its link is

@@ -4,6 +4,7 @@
 //   if (IsArm(recording)) {
 //     const LinkageRun run = MeansOfStays(ReadLinkageRun(recording, settings));
 //     const relm::LinkageSettings placed = Placed(settings, run);
+//   }
 //
 // Such a recording is of kind linkage, with ref_x_mm, ref_y_mm, ref_z_mm and without x_mm, y_mm,
 // z_mm. Its frame M is that of the instrument, whose place the machine file does not know.

@@ -1,7 +1,7 @@
 // A run of the linkage of any length, part by part: what the fit of a million rows reads.
 //
 //   const LinkageParts parts = PartsOf(blocks, linkage);      // blocks of a recording
-//   parts([&](const LinkageRun& part) { ... });               // as often as wanted
+//   parts([&](const LinkageRun& part) { poses += part.poses(); });     // as often as wanted
 //   const LinkageRun sample = SampleOf(parts, 4096, 1024).run;
 //
 // The parts follow each other in the order of the rows; the means of the stays are taken, as by

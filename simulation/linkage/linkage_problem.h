@@ -1,9 +1,9 @@
 // Any set of runs of the linkage as one estimation problem; every fit of such runs uses it.
 //
-//   Problem problem = MakeLinkageProblem(simulation, runs, {});
+//   estimation::Problem problem = MakeLinkageProblem(simulation, runs, {});
 //   problem.Block(problem.Find("graduation")).Hold();        // which blocks are free
-//   const Result result = SolveLinkage(problem);
-//   const VectorXd x = ParametersOf(result.blocks, runs[0].mounting);   // for the simulation
+//   const estimation::Result result = SolveLinkage(problem);
+//   const Eigen::VectorXd x = ParametersOf(result.blocks, runs[0].mounting);
 //
 // Each run is a source; its rows are the gaps of simulation/linkage/linkage_gaps.h. Runs of one
 // mounting share the pose of the base; every mounting has base blocks of its own

@@ -8,7 +8,8 @@
 // This one equation is used two ways. To fit: the gap of measured readings is what noise and wrong
 // parameters leave (Gap, with derivatives). To predict: the readings that close the gap (Readings).
 //
-//   const LinkageSimulation simulation(chain, linkage, MakeLinkageModel(linkage, kComplete));
+//   const auto model = relm::MakeLinkageModel(linkage, relm::ErrorModel::kComplete);
+//   const LinkageSimulation simulation(chain, linkage, model);
 //   const Eigen::MatrixXd angles = simulation.Readings(run, simulation.Values());
 //
 // Noise of the encoders reaches the gap through the pose, noise of the reference directly:

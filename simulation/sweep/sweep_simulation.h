@@ -1,6 +1,6 @@
 // What a sweep should read: command -> machine -> target and head -> gap -> probe.
 //
-//   const SimulatedRun run = SimulateSweep(model, setup, ReadSweepRun(recording, ...));
+//   const SimulatedRun run = SimulateSweep(model, reference, instrument, sweep);
 //
 // The head hangs on the tool body T, the target stands on the workpiece W. All bodies are rigid,
 // all rotations full, and the measuring line of each probe is cut with the plane of its face, in W:
