@@ -22,7 +22,7 @@ namespace {
 using recording::Recording;
 
 constexpr Eigen::Index kMostShaftRows = 6000;  // of one run: more tell no more of causes
-constexpr double kLastDigit = 1e-12;            // m
+constexpr double kLastDigit = 1e-12;           // m
 
 struct ShaftFacts : RunFacts {
   explicit ShaftFacts(RimRepeats of_run) : repeats(std::move(of_run)) {}
