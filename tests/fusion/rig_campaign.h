@@ -21,8 +21,7 @@
 #include "rig/record_lengths.h"
 #include "rig/record_sweep.h"
 #include "settings/document.h"
-#include "simulation/linkage/linkage_on_machine.h"
-#include "simulation/points/length_simulation.h"
+#include "simulation/kinds.h"
 #include "simulation/sweep/sweep_simulation.h"
 
 namespace abbe::fusion {
@@ -59,9 +58,15 @@ struct Campaign {
     return recording;
   }
 
+  // As abbe fuse simulates it.
+  simulation::SimulatedRun Simulated(const recording::Recording& recording) const {
+    return simulation::SimulateForMap(simulation::SourceOf(recording), model,
+                                      {machine, instrument.head, instrument.target, noise, linkage})
+        .front();
+  }
+
   simulation::SimulatedRun Sweep(const recording::Recording& recording) const {
-    return simulation::SimulateSweep(model, reference, instrument,
-                                     simulation::ReadSweepRun(recording, instrument.head, noise));
+    return Simulated(recording);
   }
 
   simulation::SimulatedRun Sweep(char axis, std::uint64_t run = 1) const {
@@ -76,12 +81,9 @@ struct Campaign {
     return rig.Record(course, {.rate = 100.0, .run = run});
   }
 
-  simulation::SimulatedRun Linkage(const recording::Recording& recording) const {
-    const simulation::LinkageSimulation nominal(
-        machine.chain, linkage, relm::MakeLinkageModel(linkage, relm::ErrorModel::kComplete));
-    auto run = simulation::MeansOfStays(simulation::ReadLinkageRun(recording, linkage));
-    run.name = "linkage";
-    return simulation::SimulateLinkage(model, reference, nominal, std::move(run));
+  simulation::SimulatedRun Linkage(recording::Recording recording) const {
+    recording.name = "linkage";
+    return Simulated(recording);
   }
   simulation::SimulatedRun Linkage() const { return Linkage(LinkageRecording()); }
 
@@ -92,7 +94,7 @@ struct Campaign {
     return recording;
   }
   simulation::SimulatedRun Length(char axis) const {
-    return simulation::SimulateLengths(model, reference, LengthRecording(axis));
+    return Simulated(LengthRecording(axis));
   }
 
   // What the machine really does at a position with a tool point p_TQ, in W.
