@@ -60,6 +60,21 @@ TEST(Calibrate, ReachesTheNoiseWithEncoderErrors) {
   EXPECT_GT(report.seen.unseen.size(), 0U);
 }
 
+// Nothing may move: there is no spectrum of what the poses tell, and no crash.
+TEST(Calibrate, TakesAMachineFileWithoutAnyTolerance) {
+  auto settings = WorldSettings();
+  settings.tolerance = {};
+  const LinkageWorld world = LinkageWorld::Draw(1, false);
+  const auto grid = WorldRun(world, settings, GridPositions(kCube, {3, 3, 3}), 0, 1);
+  try {
+    const auto report = Calibrate(WorldChain(), settings, {grid}, {});
+    EXPECT_EQ(report.seen.rank, 0);
+    EXPECT_EQ(report.seen.singular_values.size(), 0);
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("tolerance"));
+  }
+}
+
 // Unknown base position: the tips move together, differences stay.
 TEST(Calibrate, DisplacementFormKnowsNoBase) {
   const auto settings = WorldSettings();

@@ -113,6 +113,15 @@ TEST(DeviceSettings, ReadsASerialLine) {
   EXPECT_DOUBLE_EQ(all[0].times.wait, 5e-3);
 }
 
+// A larger one would switch the promise of a common time off.
+TEST(DeviceSettings, BoundsTheSkew) {
+  for (const char* skew : {"1e300", "inf", "10001", "0", "-1", "nan"}) {
+    EXPECT_EQ(Refusal(std::string("[devices]\nmax_skew_ms = ") + skew + "\n").substr(0, 30),
+              "m.toml:2: devices.max_skew_ms:")
+        << skew;
+  }
+}
+
 TEST(DeviceSettings, RefusesWithLineKeyAndRemedy) {
   EXPECT_EQ(Refusal(WithBlock("address = 0\ncount = 126")),
             "m.toml:5: devices.d.block[0].count: is 126, it must be at most 125");
