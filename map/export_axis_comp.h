@@ -26,7 +26,7 @@ namespace abbe::map {
 
 inline constexpr int kLinuxcncPoints = 256;
 
-// Each Write returns the files written; each ReadBack gives the error in W that they correct.
+// Each Write returns the files written; each reader gives the error in W that they correct.
 Format::Paths WriteLinuxcnc(const ErrorMap& map, const ExportOptions& options,
                             const std::filesystem::path& path);
 ErrorField ReadBackLinuxcnc(const Format::Paths& files, const machine::Chain& chain);

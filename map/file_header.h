@@ -25,8 +25,8 @@ namespace abbe::map {
 
 struct FileHeader {
   std::string machine;
-  std::string chain;                               // empty: not stated
-  std::string positive;                            // sign of X, Y, Z (chain.h); empty: not stated
+  std::string chain;     // empty: not stated
+  std::string positive;  // sign of X, Y, Z (machine/chain.h); empty: not stated
   Eigen::Vector3d tool = Eigen::Vector3d::Zero();  // p_TQ, m
   double temperature = 20.0;                       // degC
   std::string scale = "prior only";

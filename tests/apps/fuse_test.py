@@ -134,7 +134,7 @@ class FuseTest(ProgramCase):
     def test_refusals_take_one_line(self):
         dwell = self.path / "dwell.csv"
         dwell.write_text('# abbe-recording = 1\n# kind = "dwell"\ntime_s\n0\n1\n')
-        self.refuse(dwell, "--machine", MACHINE, saying=["dwell.csv", "fuse takes sweep, linkage"])
+        self.refuse(dwell, "--machine", MACHINE, saying=["dwell.csv", "an error map is made of sweep, linkage"])
         foreign = self.path / "foreign.csv"
         foreign.write_text('# abbe-recording = 1\n# kind = "length"\n# machine = "other"\n'
                            "x_mm,y_mm,z_mm,pass,length_mm,u_length_um\n0,0,0,1,0,0.1\n10,0,0,1,10,0.1\n")

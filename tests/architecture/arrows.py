@@ -4,6 +4,8 @@ but those of a transport against its name.
 
     arrows.py SOURCE_FOLDER
 
+A header that a folder's CMakeLists.txt names INTERNAL is for that folder alone.
+
 Prints each include or name that is not allowed and exits with 1 when there is one.
 """
 import pathlib
@@ -86,6 +88,27 @@ def named_transports(root):
                 yield from (f'{name}: names the transport "{one}"' for one in names if f'"{one}"' in text)
 
 
+def internal(root):
+    """The headers that the folders keep to themselves, as "folder/file.h"."""
+    for folder in ARROWS:
+        lists = root / folder / "CMakeLists.txt"
+        for names in re.findall(r"INTERNAL((?:\s+[\w/]+\.h)+)", lists.read_text() if lists.exists() else ""):
+            yield from (f"{folder}/{name}" for name in names.split())
+
+
+def open_doors(root):
+    """Yields a line for each include of an internal header by another folder or by a header that is installed."""
+    root = pathlib.Path(root)
+    kept = set(internal(root))
+    for folder in ARROWS:
+        for name, text in sources(root, folder):
+            if name in kept:
+                continue
+            for header in sorted(kept & set(INCLUDE.findall(text))):
+                if name.endswith(".h") or not header.startswith(folder + "/"):
+                    yield f"{name}: includes {header}, which is INTERNAL"
+
+
 def strangers(root):
     """Yields a line for each folder with sources that has no line in ARROWS."""
     outside = {"tests", "bench", "build", "fuzz", "out"}
@@ -96,6 +119,6 @@ def strangers(root):
 
 
 if __name__ == "__main__":
-    found = [*broken_arrows(sys.argv[1]), *named_transports(sys.argv[1]), *strangers(sys.argv[1])]
+    found = [*broken_arrows(sys.argv[1]), *named_transports(sys.argv[1]), *open_doors(sys.argv[1]), *strangers(sys.argv[1])]
     print("\n".join(found) or "every include follows the arrows")
     sys.exit(1 if found else 0)

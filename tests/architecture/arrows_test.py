@@ -31,6 +31,12 @@ class ArrowsTest(unittest.TestCase):
         root = self.house({"probes/sweep.cpp": '#include "recording/recording.h"\n#include <vector>\n'})
         self.assertEqual(list(arrows.broken_arrows(root)), [])
 
+    def test_an_internal_header_stays_in_its_folder(self):
+        root = self.house({"relm/CMakeLists.txt": "abbe_folder(relm INTERNAL a.h b/c.h)", "relm/a.h": "",
+                           "relm/face.h": '#include "relm/a.h"\n', "relm/a.cpp": '#include "relm/a.h"\n',
+                           "fusion/fit.cpp": '#include "relm/b/c.h"\n'})
+        self.assertEqual([line.split(":")[0] for line in arrows.open_doors(root)], ["relm/face.h", "fusion/fit.cpp"])
+
     def test_a_transport_known_by_name_is_found(self):
         root = self.house({
             "hal/transports.cpp": '      {"gauge", ReadGauge},\n',
