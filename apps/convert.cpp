@@ -38,8 +38,8 @@ struct ConvertOptions {
 bool IsLog(const std::filesystem::path& path) { return path.extension() == ".log"; }
 
 // The encoders of a log of CAN traffic.
-const hal::CanopenSettings& EncodersOf(const MachineFile& file, const std::string& device) {
-  const auto& all = file.devices.canopen;
+hal::CanopenSettings EncodersOf(const MachineFile& file, const std::string& device) {
+  const auto all = hal::SettingsOf<hal::CanopenDevice>(file.devices);
   if (device.empty() && all.size() == 1) return all.front();
   for (const hal::CanopenSettings& one : all) {
     if (one.name == device) return one;

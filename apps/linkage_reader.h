@@ -3,7 +3,7 @@
 //
 //   LinkageReader reader(ReadMachineFile(machine), calibration);
 //   const paths::MeasuredPath path = reader.Path(recording);
-//   reader.IndependentErrors()     // [error][path]: 3 x poses, m, for one standard deviation
+//   reader.IndependentErrors();    // [error][path]: 3 x poses, m, for one standard deviation
 //
 // Frames: axis coordinates, as in paths/measured_path.h. Failure: InputError for a machine file
 // without a linkage, or a calibration of another machine or linkage.

@@ -77,8 +77,6 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
   hal::SteadyClock clock(options.clock_speed);
   const bool operator_asks = options.prompt;
   bool opened = false;  // an earlier failure is thrown
-  hal::DevicesSettings wanted = file.devices;
-  wanted.canopen.clear();  // the linkage is not mounted together with the head
   const hal::OpenedDevices devices =
       hal::OpenDevices(hal::WithoutEncoders(file.devices), clock, hal::Presence::kRequired,
                        [&](const std::string& line) {

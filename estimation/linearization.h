@@ -2,7 +2,7 @@
 //
 // Two views of the same rows:
 //   VisitRows    passes the whitened rows of one residual after the other to a visitor (a
-//                projection, a score test of a candidate cause);
+//                projection, a score test of a candidate cause).
 //   Linearize    sums them to J'WJ, J'Wr and chi-square per source: n x n each, for any number of
 //                rows. The sums are the same for any number of threads.
 //

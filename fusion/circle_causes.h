@@ -8,10 +8,10 @@
 // The runs are of one instrument, plane and radius, in both senses and at two feeds where that was
 // measured. The fit is joint because causes share harmonics (standards/circle_signatures.h). Its
 // nuisance parameters are
-//   - the centre of each run, which is that of the set-up;
+//   - the centre of each run, which is that of the set-up,
 //   - harmonics from order 4 on with the standard deviations `smooth`. The smooth errors of the
 //     machine, equal in both senses, have harmonics of every order; no cause explains these, and
-//     without them they would pass for reversal spikes and through these for backlash;
+//     without them they would pass for reversal spikes and through these for backlash,
 //   - the errors of the instrument: `shifted` holds the runs with one independent error of it
 //     changed by one standard deviation.
 // Units: SI; `effect` is the largest radial deviation of a cause in m, without sign.

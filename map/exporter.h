@@ -2,7 +2,7 @@
 // if it uses HDF5) with a writer and a reader, and one line in exporter.cpp.
 //
 //   const Export done = ExportMap(map, FormatNamed("isg"), {}, "out/mill.csv");
-//   done.discrepancy.largest     // largest difference of the file from the map, m
+//   done.discrepancy.largest;    // largest difference of the file from the map, m
 //
 // For the discrepancy the files just written are read with the reader of the format and compared
 // with the map over the whole travels (Compare, map_grid.h): it is the part of the error that the

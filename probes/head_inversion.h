@@ -6,8 +6,8 @@
 // Three inversions, each for a moving target and for a moving head. Frames, units, signs and the
 // order of the readings are those of head_model.h; `exx` is the positioning error where it is
 // known.
-//   SimplifiedInversion  first order in the errors: the published equations, for any layout;
-//   SmallAngleInversion  exact for SmallAngleReadings;
+//   SimplifiedInversion  first order in the errors: the published equations, for any layout.
+//   SmallAngleInversion  exact for SmallAngleReadings.
 //   RigidInversion       exact for RigidReadings, for any measuring lines.
 // The exact inversions are closed forms without iteration. The three top readings fix the plane of
 // the top face, the two side readings that of the side face. What remains is a quadratic in the yaw

@@ -7,7 +7,7 @@
 // A draw takes EAX, EBX, ECX uniform in +-1 mrad, EYX, EZX uniform in +-50 um and EXX = 0,
 // computes SmallAngleReadings for a moving target and inverts them; error = estimated - true. Draw
 // i is at station i mod 61 of the travel, so 61 draws in a row are one run of the source.
-//   kOne  d = 0 ... 60 mm, the nominal layout;
+//   kOne  d = 0 ... 60 mm, the nominal layout.
 //   kTwo  d = 0 ... 10 mm, every probe displaced by 10 um in a random direction, the head
 //         installed with yaw = pitch = 2 mrad and 50 um along u, s and n (the source's model has
 //         neither roll nor the turn of the measuring lines). The inversion uses the nominal

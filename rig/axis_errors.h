@@ -4,9 +4,9 @@
 // Population: each function is a stationary Gaussian process (gaussian_field.h) with the standard
 // deviation and the correlation length of the machine file. After the draw
 //  - every function is shifted to be zero at the axis reference, the end of the travel where the
-//    carriage is lowest in M;
+//    carriage is lowest in M,
 //  - a straightness loses the slope of its least-squares line over the full travel (uniform
-//    weight), because the slope of an axis is its squareness;
+//    weight), because the slope of an axis is its squareness,
 //  - a positioning error gains the slope of the axis's scale error.
 //
 // Order: [EXX EYX EZX EAX EBX ECX] and alike for Y and Z, m then rad, in the machine frame: for

@@ -1,7 +1,8 @@
 // A CANopen encoder of the virtual rig as a device on the bus: a rotary absolute encoder of the
 // profile CiA 406. It is given frames and a function to send; it has no bus, clock or thread.
 //
-//   EncoderNode node(settings, [&](const hal::CanFrame& frame) { bus.Send(frame); });
+//   const auto send = [&](const hal::CanFrame& frame) { bus.Send(frame); };
+//   EncoderNode node(settings, send);
 //   node.Boot();
 //   node.Hear(frame);   // a command, a question
 //   node.Sync(angle);   // a SYNC: it answers with its angle

@@ -2,7 +2,7 @@
 // recordings.
 //
 //   Correction corrected = Correct(recording, causes, origin, instruments);
-//   abbe::probes::ReduceSweep(corrected.recording, ...);
+//   abbe::probes::ReduceSweep(corrected.recording, setup);
 //
 // Where the stages of a cause go (simulation/disturbance.h):
 //   reading   off the gaps of the probes

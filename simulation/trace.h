@@ -2,7 +2,7 @@
 // way, how warm. From this a cause works out what it does to each row.
 //
 //   const Trace trace = TraceOf(recording, run);         // of the run's kind: sweep_trace.h, ...
-//   trace.heading(0, row)                                // which way the X axis last moved
+//   trace.heading(0, row);                               // which way the X axis last moved
 //
 // What only one instrument has is a part of its own that other runs lack.
 // Units: m, s, rad, K. Shapes: one column or entry per row of the run; an axis or a pivot that has

@@ -4,7 +4,7 @@
 //   CanInProcess wire(clock);
 //   const auto master = wire.Join();
 //   std::unique_ptr<CanBus> node =
-//       wire.Join([&](const ReceivedFrame& heard) { ... node->Send(...); });
+//       wire.Join([&](const ReceivedFrame& heard) { node->Send(AnswerTo(heard.frame)); });
 //   wire.Inject({.kind = CanTrouble::Kind::kLost, .id = 0x182, .from_s = 10, .to_s = 20});
 //
 // Participants may live in different threads. One with a callback `hear` is called at once, in the

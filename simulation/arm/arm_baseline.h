@@ -1,7 +1,7 @@
 // What the geometry of an arm alone makes of one of its runs.
 //
 //   const ArmBaseline baseline = FitArm(run, settings);
-//   for (const Index pose : FarOff(run, baseline)) ...       // no reading of this arm
+//   const std::vector<Eigen::Index> far = FarOff(run, baseline);     // no readings of this arm
 //
 // Poses that are none: the arm with the tolerances of its machine file, but joints that may err up
 // to three times per turn and under gravity by kLenient, lest a cause make outliers, is fitted; a

@@ -35,12 +35,12 @@ struct LinkageProblemOptions {
 estimation::Result SolveLinkage(const estimation::Problem& problem, int threads = 0,
                                 bool weak_directions = true, double settled = 1e-4);
 
-estimation::Problem MakeLinkageProblem(const simulation::LinkageSimulation& simulation,
-                                       const std::vector<simulation::LinkageRun>& runs,
+estimation::Problem MakeLinkageProblem(const LinkageSimulation& simulation,
+                                       const std::vector<LinkageRun>& runs,
                                        const LinkageProblemOptions& options);
 
 // The mountings of the runs, in the order of first appearance.
-std::vector<std::string> MountingsOf(const std::vector<simulation::LinkageRun>& runs);
+std::vector<std::string> MountingsOf(const std::vector<LinkageRun>& runs);
 
 // The parameters of LinkageSimulation for a mounting.
 Eigen::VectorXd ParametersOf(const std::vector<estimation::ParameterBlock>& blocks,

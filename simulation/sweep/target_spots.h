@@ -1,7 +1,8 @@
 // Where on the target the probes of the head look, row by row.
 //
 //   trace.head->spots = SpotsOnTarget(chain, head, run);
-//   trace.head->spots.row(2 * probe), trace.head->spots.row(2 * probe + 1)      // along u, across, m
+//   trace.head->spots.row(2 * probe);        // along u, m
+//   trace.head->spots.row(2 * probe + 1);    // across, m
 //
 // In coordinates of the face that move with the target when it is shifted, or reversed about the
 // middle of what the head passes: the same spot has the same coordinates in all recordings of one
