@@ -29,14 +29,13 @@ struct Candidate {
   }
 };
 
-// How many times larger than those of the causes the lengths are that an axis may plausibly lose,
-// wave or creep by: these are for a machine whose positioning errors are of 2 um (the population of
-// its file), on a coarser one they are in proportion.
+// Scale of the prior sizes of length-like causes (backlash, cyclic error, drift). The registry
+// assumes a machine that positions to 2 um (the population of its file); a coarser one gets them in
+// proportion.
 double CoarsenessOf(const machine::Population& population);
 
-// All causes at all objects that the scene offers, axes only where they travel, with all shapes to
-// try. One after the other:
-// shapes of one cause and object stand together.
+// All causes at all objects of the scene, axes only where they travel, with all shapes to try. The
+// shapes of one cause and object follow each other.
 std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coarseness = 1.0);
 
 struct Score {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr Index kColumnsAtOnce = 1024;  // so many share the derivatives of the simulation
 
-// Of a cause that is drawn: the standard deviation of its draws with the largest evidence, and the
+// For a random field: the standard deviation of its draws with the largest evidence, and the
 // mean evidence of all that were tried, each as probable as the next, beyond that of what is
 // stated.
 struct DrawnSize {

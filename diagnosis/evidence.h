@@ -3,15 +3,15 @@
 //   const Fit fit(campaign);
 //   const std::vector<Score> scores = ScoreAll(fit, AllCandidates(campaign.scene()));
 //
-// From the information S and the score g of a candidate's coefficients c, all unknowns of the
-// simulation projected out (fit.h):
+// From the information S and the score g of a candidate's coefficients c, the nuisance parameters
+// of the simulation marginalised (fit.h):
 //
 //   c ~ N((S + P)^-1 g, (S + P)^-1),    P the precision of plausible coefficients
 //   log evidence = (g' (S + P)^-1 g - log det(1 + S P^-1)) / 2
 //
-// which is the exact marginal likelihood of the linear problem, noise known. A cause that relaxes
-// parameters has their own columns for C. One that is there or not has c = 1 and the log evidence
-// g - S / 2.
+// which is the exact marginal likelihood of the linear problem, noise known. A cause that only
+// relaxes priors uses the Jacobian columns of those parameters as C. A binary cause has c = 1 and
+// the log evidence g - S / 2.
 // Source: Rasmussen and Williams, Gaussian Processes (2006), 2.7; MacKay, Neural Computation 4
 // (1992), for the Occam factor. Units: SI. Validity: to first order at the fit; score anew after
 // each cause that was taken in.

@@ -16,7 +16,7 @@ Index FirstOf(const std::vector<RivalWorld>& rivals, std::size_t rival) {
   return first;
 }
 
-// Of one rival: its evidence and the derivatives of that by its score.
+// The evidence of one rival, and its derivatives by its score.
 struct Expected {
   double evidence;
   VectorXd by_score;
@@ -36,7 +36,7 @@ Expected ExpectedOf(const Candidate& candidate, const MatrixXd& S, const VectorX
   return {0.5 * (mean.dot(solved) + M.solve(scaled).trace() - log_determinant), unit * solved};
 }
 
-// Of all rivals: evidence, and its derivatives by all scores, one column each.
+// The evidence of all rivals, and its derivatives by all scores, one column each.
 struct Outlook {
   VectorXd evidence;
   MatrixXd by_score;

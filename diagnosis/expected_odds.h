@@ -34,7 +34,7 @@ struct RivalWorld {
   double probability = 0.0;      // now
 };
 
-// Of each rival when `truth` is true; S in the order of the rivals.
+// The expected evidence of each rival when `truth` is true; S in the order of the rivals.
 Eigen::VectorXd ExpectedEvidence(const Eigen::MatrixXd& S, const std::vector<RivalWorld>& rivals,
                                  std::size_t truth);
 

@@ -26,11 +26,11 @@ struct LinearRun {
   simulation::Trace trace;
   std::shared_ptr<const simulation::Response> response;
 
-  // Of a cause; empty when it does not act on this run.
+  // The columns of a cause; empty when it does not act on this run.
   Eigen::MatrixXd Columns(const Candidate& cause) const;
 };
-// `left`: what the simulation leaves of the run, whitened, causes included; empty: the readings
-// stay as they are. Of `causes` those that are there or not are undone in the readings.
+// `left`: the whitened residual of the simulation with the causes; empty: the readings stay as they
+// are. Binary causes among `causes` (swapped or inverted channels) are undone in the readings.
 LinearRun LinearAt(const PreparedRun& run, const Eigen::VectorXd& x, const Eigen::VectorXd& left,
                    const std::vector<Candidate>& causes = {});
 

@@ -212,8 +212,8 @@ void Fit::Linearize(const Problem& problem, const estimation::Linearization& at)
   }
   scale_ = H.diagonal().cwiseSqrt().cwiseInverse();
   H_.compute(scale_.asDiagonal() * H * scale_.asDiagonal());
-  // What one prior divides by, another with the same deviation divides by too: the precisions of
-  // the parameters that have one.
+  // Normalising constants of the Gaussian priors; improper priors add the same constant to every
+  // fit and are left out.
   const auto known = (at.prior.information.diagonal().array() > 0.0);
   const double priors = known.select(at.prior.information.diagonal().array(), 1.0).log().sum();
   const double curvature = 2.0 * MatrixXd(H_.matrixL()).diagonal().array().log().sum() -
@@ -236,7 +236,8 @@ void Fit::Linearize(const Problem& problem, const estimation::Linearization& at)
   }
 }
 
-// Of rows B left out r_B becomes (1 - J_B H^-1 J_B')^-1 r_B: Allen, Technometrics 16 (1974).
+// The residual r_B of rows B that are left out becomes (1 - J_B H^-1 J_B')^-1 r_B: Allen,
+// Technometrics 16 (1974).
 double Fit::LeftOut(const VectorXd& r, const std::vector<int>& columns, const MatrixXd& J) const {
   const Index poses = r.size() / 3;
   double sum = 0.0;

@@ -5,8 +5,8 @@
 //   better.log_likelihood() - fit.log_likelihood();
 //
 // At the fit the runs are linear in everything: r(x + dx, c) = r + J dx - C c with the coefficients
-// c of disturbances. All unknowns of the simulation have the information H, their priors included;
-// they are projected out once for all disturbances. What is left of them is
+// c of disturbances. The parameters of the simulation are nuisance parameters with the information
+// H, their priors included; they are marginalised once for all disturbances, which leaves
 //
 //   S = C'C - C'J H^-1 J'C,    g = C'r - C'J H^-1 J'r        information and score of c
 //
@@ -70,7 +70,7 @@ class Fit {
   // What is left of a run, whitened.
   const Eigen::VectorXd& LeftOf(std::size_t run) const { return runs_[run].r; }
   std::size_t runs() const { return runs_.size(); }
-  // Of a cause that relaxes parameters.
+  // For a cause that relaxes parameters.
   Projection ProjectParameters(const Candidate& candidate) const;
 
  private:

@@ -7,7 +7,7 @@ namespace abbe::diagnosis {
 simulation::ModelledCause FoundCause(const Score& score) {
   const auto [values, u] = KeysOf(score);
   const Eigen::Index count = score.coefficients.size();
-  // Of a random function the size counts, not what it was here.
+  // A random field is known by its size, not by its values here.
   const Eigen::MatrixXd covariance = score.candidate.cause->IsRandomField()
                                          ? Eigen::MatrixXd{}
                                          : score.covariance.topLeftCorner(count, count).eval();

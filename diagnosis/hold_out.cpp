@@ -56,7 +56,7 @@ VectorXd ResidualAt(const Fit& fit, const PreparedRun& run) {
   return residual;
 }
 
-// Of what is left of the held rows, in units of the stated noise; of arms in space too.
+// The residual of the held-out rows, in units of the stated noise; of arms also in space.
 struct Left {
   Index rows = 0, poses = 0;
   double rms = 0.0, in_space = 0.0;

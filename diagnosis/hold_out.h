@@ -4,11 +4,12 @@
 //   gain.after / gain.before;
 //
 // Which rows are held out the kind of a run says (simulation/run_kind.h): every other pass, where
-// there are several; every other of 8 blocks in time, so that neighbouring rows stay together; every
-// fourth pose of an arm; every other run of the linkage on one base, where there are three. A sweep
-// with one pass and runs of other kinds take no part. The simulation is fitted to the rest, once as it is, once
-// with the causes and once with all but each of them, and asked for the rows that were held out:
-// rms of (measured - simulated) / stated deviation, 1 for the noise floor. Failure: that of Fit.
+// there are several; every other of 8 blocks in time, so that neighbouring rows stay together;
+// every fourth pose of an arm; every other run of the linkage on one base, where there are three. A
+// sweep with one pass and runs of other kinds take no part. The simulation is fitted to the rest,
+// once as it is, once with the causes and once with all but each of them, and asked for the rows
+// that were held out: rms of (measured - simulated) / stated deviation, 1 for the noise floor.
+// Failure: that of Fit.
 #pragma once
 
 #include <Eigen/Core>

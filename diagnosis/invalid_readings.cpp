@@ -109,7 +109,7 @@ class Prediction {
     for (std::size_t k = 0; k < others_.size(); ++k) off -= weights_[k] * values[others_[k]];
     return off;
   }
-  // Of Off(), in standard deviations of one reading.
+  // The scatter of Off(), in standard deviations of one reading.
   double Deviation() const {
     return std::sqrt(std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 1.0));
   }

@@ -1,14 +1,14 @@
-// Readings that are none: a channel that repeats one value, single readings that jump.
+// Invalid readings: stuck channels and isolated outliers. Their rows get a flag.
 //
-//   for (const InvalidReadings& bad : FlagInvalidReadings(recording)) ...     // those rows count no more
+//   const auto invalid = FlagInvalidReadings(recording);
 //
-// Stuck: one value, to the last bit, in at least kLeastStuck rows while another channel of the
-// instrument changes in most of them. Outlier: a reading farther from its neighbours than kFar
-// times their usual scatter; where the axes stand from the median of the rows of the stay beside
-// it, where they move from the cubic through the next four readings of the motion that are no
-// outliers, two on either side if there are. Channels: probe_*_um, pivot_*_rad. Units: s since the
-// recording began. Rows that have a flag already are passed over; without time_s nothing is said.
-// Source of the scatter: 1.4826 times the median absolute deviation.
+// Stuck: a channel with one value, to the last bit, in at least kLeastStuck rows in which another
+// channel of the instrument changes mostly. Outlier: a reading that is farther than kFar times the
+// scatter from its prediction: the median of the neighbouring rows of its stay where the axes
+// stand, the cubic through the next four valid readings of the motion, two on either side if
+// possible, where they move. The scatter is 1.4826 times the median absolute deviation.
+// Channels: probe_*_um, pivot_*_rad. Units: s since the recording began. Rows with a flag are
+// skipped; a recording without time_s is not examined.
 #pragma once
 
 #include <string>

@@ -3,7 +3,7 @@
 //   const Line line = StrongestLine(fit, {&cause, "Y", shape});
 //   line.score.log_evidence - std::log(line.among);
 //
-// Over an hour a frequency is known to some 1e-4 Hz: a hundred thousand of them are told apart
+// Over an hour a frequency is known to some 1e-4 Hz: a hundred thousand of them are resolved
 // between 1 and 60 Hz, too many to score. First the runs whose rows are single readings and tell
 // most are looked through by themselves, where their few seconds leave some hundred frequencies;
 // about those that stand out, aliases of each other too, all these runs together are looked

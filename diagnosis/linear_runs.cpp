@@ -42,7 +42,7 @@ void AddTo(MatrixXd& sum, const std::vector<int>& columns, const MatrixXd& part)
   }
 }
 
-// Of the parameters, and of the sources that are knowledge.
+// The information of the parameters, and of the priors.
 MatrixXd PriorInformation(const Problem& problem, const estimation::Layout& layout) {
   MatrixXd information = layout.prior_sd.cwiseAbs2().cwiseInverse().asDiagonal();
   estimation::RowEvaluator evaluator(problem, layout);
@@ -56,7 +56,7 @@ MatrixXd PriorInformation(const Problem& problem, const estimation::Layout& layo
   return information;
 }
 
-// Of a cause that relaxes parameters: what these do themselves.
+// For a cause that relaxes parameters: their own columns.
 MatrixXd ParameterColumns(const LinearizedRun& run, const std::vector<std::string>& names,
                           const Candidate& candidate) {
   const std::vector<std::string> patterns = candidate.cause->relaxes(candidate.object);

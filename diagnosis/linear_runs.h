@@ -23,7 +23,7 @@
 
 namespace abbe::diagnosis {
 
-// Of the entries of blocks, by the name of the block.
+// The values of the entries of blocks, by the name of the block.
 using Values = std::map<std::string, Eigen::VectorXd>;
 Values ValuesOf(const estimation::Result& fit);
 
@@ -50,7 +50,7 @@ class LinearRuns {
   std::size_t count() const { return runs_.size(); }
   LinearizedRun At(std::size_t run) const;
   RunSums SumsOf(const LinearizedRun& run, const std::vector<Candidate>& candidates) const;
-  // Of sums with the same candidates.
+  // For sums with the same candidates.
   Eigen::MatrixXd Information(const std::vector<const RunSums*>& runs) const;
 
  private:

@@ -8,8 +8,8 @@
 // white noise of a channel; drift hardly enters. Of all channels of one kind the median counts, so
 // that one that picks something up does not make the others worse. What the machine file states is
 // believed to 5 %; where the recordings say otherwise with 4 standard uncertainties, `instruments`
-// get what they say, and a note tells it. The means of a sweep's stations have their scatter from the
-// sweep itself (simulation/sweep/sweep_run.h), so sweeps are not asked.
+// get what they say, and a note tells it. The means of a sweep's stations have their scatter from
+// the sweep itself (simulation/sweep/sweep_run.h), so sweeps are not asked.
 // Units: m, rad. Source: J. von Neumann et al., The mean square successive difference, Ann. Math.
 // Statist. 12 (1941); degrees of freedom (2/3) of the differences for many readings.
 #pragma once
@@ -27,7 +27,7 @@ struct StillNoise {
   double sd = 0.0;
   double freedom = 0.0;
 };
-// Of a column, SI; freedom 0 where nothing stands or the column is missing.
+// The noise of a column, SI; freedom 0 without a standstill or without the column.
 StillNoise NoiseAtRest(const std::vector<recording::Recording>& recordings,
                        const std::string& column);
 

@@ -7,7 +7,7 @@
 // The machine that is measured is one drawn from what the machine file says of such machines, its
 // head, target and linkage: a probe that sees no error shows none of its own. All it could be
 // instead is projected out of each cause, as in fit.h, with the information of all runs.
-// A cause with shapes is told with the shape that stands out most, as in the list of what a
+// A cause with shapes is listed with the shape that stands out most, as in the list of what a
 // diagnosis cannot show. Two causes are alike by the root mean square of the canonical correlations
 // of their columns, over the directions of each that stand out at all; 1: they do the same.
 // Units: SI. Failure: that of LinearRuns. Validity: to first order; other machines of the same kind
@@ -47,7 +47,7 @@ struct Alike {
 
 struct Plan {
   std::vector<PlannedCause> causes;   // in the order of the registry
-  std::vector<Alike> alike;           // that are seen and cannot be told apart, above kAlike
+  std::vector<Alike> alike;           // causes that show and cannot be separated, above kAlike
   std::vector<std::string> standing;  // names of pairs in which an axis never moves
 };
 

@@ -1,10 +1,10 @@
-// Where along a variable what is left of channels is strongest.
+// The wave number and the interval of a variable at which the residual of channels is strongest.
 //
 //   const Scan scan{values, scores, weights};
 //   const std::vector<double> waves = StrongestWaves(scan, step);
 //   const std::vector<Interval> where = StrongestIntervals(scan);
 //
-// Of many functions f of a variable, the one with the largest score^2 / information, where score
+// Among many functions f of a variable, that with the largest score^2 / information, where score
 // and largest information are those of Fit::ScoresOf: enough to choose by. What is chosen is then
 // asked as it should be. Source: periodogram with unequal times, Lomb, Astrophys. Space Sci. 39
 // (1976); a change at unknown places, Siegmund, Sequential Analysis (1985).
@@ -29,7 +29,7 @@ struct Interval {
   bool IsEmpty() const { return !(to > from); }
 };
 
-// Of the waves step, 2 step ... kLines step (rad per unit of the variable); 0: nothing there.
+// Among the waves step, 2 step ... kLines step (rad per unit of the variable); 0: nothing there.
 std::vector<double> StrongestWaves(const Scan& scan, double step);
 
 // Between the borders of kLines cells of the range.

@@ -57,7 +57,8 @@ Leftover MemoryOf(const MatrixXd& left) {
   return {kMemory, {}, std::sqrt(most), {"times the noise"}, p_value, 0.0};
 }
 
-// A run that scatters less than is stated is whitened with too much noise, and what is left of its drift goes on.
+// A run that scatters less than is stated is whitened with too much noise, and what is left of its
+// drift goes on.
 bool HasNeighbours(const PreparedRun& run, const VectorXd& left) {
   const auto rows = static_cast<double>(left.size());
   return run.trace.continuous && run.trace.rows() >= kFewRows &&

@@ -18,7 +18,7 @@ constexpr double kKnown = 0.1;  // standard deviation of a logarithm that first 
 constexpr int kShapesTried = 201;
 constexpr double kAnySize = 1e3;  // times what is plausible
 
-// Of the logarithm of the shape, to first order.
+// The posterior of the logarithm of the shape, to first order.
 double DeviationOf(const Score& score) {
   return std::sqrt(score.covariance(score.covariance.rows() - 1, score.covariance.cols() - 1));
 }

@@ -42,7 +42,7 @@ std::vector<Named> ByName(const std::vector<Score>& scores) {
   return names;
 }
 
-// Of a cause that is a line: its strongest one.
+// The strongest line of a cause that is one.
 void FindLine(const Fit& fit, Named& named) {
   if (!named.best.candidate.cause->line_in) return;
   const double visible = named.best.visible;

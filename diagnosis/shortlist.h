@@ -17,7 +17,7 @@ namespace abbe::diagnosis {
 
 struct Named {
   Score best;
-  double log_evidence = 0.0;  // mean over all shapes; of a line, over all that are told apart
+  double log_evidence = 0.0;  // mean over all shapes; of a line, over all that are resolved
   double step = 1.0;          // from the best shape to the next one tried, a factor
 };
 
@@ -28,7 +28,7 @@ void SortByEvidence(std::vector<Named>& names);
 // The shape with the largest evidence near the best one that was tried.
 Score Refine(const Fit& fit, const Named& named);
 
-// Of a cause that is there or not: the evidence if it could be there by a part.
+// For a binary cause: the evidence if it could be there in part.
 double EvidenceOfAPart(const Score& score);
 
 // Logarithm of the sum of the exponentials.

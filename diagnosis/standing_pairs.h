@@ -1,7 +1,7 @@
 // Pairs of axes, of which one never moves in the runs at hand.
 //
-// Of a cause at such a pair the other axis alone is what shows: a mismatch of its lag with none is
-// its lag, twice named. It is no candidate, and the runs cannot show it.
+// A cause at such a pair shows the other axis alone: a mismatch of its lag with no lag is that lag
+// under a second name. It is no candidate, and the runs cannot show it.
 #pragma once
 
 #include <string>

@@ -159,7 +159,7 @@ class Questions {
     Interval interval = {};
 
     Index columns() const { return wave > 0.0 ? 2 : interval.IsEmpty() ? kTerms : 1; }
-    // Of so many it is the strongest.
+    // The number of those among which it is the strongest.
     double among() const {
       return wave > 0.0 ? static_cast<double>(kLines) : interval.IsEmpty() ? 1.0 : kIntervals;
     }
@@ -280,7 +280,7 @@ class Questions {
     }
   }
 
-  // Of what is explained, over the rows. Where a shaft turns evenly, time and the harmonics that
+  // The explained part, over the rows. Where a shaft turns evenly, time and the harmonics that
   // are known go together, and the coefficients of the answer are larger than what they do.
   double RmsOf(const Answer& answer, const Channel& channel) const {
     double weight = 0.0;

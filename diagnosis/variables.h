@@ -17,7 +17,7 @@ Eigen::RowVectorXd ValuesOf(const std::string& variable, const simulation::Trace
 // s, mm, mm/min, rad, degC
 estimation::PrintUnit UnitOf(const std::string& variable);
 
-// Of what a channel may be a smooth function.
+// Variables of which a channel may be a smooth function.
 std::vector<std::string> VariablesOf(const simulation::Scene& scene);
 // In what a channel may be a line.
 std::vector<std::string> PeriodicVariablesOf(const simulation::Scene& scene);

@@ -1,6 +1,6 @@
-// `hal/modbus/modbus_frame.h`: what a client takes for the reply to its request. The input: framing and
-// function, address, value and transaction (2 bytes each), then the bytes of the reply; the last
-// two of a serial one are replaced by their CRC where the lowest bit but one says so.
+// `hal/modbus/modbus_frame.h`: what a client takes for the reply to its request. The input: framing
+// and function, address, value and transaction (2 bytes each), then the bytes of the reply; the
+// last two of a serial one are replaced by their CRC where the lowest bit but one says so.
 #include <algorithm>
 #include <vector>
 

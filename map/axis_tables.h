@@ -3,14 +3,14 @@
 //   const AxisTables tables = Tabulate(map, p_TQ, {31, 31, 31});
 //   const ErrorMap back = MapOfTables(tables);
 //
-// Order of the tables: machine/error_motion.h. Units: SI. A table without positions is an error that the
-// file does not contain: zero.
+// Order of the tables: machine/error_motion.h. Units: SI. A table without positions is an error
+// that the file does not contain: zero.
 //
-// The tables hold the errors of the carriages (machine/volumetric_error.h) of the chain in the header. A
-// control treats axes that carry the workpiece and count as the tool goes (ISO 841) as axes of the
-// tool. If all of them do, Tabulate converts the map to the equivalent chain with all axes on the
-// tool side, and every error in the file is one of the tool relative to the workpiece. The
-// volumetric error is exactly the same.
+// The tables hold the errors of the carriages (machine/volumetric_error.h) of the chain in the
+// header. A control treats axes that carry the workpiece and count as the tool goes (ISO 841) as
+// axes of the tool. If all of them do, Tabulate converts the map to the equivalent chain with all
+// axes on the tool side, and every error in the file is one of the tool relative to the workpiece.
+// The volumetric error is exactly the same.
 // Failure: InputError for an axis without any table, for a table of one position or with positions
 // that do not increase, and for a file without its chain or the sign of its positions.
 // Validity: linear interpolation between the positions. Tables are not changed: constants and

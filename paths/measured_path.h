@@ -5,8 +5,8 @@
 //
 // Frames: axis coordinates [x y z], as the columns x_mm y_mm z_mm have them: an error is measured -
 // commanded along each axis. The linkage gives p_MT in the machine frame as the workpiece carries
-// it (relm/linkage_settings.h); LinkagePath reverses the axes that carry the workpiece. Units: m, s,
-// m/s. Shapes: one column or entry a pose. Rows with a flag are left out.
+// it (relm/linkage_settings.h); LinkagePath reverses the axes that carry the workpiece. Units: m,
+// s, m/s. Shapes: one column or entry a pose. Rows with a flag are left out.
 // Failure: InputError with the recording's name for a missing column, a row without a flag that
 // has no number, or no row at all.
 #pragma once

@@ -1,21 +1,21 @@
-// A recording without what causes add to it: how an extended model reaches everything that works on
-// recordings.
+// A recording corrected for causes: so everything that works on recordings can use an extended
+// model.
 //
 //   Correction corrected = Correct(recording, causes, origin, instruments);
 //   abbe::probes::ReduceSweep(corrected.recording, setup);
 //
-// Where the stages of a cause go (simulation/disturbance.h):
-//   reading   off the gaps of the probes
-//   encoder   off the angles of the pivots
-//   tool, tip into the angles: to first order those at which the nominal linkage finds the ball
-//             where it would be without the cause; likewise a late clock, and a cause that relaxes
-//             parameters of the linkage
-//   motion    of an axis: to the positions, for there the axes really were. In a sweep only that
-//             along the swept axis; what the others do the probes see: off the gaps, as the nominal
-//             head sees it
-// Rows with a flag stay as they are, and so do recordings that no map is made of (dwell, shaft, a
-// linkage before an instrument). What a cause does to a reading is worked out from the reading
-// itself: what is neglected is its square (a gain of 1 % beside a swap: 1e-4 of the gap's change).
+// The stages of a cause (simulation/disturbance.h) are corrected in:
+//   reading   the gaps: subtracted
+//   encoder   the angles of the pivots: subtracted
+//   tool, tip the angles: to first order those at which the nominal linkage has the ball where it
+//             would be without the cause; also for a late clock and for causes that relax parameters
+//             of the linkage
+//   motion    the positions: those at which the axes really were. In a sweep only along the swept
+//             axis; the motions of the other axes are subtracted from the gaps, as the nominal head
+//             sees them
+// Rows with a flag stay, and so do recordings of kinds that make no map. The effect of a cause is
+// computed from the reading itself: its square is neglected (a gain of 1 % with a swap: 1e-4 of the
+// gap's change).
 // Units: `changes` in m and rad. Failure: InputError as for the run itself; a recording of an
 // instrument that the machine file lacks.
 #pragma once

@@ -26,7 +26,7 @@ class Disturbance {
  public:
   explicit Disturbance(Eigen::Index rows) : rows_(rows) {}
 
-  // Of a stage; zeros at first.
+  // The values of a stage; zeros at first.
   Eigen::RowVectorXd& row(Eigen::Index stage) {
     return stages_.try_emplace(stage, Eigen::RowVectorXd::Zero(rows_)).first->second;
   }

@@ -51,7 +51,7 @@ recording::Recording StillPath(char axis, const Eigen::Vector3d& at, const PathA
 recording::Recording LengthPath(char axis, const Eigen::Vector3d& middle,
                                 const machine::Travel& travel, const PathAbout& about);
 
-// Of a recording.
+// s, of a recording.
 double DurationOf(const recording::Recording& recording);
 
 }  // namespace abbe::simulation

@@ -77,7 +77,7 @@ void NoteUnknownTimes(const Recording& recording, std::vector<std::string>& note
   if (recording.KnowsTimes()) return;
   notes.push_back(
       fmt::format("{}: knows the order of its readings, not their times; one reading counts as one "
-                  "second, so what is told in s counts readings",
+                  "second, so results in s count readings",
                   recording.name));
 }
 

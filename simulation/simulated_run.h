@@ -6,10 +6,10 @@
 // The residual is whitened: measured minus simulated reading, of standard deviation 1. Its x are
 // the entries of `blocks`, one block after the other. Blocks are shared by name: the functions of
 // the machine by all runs, the probes by all sweeps, the target by the sweeps of one mounting.
-// A new kind of run is a new file that makes one of these.
+// Each kind of run makes these (run_kind.h).
 //
-// A run that wants a first fit gives `condense`: called with its x, it makes the residual of the
-// fit that counts. So a run of more rows than a fit wants to see starts with a sample of them.
+// A run that needs a first fit gives `condense`: called with its x, it makes the residual of the
+// final fit. So a run with too many rows for a fit starts with a sample of them.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,9 +25,8 @@
 
 namespace abbe::simulation {
 
-// Beyond so many standard deviations a row of a run with single readings pulls no more; costs
-// normal data 0.1 %.
-inline constexpr double kPullsNoMore = 3.0;
+// Huber threshold of single readings, in standard deviations; efficiency loss on normal data 0.1 %.
+inline constexpr double kHuberThreshold = 3.0;
 
 // What disturbances of the rows do to what is simulated, to first order at one x.
 class Response {
@@ -40,7 +39,7 @@ class Response {
   // rad), when `left` is what the simulation leaves, whitened. A disturbance made of readings
   // themselves would share their noise.
   virtual Eigen::MatrixXd Readings(const Eigen::VectorXd& left) const = 0;
-  // Of the face against each probe, rad, probes x rows of the run; empty without probes.
+  // The tilt of the face against each probe, rad, probes x rows of the run; empty without probes.
   virtual Eigen::MatrixXd Tilts() const { return {}; }
   // The adjoint of Columns, in two steps, for many disturbances against the same rows:
   //   Columns({d})' left = sum over the stages of d.row(stage) * BackToStage(stage, back)'

@@ -161,8 +161,8 @@ bool FromRest(const Trace& trace, Index row) {
   return ago >= 0.0 && ago < kShortly && (velocity - ago * gain).norm() <= kStood * velocity.norm();
 }
 
-// What moved before a pass began is told from how it began; between two rows the way is a cubic,
-// between two that stand a straight line and beside it `aside`.
+// The motion before a pass is continued backwards from its beginning; between two rows the way is a
+// cubic, between two that stand a straight line and beside it `aside`.
 RowVectorXd Follow(Play play, const RowVectorXd& position, const Trace& trace,
                    const MatrixXd& aside) {
   constexpr double kBefore = 0.5;  // s

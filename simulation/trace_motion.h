@@ -1,4 +1,4 @@
-// How an axis or a pivot moved, told from the rows of a trace. For use within simulation/ only.
+// The motion of an axis or a pivot, from the rows of a trace. For use within simulation/ only.
 // Units: m or rad, s. Shapes: one entry for each row.
 #pragma once
 
@@ -18,7 +18,7 @@ struct Derivatives {
 };
 Derivatives DerivativesOf(const Eigen::MatrixXd& values, const Trace& trace);
 
-// Which way an axis goes, told from its speed where it moves by more than it trembles between two
+// The direction of an axis, from its speed where it moves by more than it trembles between two
 // rows, else from where it has been.
 Eigen::RowVectorXd HeadingOfAxis(const Trace& trace, Eigen::Index axis);
 

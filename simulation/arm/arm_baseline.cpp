@@ -37,7 +37,7 @@ VectorXd WhiteGaps(const LinkageRun& run, const Fitted& fitted) {
   return rows;
 }
 
-// Of all poses, against the lenient arm.
+// The whitened gaps of all poses against the lenient arm.
 VectorXd NormsOf(const LinkageRun& run, const ArmBaseline& baseline) {
   const VectorXd gaps = WhiteGaps(run, {baseline.lenient, baseline.lenient_x});
   return gaps.reshaped(3, run.poses()).colwise().norm().transpose();

@@ -11,8 +11,8 @@
 // is the size around which the column is taken, and none for a small one: Amount::kFollowsItsSize.
 // All coefficients are 0 when the cause is absent.
 // Some causes are already parameters of the simulation, within a tolerance (squareness, the
-// eccentricity of an encoder): these name the parameters that they set free in `relaxes` and have no
-// columns.
+// eccentricity of an encoder): these name the parameters that they set free in `relaxes` and have
+// no columns.
 // Keys: the names, units and signs by which files and reports know a cause; `tell` works them out
 // of coefficients and shape, `recall` goes back. Units: SI inside; CauseKey::unit is what one unit
 // of the key is in SI.
@@ -135,7 +135,7 @@ std::vector<Object> AxisPairsOf(const Scene& scene);
 std::vector<Object> ProbesOf(const Scene& scene);
 std::vector<Object> PivotsOf(const Scene& scene);
 
-// Of the positioning error of an axis: EXX, EYY, EZZ.
+// The stage of the positioning error of an axis: EXX, EYY, EZZ.
 int Positioning(int axis);
 
 // The size that the column is to be taken around; 0: a small one.
@@ -144,7 +144,7 @@ double SizeOf(const Eigen::VectorXd& shape);
 // A disturbance with one row that is not zero.
 Disturbance InStage(const Trace& trace, Eigen::Index stage, const Eigen::RowVectorXd& values);
 
-// The sine and the cosine of a phase in one stage, and how they are told: amplitude and phase.
+// The sine and the cosine of a phase in one stage, and their report as amplitude and phase.
 std::vector<Disturbance> WaveInStage(const Trace& trace, Eigen::Index stage,
                                      const Eigen::RowVectorXd& phase);
 // Sine and cosine of 2 pi frequency t, t of `clock`, in the mean of the readings of each row.

@@ -1,5 +1,5 @@
 // Gain of a gap sensor at a turning shaft, against that of the first, which counts as right: how
-// far the shaft really moves nobody else says. Only ratios can be told.
+// far the shaft really moves is not known otherwise. Only ratios are determined.
 #include "simulation/causes/registry.h"
 #include "simulation/causes/shaft.h"
 
@@ -19,7 +19,7 @@ Cause SensorGain() {
   return {
       .id = "sensor-gain",
       .words = {.what = "a gap sensor shows more or less of the same motion than sensor_1, which "
-                        "counts as right: only ratios can be told",
+                        "counts as right: only ratios are determined",
                 .shows = "once per turn each sensor has another amplitude, in the right order; "
                          "where all others have the same delta, it is sensor_1 that is off",
                 .check = "calibration of the sensors for the material and curvature of the rim",

@@ -1,4 +1,5 @@
-// The objects of a turning shaft (simulation/shaft/rim_readings.h), and what its causes have in common.
+// The objects of a turning shaft (simulation/shaft/rim_readings.h), and what its causes have in
+// common.
 #pragma once
 
 #include <string>

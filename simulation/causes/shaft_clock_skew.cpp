@@ -1,5 +1,5 @@
 // Clock skew at a turning shaft: what the sensors show belongs to where the shaft was `delay`
-// before. At one speed nothing but a turned eccentricity; told by a second speed.
+// before. At one speed it equals a turned eccentricity; a second speed separates them.
 // Validity: the shaft keeps its speed in a run.
 #include "simulation/causes/registry.h"
 #include "simulation/causes/shaft.h"

@@ -23,7 +23,7 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 constexpr Index kAlong = 10, kAcross = 4, kNodes = kAlong * kAcross, kUnits = 2;
-// Of each swept axis, and of each with the head turned: its side unit then sees the opposite face.
+// One for each swept axis, and one with the head turned: its side unit then sees the opposite face.
 constexpr Index kFaces = 6;
 constexpr double kUsual = 0.2e-6;      // m
 constexpr double kApart = 0.6;         // correlation lengths from node to node at most

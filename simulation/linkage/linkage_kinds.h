@@ -11,7 +11,7 @@ void RefuseOtherBalls(const std::vector<RunSource>& sources, const relm::Linkage
 std::string BaseLines(const std::string& base);
 std::string BaseOf(const recording::Recording& run);
 
-// Of a run in a diagnosis: its time is for causes, not for rows.
+// Most poses of a run in a diagnosis, which needs its time for causes.
 inline constexpr Eigen::Index kMostDiagnosedPoses = 1500;
 
 }  // namespace abbe::simulation

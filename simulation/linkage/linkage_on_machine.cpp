@@ -28,7 +28,7 @@ using Eigen::VectorXd;
 constexpr Index kMostPoses = 4096, kSample = 1024;  // in a fit
 constexpr double kFewestCells = 16.0;               // along a travel
 constexpr double kLeastGap = 5e-3;                  // m: what no tolerance explains
-constexpr auto kLoss = estimation::RobustLoss::Huber(kPullsNoMore);
+constexpr auto kLoss = estimation::RobustLoss::Huber(kHuberThreshold);
 
 class LinkageOnMachine : public Responsive {
  public:

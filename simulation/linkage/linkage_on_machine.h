@@ -11,9 +11,9 @@
 // A run of more than 4096 poses is gathered into cells of a quarter of the correlation length
 // (linkage_cells.h) at the parameters that fit 1024 of them; their chi-square is that of the cells.
 //
-// The angles that are read are noisy, and so are the derivatives of the gap there: a fit would
-// shrink the linkage to shrink its noise, by 3 poses u^2 of the scale's uncertainty u. `condense`
-// takes that away: it turns the angles until x closes the gap, and keeps the gap as a constant.
+// Errors in variables: the Jacobian is evaluated at noisy angles, which biases the scale by 3 N u^2
+// (N poses, u its standard uncertainty). `condense` removes the bias: it turns the angles until x
+// closes the gap, and keeps the gap as a constant.
 // Unknowns: those of the linkage and its base, then the machine's functions and squareness.
 // Units: m, rad. Failure: InputError for a position outside the travels, naming the row, and for a
 // ball that does not go where the chain takes it. Validity: exact.

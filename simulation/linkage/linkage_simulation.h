@@ -64,7 +64,7 @@ class LinkageSimulation {
   const relm::LinkageSettings& settings() const { return settings_; }
   Eigen::Index parameters() const { return kBase + model_.parameters(); }
   Eigen::VectorXd Values() const;  // nominal base, the model's values
-  // Of the base, then of the model.
+  // The parameters of the base, then of the model.
   std::vector<estimation::ParameterBlock> Blocks() const;
 
   // Where the reference says that the ball stands, p_MT.

@@ -1,4 +1,5 @@
-// Lengths along a line through the volume: step gauges, laser interferometers (length_simulation.h).
+// Lengths along a line through the volume: step gauges, laser interferometers
+// (length_simulation.h).
 #include <fmt/format.h>
 
 #include <numeric>

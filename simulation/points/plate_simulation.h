@@ -9,8 +9,8 @@
 //
 //   residual = ( [u v] of X_MP^-1 p_MQ(axes) - (1 + scale) (certificate + form) ) / u_probing
 //
-// with p_MQ of simulation/points/machine_points.h; u_probing_um stands in the header. The tool point of
-// set-up N is `tool_mm` of the header's table [setup.N], or `tool_mm` for all.
+// with p_MQ of simulation/points/machine_points.h; u_probing_um stands in the header. The tool
+// point of set-up N is `tool_mm` of the header's table [setup.N], or `tool_mm` for all.
 // Frames: M, the machine frame as the workpiece carries it; P, the plate: u along plate_x, v along
 // plate_y. X_MP starts where the plate fits the axes best on a perfect machine.
 // Unknowns, in this order: the machine's functions and squareness; of the set-up "plate_place RUN"

@@ -9,7 +9,7 @@
 // by least squares: the error of the axis and its reversal are in the first, whatever drifts or
 // grows from one way of the axis to the next in the second and third. Only what is left counts,
 // over its degrees of freedom f; the variance is that of Student's distribution, f / (f - 2) times
-// as large, for whoever takes it as known and normal. Units: m. Nothing for a run that is no
+// as large, for a fit that takes it as known and normal. Units: m. Nothing for a run that is no
 // positioning test or leaves fewer than kLeastFreedom degrees. Validity: what changes the shape of
 // the error over position between cycles counts as noise.
 #pragma once

@@ -11,9 +11,9 @@
 // `tested`: the axis of a positioning test, the only one that moves, with the direction of the
 // approach to each target in the column `direction`; ' ' in other runs.
 // Units: m, s. Shapes: one column or entry per row; rows with a flag are left out. Failure: that of
-// simulation/points/machine_points.h; InputError without any ref column, for a deviation that is not above
-// 0. Validity: a stay is a sequence of rows of one pass and direction whose commanded position
-// keeps within kStayWindow of its first.
+// simulation/points/machine_points.h; InputError without any ref column, for a deviation that is
+// not above 0. Validity: a stay is a sequence of rows of one pass and direction whose commanded
+// position keeps within kStayWindow of its first.
 #pragma once
 
 #include <Eigen/Core>

@@ -135,7 +135,7 @@ SimulatedRun SimulateReference(const machine::VolumetricModel& model, const Vect
                                const ReferenceRun& run) {
   RefuseNoNoise(run);
   SimulatedRun simulated{
-      run.points.name, "reference", {}, nullptr, estimation::RobustLoss::Huber(kPullsNoMore)};
+      run.points.name, "reference", {}, nullptr, estimation::RobustLoss::Huber(kHuberThreshold)};
   simulated.blocks = {
       SetupBlock("reference_place " + run.points.name, {"um", 1e-6}, {"x", "y", "z"},
                  estimation::kNoPrior),

@@ -17,7 +17,7 @@
 namespace abbe::simulation {
 
 Trace TraceOf(const recording::Recording& recording, const ReferenceRun& run);
-// Of lengths and plates.
+// For lengths and plates.
 Trace TraceOf(const recording::Recording& recording, const MachinePoints& points);
 
 }  // namespace abbe::simulation

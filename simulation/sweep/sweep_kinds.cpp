@@ -1,5 +1,5 @@
-// The kinds of run of the head of five probes: the swept axis goes over its travel and back; nothing
-// moves; at some stations the other axes step to and fro by a known way.
+// The kinds of run of the head of five probes: the swept axis goes over its travel and back;
+// nothing moves; at some stations the other axes step to and fro by a known way.
 #include <fmt/format.h>
 
 #include <algorithm>

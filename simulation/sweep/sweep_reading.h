@@ -80,7 +80,7 @@ template <typename T>
 struct Sight {
   Eigen::Vector3<T> place, direction, normal;
 
-  // Of the face against the electrode, rad.
+  // The tilt of the face against the electrode, rad.
   double Tilt() const {
     return std::acos(std::min(1.0, std::abs(ValueOf(T(normal.dot(direction))))));
   }
@@ -98,7 +98,7 @@ Sight<T> SightOf(const SweepPlan& plan, std::size_t probe, const geometry::Trans
                                         ? Eigen::Vector3<T>(at.place[0], at.place[1], height)
                                         : Eigen::Vector3<T>(at.place[0], height, at.place[1]);
   Eigen::Vector3<T> shift = at.shift;
-  shift[normal] = T(0);  // the zero takes it in: apart, the two could not be told
+  shift[normal] = T(0);  // the zero contains it: the two cannot be separated
   const Eigen::Vector3<T> p_T = plan.head_T.cast<T>() + R * in_head + R_MH * shift;
   return {X_WT * p_T, X_WT.R * Eigen::Vector3<T>(-R.col(normal)),
           FaceNormal<T>(plan.R_MH.col(normal), at)};

@@ -5,7 +5,7 @@
 // Station means: one row is the mean of all dwells at one station and in one direction of approach,
 // with the covariance that white noise and drift leave (probes/sweep_stations.h): what a sweep of
 // any length says of the machine, kept in a few hundred numbers. Dwells: one row is one dwell, in
-// the order of time, for whoever looks for what changes from pass to pass; the covariance is that
+// the order of time, to show what changes from pass to pass; the covariance is that
 // of the machine file's drift and the scatter within the dwells. Gap steps: at some stations the
 // axes that stand in a sweep step by a known way, which moves every gap. Units: m. Shapes: one
 // entry or column per row; covariance rows x rows for each probe. Failure: InputError for a
@@ -62,7 +62,7 @@ struct SweepRun {
 
 SweepRun ReadSweepRun(const recording::Recording& recording, const probes::HeadSettings& head,
                       const probes::ProbeNoise& noise);
-// Of any length: `recording` needs no rows.
+// For a run of any length: `recording` needs no rows.
 SweepRun ReadSweepRun(const recording::Recording& recording, const recording::Blocks& blocks,
                       const probes::HeadSettings& head, const probes::ProbeNoise& noise);
 // A recording that holds still (kind dwell): one row is one reading, its first kStillReadings.

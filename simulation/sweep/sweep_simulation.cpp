@@ -313,7 +313,7 @@ std::vector<ParameterBlock> InstrumentBlocks(const SweepInstrument& instrument,
 SimulatedRun SimulateSweep(const machine::VolumetricModel& model, const Vector3d& reference,
                            const SweepInstrument& instrument, const SweepRun& run) {
   SimulatedRun simulated{
-      run.name, "sweep", {}, nullptr, estimation::RobustLoss::Huber(kPullsNoMore)};
+      run.name, "sweep", {}, nullptr, estimation::RobustLoss::Huber(kHuberThreshold)};
   SweepRun within = run;
   Eigen::Matrix3Xd axes(3, run.rows());
   axes.colwise() = run.start;  // steps may leave the travel by their few micrometres

@@ -1,5 +1,5 @@
-// A kind of run that nobody knows: a level on the table that reads its own offset. All that it takes
-// is this file and the line that adds it.
+// A kind of run that nobody knows: a level on the table that reads its own offset. All that it
+// takes is this file and the line that adds it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
