@@ -34,8 +34,8 @@ void RefuseFarPositions(const std::string& name, const SweepDwells& sweep,
       if (position >= span.first && position <= span.last) continue;
       if (!(travel.last > travel.first)) {
         throw InputError(fmt::format(
-            "{}: row {}: {:c}_mm is {:.6g}, but the machine has no axis {:c}: add it to the chain and "
-            "as [axis.{:c}], or leave the column out",
+            "{}: row {}: {:c}_mm is {:.6g}, but the machine has no axis {:c}: add it to the chain "
+            "and as [axis.{:c}], or leave the column out",
             name, dwell.first_row + 1, 'x' + axis, position / kMillimetre, 'X' + axis, 'X' + axis));
       }
       throw InputError(fmt::format(

@@ -93,9 +93,7 @@ struct Campaign {
     recording.name = fmt::format("length {}", axis);
     return recording;
   }
-  simulation::SimulatedRun Length(char axis) const {
-    return Simulated(LengthRecording(axis));
-  }
+  simulation::SimulatedRun Length(char axis) const { return Simulated(LengthRecording(axis)); }
 
   // What the machine really does at a position with a tool point p_TQ, in W.
   Eigen::Vector3d TrueError(const Eigen::Vector3d& axes,
