@@ -223,12 +223,13 @@ TEST_P(TransportContract, ADeviceThatAnswersIsRecordedWithItsDescription) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TransportContract, testing::ValuesIn(Cases()),
-                         [](const testing::TestParamInfo<TransportCase>& info) {
-                           std::string name = info.param.transport;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+std::string CaseOf(const testing::TestParamInfo<TransportCase>& each) {
+  std::string name = each.param.transport;
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TransportContract, testing::ValuesIn(Cases()), CaseOf);
 
 }  // namespace transport_contract_test
 }  // namespace abbe::hal
