@@ -148,7 +148,8 @@ TEST_P(TransportContract, RefusesAnUnknownKeyWithItsLine) {
 
 TEST_P(TransportContract, RefusesATableWithoutItsKeys) {
   const std::string refusal = Refusal(Head());
-  EXPECT_EQ(refusal.find("m.toml:1: devices.d."), 0u) << refusal;
+  EXPECT_EQ(refusal.find("m.toml:"), 0u) << refusal;  // a table that is missing has no line
+  EXPECT_NE(refusal.find(" devices.d."), std::string::npos) << refusal;
   EXPECT_NE(refusal.find("is missing"), std::string::npos) << refusal;
 }
 
@@ -199,6 +200,7 @@ TEST_P(TransportContract, ADeviceThatAnswersIsRecordedWithItsDescription) {
   const OpenedDevices opened = OpenDevices(all, device->clock, Presence::kRequired);
   EXPECT_EQ(opened.transport.at("d"), device->Description());
   EXPECT_FALSE(opened.start_cycle);
+  device->clock.Advance(0.1);  // a reading as old as that of Require() would be stale
 
   const auto path = std::filesystem::path(testing::TempDir()) /
                     ("transport_" + GetParam().transport + std::to_string(getpid()) + ".csv");
@@ -223,12 +225,13 @@ TEST_P(TransportContract, ADeviceThatAnswersIsRecordedWithItsDescription) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TransportContract, testing::ValuesIn(Cases()),
-                         [](const testing::TestParamInfo<TransportCase>& info) {
-                           std::string name = info.param.transport;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+std::string CaseOf(const testing::TestParamInfo<TransportCase>& each) {
+  std::string name = each.param.transport;
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TransportContract, testing::ValuesIn(Cases()), CaseOf);
 
 }  // namespace transport_contract_test
 }  // namespace abbe::hal
