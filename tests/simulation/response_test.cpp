@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "rig/record_plate.h"
+#include "simulation/linkage/linkage_on_machine.h"
 #include "simulation/linkage/linkage_trace.h"
 #include "simulation/points/length_simulation.h"
 #include "simulation/points/plate_simulation.h"
