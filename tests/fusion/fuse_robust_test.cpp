@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "random/counter_random.h"
+#include "simulation/linkage/linkage_on_machine.h"
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::fusion {

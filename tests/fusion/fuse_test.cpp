@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "fusion/calibrate.h"
+#include "simulation/linkage/linkage_on_machine.h"
+#include "simulation/points/length_simulation.h"
 #include "tests/fusion/rig_campaign.h"
 
 namespace abbe::fusion {
