@@ -86,6 +86,7 @@ int Diagnose(const DiagnoseArguments& arguments) {
   for (const fs::path& path : arguments.recordings) recordings.push_back(ReadWithWarnings(path));
   simulation::Instruments instruments = ReadInstruments(arguments.machine);
   std::vector<simulation::RunSource> sources;
+  sources.reserve(recordings.size());
   for (const recording::Recording& each : recordings) sources.push_back(simulation::SourceOf(each));
   simulation::RefuseStrangers(sources, instruments);
   diagnosis::UseMeasuredNoise(recordings, instruments);

@@ -65,7 +65,7 @@ class DiagnoseReference(ProgramCase):
     def test_what_the_table_does_not_say_is_said(self):
         notes = " ".join(self.result(self.recording, "--machine", self.path / "stage.toml")["notes"])
         self.assertIn("72 degrees of freedom", notes)
-        self.assertIn("counts readings", notes)
+        self.assertIn("results in s count readings", notes)
         self.assertIn("Note: ", self.done(self.recording, "--machine", self.path / "stage.toml"))
 
     def test_runs_that_need_more_of_the_machine_are_refused(self):
