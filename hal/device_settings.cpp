@@ -13,6 +13,7 @@ using settings::Table;
 std::shared_ptr<const Device> ReadDevice(const Table& table,
                                          const std::vector<Transport>& transports) {
   std::vector<std::string> names;
+  names.reserve(transports.size());
   for (const Transport& transport : transports) names.push_back(transport.name);
   const std::string name = table.Choice("transport", names);
   auto device = std::ranges::find(transports, name, &Transport::name)->read(table);
