@@ -50,7 +50,7 @@ def shown(text, name):
 def page(text):
     """A page of the manual without what Doxygen stumbles over: links into the page itself, code over two lines, and
     the word operator as code."""
-    text = re.sub(r"\[([^\]]*)\]\(#[^)]*\)", r"\1", text)
+    text = re.sub(r"\[((?:[^\[\]]|\[[^\]]*\])*)\]\(#[^)]*\)", r"\1", text)
     paragraphs = text.replace("operator`", "opera\u200btor`").split("\n\n")
     return "\n\n".join(each if "```" in each else re.sub(r"`[^`]*`", lambda code: code[0].replace("\n", " "), each)
                        for each in paragraphs)
