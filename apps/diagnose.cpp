@@ -17,6 +17,7 @@
 #include "apps/instruments.h"
 #include "apps/machine_recording.h"
 #include "apps/result_file.h"
+#include "diagnosis/doubts.h"
 #include "diagnosis/found_model.h"
 #include "diagnosis/measured_noise.h"
 #include "diagnosis/next_run.h"
@@ -99,6 +100,7 @@ int Diagnose(const DiagnoseArguments& arguments) {
     if (diagnosis::IsModelled(finding)) causes.push_back(finding.score.candidate);
   }
   const diagnosis::HeldOutGain gain = GainOf(campaign, recordings, causes);
+  diagnosis::AddDoubts(campaign, gain, diagnosis);
   if (!arguments.out.empty()) {
     WriteModel(diagnosis::FoundModel(diagnosis, campaign, gain), arguments);
   }

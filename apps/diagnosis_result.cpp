@@ -59,10 +59,10 @@ std::optional<HeldOutGain::Without> WorthOf(std::size_t finding, const Diagnosis
 ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const HeldOutGain& gain) {
   const Finding& finding = diagnosis.findings[which];
   const simulation::Object& object = finding.score.candidate.object;
-  ordered_json json{{"cause", finding.score.candidate.cause->id},
-                    {"object", object.part()},
-                    {"probability", finding.probability},
-                    {"log_evidence", finding.score.log_evidence}};
+  ordered_json json{
+      {"cause", finding.score.candidate.cause->id}, {"object", object.part()},
+      {"probability", finding.probability},         {"log_evidence", finding.score.log_evidence},
+      {"something_else", finding.something_else},   {"doubts", finding.doubts}};
   for (const NamedValue& each : ParametersOf(finding.score)) {
     ordered_json parameter = KeyJson(each.name);
     parameter.update({{"value", each.value}, {"u95", each.u95}});
@@ -119,6 +119,13 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
         "  gain         rms {:.3f} of the stated noise without it, {:.3f} with it; in held-out "
         "rows {:.3f} and {:.3f}\n",
         without->seen, gain.seen, without->held, gain.after);
+  }
+  for (const std::string& doubt : finding.doubts) {
+    text += fmt::format("  not certain: {}\n", doubt);
+  }
+  if (finding.something_else > 0.0) {
+    text += fmt::format("  or something that is in no catalogue, probability {:.3f}\n",
+                        finding.something_else);
   }
   for (const auto& rival : finding.rivals) {
     text +=

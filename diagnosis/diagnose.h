@@ -5,12 +5,7 @@
 //   diagnosis.verdict;                      // Verdict::kExplained
 //   diagnosis.findings[0].score.candidate.Name();          // "backlash:X"
 //
-// Forward selection: all candidates are scored against the fit so far; the one with the largest
-// evidence is taken in when it is more probable than kCertain although each of the n candidates had
-// only kPresent / n before; its shape is refined; everything is fitted and scored anew. Then each
-// cause is left out once: one that the others have made superfluous goes.
-// The evidence of a cause with a shape is the mean over its shapes: looking at many periods costs
-// what it should.
+// How: search.h.
 // Verdict: clean, nothing found, nothing left; explained, each finding is at least kCertain among
 // its rivals and nothing is left; ambiguous, rivals; unexplained, structure is left.
 // Units: SI. Failure: that of Fit.
@@ -27,7 +22,10 @@
 namespace abbe::diagnosis {
 
 inline constexpr double kCertain = 0.99;
-inline constexpr double kPresent = 0.1;   // probability that a machine has a cause at all
+inline constexpr double kPresent = 0.1;  // probability that a machine has a cause at all
+// No finding is more probable where structure is left that no cause explains: what makes it may make
+// the finding too.
+inline constexpr double kBesideUnexplained = 0.9;
 inline constexpr double kShowable = 5.0;  // standard deviations of a plausible size
 
 enum class Verdict { kClean, kExplained, kAmbiguous, kUnexplained };
@@ -50,6 +48,9 @@ struct Finding {
   Score score;
   double probability = 0.0;   // among all that could stand in its place
   std::vector<Rival> rivals;  // others above 1 %
+  // Probability of something outside the catalogue in its place; 0 below 1 %.
+  double something_else = 0.0;
+  std::vector<std::string> doubts = {};  // doubts.h
   std::optional<NextRun> next_run = {};
   Curve curve = {};
 };

@@ -16,49 +16,15 @@ using simulation::Disturbance;
 
 namespace {
 
-constexpr Index kColumnsAtOnce = 1024;  // so many share the derivatives of the simulation
-
-// For a random field: the standard deviation of its draws with the largest evidence, and the
-// mean evidence of all that were tried, each as probable as the next, beyond that of what is
-// stated.
-struct DrawnSize {
-  double sd, log_evidence;
-};
-
-DrawnSize SizeOfDraws(const MatrixXd& S, const VectorXd& g, double stated) {
-  constexpr double kSmallest = 0.01e-6, kLargest = 10e-6, kRatio = 1.1;  // m
-  std::vector<Index> seen;
-  for (Index i = 0; i < g.size(); ++i) {
-    if (S(i, i) > 0.0) seen.push_back(i);
-  }
-  if (seen.empty()) return {kSmallest, 0.0};
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S(seen, seen));
-  const Eigen::ArrayXd information = solver.eigenvalues().array().max(0.0);
-  const Eigen::ArrayXd score = (solver.eigenvectors().transpose() * g(seen)).array();
-  const auto evidence = [&](double sd) {
-    const Eigen::ArrayXd grown = 1.0 + sd * sd * information;
-    return 0.5 * (sd * sd * score.square() / grown - grown.log()).sum();
-  };
-  DrawnSize best{kSmallest, -std::numeric_limits<double>::infinity()};
-  double sum = 0.0, count = 0.0;
-  for (double sd = kSmallest; sd < kLargest; sd *= kRatio, ++count) {
-    const double log_evidence = evidence(sd);
-    if (log_evidence > best.log_evidence) {
-      sum *= std::exp(best.log_evidence - log_evidence);
-      best = {sd, log_evidence};
-    }
-    sum += std::exp(log_evidence - best.log_evidence);
-  }
-  best.log_evidence += std::log(sum / count) - std::max(0.0, evidence(stated));
-  return best;
-}
+constexpr SizeRange kForms{0.01e-6, 10e-6, 1.1};  // m
+constexpr Index kColumnsAtOnce = 1024;            // so many share the derivatives of the simulation
 
 Score ScoreFrom(Candidate candidate, const Fit::Projection& projection) {
   const auto& [S, g] = projection;
   if (candidate.cause->IsRandomField()) {
     const VectorXd usual = candidate.Plausible();
     const double visible = std::sqrt(std::max(0.0, S.diagonal().dot(usual.cwiseAbs2())));
-    const DrawnSize size = SizeOfDraws(S, g, candidate.shape[1]);
+    const DrawnSize size = SizeOfDraws(projection, kForms, candidate.shape[1]);
     candidate.shape[0] = size.sd;
     return {std::move(candidate), VectorXd::Zero(g.size()), MatrixXd::Zero(g.size(), g.size()),
             size.log_evidence, visible};
@@ -107,6 +73,34 @@ void ScoreTogether(const Fit& fit, std::span<const Candidate> candidates,
 }
 
 }  // namespace
+
+DrawnSize SizeOfDraws(const Fit::Projection& projection, const SizeRange& sizes, double stated) {
+  const auto& [S, g] = projection;
+  std::vector<Index> seen;
+  for (Index i = 0; i < g.size(); ++i) {
+    if (S(i, i) > 0.0) seen.push_back(i);
+  }
+  if (seen.empty()) return {sizes.smallest, 0.0};
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S(seen, seen));
+  const Eigen::ArrayXd information = solver.eigenvalues().array().max(0.0);
+  const Eigen::ArrayXd score = (solver.eigenvectors().transpose() * g(seen)).array();
+  const auto evidence = [&](double sd) {
+    const Eigen::ArrayXd grown = 1.0 + sd * sd * information;
+    return 0.5 * (sd * sd * score.square() / grown - grown.log()).sum();
+  };
+  DrawnSize best{sizes.smallest, -std::numeric_limits<double>::infinity()};
+  double sum = 0.0, count = 0.0;
+  for (double sd = sizes.smallest; sd < sizes.largest; sd *= sizes.ratio, ++count) {
+    const double log_evidence = evidence(sd);
+    if (log_evidence > best.log_evidence) {
+      sum *= std::exp(best.log_evidence - log_evidence);
+      best = {sd, log_evidence};
+    }
+    sum += std::exp(log_evidence - best.log_evidence);
+  }
+  best.log_evidence += std::log(sum / count) - std::max(0.0, evidence(stated));
+  return best;
+}
 
 std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candidates) {
   std::vector<Score> scores;

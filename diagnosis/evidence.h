@@ -24,6 +24,16 @@
 
 namespace abbe::diagnosis {
 
+// For a random field with coefficients of one standard deviation: that with the largest evidence,
+// and the mean evidence of all that are tried, evenly in the logarithm, beyond that of `stated`.
+struct DrawnSize {
+  double sd, log_evidence;
+};
+struct SizeRange {
+  double smallest, largest, ratio;
+};
+DrawnSize SizeOfDraws(const Fit::Projection& projection, const SizeRange& sizes, double stated);
+
 std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candidates);
 
 }  // namespace abbe::diagnosis

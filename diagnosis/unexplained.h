@@ -1,25 +1,23 @@
 // What is left of the data after all causes: structure that no known cause explains.
 //
-//   for (const Leftover& leftover : FindLeftovers(fit)) ...       // nothing: all is explained
+//   const std::vector<Found> found = FindStructures(fit);
+//   for (const Leftover& leftover : LeftoversOf(fit, found)) ...       // nothing: all is explained
 //
-// Each channel (the readings of a probe or of a sensor at a shaft, the angle of a pivot, the
-// positioning of an axis) is asked of each recorded variable (time, the position of an axis and
-// sums of two, the angle of a pivot or a shaft, a temperature, the feed) whether
-//   a smooth function of it, kTerms cosines over its range, or
-//   a line of its periodogram, sine and cosine of one of up to kLines wave numbers, or
-//   an interval of it, a part of its range where the channel stands apart from the rest (scan.h),
-// would make the channel fit better, free of everything that the simulation could be instead
-// (fit.h). What it then explains is chi-square distributed when nothing is there; of a
-// periodogram the strongest line counts, and of all intervals the strongest, as one of so many.
-// Reported is the strongest answer of each channel whose probability, times the number of questions
-// asked, is below `kDoubt`; the strongest first.
+// Each channel is asked of each recorded variable whether a structure (structure.h) would make the
+// channel fit better, free of everything that the simulation could be instead (fit.h): a smooth
+// function, the strongest line of up to kLines wave numbers, the strongest interval (scan.h).
+// What it then explains is chi-square distributed when nothing is there; the strongest line or
+// interval counts as one of so many. Reported is the strongest answer of each channel whose
+// probability, times the number of questions asked, is below `kDoubt`; the strongest first.
 // Source: score test, Rao (1948).
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "diagnosis/evidence.h"
 #include "diagnosis/fit.h"
+#include "diagnosis/structure.h"
 #include "estimation/parameter.h"
 
 namespace abbe::diagnosis {
@@ -36,8 +34,27 @@ struct Leftover {
 };
 
 inline constexpr double kDoubt = 1e-3;
-inline constexpr const char *kScatter = "scatter", *kMemory = "memory";  // of scatter.h
+inline constexpr const char* kScatter = "scatter";  // of scatter.h
+inline constexpr const char* kMemory = "memory";
 
-std::vector<Leftover> FindLeftovers(const Fit& fit);
+// What the data say of a structure.
+struct Found {
+  Structure structure;
+  double chi_square = 0.0;
+  int freedom = 0;
+  double length = 0.0;           // of the coefficients, m or rad
+  double log_probability = 0.0;  // of as much by chance, the strongest of so many
+  // The coefficients as draws: their deviation, and the evidence against nothing, among so many.
+  DrawnSize drawn{0.0, 0.0};
+};
+
+// All structures that are asked for, the least probable by chance first.
+std::vector<Found> FindStructures(const Fit& fit);
+Found Asked(const Fit& fit, const Structure& structure);
+// The borders of an interval, the number of terms of a smooth function at which most is explained.
+Found Refined(const Fit& fit, Found found);
+
+std::vector<Leftover> LeftoversOf(const Fit& fit, const std::vector<Found>& found);
+Leftover LeftoverOf(const Fit& fit, const Found& found, std::size_t questions);
 
 }  // namespace abbe::diagnosis

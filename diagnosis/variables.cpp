@@ -10,7 +10,41 @@ using Eigen::RowVectorXd;
 using simulation::Scene;
 using simulation::Trace;
 
+namespace {
+
+const std::string kDirectionOf = "direction of ", kReversalOf = "reversal of ";
+
+// Of a variable that names it behind its kind.
+std::string BehindKind(const std::string& variable) {
+  return variable.substr(variable.rfind(' ') + 1);
+}
+
+bool IsDirected(const std::string& variable) {
+  return variable.starts_with(kDirectionOf) || variable.starts_with(kReversalOf);
+}
+
+// ln(1 + way / kShort): so fine near the reversal.
+RowVectorXd LogarithmOf(const RowVectorXd& way) {
+  constexpr double kShort = 0.05e-3;  // m
+  return (way.array() / kShort).log1p();
+}
+
+}  // namespace
+
+RowVectorXd FactorOf(const std::string& variable, const Trace& trace) {
+  if (!IsDirected(variable)) return {};
+  const simulation::Object object(BehindKind(variable));
+  if (object.kind() == simulation::Object::Kind::kPivot) {
+    return trace.linkage->heading.row(object.first());
+  }
+  return trace.heading.row(BehindKind(variable)[0] - 'x');
+}
+
 RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
+  if (variable.starts_with(kDirectionOf)) return ValuesOf(BehindKind(variable), trace);
+  if (variable.starts_with(kReversalOf)) {
+    return LogarithmOf(trace.since_reversal.row(BehindKind(variable)[0] - 'x'));
+  }
   if (variable == "time") return trace.clock.transpose();
   if (variable == "shaft") return trace.rim->shaft;
   if (variable == "feed") return trace.velocity.colwise().norm();
@@ -31,7 +65,14 @@ RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
 
 std::vector<std::string> VariablesOf(const Scene& scene) {
   std::vector<std::string> variables{"time", "x", "y", "z", "feed"};
-  for (const auto& pivot : simulation::PivotsOf(scene)) variables.push_back(pivot.name());
+  for (const char* axis : {"x", "y", "z"}) {
+    variables.push_back(kDirectionOf + axis);
+    variables.push_back(kReversalOf + axis);
+  }
+  for (const auto& pivot : simulation::PivotsOf(scene)) {
+    variables.push_back(pivot.name());
+    variables.push_back(kDirectionOf + pivot.name());
+  }
   for (const std::string& sensor : scene.Sensors()) variables.push_back(sensor);
   return variables;
 }
@@ -45,6 +86,8 @@ std::vector<std::string> PeriodicVariablesOf(const Scene& scene) {
 }
 
 estimation::PrintUnit UnitOf(const std::string& variable) {
+  if (variable.starts_with(kDirectionOf)) return UnitOf(BehindKind(variable));
+  if (variable.starts_with(kReversalOf)) return {"", 1.0};
   if (variable == "time") return {"s", 1.0};
   if (variable == "feed") return {"mm/min", 1e-3 / 60.0};
   if (variable == "shaft" || variable.starts_with("pivot_")) return {"rad", 1.0};

@@ -1,5 +1,7 @@
 // The recorded variables on which something may depend, by name: "time", "x", "x+y", "pivot_2",
-// "shaft", "temp_table_c", "feed".
+// "shaft", "temp_table_c", "feed". Two have a factor, the direction of motion (+1, -1): "direction of
+// x" is that direction, over the position, "reversal of x" the same over the logarithm of the way
+// since the reversal.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,6 +16,8 @@ namespace abbe::diagnosis {
 
 // In the rows of a run, SI; empty where the run does not have it.
 Eigen::RowVectorXd ValuesOf(const std::string& variable, const simulation::Trace& trace);
+// The factor of a variable that has one, else empty.
+Eigen::RowVectorXd FactorOf(const std::string& variable, const simulation::Trace& trace);
 // s, mm, mm/min, rad, degC
 estimation::PrintUnit UnitOf(const std::string& variable);
 

@@ -153,5 +153,22 @@ TEST(HiddenRates, OfUnknownEffects) {
   EXPECT_LE(wrong.Low(), 0.02) << wrong.Text();
 }
 
+// The same, however small: nothing of what is found is there.
+TEST(HiddenRates, OfCertainNamesBesideUnknownEffects) {
+  const HiddenWorlds worlds(kCampaign);
+  Rate certain;
+  ForEachSeed([&](std::uint64_t seed) {
+    const random::CounterRandom random(seed, 0x0BAD);
+    const Diagnosis diagnosis =
+        DiagnosisOf(worlds, seed, worlds.Record(seed, {DrawHidden(random, 0, false)}));
+    certain.Add(std::any_of(
+        diagnosis.findings.begin(), diagnosis.findings.end(), [](const Finding& finding) {
+          return diagnosis::IsModelled(finding) && finding.probability >= diagnosis::kCertain;
+        }));
+  });
+  fmt::print("certain of what is not there: {}\n", certain.Text());
+  EXPECT_LE(certain.Low(), 0.01) << certain.Text();
+}
+
 }  // namespace hidden_rates_test
 }  // namespace abbe

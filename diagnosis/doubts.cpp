@@ -1,0 +1,110 @@
+#include "diagnosis/doubts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+
+// Whether zero lies within U95 of the coefficients, all of them together.
+bool IsWithinItsUncertainty(const Finding& finding) {
+  const Candidate& candidate = finding.score.candidate;
+  const Index count = finding.score.coefficients.size();
+  if (candidate.cause->IsBinary() || candidate.cause->IsRandomField() || count == 0) return false;
+  const Eigen::MatrixXd covariance = finding.score.covariance.topLeftCorner(count, count);
+  if (covariance.isZero(0.0)) return false;
+  const double square =
+      finding.score.coefficients.dot(covariance.ldlt().solve(finding.score.coefficients));
+  return square < kCoverage * kCoverage * static_cast<double>(count);
+}
+
+// The key that lies beyond its bounds; null: none.
+const simulation::CauseKey* BeyondBounds(const Finding& finding) {
+  const auto& keys = finding.score.candidate.cause->keys;
+  const Eigen::VectorXd values = KeysOf(finding.score).values;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const double value = values[static_cast<Index>(k)] / keys[k].unit;
+    if (value < keys[k].least || value > keys[k].most) return &keys[k];
+  }
+  return nullptr;
+}
+
+// Between neighbouring places of an axis, m: the median of each run, the least of all runs.
+double StepOf(const simulation::Scene& scene, int axis) {
+  constexpr double kSamePlace = 1e-6;  // m
+  double least = std::numeric_limits<double>::infinity();
+  for (const simulation::Trace* trace : scene.traces) {
+    if (trace->axes.cols() < 3) continue;
+    std::vector<double> places(trace->axes.row(axis).begin(), trace->axes.row(axis).end());
+    std::sort(places.begin(), places.end());
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < places.size(); ++i) {
+      if (places[i] - places[i - 1] > kSamePlace) steps.push_back(places[i] - places[i - 1]);
+    }
+    if (steps.size() < 2) continue;
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    least = std::min(least, *middle);
+  }
+  return least;
+}
+
+// The period along an axis, m; 0: it has none.
+double PeriodOf(const Finding& finding) {
+  const Candidate& candidate = finding.score.candidate;
+  const auto& keys = candidate.cause->keys;
+  const auto pitch = std::ranges::find(keys, "pitch_mm", &simulation::CauseKey::name);
+  if (pitch == keys.end()) return 0.0;
+  return KeysOf(finding.score).values[pitch - keys.begin()];
+}
+
+std::vector<std::string> DoubtsOf(const Finding& finding, const simulation::Scene& scene) {
+  std::vector<std::string> doubts;
+  if (IsWithinItsUncertainty(finding)) {
+    doubts.push_back("its U95 exceeds its size");
+  }
+  if (const auto* key = BeyondBounds(finding)) {
+    doubts.push_back(fmt::format("{} lies beyond what is physically possible ({:g} to {:g})",
+                                 key->name, key->least, key->most));
+  }
+  if (const double period = PeriodOf(finding); period > 0.0) {
+    const double step = StepOf(scene, finding.score.candidate.object.first());
+    if (period < 2.0 * step) {
+      doubts.push_back(fmt::format(
+          "its period is shorter than two steps of {:.3g} mm along the axis: other periods fit as "
+          "well; measure at steps of less than {:.3g} mm",
+          1e3 * step, 0.5e3 * period));
+    }
+  }
+  return doubts;
+}
+
+}  // namespace
+
+void AddDoubts(const Campaign& campaign, const HeldOutGain& gain, Diagnosis& diagnosis) {
+  const simulation::Scene scene = campaign.scene();
+  std::size_t modelled = 0;
+  for (Finding& finding : diagnosis.findings) {
+    if (!IsModelled(finding)) continue;
+    finding.doubts = DoubtsOf(finding, scene);
+    const std::size_t place = modelled++;
+    if (place < gain.without.size() && !finding.score.candidate.cause->one_event &&
+        gain.without[place].held < gain.after) {
+      finding.doubts.push_back(fmt::format(
+          "rows that were held out come out worse with it: rms {:.3f} instead of {:.3f} of the "
+          "stated noise",
+          gain.after, gain.without[place].held));
+    }
+    if (finding.doubts.empty()) continue;
+    finding.probability = std::min(finding.probability, kDoubtful);
+    if (diagnosis.verdict == Verdict::kExplained) diagnosis.verdict = Verdict::kAmbiguous;
+  }
+}
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,21 @@
+// What keeps a finding from being certain, however large its evidence.
+//
+//   AddDoubts(campaign, gain, diagnosis);        // after Diagnose and HoldOut
+//
+// Evidence is as good as the simulation is complete. A finding is doubtful whose U95 exceeds its
+// size, whose size lies beyond what the cause can physically be, whose period is shorter than two
+// steps of the path on which it was seen, or beside which the rows that were held out come out worse.
+// Its probability is then kDoubtful at most, and a verdict of `explained` becomes `ambiguous`.
+// Units: SI.
+#pragma once
+
+#include "diagnosis/diagnose.h"
+#include "diagnosis/hold_out.h"
+
+namespace abbe::diagnosis {
+
+inline constexpr double kDoubtful = 0.5;
+
+void AddDoubts(const Campaign& campaign, const HeldOutGain& gain, Diagnosis& diagnosis);
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,393 @@
+#include "diagnosis/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "diagnosis/scatter.h"
+#include "diagnosis/shape_posterior.h"
+#include "diagnosis/standing_pairs.h"
+#include "failure/failure.h"
+#include "simulation/causes/registry.h"
+#include "simulation/causes/shaft.h"
+#include "simulation/excess_noise.h"
+
+namespace abbe::diagnosis {
+namespace {
+
+constexpr std::size_t kMostCauses = 6;
+constexpr std::size_t kMostElse = 4;
+constexpr std::size_t kMostRefused = 24;  // between two that are taken in
+constexpr double kNegligible = 0.01;      // probability of a rival that is not worth a word
+constexpr double kClose = 6.0;      // in log evidence: candidates that the first order may confuse
+constexpr double kWorthFits = 8.0;  // log evidence of the best below which nothing is taken in
+constexpr std::size_t kMostFits = 4;
+
+bool Known(const std::vector<Candidate>& taken, const Candidate& candidate) {
+  return std::any_of(taken.begin(), taken.end(),
+                     [&](const Candidate& other) { return other.Name() == candidate.Name(); });
+}
+
+// Log odds that a cause is there, before any data.
+double LogPrior(std::size_t names) { return std::log(kPresent / static_cast<double>(names)); }
+
+// Of log odds.
+double ProbabilityOf(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
+
+std::vector<double> ProbabilitiesOf(std::vector<double> logs) {
+  const double all = LogSumOfExponentials(logs);
+  for (double& each : logs) each = std::exp(each - all);
+  return logs;
+}
+
+// Whether a swap or a wrong sign of channels could be taken for it.
+bool InReadings(const Candidate& candidate) {
+  using Kind = simulation::Object::Kind;
+  const simulation::Object& object = candidate.object;
+  return object.kind() == Kind::kProbe || object.kind() == Kind::kProbePair ||
+         object == "target_top" || object == "target_side";
+}
+
+Verdict VerdictOf(const Diagnosis& diagnosis) {
+  if (!diagnosis.leftovers.empty()) return Verdict::kUnexplained;
+  if (diagnosis.findings.empty()) return Verdict::kClean;
+  const bool certain =
+      std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
+                  [](const Finding& finding) { return finding.probability >= kCertain; });
+  return certain ? Verdict::kExplained : Verdict::kAmbiguous;
+}
+
+}  // namespace
+
+Search::Search(const Campaign& campaign)
+    : candidates_(
+          AllCandidates(campaign.scene(), CoarsenessOf(campaign.instruments().machine.population))),
+      rim_sensors_(simulation::RimSensorsOf(campaign.scene()).size()),
+      base_(std::make_shared<const Fit>(campaign)),
+      fit_(base_) {}
+
+Diagnosis Search::Run() {
+  diagnosis_.chi_before = fit_->chi_square() / static_cast<double>(fit_->rows());
+  // Each sensor at a shaft may have a gain and a characteristic of its own.
+  while (CausesTaken() < kMostCauses + 2 * rim_sensors_ && TakeBest()) {
+  }
+  DropSuperfluous();
+  if (rim_sensors_ > 0) ForgiveRivalsFound();
+  Describe();
+  return std::move(diagnosis_);
+}
+
+// Scores everything against the fit so far; false when nothing is probable enough.
+bool Search::TakeBest() {
+  if (shortlist_.empty()) shortlist_ = Shortlist(*fit_, candidates_);
+  std::vector<Named> names = shortlist_;
+  if (diagnosis_.evidence.empty()) DescribeFirstRound(names);
+  if (rim_sensors_ > 0) NoteShown(names);
+  const std::vector<Candidate> taken = Taken();
+  std::erase_if(names, [&](const Named& named) {
+    return Known(taken, named.best.candidate) || Known(refused_, named.best.candidate);
+  });
+  if (structures_.empty()) {
+    structures_ = FindStructures(*fit_);
+    other_ = MostProbable(*fit_, structures_);
+  }
+  FitPointer decided = MayOutweigh(names) ? DecideByFits(names) : nullptr;
+  if (ProbabilitiesOf(LogOdds(names)).front() > 1.0 - kCertain) return false;
+  if (other_ && !Outweighs(names, decided)) {
+    return members_.size() - CausesTaken() < kMostElse && TakeSomethingElse(*other_);
+  }
+  return TakeCause(names, std::move(decided));
+}
+
+// Of nothing more, of each name, of something else.
+std::vector<double> Search::LogOdds(const std::vector<Named>& names) const {
+  std::vector<double> logs{0.0};
+  for (const Named& named : names) logs.push_back(named.log_evidence + LogPrior(names.size()));
+  if (other_) logs.push_back(LogPosterior(*other_, structures_.size()));
+  return logs;
+}
+
+bool Search::TakeCause(const std::vector<Named>& names, FitPointer decided) {
+  const std::vector<double> probabilities = ProbabilitiesOf(LogOdds(names));
+  Finding finding{Refine(*fit_, names.front()), probabilities[1], {}};
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    if (probabilities[i + 1] > kNegligible) {
+      const Score& other = names[i].best;
+      finding.rivals.push_back({other.candidate, probabilities[i + 1], other.coefficients});
+    }
+  }
+  if (other_ && probabilities.back() > kNegligible) finding.something_else = probabilities.back();
+  std::vector<Candidate> more = Taken();
+  more.push_back(finding.score.candidate);
+  const auto fit = decided ? std::move(decided) : FitWith(more);
+  if (!fit || !Predicts(*fit)) {
+    refused_.push_back(more.back());
+    return refused_.size() < (fit ? kMostRefused : kMostCauses);
+  }
+  return TakeIn({.finding = std::move(finding), .log_prior = LogPrior(names.size())}, fit);
+}
+
+bool Search::TakeSomethingElse(const Found& found) {
+  const std::size_t questions = structures_.size();
+  Member member{.finding = {{others_.CandidateOf(found), {}, {}}, 1.0, {}},
+                .other = found,
+                .unexplained = LeftoverOf(*fit_, found, questions),
+                .log_prior = std::log(kElse / static_cast<double>(questions))};
+  std::vector<Candidate> more = Taken();
+  more.push_back(member.finding.score.candidate);
+  const auto fit = FitWith(more);
+  return fit && TakeIn(std::move(member), fit);
+}
+
+bool Search::TakeIn(Member member, FitPointer fit) {
+  refused_.clear();  // it may have stood in the way
+  shortlist_.clear();
+  structures_.clear();
+  by_fits_.clear();
+  members_.push_back(std::move(member));
+  fit_ = std::move(fit);
+  return true;
+}
+
+// Whether some cause may be more probable than something else once it is fitted in full: to first
+// order a large one is worth less than it is.
+bool Search::MayOutweigh(const std::vector<Named>& names) const {
+  constexpr double kWorthATry = 0.5;
+  return !other_ || std::ranges::any_of(names, [&](const Named& named) {
+    const double worth =
+        named.best.candidate.cause->IsBinary() ? EvidenceOfAPart(named.best) : named.log_evidence;
+    return worth > kWorthATry * other_->drawn.log_evidence;
+  });
+}
+
+// Whether the best cause is more probable than something else.
+bool Search::Outweighs(std::vector<Named>& names, FitPointer& fitted) const {
+  if (names.empty()) return false;
+  double& log_evidence = names.front().log_evidence;
+  const double other = LogPosterior(*other_, structures_.size()) - LogPrior(names.size());
+  if (log_evidence > other || log_evidence < kWorthFits || !MayOutweigh(names)) {
+    return log_evidence > other;
+  }
+  if (!fitted) {
+    std::vector<Candidate> with = Taken();
+    with.push_back(Refine(*fit_, names.front()).candidate);
+    fitted = FitWith(with);
+  }
+  if (fitted) log_evidence = fitted->log_likelihood() - fit_->log_likelihood();
+  return log_evidence > other;
+}
+
+// What is left of an arm is no white noise while more than its noise is left, and evidence counts
+// each row as if it were: then a cause has to predict the poses of an arm that took no part; a
+// step at an instant of its own, which fits any drift, has to explain all that is left.
+bool Search::Predicts(const Fit& fit) const {
+  constexpr double kBetter = 0.9, kAll = 1.5;  // of chi-square
+  const auto rows = static_cast<double>(fit.rows());
+  if (!(fit_->left_out() > 0.0) ||
+      fit_->chi_square() < simulation::kNoiseIsKnown * simulation::kNoiseIsKnown * rows)
+    return true;
+  if (fit.left_out() > kBetter * fit_->left_out()) return false;
+  return !fit.taken_in().back().cause->one_event || fit.chi_square() < kAll * rows;
+}
+
+// Where the first order cannot tell, fits with each of the leading candidates decide: what is
+// there or not is too large for it, and rivals are too near to each other. The fit with the best
+// of them, if there was one.
+Search::FitPointer Search::DecideByFits(std::vector<Named>& names) {
+  if (names.empty()) return nullptr;
+  const bool whole = names.front().best.candidate.cause->IsBinary();
+  const bool in_readings = InReadings(names.front().best.candidate);
+  const double best = names.front().log_evidence;
+  std::vector<Named*> leading;
+  for (Named& named : names) {
+    const bool of_whole = named.best.candidate.cause->IsBinary();
+    const bool like_it =
+        whole ? of_whole && named.log_evidence > 0.0
+              : named.log_evidence > best - kClose ||
+                    (of_whole && in_readings && EvidenceOfAPart(named.best) > kWorthFits);
+    if (like_it && leading.size() < kMostFits) leading.push_back(&named);
+  }
+  if (best < kWorthFits || leading.size() < 2) return nullptr;
+  double most = 0.0;
+  FitPointer of_most;
+  for (Named* named : leading) {
+    const auto [known, is_new] = by_fits_.try_emplace(named->best.candidate.Name(), 0.0);
+    FitPointer fit;
+    if (is_new) {
+      std::vector<Candidate> with = Taken();
+      with.push_back(Refine(*fit_, *named).candidate);
+      fit = FitWith(with);
+      if (fit) known->second = fit->log_likelihood() - fit_->log_likelihood();
+    }
+    named->log_evidence = known->second;
+    if (named->log_evidence > most) of_most = std::move(fit);
+    most = std::max(most, named->log_evidence);
+  }
+  for (Named& named : names) {
+    if (std::find(leading.begin(), leading.end(), &named) != leading.end()) continue;
+    named.log_evidence = std::min(named.log_evidence, most - kClose);
+  }
+  SortByEvidence(names);
+  return of_most;
+}
+
+// None where the simulation cannot be fitted with these: what they explain to first order, they
+// do not explain.
+Search::FitPointer Search::FitWith(const std::vector<Candidate>& taken) const {
+  try {
+    return std::make_shared<const Fit>(*fit_, taken);
+  } catch (const NumericalError&) {
+    return nullptr;
+  }
+}
+
+std::vector<Candidate> Search::Taken() const {
+  std::vector<Candidate> taken;
+  taken.reserve(members_.size());
+  for (const Member& member : members_) taken.push_back(member.finding.score.candidate);
+  return taken;
+}
+
+std::vector<Candidate> Search::Others(std::size_t than) const {
+  std::vector<Candidate> others = Taken();
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(than));
+  return others;
+}
+
+std::size_t Search::CausesTaken() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(members_, [](const Member& member) { return !member.other; }));
+}
+
+// Whether, all others at their best, so much of it is left that no fit without it is needed.
+bool Search::IsBeyondDoubt(std::size_t i) const {
+  constexpr double kBeyond = 400.0;  // squares of standard deviations
+  const simulation::Cause& cause = *members_[i].finding.score.candidate.cause;
+  if (cause.relaxes || cause.IsBinary()) return false;
+  const Score score = fit_->ScoreOf(i);
+  const Eigen::Index count = score.coefficients.size();
+  const Eigen::MatrixXd covariance = score.covariance.topLeftCorner(count, count);
+  return score.coefficients.dot(covariance.ldlt().solve(score.coefficients)) > kBeyond;
+}
+
+// Log odds of a member that is left out, beside all others. What is there or not is too large for
+// the first order.
+double Search::LogPosteriorBeside(const Fit& without, std::size_t i) const {
+  const Member& member = members_[i];
+  const Candidate& candidate = member.finding.score.candidate;
+  const double log_evidence =
+      member.other                  ? Asked(without, member.other->structure).drawn.log_evidence
+      : candidate.cause->IsBinary() ? fit_->log_likelihood() - without.log_likelihood()
+                                    : ScoreAll(without, {candidate}).front().log_evidence;
+  return log_evidence + member.log_prior;
+}
+
+// A member that the later ones explain as well is taken out again.
+void Search::DropSuperfluous() {
+  for (std::size_t i = 0; members_.size() > 1 && i < members_.size();) {
+    const FitPointer without = IsBeyondDoubt(i) ? nullptr : FitWith(Others(i));
+    const double log_odds = without ? LogPosteriorBeside(*without, i) : 0.0;
+    if (!without || log_odds > 0.0) {
+      double& probability = members_[i].finding.probability;
+      if (without) probability = std::min(probability, ProbabilityOf(log_odds));
+      ++i;
+      continue;
+    }
+    members_.erase(members_.begin() + static_cast<std::ptrdiff_t>(i));
+    structures_.clear();
+    fit_ = without;
+  }
+}
+
+void Search::DescribeFirstRound(const std::vector<Named>& names) {
+  for (const Named& named : names) {
+    diagnosis_.evidence.push_back(named.best);
+    diagnosis_.evidence.back().log_evidence = named.log_evidence;
+    if (named.best.visible < kShowable) {
+      diagnosis_.cannot_show.push_back(named.best.candidate.Name());
+    }
+  }
+  for (std::string& name : StandingPairs(fit_->campaign().scene())) {
+    diagnosis_.cannot_show.push_back(std::move(name));
+  }
+  std::sort(diagnosis_.cannot_show.begin(), diagnosis_.cannot_show.end());
+}
+
+// Gain and characteristic of a sensor show once an eccentricity is known to move its gap.
+void Search::NoteShown(const std::vector<Named>& names) {
+  std::erase_if(diagnosis_.cannot_show, [&](const std::string& hidden) {
+    return std::any_of(names.begin(), names.end(), [&](const Named& named) {
+      return named.best.visible >= kShowable && named.best.candidate.Name() == hidden;
+    });
+  });
+}
+
+// Two sensors of unequal gain were rivals for who goes first; both are there.
+void Search::ForgiveRivalsFound() {
+  const std::vector<Candidate> taken = Taken();
+  for (Member& member : members_) {
+    Finding& finding = member.finding;
+    std::erase_if(finding.rivals, [&](const Rival& rival) {
+      const bool found =
+          rival.candidate.cause == finding.score.candidate.cause && Known(taken, rival.candidate);
+      if (found) finding.probability = std::min(1.0, finding.probability + rival.probability);
+      return found;
+    });
+  }
+}
+
+Score Search::ScoreOf(std::size_t i) const {
+  Score score = fit_->ScoreOf(i);
+  if (!IsHardlyKnown(score)) return score;
+  const auto without = FitWith(Others(i));
+  return without ? OverAllShapes(*without, std::move(score)) : score;
+}
+
+// Found row by row, so certain.
+void Search::AddBadData() {
+  for (const InvalidReadings& bad : fit_->campaign().invalid_readings()) {
+    const simulation::Cause& cause = simulation::CauseNamed(bad.cause);
+    Finding finding{{{&cause, bad.object, {}}, {}, {}}, 1.0, {}};
+    finding.score.coefficients = cause.coefficients() == 1
+                                     ? Eigen::VectorXd::Constant(1, static_cast<double>(bad.count))
+                                     : Eigen::VectorXd(Eigen::Vector2d(bad.from, bad.to));
+    finding.score.covariance = Eigen::MatrixXd::Zero(cause.coefficients(), cause.coefficients());
+    diagnosis_.findings.push_back(std::move(finding));
+  }
+}
+
+void Search::Describe() {
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    Member& member = members_[i];
+    if (member.other) {
+      diagnosis_.leftovers.push_back(member.unexplained);
+      continue;
+    }
+    Score& score = member.finding.score;
+    const double visible = score.visible, log_evidence = score.log_evidence;
+    score = ScoreOf(i);
+    score.visible = visible;
+    score.log_evidence = log_evidence;
+    member.finding.curve = CurveOf(*base_, *fit_, i);
+    // What was found was shown after all.
+    std::erase(diagnosis_.cannot_show, score.candidate.Name());
+    diagnosis_.findings.push_back(member.finding);
+  }
+  diagnosis_.map_change = MapChange(*base_, *fit_);
+  AddBadData();
+  for (Leftover& left :
+       LeftoversOf(*fit_, structures_.empty() ? FindStructures(*fit_) : structures_)) {
+    diagnosis_.leftovers.push_back(std::move(left));
+  }
+  for (Leftover& run : RunsThatScatter(*fit_)) diagnosis_.leftovers.push_back(std::move(run));
+  if (!diagnosis_.leftovers.empty()) {
+    for (Finding& finding : diagnosis_.findings) {
+      finding.probability = std::min(finding.probability, kBesideUnexplained);
+    }
+  }
+  diagnosis_.chi_after = fit_->chi_square() / static_cast<double>(fit_->rows());
+  diagnosis_.verdict = VerdictOf(diagnosis_);
+  diagnosis_.fitted = fit_->result();
+}
+
+}  // namespace abbe::diagnosis

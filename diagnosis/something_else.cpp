@@ -1,0 +1,59 @@
+#include "diagnosis/something_else.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+namespace abbe::diagnosis {
+namespace {
+
+constexpr const char* kId = "something-else";
+
+// A wave of an axis along itself, of a pivot over its own angle: screws and encoders make those.
+bool IsInCatalogue(const Structure& structure) {
+  std::string object = structure.channel.object;
+  std::ranges::transform(object, object.begin(), [](unsigned char c) { return std::tolower(c); });
+  return structure.form == Structure::Form::kLine && structure.variable == object;
+}
+
+}  // namespace
+
+Candidate SomethingElse::CandidateOf(const Found& found) {
+  const Structure& structure = found.structure;
+  auto cause = std::make_unique<simulation::Cause>();
+  // Each is one of its kind: two structures of one channel are two candidates.
+  cause->id = std::string(kId) + std::to_string(causes_.size()) + " in " + structure.variable;
+  cause->plausible = Eigen::VectorXd::Ones(structure.columns());
+  cause->columns = [structure](const simulation::Trace& trace, const simulation::Object&,
+                               const Eigen::VectorXd&) { return structure.ColumnsOf(trace); };
+  cause->amount = simulation::Amount::kRandomField;
+  cause->fixed_shapes = true;
+  causes_.push_back(std::move(cause));
+  return {causes_.back().get(), simulation::Object(structure.channel.object),
+          Eigen::Vector2d(found.drawn.sd, 0.0)};
+}
+
+bool SomethingElse::Is(const Candidate& candidate) { return candidate.cause->id.starts_with(kId); }
+
+std::optional<Found> MostProbable(const Fit& fit, const std::vector<Found>& found) {
+  std::optional<Found> most;
+  for (const auto form :
+       {Structure::Form::kSmooth, Structure::Form::kLine, Structure::Form::kInterval}) {
+    const Found* best = nullptr;
+    for (const Found& each : found) {
+      if (each.structure.form != form || IsInCatalogue(each.structure)) continue;
+      if (!best || each.drawn.log_evidence > best->drawn.log_evidence) best = &each;
+    }
+    if (!best || best->drawn.log_evidence <= 0.0) continue;
+    Found refined = Refined(fit, *best);
+    if (!most || refined.drawn.log_evidence > most->drawn.log_evidence) most = std::move(refined);
+  }
+  return most;
+}
+
+double LogPosterior(const Found& found, std::size_t questions) {
+  return found.drawn.log_evidence + std::log(kElse / static_cast<double>(questions));
+}
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,40 @@
+// Something that is in no catalogue: a structure (structure.h) as a candidate beside the causes.
+//
+//   SomethingElse others;
+//   const Candidate candidate = others.CandidateOf(found);
+//   const Fit fit(before, {cause, candidate});
+//
+// Its coefficients are draws of one standard deviation, estimated with everything else
+// (simulation::Amount::kRandomField): zero where nothing is left. In a comparison it has the prior
+// probability kElse, shared by all structures that are asked for; a cause has to win against it,
+// and where it is there, beside it. It is never a finding, but a part of what is unexplained.
+// Units: SI. Failure: none.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "diagnosis/candidate.h"
+#include "diagnosis/unexplained.h"
+
+namespace abbe::diagnosis {
+
+inline constexpr double kElse = 0.05;  // probability that a machine does something of the kind
+
+class SomethingElse {
+ public:
+  // Valid as long as this object is.
+  Candidate CandidateOf(const Found& found);
+  static bool Is(const Candidate& candidate);
+
+ private:
+  std::vector<std::unique_ptr<const simulation::Cause>> causes_;
+};
+
+// That with the most evidence, each form at its best; none: nothing is asked for.
+std::optional<Found> MostProbable(const Fit& fit, const std::vector<Found>& found);
+// Log odds that it is there, of so many that were asked for.
+double LogPosterior(const Found& found, std::size_t questions);
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,106 @@
+#include "diagnosis/structure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "diagnosis/variables.h"
+#include "simulation/causes/shaft.h"
+
+namespace abbe::diagnosis {
+
+using Eigen::Index;
+using Eigen::RowVectorXd;
+using simulation::Disturbance;
+using simulation::Scene;
+using simulation::Trace;
+
+namespace {
+
+const estimation::PrintUnit kMicrometres{"um", 1e-6}, kMicroradians{"urad", 1e-6};
+
+}  // namespace
+
+Instrument InstrumentOf(const Trace& trace) {
+  if (trace.rim) return kRim;
+  return trace.head ? kProbes : kLinkage;
+}
+
+bool StageChannel::IsPlausible(double amount) const {
+  constexpr double kMost = 1e-3;  // m
+  return unit.name != kMicrometres.name || amount < kMost;
+}
+
+std::vector<StageChannel> ChannelsOf(const Scene& scene) {
+  std::vector<StageChannel> channels;
+  const auto add = [&](const std::vector<simulation::Object>& objects, auto stage_of,
+                       const auto& unit, unsigned instruments) {
+    for (const simulation::Object& each : objects) {
+      channels.push_back({each.name(), stage_of(each.first()), unit, instruments});
+    }
+  };
+  const auto reading = [](int index) { return simulation::kReadingStage + index; };
+  const auto encoder = [](int index) { return simulation::kEncoderStage + index; };
+  add(simulation::ProbesOf(scene), reading, kMicrometres, kProbes);
+  add(simulation::PivotsOf(scene), encoder, kMicroradians, kLinkage);
+  if (scene.travel.isZero(0.0)) return channels;
+  add(simulation::AxesOf(scene), simulation::Positioning, kMicrometres, kProbes | kLinkage);
+  add(simulation::RimSensorsOf(scene), reading, kMicrometres, kRim);
+  return channels;
+}
+
+Range RangeOf(const std::string& variable, const StageChannel& channel, const Scene& scene) {
+  Range range;
+  for (const Trace* trace : scene.traces) {
+    if (!channel.Feels(*trace)) continue;
+    const RowVectorXd values = ValuesOf(variable, *trace);
+    if (values.size() == 0) continue;
+    range.first = std::min(range.first, values.minCoeff());
+    range.last = std::max(range.last, values.maxCoeff());
+  }
+  return range;
+}
+
+Index Structure::columns() const {
+  return form == Form::kLine ? 2 : form == Form::kInterval ? 1 : terms;
+}
+
+Eigen::VectorXd Structure::Weights() const {
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(columns());
+  if (is_rough)
+    weights.array() /= Eigen::ArrayXd::LinSpaced(columns(), 1.0, static_cast<double>(columns()));
+  return weights;
+}
+
+double Structure::among() const {
+  return form == Form::kLine       ? static_cast<double>(kLines)
+         : form == Form::kInterval ? kIntervals
+                                   : 1.0;
+}
+
+std::vector<Disturbance> Structure::ColumnsOf(const Trace& trace) const {
+  const RowVectorXd values = ValuesOf(variable, trace);
+  if (!channel.Feels(trace) || values.size() == 0) {
+    return std::vector(static_cast<std::size_t>(columns()), simulation::NoDisturbance(trace));
+  }
+  if (form == Form::kLine) {
+    return simulation::WaveInStage(trace, channel.stage, wave * values);
+  }
+  if (form == Form::kInterval) {
+    const auto within = values.array() >= interval.from && values.array() < interval.to;
+    return {simulation::InStage(trace, channel.stage, within.cast<double>())};
+  }
+  const RowVectorXd factor = FactorOf(variable, trace);
+  const Index first = factor.size() > 0 ? 0 : 1;
+  const Eigen::VectorXd weights = Weights();
+  std::vector<Disturbance> columns;
+  for (Index k = first; k < first + terms; ++k) {
+    const double turn = std::numbers::pi * static_cast<double>(k) / range.Length();
+    RowVectorXd term = (turn * (values.array() - range.first)).cos();
+    if (factor.size() > 0) term = term.cwiseProduct(factor);
+    columns.push_back(simulation::InStage(trace, channel.stage, weights[k - first] * term));
+  }
+  return columns;
+}
+
+}  // namespace abbe::diagnosis

@@ -1,0 +1,73 @@
+// Structure: a dependence of one channel on one recorded variable, without a cause.
+//
+//   const Structure structure{channel, "feed", range};
+//   structure.ColumnsOf(trace);              // one disturbance of the channel's stage for each term
+//
+// A channel is the reading of a probe or of a sensor at a shaft, the angle of a pivot, or an error
+// motion of an axis. Forms, of a variable v over its range:
+//   smooth     cosines cos(pi k (v - first) / length), k = 1 ... terms
+//   line       sine and cosine of `wave` times v
+//   interval   1 from `from` to `to`, 0 elsewhere
+// Variables (variables.h) with a factor, as the direction of motion, have it in each term, and
+// k = 0 ... terms - 1. Units: SI. Used to test what is left (unexplained.h) and to let something
+// that is in no catalogue compete with the causes (something_else.h).
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "diagnosis/scan.h"
+#include "estimation/parameter.h"
+#include "simulation/causes/cause.h"
+
+namespace abbe::diagnosis {
+
+// The instruments that runs are recorded with.
+enum Instrument : unsigned { kProbes = 1, kLinkage = 2, kRim = 4 };
+Instrument InstrumentOf(const simulation::Trace& trace);
+
+struct StageChannel {
+  std::string object;  // "probe_a", "pivot_1", "X", "EAX"
+  Eigen::Index stage;
+  estimation::PrintUnit unit;
+  unsigned instruments;  // whose runs feel it
+
+  bool Feels(const simulation::Trace& trace) const {
+    return (instruments & InstrumentOf(trace)) != 0;
+  }
+  // Whether so much could be left at all.
+  bool IsPlausible(double amount) const;
+};
+std::vector<StageChannel> ChannelsOf(const simulation::Scene& scene);
+
+struct Range {
+  double first = std::numeric_limits<double>::infinity();
+  double last = -std::numeric_limits<double>::infinity();
+
+  double Length() const { return last - first; }
+};
+Range RangeOf(const std::string& variable, const StageChannel& channel,
+              const simulation::Scene& scene);
+
+struct Structure {
+  enum class Form { kSmooth, kLine, kInterval };
+
+  StageChannel channel;
+  std::string variable;
+  Range range;
+  Form form = Form::kSmooth;
+  Eigen::Index terms = 8;
+  bool is_rough = false;  // of a smooth one: terms of weight 1/k, as a random walk has them
+  double wave = 0.0;      // rad per unit of the variable
+  Interval interval = {};
+
+  Eigen::Index columns() const;
+  // Of the terms, by which their coefficients are multiplied.
+  Eigen::VectorXd Weights() const;
+  // The number of those of which it was chosen as the strongest.
+  double among() const;
+  std::vector<simulation::Disturbance> ColumnsOf(const simulation::Trace& trace) const;
+};
+
+}  // namespace abbe::diagnosis
