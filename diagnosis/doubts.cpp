@@ -16,7 +16,11 @@ using Eigen::Index;
 bool IsWithinItsUncertainty(const Finding& finding) {
   const Candidate& candidate = finding.score.candidate;
   const Index count = finding.score.coefficients.size();
-  if (candidate.cause->IsBinary() || candidate.cause->IsRandomField() || count == 0) return false;
+  if (candidate.cause->IsBinary() || count == 0) return false;
+  if (candidate.cause->IsRandomField()) {  // known by its size
+    const Keys keys = KeysOf(finding.score);
+    return std::abs(keys.values[0]) < kCoverage * keys.u[0];
+  }
   const Eigen::MatrixXd covariance = finding.score.covariance.topLeftCorner(count, count);
   if (covariance.isZero(0.0)) return false;
   const double square =
@@ -87,8 +91,7 @@ std::vector<std::string> DoubtsOf(const Finding& finding, const simulation::Scen
 
 }  // namespace
 
-void AddDoubts(const Campaign& campaign, const HeldOutGain& gain, Diagnosis& diagnosis) {
-  const simulation::Scene scene = campaign.scene();
+void AddDoubts(const simulation::Scene& scene, const HeldOutGain& gain, Diagnosis& diagnosis) {
   std::size_t modelled = 0;
   for (Finding& finding : diagnosis.findings) {
     if (!IsModelled(finding)) continue;

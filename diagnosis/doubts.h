@@ -1,6 +1,6 @@
 // What keeps a finding from being certain, however large its evidence.
 //
-//   AddDoubts(campaign, gain, diagnosis);        // after Diagnose and HoldOut
+//   AddDoubts(campaign.scene(), gain, diagnosis);        // after Diagnose and HoldOut
 //
 // Evidence is as good as the simulation is complete. A finding is doubtful whose U95 exceeds its
 // size, whose size lies beyond what the cause can physically be, whose period is shorter than two
@@ -16,6 +16,6 @@ namespace abbe::diagnosis {
 
 inline constexpr double kDoubtful = 0.5;
 
-void AddDoubts(const Campaign& campaign, const HeldOutGain& gain, Diagnosis& diagnosis);
+void AddDoubts(const simulation::Scene& scene, const HeldOutGain& gain, Diagnosis& diagnosis);
 
 }  // namespace abbe::diagnosis

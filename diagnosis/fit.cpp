@@ -116,12 +116,13 @@ Fit::Fit(const Campaign& campaign) : campaign_(campaign) {
   Linearize(problem, at);
 }
 
-Fit::Fit(const Fit& before, std::vector<Candidate> taken_in)
+Fit::Fit(const Fit& before, std::vector<Candidate> taken_in, int rounds)
     : campaign_(before.campaign_), taken_in_(std::move(taken_in)), result_(before.result_) {
   // The columns at the fit before, then at their own. What sensors make of a shaft is a product of
   // causes, and settles in steps.
   const bool of_shaft = !simulation::RimSensorsOf(campaign_.scene()).empty();
-  const int rounds = of_shaft ? 12 : 4;
+  constexpr int kRoundsOfShaft = 12;
+  if (of_shaft) rounds = kRoundsOfShaft;
   if (of_shaft) StartFromKnown(before.taken_in_, taken_in_);
   constexpr double kShapeFound = 1e-3;  // relative
   for (int round = 1;; ++round) {

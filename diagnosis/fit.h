@@ -32,8 +32,8 @@ class Fit {
  public:
   // The simulation as it is. NumericalError when the fit does not settle.
   explicit Fit(const Campaign& campaign);
-  // With causes, started from an earlier fit of the same runs.
-  Fit(const Fit& before, std::vector<Candidate> taken_in);
+  // With causes, started from an earlier fit of the same runs; made linear anew at most so often.
+  Fit(const Fit& before, std::vector<Candidate> taken_in, int rounds = kMostRounds);
 
   const Campaign& campaign() const { return campaign_; }
   const estimation::Result& result() const { return result_; }
@@ -48,6 +48,8 @@ class Fit {
   Eigen::Index rows() const;
   // Coefficients of a cause that was taken in, and their covariance.
   Score ScoreOf(std::size_t taken_in) const;
+
+  static constexpr int kMostRounds = 4;
 
   // What disturbances do to all runs, free of everything that the simulation could do instead.
   struct Projection {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "diagnosis/scatter.h"
@@ -92,23 +93,30 @@ bool Search::TakeBest() {
     other_ = MostProbable(*fit_, structures_);
   }
   FitPointer decided = MayOutweigh(names) ? DecideByFits(names) : nullptr;
-  if (ProbabilitiesOf(LogOdds(names)).front() > 1.0 - kCertain) return false;
+  std::vector<double> logs = LogOdds(names);
+  logs.push_back(LogOddsOfSomethingElse());
+  if (ProbabilitiesOf(logs).front() > 1.0 - kCertain) return false;
   if (other_ && !Outweighs(names, decided)) {
     return members_.size() - CausesTaken() < kMostElse && TakeSomethingElse(*other_);
   }
   return TakeCause(names, std::move(decided));
 }
 
-// Of nothing more, of each name, of something else.
+// Of nothing more, of each name.
 std::vector<double> Search::LogOdds(const std::vector<Named>& names) const {
   std::vector<double> logs{0.0};
   for (const Named& named : names) logs.push_back(named.log_evidence + LogPrior(names.size()));
-  if (other_) logs.push_back(LogPosterior(*other_, structures_.size()));
   return logs;
 }
 
+double Search::LogOddsOfSomethingElse() const {
+  return other_ ? LogPosterior(*other_, structures_.size())
+                : -std::numeric_limits<double>::infinity();
+}
+
 bool Search::TakeCause(const std::vector<Named>& names, FitPointer decided) {
-  const std::vector<double> probabilities = ProbabilitiesOf(LogOdds(names));
+  const std::vector<double> logs = LogOdds(names);
+  const std::vector<double> probabilities = ProbabilitiesOf(logs);
   Finding finding{Refine(*fit_, names.front()), probabilities[1], {}};
   for (std::size_t i = 1; i < names.size(); ++i) {
     if (probabilities[i + 1] > kNegligible) {
@@ -116,7 +124,7 @@ bool Search::TakeCause(const std::vector<Named>& names, FitPointer decided) {
       finding.rivals.push_back({other.candidate, probabilities[i + 1], other.coefficients});
     }
   }
-  if (other_ && probabilities.back() > kNegligible) finding.something_else = probabilities.back();
+  finding.something_else = ProbabilityOf(LogOddsOfSomethingElse() - LogSumOfExponentials(logs));
   std::vector<Candidate> more = Taken();
   more.push_back(finding.score.candidate);
   const auto fit = decided ? std::move(decided) : FitWith(more);
@@ -135,7 +143,8 @@ bool Search::TakeSomethingElse(const Found& found) {
                 .log_prior = std::log(kElse / static_cast<double>(questions))};
   std::vector<Candidate> more = Taken();
   more.push_back(member.finding.score.candidate);
-  const auto fit = FitWith(more);
+  constexpr int kRounds = 2;  // the next fits go on from there
+  const auto fit = FitWith(more, kRounds);
   return fit && TakeIn(std::move(member), fit);
 }
 
@@ -160,11 +169,14 @@ bool Search::MayOutweigh(const std::vector<Named>& names) const {
   });
 }
 
-// Whether the best cause is more probable than something else.
+// Whether the best cause goes first: it is more probable than something else, or explains most of what
+// that does, and something else may follow.
 bool Search::Outweighs(std::vector<Named>& names, FitPointer& fitted) const {
+  constexpr double kMostOfIt = 0.75;
   if (names.empty()) return false;
   double& log_evidence = names.front().log_evidence;
-  const double other = LogPosterior(*other_, structures_.size()) - LogPrior(names.size());
+  const double other = std::min(LogOddsOfSomethingElse() - LogPrior(names.size()),
+                                std::max(kWorthFits, kMostOfIt * other_->drawn.log_evidence));
   if (log_evidence > other || log_evidence < kWorthFits || !MayOutweigh(names)) {
     return log_evidence > other;
   }
@@ -233,9 +245,9 @@ Search::FitPointer Search::DecideByFits(std::vector<Named>& names) {
 
 // None where the simulation cannot be fitted with these: what they explain to first order, they
 // do not explain.
-Search::FitPointer Search::FitWith(const std::vector<Candidate>& taken) const {
+Search::FitPointer Search::FitWith(const std::vector<Candidate>& taken, int rounds) const {
   try {
-    return std::make_shared<const Fit>(*fit_, taken);
+    return std::make_shared<const Fit>(*fit_, taken, rounds);
   } catch (const NumericalError&) {
     return nullptr;
   }
@@ -288,8 +300,7 @@ void Search::DropSuperfluous() {
     const FitPointer without = IsBeyondDoubt(i) ? nullptr : FitWith(Others(i));
     const double log_odds = without ? LogPosteriorBeside(*without, i) : 0.0;
     if (!without || log_odds > 0.0) {
-      double& probability = members_[i].finding.probability;
-      if (without) probability = std::min(probability, ProbabilityOf(log_odds));
+      if (without) members_[i].beside = ProbabilityOf(log_odds);
       ++i;
       continue;
     }
@@ -369,6 +380,10 @@ void Search::Describe() {
     score.visible = visible;
     score.log_evidence = log_evidence;
     member.finding.curve = CurveOf(*base_, *fit_, i);
+    // Where something else is there, the cause is judged beside it; else against it.
+    double& something_else = member.finding.something_else;
+    if (CausesTaken() < members_.size() || something_else < kNegligible) something_else = 0.0;
+    member.finding.probability *= member.beside * (1.0 - something_else);
     // What was found was shown after all.
     std::erase(diagnosis_.cannot_show, score.candidate.Name());
     diagnosis_.findings.push_back(member.finding);

@@ -41,6 +41,7 @@ class Search {
     std::optional<Found> other = {};
     Leftover unexplained = {};
     double log_prior = 0.0;  // log odds that it is there, before any data
+    double beside = 1.0;     // probability that it is there beside all others
   };
 
   bool TakeBest();
@@ -50,8 +51,9 @@ class Search {
   bool MayOutweigh(const std::vector<Named>& names) const;
   bool Outweighs(std::vector<Named>& names, FitPointer& fitted) const;
   std::vector<double> LogOdds(const std::vector<Named>& names) const;
+  double LogOddsOfSomethingElse() const;
   FitPointer DecideByFits(std::vector<Named>& names);
-  FitPointer FitWith(const std::vector<Candidate>& taken) const;
+  FitPointer FitWith(const std::vector<Candidate>& taken, int rounds = Fit::kMostRounds) const;
   bool Predicts(const Fit& fit) const;
 
   std::vector<Candidate> Taken() const;

@@ -1,7 +1,5 @@
 #include "diagnosis/something_else.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -10,11 +8,11 @@ namespace {
 
 constexpr const char* kId = "something-else";
 
-// A wave of an axis along itself, of a pivot over its own angle: screws and encoders make those.
+// A wave of an axis along itself, of a pivot over its own angle, of a sensor over that of the shaft:
+// screws, encoders and targets make those.
 bool IsInCatalogue(const Structure& structure) {
-  std::string object = structure.channel.object;
-  std::ranges::transform(object, object.begin(), [](unsigned char c) { return std::tolower(c); });
-  return structure.form == Structure::Form::kLine && structure.variable == object;
+  return structure.form == Structure::Form::kLine &&
+         (structure.IsOfItself() || structure.variable == "shaft");
 }
 
 }  // namespace
@@ -38,8 +36,8 @@ bool SomethingElse::Is(const Candidate& candidate) { return candidate.cause->id.
 
 std::optional<Found> MostProbable(const Fit& fit, const std::vector<Found>& found) {
   std::optional<Found> most;
-  for (const auto form :
-       {Structure::Form::kSmooth, Structure::Form::kLine, Structure::Form::kInterval}) {
+  for (const auto form : {Structure::Form::kSmooth, Structure::Form::kLine,
+                          Structure::Form::kInterval, Structure::Form::kProduct}) {
     const Found* best = nullptr;
     for (const Found& each : found) {
       if (each.structure.form != form || IsInCatalogue(each.structure)) continue;

@@ -1,6 +1,8 @@
 #include "diagnosis/structure.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 
@@ -49,7 +51,8 @@ std::vector<StageChannel> ChannelsOf(const Scene& scene) {
   return channels;
 }
 
-Range RangeOf(const std::string& variable, const StageChannel& channel, const Scene& scene) {
+std::optional<Range> RangeOf(const std::string& variable, const StageChannel& channel,
+                             const Scene& scene) {
   Range range;
   for (const Trace* trace : scene.traces) {
     if (!channel.Feels(*trace)) continue;
@@ -58,11 +61,21 @@ Range RangeOf(const std::string& variable, const StageChannel& channel, const Sc
     range.first = std::min(range.first, values.minCoeff());
     range.last = std::max(range.last, values.maxCoeff());
   }
+  if (!(range.last > range.first)) return {};
   return range;
 }
 
+Eigen::ArrayXd Range::Scaled(const RowVectorXd& values) const {
+  return 2.0 * (values.transpose().array() - first) / Length() - 1.0;
+}
+
+Factors FactorsOf(const std::string& product) {
+  const auto star = product.find('*');
+  return {product.substr(0, star), product.substr(star + 1)};
+}
+
 Index Structure::columns() const {
-  return form == Form::kLine ? 2 : form == Form::kInterval ? 1 : terms;
+  return form == Form::kLine ? 2 : form == Form::kInterval ? 1 : form == Form::kProduct ? 4 : terms;
 }
 
 Eigen::VectorXd Structure::Weights() const {
@@ -72,6 +85,12 @@ Eigen::VectorXd Structure::Weights() const {
   return weights;
 }
 
+bool Structure::IsOfItself() const {
+  std::string object = channel.object;
+  std::ranges::transform(object, object.begin(), [](unsigned char c) { return std::tolower(c); });
+  return variable.substr(variable.rfind(' ') + 1) == object;
+}
+
 double Structure::among() const {
   return form == Form::kLine       ? static_cast<double>(kLines)
          : form == Form::kInterval ? kIntervals
@@ -79,6 +98,7 @@ double Structure::among() const {
 }
 
 std::vector<Disturbance> Structure::ColumnsOf(const Trace& trace) const {
+  if (form == Form::kProduct) return ProductsOf(trace);
   const RowVectorXd values = ValuesOf(variable, trace);
   if (!channel.Feels(trace) || values.size() == 0) {
     return std::vector(static_cast<std::size_t>(columns()), simulation::NoDisturbance(trace));
@@ -91,7 +111,7 @@ std::vector<Disturbance> Structure::ColumnsOf(const Trace& trace) const {
     return {simulation::InStage(trace, channel.stage, within.cast<double>())};
   }
   const RowVectorXd factor = FactorOf(variable, trace);
-  const Index first = factor.size() > 0 ? 0 : 1;
+  const Index first = factor.size() > 0 && !IsOfItself() ? 0 : 1;
   const Eigen::VectorXd weights = Weights();
   std::vector<Disturbance> columns;
   for (Index k = first; k < first + terms; ++k) {
@@ -99,6 +119,21 @@ std::vector<Disturbance> Structure::ColumnsOf(const Trace& trace) const {
     RowVectorXd term = (turn * (values.array() - range.first)).cos();
     if (factor.size() > 0) term = term.cwiseProduct(factor);
     columns.push_back(simulation::InStage(trace, channel.stage, weights[k - first] * term));
+  }
+  return columns;
+}
+
+std::vector<Disturbance> Structure::ProductsOf(const Trace& trace) const {
+  const auto [one, other] = FactorsOf(variable);
+  const RowVectorXd values = ValuesOf(one, trace), others = ValuesOf(other, trace);
+  std::vector<Disturbance> columns(4, simulation::NoDisturbance(trace));
+  if (!channel.Feels(trace) || values.size() == 0 || others.size() == 0) return columns;
+  const auto legendre = [](const Eigen::ArrayXd& v) {
+    return std::array<Eigen::ArrayXd, 2>{v, 1.5 * v.square() - 0.5};
+  };
+  const auto first = legendre(range.Scaled(values)), last = legendre(second.Scaled(others));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    columns[i].row(channel.stage) = (first[i / 2] * last[i % 2]).transpose();
   }
   return columns;
 }

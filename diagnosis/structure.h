@@ -8,12 +8,15 @@
 //   smooth     cosines cos(pi k (v - first) / length), k = 1 ... terms
 //   line       sine and cosine of `wave` times v
 //   interval   1 from `from` to `to`, 0 elsewhere
+//   product    of two variables "x*y": products of their Legendre polynomials of degree 1 and 2
 // Variables (variables.h) with a factor, as the direction of motion, have it in each term, and
-// k = 0 ... terms - 1. Units: SI. Used to test what is left (unexplained.h) and to let something
+// k = 0 ... terms - 1; of an axis or a pivot over its own direction k = 1 ... terms, for lost motion
+// that is the same everywhere is a cause. Units: SI. Used to test what is left (unexplained.h) and to let something
 // that is in no catalogue compete with the causes (something_else.h).
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,12 +49,21 @@ struct Range {
   double last = -std::numeric_limits<double>::infinity();
 
   double Length() const { return last - first; }
+  // -1 to 1 over the range.
+  Eigen::ArrayXd Scaled(const Eigen::RowVectorXd& values) const;
 };
-Range RangeOf(const std::string& variable, const StageChannel& channel,
-              const simulation::Scene& scene);
+// Empty where it does not change.
+std::optional<Range> RangeOf(const std::string& variable, const StageChannel& channel,
+                             const simulation::Scene& scene);
+
+// The two variables of "x*y".
+struct Factors {
+  std::string first, second;
+};
+Factors FactorsOf(const std::string& product);
 
 struct Structure {
-  enum class Form { kSmooth, kLine, kInterval };
+  enum class Form { kSmooth, kLine, kInterval, kProduct };
 
   StageChannel channel;
   std::string variable;
@@ -61,13 +73,19 @@ struct Structure {
   bool is_rough = false;  // of a smooth one: terms of weight 1/k, as a random walk has them
   double wave = 0.0;      // rad per unit of the variable
   Interval interval = {};
+  Range second = {};  // of the other variable of a product
 
   Eigen::Index columns() const;
   // Of the terms, by which their coefficients are multiplied.
   Eigen::VectorXd Weights() const;
+  // Whether an axis or a pivot depends on its own motion.
+  bool IsOfItself() const;
   // The number of those of which it was chosen as the strongest.
   double among() const;
   std::vector<simulation::Disturbance> ColumnsOf(const simulation::Trace& trace) const;
+
+ private:
+  std::vector<simulation::Disturbance> ProductsOf(const simulation::Trace& trace) const;
 };
 
 }  // namespace abbe::diagnosis

@@ -119,8 +119,9 @@ void AddStrongest(const Fit& fit, const simulation::Scene& scene, const std::str
       places.push_back(c);
     }
     if (channels.empty()) continue;
-    const Range range = RangeOf(variable, of_channel[places.back()].front().channel, scene);
-    if (!(range.last > range.first)) continue;
+    const auto found = RangeOf(variable, of_channel[places.back()].front().channel, scene);
+    if (!found) continue;
+    const Range range = *found;
     const Scan scan = ScanOf(fit, variable, channels);
     const std::vector<double> waves =
         StrongestWaves(scan, 2.0 * std::numbers::pi * kOfAWave / range.Length());
@@ -213,8 +214,19 @@ std::vector<Found> FindStructures(const Fit& fit) {
   for (const StageChannel& channel : ChannelsOf(scene)) {
     std::vector<Structure> structures;
     for (const std::string& variable : VariablesOf(scene)) {
-      const Range range = RangeOf(variable, channel, scene);
-      if (range.last > range.first) structures.push_back({channel, variable, range});
+      if (const auto range = RangeOf(variable, channel, scene)) {
+        structures.push_back({channel, variable, *range});
+      }
+    }
+    for (const std::string& product : ProductsOf(scene)) {
+      const auto [one, other] = FactorsOf(product);
+      const auto range = RangeOf(one, channel, scene), second = RangeOf(other, channel, scene);
+      if (!range || !second) continue;
+      structures.push_back({.channel = channel,
+                            .variable = product,
+                            .range = *range,
+                            .form = Structure::Form::kProduct,
+                            .second = *second});
     }
     if (!structures.empty()) of_channel.push_back(std::move(structures));
   }

@@ -77,6 +77,16 @@ std::vector<std::string> VariablesOf(const Scene& scene) {
   return variables;
 }
 
+std::vector<std::string> ProductsOf(const Scene& scene) {
+  std::vector<std::string> products{"x*y", "x*z", "y*z"};
+  std::vector<std::string> changing{"time"};
+  for (const std::string& sensor : scene.Sensors()) changing.push_back(sensor);
+  for (const std::string& each : changing) {
+    for (const char* axis : {"*x", "*y", "*z"}) products.push_back(each + axis);
+  }
+  return products;
+}
+
 std::vector<std::string> PeriodicVariablesOf(const Scene& scene) {
   std::vector<std::string> variables{"time", "x",   "y",   "z",   "x+y",
                                      "x-y",  "x+z", "x-z", "y+z", "y-z"};
@@ -87,7 +97,9 @@ std::vector<std::string> PeriodicVariablesOf(const Scene& scene) {
 
 estimation::PrintUnit UnitOf(const std::string& variable) {
   if (variable.starts_with(kDirectionOf)) return UnitOf(BehindKind(variable));
-  if (variable.starts_with(kReversalOf)) return {"", 1.0};
+  if (variable.starts_with(kReversalOf) || variable.find('*') != std::string::npos) {
+    return {"", 1.0};
+  }
   if (variable == "time") return {"s", 1.0};
   if (variable == "feed") return {"mm/min", 1e-3 / 60.0};
   if (variable == "shaft" || variable.starts_with("pivot_")) return {"rad", 1.0};

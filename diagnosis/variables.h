@@ -23,6 +23,8 @@ estimation::PrintUnit UnitOf(const std::string& variable);
 
 // Variables of which a channel may be a smooth function.
 std::vector<std::string> VariablesOf(const simulation::Scene& scene);
+// Two of which a channel may be a function together: "x*y", "time*x", "temp_table_c*x".
+std::vector<std::string> ProductsOf(const simulation::Scene& scene);
 // In what a channel may be a line.
 std::vector<std::string> PeriodicVariablesOf(const simulation::Scene& scene);
 

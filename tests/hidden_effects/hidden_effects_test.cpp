@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -81,6 +82,25 @@ TEST_P(UnknownEffects, AreSaidToBeUnexplained) {
   const auto world = worlds.Record(seed, {GetParam().hidden});
   const Diagnosis diagnosis = DiagnosisOf(worlds, seed, world);
   EXPECT_EQ(diagnosis.verdict, Verdict::kUnexplained);
+  for (const Finding& finding : diagnosis.findings) {
+    EXPECT_LT(finding.probability, diagnosis::kCertain) << finding.score.candidate.Name();
+  }
+}
+
+// Six wrong causes, each at 1.000, had stood beside effects of this kind.
+TEST(EffectsOfNoCatalogue, LeaveNothingToOtherNames) {
+  const HiddenWorlds worlds(rig::CampaignKind::kStandard);
+  for (const auto& [seed, hidden, variable, object] :
+       {std::tuple{3, "unknown-feed-square:object=X:height_um=8", "feed", "X"},
+        std::tuple{2, "unknown-angle-bump:object=pivot_1", "pivot_1", "pivot_1"}}) {
+    const auto world = worlds.Record(static_cast<std::uint64_t>(seed), {hidden});
+    const Diagnosis diagnosis = DiagnosisOf(worlds, static_cast<std::uint64_t>(seed), world);
+    EXPECT_TRUE(diagnosis.findings.empty()) << hidden;
+    ASSERT_FALSE(diagnosis.leftovers.empty()) << hidden;
+    EXPECT_EQ(diagnosis.leftovers.front().variable, variable);
+    EXPECT_EQ(diagnosis.leftovers.front().object, object);
+    EXPECT_LT(diagnosis.chi_after, 1.1) << hidden;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(OfAStandardCampaign, UnknownEffects,

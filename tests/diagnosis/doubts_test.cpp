@@ -1,0 +1,82 @@
+// A finding with every evidence that is not certain all the same.
+#include "diagnosis/doubts.h"
+
+#include <gtest/gtest.h>
+
+#include "simulation/causes/registry.h"
+
+namespace abbe::diagnosis {
+namespace doubts_test {
+
+Finding FindingOf(const char* cause, const char* object, const Eigen::VectorXd& coefficients,
+                  double u, const Eigen::VectorXd& shape = {}) {
+  const Eigen::Index count = coefficients.size();
+  return {{{&simulation::CauseNamed(cause), simulation::Object(object), shape},
+           coefficients,
+           u * u * Eigen::MatrixXd::Identity(count, count)},
+          1.0,
+          {}};
+}
+
+Diagnosis With(Finding finding) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::kExplained;
+  diagnosis.findings.push_back(std::move(finding));
+  return diagnosis;
+}
+
+Diagnosis Doubted(Finding finding, const HeldOutGain& gain = {}, simulation::Scene scene = {}) {
+  Diagnosis diagnosis = With(std::move(finding));
+  AddDoubts(scene, gain, diagnosis);
+  return diagnosis;
+}
+
+const Eigen::VectorXd kWidth = Eigen::VectorXd::Constant(1, 5e-6);  // m
+
+TEST(Doubts, AreNoneOfAFindingThatIsLargeAndHoldsElsewhere) {
+  const HeldOutGain gain{.rows = 100, .before = 3.0, .after = 1.0, .without = {{3.0, 3.0}}};
+  const Diagnosis diagnosis = Doubted(FindingOf("backlash", "X", kWidth, 0.1e-6), gain);
+  EXPECT_TRUE(diagnosis.findings.front().doubts.empty());
+  EXPECT_EQ(diagnosis.findings.front().probability, 1.0);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
+}
+
+TEST(Doubts, TakeCertaintyFromASizeWithinItsU95) {
+  const Diagnosis diagnosis = Doubted(FindingOf("backlash", "X", kWidth, 3e-6));
+  ASSERT_EQ(diagnosis.findings.front().doubts.size(), 1u);
+  EXPECT_LE(diagnosis.findings.front().probability, kDoubtful);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
+}
+
+TEST(Doubts, TakeCertaintyFromWhatMakesHeldOutRowsWorse) {
+  const HeldOutGain gain{.rows = 100, .before = 247.0, .after = 1331.0, .without = {{2.0, 247.0}}};
+  EXPECT_EQ(Doubted(FindingOf("backlash", "X", kWidth, 0.1e-6), gain).verdict, Verdict::kAmbiguous);
+}
+
+// 0.98 of a reading goes from one probe into the other: no cable does that.
+TEST(Doubts, TakeCertaintyFromASizeBeyondItsBounds) {
+  const Finding finding =
+      FindingOf("probe-crosstalk", "probe_a+probe_b", Eigen::VectorXd::Constant(1, 0.98), 1e-3);
+  ASSERT_EQ(Doubted(finding).findings.front().doubts.size(), 1u);
+}
+
+// Targets 10 mm apart tell a pitch of 2.96 mm from one of 4.2 mm by no reading.
+TEST(Doubts, TakeCertaintyFromAPeriodBelowTwoTargets) {
+  simulation::Trace trace;
+  trace.axes = Eigen::Matrix3Xd::Zero(3, 20);
+  trace.axes.row(0) = Eigen::RowVectorXd::LinSpaced(20, 0.0, 0.19);
+  simulation::Scene scene;
+  scene.traces = {&trace};
+  scene.travel.setConstant(0.2);
+  const Eigen::VectorXd wave = Eigen::Vector2d(1e-6, 0.0);
+  const auto with_pitch = [&](double pitch) {
+    return Doubted(
+        FindingOf("leadscrew-cyclic", "X", wave, 1e-8, Eigen::VectorXd::Constant(1, pitch)), {},
+        scene);
+  };
+  EXPECT_EQ(with_pitch(2.96e-3).verdict, Verdict::kAmbiguous);
+  EXPECT_EQ(with_pitch(25e-3).verdict, Verdict::kExplained);
+}
+
+}  // namespace doubts_test
+}  // namespace abbe::diagnosis
