@@ -21,6 +21,7 @@
 #include <string_view>
 #include <vector>
 
+#include "failure/failure.h"
 #include "machine/volumetric_model.h"
 #include "recording/recording.h"
 #include "simulation/correction.h"
@@ -49,6 +50,17 @@ struct RunFacts {
   virtual ~RunFacts() = default;
 };
 using FactsByRun = std::map<std::string, std::shared_ptr<const RunFacts>>;
+
+// The facts of a run as its kind made them; null: not known yet. InputError where the run of that
+// name is of another kind.
+template <typename Facts>
+std::shared_ptr<const Facts> FactsAs(const FactsByRun& known, const std::string& name) {
+  const auto found = known.find(name);
+  if (found == known.end()) return nullptr;
+  if (auto facts = std::dynamic_pointer_cast<const Facts>(found->second)) return facts;
+  throw InputError(name +
+                   ": a run of another kind has the same name; name each recording differently");
+}
 
 // Rows that were found invalid and left out.
 struct InvalidReadings {
