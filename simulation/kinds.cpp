@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "failure/failure.h"
 
@@ -61,9 +62,10 @@ std::vector<SimulatedRun> SimulateForMap(const RunSource& source,
 }
 
 void RefuseStrangers(const std::vector<RunSource>& sources, const Instruments& instruments) {
-  std::map<const RunKind*, std::vector<RunSource>> by_kind;
-  for (const RunSource& source : sources) by_kind[&KindOf(source.head)].push_back(source);
-  for (const auto& [kind, of_kind] : by_kind) {
+  for (const RunKind* kind : Kinds()) {
+    std::vector<RunSource> of_kind;
+    std::ranges::copy_if(sources, std::back_inserter(of_kind),
+                         [&](const RunSource& source) { return &KindOf(source.head) == kind; });
     if (of_kind.size() > 1) kind->RefuseStrangers(of_kind, instruments);
   }
 }

@@ -1,6 +1,7 @@
 // Every kind of run that abbe knows, and which one a recording is of.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "simulation/run_kind.h"
