@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "failure/failure.h"
 
@@ -59,6 +60,17 @@ std::vector<SimulatedRun> SimulateForMap(const RunSource& source,
   if (kind.MakesMaps()) return kind.ForMap(source, model, instruments);
   throw InputError(fmt::format("{}: kind is \"{}\"; an error map is made of {}", source.head.name,
                                kind.name(), KindNames(&RunKind::MakesMaps)));
+}
+
+Correction Correct(const recording::Recording& recording, const std::vector<ModelledCause>& causes,
+                   const Origin& origin, const Instruments& instruments) {
+  if (causes.empty()) return {recording, {}};
+  return KindOf(recording).Correct(recording, causes, origin, instruments);
+}
+
+recording::Recording Planned(recording::Recording path, const Instruments& instruments) {
+  const RunKind& kind = KindOf(path);
+  return kind.Plan(std::move(path), instruments);
 }
 
 void RefuseStrangers(const std::vector<RunSource>& sources, const Instruments& instruments) {

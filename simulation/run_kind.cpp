@@ -6,7 +6,6 @@
 #include <memory>
 #include <set>
 
-#include "settings/toml_text.h"
 #include "simulation/planned_run.h"
 
 namespace abbe::simulation {
@@ -54,10 +53,6 @@ std::optional<std::string> RunKind::HeldOutGroup(const Recording&) const { retur
 Recording RunKind::Plan(Recording path, const Instruments&) const {
   FlagPlaces(path);
   return path;
-}
-
-std::string RunKind::MountingTable(const Recording& run) const {
-  return fmt::format("id = {}\n", settings::Quoted(MountingIdOf(run)));
 }
 
 std::vector<NextRun> RunKind::NextRuns(const std::vector<const Recording*>&, const Instruments&,

@@ -27,7 +27,6 @@
 #include "simulation/correction.h"
 #include "simulation/instruments.h"
 #include "simulation/planned_paths.h"
-#include "simulation/repeated_run.h"
 #include "simulation/run_source.h"
 #include "simulation/simulated_run.h"
 #include "simulation/trace.h"
@@ -130,8 +129,6 @@ class RunKind {
   // A path with the readings of a perfect machine (planned_run.h).
   virtual recording::Recording Plan(recording::Recording path,
                                     const Instruments& instruments) const;
-  // The table [mounting] of its header, without the line of its name.
-  virtual std::string MountingTable(const recording::Recording& run) const;
   // `recorded`: the runs of this kind so far.
   virtual std::vector<NextRun> NextRuns(const std::vector<const recording::Recording*>& recorded,
                                         const Instruments& instruments,

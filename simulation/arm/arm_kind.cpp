@@ -143,8 +143,6 @@ class ArmRuns : public RunKind {
         "{}: has no axis positions x_mm, y_mm, z_mm: the poses of an arm cannot be planned with",
         path.name));
   }
-
-  std::string MountingTable(const Recording& run) const override { return BaseLines(BaseOf(run)); }
 };
 
 }  // namespace
