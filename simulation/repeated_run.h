@@ -17,7 +17,7 @@ namespace abbe::simulation {
 struct AgainAbout {
   std::string machine;
   double started = 0.0;  // s since 1970
-  std::string mounting;  // the lines of the table [mounting], which each kind has its own way
+  std::string mounting;  // the lines of the table [mounting]; each kind has keys of its own
 };
 recording::Recording Again(const recording::Recording& run, const AgainAbout& about);
 
