@@ -1,5 +1,5 @@
-// Hidden effects: those of rig/effects/registry.h with an object and sizes, from the text of `--hide`
-// or from a seed.
+// Hidden effects: those of rig/effects/registry.h with an object and sizes, from the text of
+// `--hide` or from a seed.
 //
 //   HiddenEffects hidden = {ParseHidden("backlash:object=X:width_um=6", seed, sensors)};
 //   SetInTime(hidden, {{.begin = 0.0, .duration = 700.0, .probes = true}});
