@@ -9,6 +9,7 @@
 
 #include "apps/instruments.h"
 #include "settings/unit.h"
+#include "simulation/kinds.h"
 #include "simulation/path_displacement.h"
 
 namespace abbe::apps {

@@ -75,6 +75,14 @@ diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
   }
 }
 
+void RefuseStrangers(const std::vector<recording::Recording>& recordings,
+                     const simulation::Instruments& instruments) {
+  std::vector<simulation::RunSource> sources;
+  sources.reserve(recordings.size());
+  for (const recording::Recording& each : recordings) sources.push_back(simulation::SourceOf(each));
+  simulation::RefuseStrangers(sources, instruments);
+}
+
 int Diagnose(const DiagnoseArguments& arguments) {
   if (arguments.plan) {
     return DiagnosePlan({arguments.recordings, arguments.campaign, arguments.machine,
@@ -86,10 +94,7 @@ int Diagnose(const DiagnoseArguments& arguments) {
   std::vector<recording::Recording> recordings;
   for (const fs::path& path : arguments.recordings) recordings.push_back(ReadWithWarnings(path));
   simulation::Instruments instruments = ReadInstruments(arguments.machine);
-  std::vector<simulation::RunSource> sources;
-  sources.reserve(recordings.size());
-  for (const recording::Recording& each : recordings) sources.push_back(simulation::SourceOf(each));
-  simulation::RefuseStrangers(sources, instruments);
+  RefuseStrangers(recordings, instruments);
   diagnosis::UseMeasuredNoise(recordings, instruments);
   diagnosis::Campaign campaign(std::move(instruments));
   for (const recording::Recording& recording : recordings) campaign.Add(recording);

@@ -12,7 +12,7 @@
 #include "failure/failure.h"
 #include "random/counter_random.h"
 #include "recording/recording_file.h"
-#include "simulation/planned_run.h"
+#include "simulation/kinds.h"
 
 namespace abbe::apps {
 namespace {

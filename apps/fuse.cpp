@@ -42,12 +42,16 @@ RunSource SourceAt(const machine::Machine& machine, const fs::path& path) {
           [&machine, path] { return ReadRecordingOf(machine, path); }};
 }
 
+RunSource AsRead(const RunSource& source) { return source; }
+
+// One source after the other, each as `as_taken` has it.
 std::vector<SimulatedRun> Simulate(const std::vector<RunSource>& sources,
-                                   const simulation::Instruments& instruments) {
+                                   const simulation::Instruments& instruments,
+                                   const std::function<RunSource(const RunSource&)>& as_taken) {
   const machine::VolumetricModel model = fusion::UnknownMachine(instruments.machine);
   std::vector<SimulatedRun> runs;
   for (const RunSource& source : sources) {
-    for (SimulatedRun& run : simulation::SimulateForMap(source, model, instruments)) {
+    for (SimulatedRun& run : simulation::SimulateForMap(as_taken(source), model, instruments)) {
       runs.push_back(std::move(run));
     }
   }
@@ -74,7 +78,7 @@ std::optional<fusion::FuseReport> FuseIfItFits(const simulation::Instruments& in
                                                const std::vector<RunSource>& sources,
                                                bool choose_smoothness) {
   try {
-    return fusion::Fuse(instruments.machine, Simulate(sources, instruments),
+    return fusion::Fuse(instruments.machine, Simulate(sources, instruments, AsRead),
                         {.choose_smoothness = choose_smoothness});
   } catch (const NumericalError&) {
     return std::nullopt;
@@ -113,14 +117,12 @@ int Fuse(const FuseArguments& arguments) {
   const machine::Machine& machine = file.sweep_setup.machine;
   CauseCorrection causes(arguments.causes, file, kForMaps);
   const simulation::Instruments instruments = InstrumentsOf(file);
-  std::vector<RunSource> sources, corrected;
-  for (const fs::path& path : arguments.recordings) {
-    sources.push_back(SourceAt(machine, path));
-    if (!causes.Active()) continue;
-    corrected.push_back(simulation::SourceOf(causes.Take(sources.back().whole())));
-  }
+  std::vector<RunSource> sources;
+  for (const fs::path& path : arguments.recordings) sources.push_back(SourceAt(machine, path));
   simulation::RefuseStrangers(sources, instruments);
-  const auto runs = Simulate(causes.Active() ? corrected : sources, instruments);
+  const auto runs = Simulate(sources, instruments, [&](const RunSource& source) {
+    return causes.Active() ? simulation::SourceOf(causes.Take(source.whole())) : source;
+  });
   const fusion::FuseReport report = fusion::Fuse(
       machine, runs,
       {.choose_smoothness = !arguments.fixed_smoothness, .holdout = arguments.holdout});

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "map/map_grid.h"
+#include "standards/coverage.h"
 
 namespace abbe::apps {
 namespace {
@@ -32,7 +33,7 @@ ordered_json GridJson(const map::ErrorMap& map) {
     for (const double error : grid.error().row(row)) json["error"][k].push_back(Short(error));
     if (!map.StatesUncertainty()) continue;
     for (const double u95 : grid.u95().row(row)) {
-      json["u"][k].push_back(Short(u95 / map::kCoverage));
+      json["u"][k].push_back(Short(u95 / standards::kCoverage));
     }
   }
   return json;

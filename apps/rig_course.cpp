@@ -14,7 +14,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMillimetreAMinute = 1e-3 / 60.0;
 constexpr int kMostPlaces = 1'000'000;
 
 // The size of a course in m: as given, or `usual` in mm. One number applies to all.
@@ -75,7 +74,7 @@ std::string KeysOf(const CourseRequest& request) {
 
 rig::Course Planned(const CourseRequest& request, const rig::RigSettings& machine) {
   const Vector3d centre = CentreOf(request, machine);
-  const double feed = request.feed_mm_min * kMillimetreAMinute;
+  const double feed = request.feed_mm_min * settings::kMillimetrePerMinute;
   const char normal = NormalOf(request.plane);
   if (request.course == "cube") {
     const std::vector<double> size = SizeOf(request, {25.0, 25.0, 50.0});

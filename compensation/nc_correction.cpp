@@ -7,13 +7,14 @@
 #include <cmath>
 
 #include "failure/failure.h"
+#include "settings/unit.h"
 
 namespace abbe::compensation {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMillimetre = 1e-3, kInch = 25.4e-3;
+constexpr double kInch = 25.4 * settings::kMillimetre;
 
 bool IsStop(const NcWord& word) {
   if (word.letter != 'M') return false;
@@ -224,7 +225,7 @@ void NcCorrection::RefuseLooseWords(const Block& block) {
 }
 
 Vector3d NcCorrection::Target(const Block& block) {
-  const double unit = is_inch_ ? kInch : kMillimetre;
+  const double unit = is_inch_ ? kInch : settings::kMillimetre;
   Vector3d target = place_;
   for (int k = 0; k < 3; ++k) {
     const auto at = static_cast<std::size_t>(k);
@@ -236,7 +237,7 @@ Vector3d NcCorrection::Target(const Block& block) {
 }
 
 Arc NcCorrection::ArcOf(const Block& block) const {
-  const double unit = is_inch_ ? kInch : kMillimetre;
+  const double unit = is_inch_ ? kInch : settings::kMillimetre;
   Arc arc{plane_, motion_ == 2, place_, {}};
   const auto [u, v, w] = AxesOfPlane(plane_);
   if (block.centre[static_cast<std::size_t>(w)]) {
@@ -296,7 +297,7 @@ void NcCorrection::WritePoint(const Vector3d& wanted, std::string& out) {
   const Vector3d command = corrector_.Command(position);
   counts_.largest = std::max(counts_.largest, (command - position).norm());
   const int decimals = is_inch_ ? 7 : 6;
-  const double unit = is_inch_ ? kInch * 1e-7 : kMillimetre * 1e-6;
+  const double unit = is_inch_ ? kInch * 1e-7 : settings::kMillimetre * 1e-6;
   for (int k = 0; k < 3; ++k) {
     const double to = command[k] - options_.work_offset[k];
     const std::int64_t units = std::llround((is_relative_ ? to - out_[k] : to) / unit);

@@ -50,9 +50,6 @@ struct Score {
   double visible = 0.0;
 };
 
-// U95 is so many standard uncertainties.
-inline constexpr double kCoverage = 2.0;
-
 // The keys of a score, SI, with their standard uncertainties to first order.
 struct Keys {
   Eigen::VectorXd values, u;

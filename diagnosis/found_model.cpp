@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "standards/coverage.h"
+
 namespace abbe::diagnosis {
 
 simulation::ModelledCause FoundCause(const Score& score) {
@@ -11,7 +13,8 @@ simulation::ModelledCause FoundCause(const Score& score) {
   const Eigen::MatrixXd covariance = score.candidate.cause->IsRandomField()
                                          ? Eigen::MatrixXd{}
                                          : score.covariance.topLeftCorner(count, count).eval();
-  return {score.candidate.cause, score.candidate.object, values, kCoverage * u, covariance};
+  return {score.candidate.cause, score.candidate.object, values, standards::kCoverage * u,
+          covariance};
 }
 
 simulation::ExtendedModel FoundModel(const Diagnosis& diagnosis, const Campaign& campaign,

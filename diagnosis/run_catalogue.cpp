@@ -8,7 +8,6 @@
 
 #include "failure/failure.h"
 #include "simulation/kinds.h"
-#include "simulation/planned_run.h"
 
 namespace abbe::diagnosis {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnosis/evidence.h"
+#include "standards/coverage.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -82,9 +83,10 @@ Score OverAllShapes(const Fit& without, Score score) {
   const VectorXd deviation = moment.diagonal().cwiseSqrt();
   VectorXd stretch(count + 1);
   for (Index d = 0; d <= count; ++d) {
-    const VectorXd reach =
-        (off.row(d).array().square() + kCoverage * kCoverage * around.row(d).array()).sqrt();
-    stretch[d] = Quantile(reach, weights) / (kCoverage * deviation[d]);
+    const VectorXd reach = (off.row(d).array().square() +
+                            standards::kCoverage * standards::kCoverage * around.row(d).array())
+                               .sqrt();
+    stretch[d] = Quantile(reach, weights) / (standards::kCoverage * deviation[d]);
   }
   score.covariance = stretch.asDiagonal() * moment * stretch.asDiagonal();
   return score;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "settings/unit.h"
 #include "simulation/causes/shaft.h"
 
 namespace abbe::diagnosis {
@@ -101,10 +102,10 @@ estimation::PrintUnit UnitOf(const std::string& variable) {
     return {"", 1.0};
   }
   if (variable == "time") return {"s", 1.0};
-  if (variable == "feed") return {"mm/min", 1e-3 / 60.0};
+  if (variable == "feed") return {"mm/min", settings::kMillimetrePerMinute};
   if (variable == "shaft" || variable.starts_with("pivot_")) return {"rad", 1.0};
   if (variable.starts_with("temp_")) return {"degC", 1.0};
-  return {"mm", 1e-3};
+  return {"mm", settings::kMillimetre};
 }
 
 }  // namespace abbe::diagnosis

@@ -30,7 +30,7 @@ namespace abbe::estimation {
 
 struct RobustMean {
   double mean = 0.0;
-  // Of the mean; infinite for a single value without a stated deviation.
+  // Standard error of the mean; infinite for a single value without a stated deviation.
   double standard_error = 0.0;
   // Robust standard deviation of one value (for sigma_i = 1 where deviations are given).
   double scale = 0.0;

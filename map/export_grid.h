@@ -1,6 +1,6 @@
 // Formats of the map on a grid, for one tool: CSV, JSON, HDF5, VTK.
 //
-// Positions x_mm, y_mm, z_mm; errors and 95 % uncertainties in um, three components each; x runs
+// Positions x_mm, y_mm, z_mm; errors and their U95 = 2 u in um, three components each; x runs
 // fastest. All numbers in the shortest form that reads back the same (HDF5: binary).
 //
 //   csv    "# key = value" lines (file_header.h), then

@@ -9,6 +9,7 @@
 #include "failure/failure.h"
 #include "machine/machine.h"
 #include "machine/volumetric_field.h"
+#include "standards/coverage.h"
 
 namespace abbe::map {
 namespace {
@@ -119,7 +120,7 @@ MapGrid SampleGrid(const ErrorMap& map, const Vector3d& p_TQ, const std::array<I
   for (Index i = 0; i < points; ++i) positions.col(i) = places.Position(i);
   if (map.StatesUncertainty()) u95.resize(3, points);
   for (Index i = 0; i < u95.cols(); ++i) {
-    u95.col(i) = kCoverage * map.StandardUncertainty(positions.col(i), p_TQ);
+    u95.col(i) = standards::kCoverage * map.StandardUncertainty(positions.col(i), p_TQ);
   }
   return {axes, map.model().Errors(positions, p_TQ), std::move(u95)};
 }

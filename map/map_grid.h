@@ -6,7 +6,7 @@
 //   const Discrepancy worst = InterpolationError(map, p_TQ, grid);
 //
 // Frames, signs: error_map.h. Units: m. Shapes: one column per grid point, x runs fastest, then y,
-// then z; u95 is empty for a map without uncertainty. u95 = kCoverage u of each component.
+// then z; u95 is empty for a map without uncertainty. u95 = 2 u of each component.
 // Failure: InputError for fewer than two points along an axis, and for a position outside the
 // grid.
 // Source: own; trilinear interpolation. Validity: between the points the error of interpolation is
@@ -21,8 +21,6 @@
 #include "map/error_map.h"
 
 namespace abbe::map {
-
-inline constexpr double kCoverage = 1.959963984540054;  // 95 % of a normal distribution
 
 // `count` points from `first` to `last`, both included.
 struct GridAxis {

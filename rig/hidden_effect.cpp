@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "failure/failure.h"
+#include "rig/effects/registry.h"
 #include "rig/rig_settings.h"
 #include "rig/streams.h"
 #include "settings/nearest_word.h"
@@ -115,10 +116,10 @@ class Given {
 };
 
 // The entry of a cause for an object.
-const CauseEntry& EntryOf(const std::string& cause, const std::string& object, const Given& given) {
+const Effect& EntryOf(const std::string& cause, const std::string& object, const Given& given) {
   std::vector<std::string> names;
   unsigned kinds = 0;
-  for (const CauseEntry& entry : EffectCatalogue()) {
+  for (const Effect& entry : EffectCatalogue()) {
     names.emplace_back(entry.name);
     if (entry.name == cause) kinds |= entry.objects;
   }
@@ -136,7 +137,7 @@ const CauseEntry& EntryOf(const std::string& cause, const std::string& object, c
   const unsigned kind = Objects().at(object).kind;
   const auto found = std::find_if(
       EffectCatalogue().begin(), EffectCatalogue().end(),
-      [&](const CauseEntry& entry) { return entry.name == cause && (entry.objects & kind) != 0; });
+      [&](const Effect& entry) { return entry.name == cause && (entry.objects & kind) != 0; });
   return *found;
 }
 
@@ -203,23 +204,6 @@ double Instant(double share, const std::vector<RecordedTime>& times, bool probes
   return kOpen;
 }
 
-// The column, or the sum of columns, that an effect outside the catalogue of causes depends on.
-std::string VariableOf(const HiddenEffect& effect) {
-  const auto column = [](int axis) { return fmt::format("{:c}_mm", 'x' + axis); };
-  switch (effect.cause()) {
-    case Cause::kUnknownWarmthSquare:
-      return effect.sensor;
-    case Cause::kUnknownIdleAxis:
-      return column(static_cast<int>(effect.values.at("axis")) - 1);
-    case Cause::kUnknownDiagonalRipple:
-      return column(effect.places[0]) + "+" + column(effect.places[1]);
-    case Cause::kUnknownAngleBump:
-      return effect.object + "_rad";
-    default:
-      return std::string(effect.entry->variable);
-  }
-}
-
 }  // namespace
 
 double HiddenEffect::At(const std::string& key) const {
@@ -230,7 +214,7 @@ HiddenEffect ParseHidden(std::string_view text, std::uint64_t seed, const Sensor
   const std::vector<std::string> parts = Split(text);
   Given given(text, parts);
   const std::string object = given.Take("object");
-  const CauseEntry& entry = EntryOf(parts.front(), object, given);
+  const Effect& entry = EntryOf(parts.front(), object, given);
   // Its own stream: the draws of one effect do not depend on the others.
   std::uint64_t stream = kHiddenStream;
   for (const char letter : parts.front() + ":" + object) {
@@ -267,8 +251,9 @@ void SetInTime(HiddenEffects& hidden, const std::vector<RecordedTime>& times,
     const bool probes =
         (effect.entry->objects & kProbeObject) != 0 && effect.object.starts_with("probe_");
     const random::CounterRandom& random = effect.random;
-    if (effect.cause() == Cause::kOutliers && effect.instants.empty()) {
-      const auto count = static_cast<std::uint64_t>(effect.values.at("count"));
+    if (!effect.entry->instants.empty() && effect.instants.empty()) {
+      const auto count =
+          static_cast<std::uint64_t>(effect.values.at(std::string(effect.entry->instants)));
       for (std::uint64_t i = 0; i < count; ++i) {
         effect.instants.push_back(Instant(random.Uniform(kDrawsOfInstants + i), times, probes));
       }
@@ -305,7 +290,7 @@ nlohmann::ordered_json TruthOf(const HiddenEffects& hidden) {
     nlohmann::ordered_json one = {{"cause", effect.entry->name},
                                   {"object", effect.object},
                                   {"parameters", std::move(parameters)}};
-    if (!effect.entry->variable.empty()) one["variable"] = VariableOf(effect);
+    if (effect.entry->variable != nullptr) one["variable"] = effect.entry->variable(effect);
     truth.push_back(std::move(one));
   }
   return truth;

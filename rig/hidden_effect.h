@@ -1,5 +1,5 @@
-// Hidden effects: entries of effect_catalogue.h with an object and sizes, from the text of `--hide`
-// or from a seed.
+// Hidden effects: those of rig/effects/registry.h with an object and sizes, from the text of
+// `--hide` or from a seed.
 //
 //   HiddenEffects hidden = {ParseHidden("backlash:object=X:width_um=6", seed, sensors)};
 //   SetInTime(hidden, {{.begin = 0.0, .duration = 700.0, .probes = true}});
@@ -20,12 +20,12 @@
 #include <vector>
 
 #include "random/counter_random.h"
-#include "rig/effect_catalogue.h"
+#include "rig/effects/effect.h"
 
 namespace abbe::rig {
 
 struct HiddenEffect {
-  const CauseEntry* entry;
+  const Effect* entry;
   std::string object;
   std::vector<int> places;               // of the object: axes, probes, a pivot, a link, from 0
   std::map<std::string, double> values;  // in the units of the keys; NaN: open
@@ -33,7 +33,6 @@ struct HiddenEffect {
   std::vector<double> instants;          // of outliers, s since the machine was switched on
   random::CounterRandom random;          // its own stream
 
-  Cause cause() const { return entry->cause; }
   int place() const { return places.front(); }
   // The value of a key, SI.
   double At(const std::string& key) const;

@@ -14,27 +14,14 @@ constexpr double kMotion = 1e-8;  // m: an axis has turned when it has come back
 }  // namespace
 
 HiddenRun::HiddenRun(const HiddenEffects& effects, Climate& climate, const About& about)
-    : climate_(climate),
-      begin_(about.begin),
-      empty_(effects.empty()),
-      shifts_(AxisShifts(effects)),
-      probes_(ProbeAdditions(effects)),
-      pivots_(PivotAdditions(effects)),
-      data_(DataEffects(effects)) {
+    : climate_(climate), begin_(about.begin), empty_(effects.empty()) {
   state_.swept = about.swept;
   for (const HiddenEffect& effect : effects) {
     if (!effect.sensor.empty()) at_start_[effect.sensor] = climate.AtStart(effect.sensor);
-    if (effect.cause() == Cause::kClockSkew) {
-      late_[static_cast<std::size_t>(effect.place())] += effect.At("delay_ms");
-    }
-    if (effect.cause() == Cause::kCapFriction) balls_.emplace_back(effect.At("displacement_um"));
-    if (effect.cause() == Cause::kChannelSwap) {
-      swapped_.push_back(
-          {static_cast<std::size_t>(effect.places[0]), static_cast<std::size_t>(effect.places[1])});
-    }
+    if (effect.entry->in_run != nullptr) effect.entry->in_run(effect, parts_);
   }
-  remembers_turns_ = std::any_of(pivots_.begin(), pivots_.end(),
-                                 [](const PivotAddition& each) { return each.remembers; });
+  remembers_turns_ = std::any_of(parts_.pivots.begin(), parts_.pivots.end(),
+                                 [](const auto& each) { return each.has_history; });
 }
 
 void HiddenRun::Turn(int axis, double position) {
@@ -66,33 +53,33 @@ void HiddenRun::Follow(double time, const Eigen::Vector3d& position,
   for (const auto& [sensor, start] : at_start_) {
     state_.warmth[sensor] = climate_.At(sensor, state_.time) - start;
   }
-  for (AxisShift& each : shifts_) place_[each.axis] += each.shift(state_);
+  for (auto& each : parts_.shifts) place_[each.axis] += each.shift(state_);
 }
 
 Eigen::Vector3d HiddenRun::PlaceFor(Source source) const {
-  const double late = late_[static_cast<std::size_t>(source)];
+  const double late = parts_.late[static_cast<std::size_t>(source)];
   if (late == 0.0) return place_;
   return place_ - late * state_.velocity;
 }
 
 void HiddenRun::Say(Readings& gaps) {
   if (empty_) return;
-  for (const ProbeAddition& each : probes_) gaps[each.probe] += each.gap(state_);
-  for (const auto& [first, second] : swapped_) std::swap(gaps[first], gaps[second]);
-  for (DataEffect& each : data_) {
+  for (const auto& each : parts_.probes) gaps[each.probe] += each.gap(state_);
+  for (const auto& [first, second] : parts_.swapped) std::swap(gaps[first], gaps[second]);
+  for (auto& each : parts_.data) {
     if (each.probe) gaps[each.index] = each.said(state_.time, gaps[each.index]);
   }
 }
 
 Eigen::Vector3d HiddenRun::BallFrom(const Eigen::Vector3d& cap) {
   Eigen::Vector3d from = Eigen::Vector3d::Zero();
-  for (DraggedBall& ball : balls_) from += ball.Follow(cap);
+  for (DraggedBall& ball : parts_.balls) from += ball.Follow(cap);
   return from;
 }
 
 Eigen::Vector3d HiddenRun::EncodersShow(const Eigen::Vector3d& turns) {
   Eigen::Vector3d beside = Eigen::Vector3d::Zero();
-  for (PivotAddition& each : pivots_) beside[each.pivot] += each.angle(state_, turns[each.pivot]);
+  for (auto& each : parts_.pivots) beside[each.pivot] += each.angle(state_, turns[each.pivot]);
   return beside;
 }
 
@@ -104,7 +91,7 @@ bool HiddenRun::WantsTurns() {
 }
 
 void HiddenRun::Say(Eigen::Vector3d& angles) {
-  for (DataEffect& each : data_) {
+  for (auto& each : parts_.data) {
     if (!each.probe) angles[each.index] = each.said(state_.time, angles[each.index]);
   }
 }

@@ -19,11 +19,10 @@
 #include <vector>
 
 #include "rig/climate.h"
-#include "rig/hidden_channels.h"
 #include "rig/hidden_effect.h"
-#include "rig/hidden_motion.h"
 #include "rig/machine_state.h"
 #include "rig/probe_head.h"
+#include "rig/run_parts.h"
 
 namespace abbe::rig {
 
@@ -56,7 +55,7 @@ class HiddenRun {
 
   // The displacement of the ball in its cap, for a cap at this position.
   Eigen::Vector3d BallFrom(const Eigen::Vector3d& cap);
-  bool drags_ball() const { return !balls_.empty(); }
+  bool drags_ball() const { return !parts_.balls.empty(); }
   // The additions to the angles of the encoders, for these true angles of the pivots.
   Eigen::Vector3d EncodersShow(const Eigen::Vector3d& turns);
   // Whether EncodersShow must be called now, also between the rows: 20 times a second where an
@@ -75,14 +74,8 @@ class HiddenRun {
   bool begun_ = false;
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d farthest_ = Eigen::Vector3d::Zero();  // of each axis along its direction
-  std::array<double, 2> late_{};                        // s, of each source
   std::map<std::string, double> at_start_;              // degC, of the effects' sensors
-  std::vector<AxisShift> shifts_;
-  std::vector<ProbeAddition> probes_;
-  std::vector<PivotAddition> pivots_;
-  std::vector<DataEffect> data_;
-  std::vector<DraggedBall> balls_;
-  std::vector<std::array<std::size_t, 2>> swapped_;  // probes
+  RunParts parts_;
   bool remembers_turns_ = false;
   double next_turns_ = 0.0;  // s
 };

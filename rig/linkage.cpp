@@ -102,64 +102,39 @@ Linkage::Linkage(const LinkageSettings& settings, std::uint64_t seed, const Hidd
   const double link_2 = settings.link_2 + draws.Normal(settings.link);
   const Vector3d elbow(link_1, 0.0, 0.0);
   Displacement carried;
-  pivots_ = {DrawPivot(settings, seed, 0, Vector3d::Zero(), Vector3d::UnitZ(), carried),
-             DrawPivot(settings, seed, 1, Vector3d::Zero(), Vector3d::UnitY(), carried),
-             DrawPivot(settings, seed, 2, elbow, Vector3d::UnitY(), carried)};
+  parts_.pivots = {DrawPivot(settings, seed, 0, Vector3d::Zero(), Vector3d::UnitZ(), carried),
+                   DrawPivot(settings, seed, 1, Vector3d::Zero(), Vector3d::UnitY(), carried),
+                   DrawPivot(settings, seed, 2, elbow, Vector3d::UnitY(), carried)};
   const double ball_x = draws.Normal(settings.ball);
   ball_ = carried * (elbow + Vector3d(ball_x, draws.Normal(settings.ball), link_2));
-  for (double& each : expansion_) each = settings.expansion + draws.Normal(settings.thermal);
+  for (double& each : parts_.expansion) each = settings.expansion + draws.Normal(settings.thermal);
   Vector3d place, angles;
   draws.Skip(kDrawsOfBase * base);
   for (double& each : place) each = draws.Normal(settings.base_place);
   for (double& each : angles) each = draws.Normal(settings.base_angle);
   base_ = {FullRotation(angles) * settings.base_rotation, settings.base_position + place};
   down_B_ = base_.rotation.transpose() * settings.down;
-  for (const HiddenEffect& effect : hidden) Build(effect);
-}
-
-void Linkage::Build(const HiddenEffect& effect) {
-  const auto place = static_cast<std::size_t>(effect.place());
-  const auto add = [&](std::vector<Harmonic>& harmonics, int order, const char* sine,
-                       const char* cosine) {
-    harmonics.push_back({order, effect.At(sine), effect.At(cosine)});
-  };
-  switch (effect.cause()) {
-    case Cause::kEncoderEccentricity:
-      add(pivots_[place].encoder, 1, "sin_urad", "cos_urad");
-      break;
-    case Cause::kEncoderSubdivision:
-      add(pivots_[place].encoder, static_cast<int>(effect.At("order")), "sin_urad", "cos_urad");
-      break;
-    case Cause::kBearingRoundness:
-      add(pivots_[place].stretch, 2, "sin2_um", "cos2_um");
-      add(pivots_[place].stretch, 3, "sin3_um", "cos3_um");
-      break;
-    case Cause::kLinkGravityBend:
-      pivots_[place].give += effect.At("compliance_urad");
-      break;
-    case Cause::kLinkThermalGrowth:
-      expansion_[place] += effect.At("coefficient_ppm_per_c");
-      break;
-    default:
-      break;
+  for (const HiddenEffect& effect : hidden) {
+    if (effect.entry->in_linkage != nullptr) effect.entry->in_linkage(effect, parts_);
   }
 }
 
 Linkage::Posture Linkage::PostureAt(const Vector3d& turns, double temperature) const {
   const double warmth = temperature - settings_.reference_temperature;
   // At zero angles: link 1 along x, link 2 along z; their growth moves all that they carry.
-  const double longer_1 = Sum(pivots_[0].stretch, turns[0]) + Sum(pivots_[1].stretch, turns[1]);
-  const double longer_2 = Sum(pivots_[2].stretch, turns[2]);
+  const double longer_1 =
+      Sum(parts_.pivots[0].stretch, turns[0]) + Sum(parts_.pivots[1].stretch, turns[1]);
+  const double longer_2 = Sum(parts_.pivots[2].stretch, turns[2]);
   const Vector3d growth_1 =
-      (expansion_[0] * warmth * settings_.link_1 + longer_1) * Vector3d::UnitX();
+      (parts_.expansion[0] * warmth * settings_.link_1 + longer_1) * Vector3d::UnitX();
   const Vector3d growth_2 =
-      (expansion_[1] * warmth * settings_.link_2 + longer_2) * Vector3d::UnitZ();
+      (parts_.expansion[1] * warmth * settings_.link_2 + longer_2) * Vector3d::UnitZ();
   const std::array<Vector3d, kPivots> link = {Vector3d::Zero(), Vector3d::UnitX(),
                                               Vector3d::UnitZ()};
   Posture posture;
   Displacement moved;  // by the pivots before
   for (std::size_t i = 0; i < kPivots; ++i) {
-    const PivotTruth& pivot = pivots_[i];
+    const PivotTruth& pivot = parts_.pivots[i];
     const double turn = turns[static_cast<Eigen::Index>(i)];
     const Vector3d point = i == 2 ? Vector3d(pivot.point + growth_1) : pivot.point;
     Vector3d shift = Vector3d::Zero();
@@ -229,7 +204,8 @@ Vector3d Linkage::EncodersAt(const Vector3d& turns) const {
   Vector3d shown;
   for (std::size_t i = 0; i < kPivots; ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    shown[at] = turns[at] + pivots_[i].encoder_zero + Sum(pivots_[i].encoder, turns[at]);
+    shown[at] =
+        turns[at] + parts_.pivots[i].encoder_zero + Sum(parts_.pivots[i].encoder, turns[at]);
   }
   return shown;
 }

@@ -16,32 +16,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "rig/hidden_effect.h"
+#include "rig/linkage_parts.h"
 #include "rig/linkage_settings.h"
 #include "rig/rotation.h"
 
 namespace abbe::rig {
-
-inline constexpr int kPivots = 3;
-
-struct Harmonic {
-  int order;
-  double sine, cosine;
-
-  double At(double angle) const;
-};
-
-struct PivotTruth {
-  Eigen::Vector3d point, direction;              // of its axis in B at zero angles; unit
-  std::array<Eigen::Vector3d, 2> across;         // two directions across the axis, at zero angles
-  std::array<std::vector<Harmonic>, 2> run_out;  // m, along `across`
-  double encoder_zero;                           // rad
-  std::vector<Harmonic> encoder;                 // rad; order 1 is the eccentricity
-  std::vector<Harmonic> stretch;                 // m, longer link after it: hidden roundness
-  double give;                                   // rad, deflection under a horizontal link
-};
 
 class Linkage {
  public:
@@ -51,10 +32,10 @@ class Linkage {
           std::uint64_t base = 0);
 
   const LinkageSettings& settings() const { return settings_; }
-  const std::array<PivotTruth, kPivots>& pivots() const { return pivots_; }
-  const Eigen::Vector3d& ball() const { return ball_; }                  // in B at zero angles
-  const std::array<double, 2>& expansion() const { return expansion_; }  // 1/K, of the links
-  const Displacement& base() const { return base_; }                     // takes B to M
+  const std::array<PivotTruth, kPivots>& pivots() const { return parts_.pivots; }
+  const Eigen::Vector3d& ball() const { return ball_; }  // in B at zero angles
+  const std::array<double, 2>& expansion() const { return parts_.expansion; }  // 1/K, of the links
+  const Displacement& base() const { return base_; }                           // takes B to M
 
   // p_B of the ball for turns of the pivots.
   Eigen::Vector3d BallAt(const Eigen::Vector3d& turns, double temperature) const;
@@ -73,14 +54,12 @@ class Linkage {
     Eigen::Vector3d ball;
   };
 
-  void Build(const HiddenEffect& effect);
   Posture PostureAt(const Eigen::Vector3d& turns, double temperature) const;
   Eigen::Vector3d Guess(const Eigen::Vector3d& p_B) const;
 
   LinkageSettings settings_;
-  std::array<PivotTruth, kPivots> pivots_;
+  LinkageParts parts_;
   Eigen::Vector3d ball_;
-  std::array<double, 2> expansion_;
   Displacement base_;
   Eigen::Vector3d down_B_;
 };

@@ -37,54 +37,14 @@ World::World(const RigSettings& settings, std::uint64_t seed, HiddenEffects hidd
       seed_(seed),
       hidden_(std::move(hidden)),
       head_and_target_(mounting),
-      squareness_(Squareness::Draw(settings, seed)),
-      probes_(DrawProbes(settings, seed)),
+      parts_{Squareness::Draw(settings, seed), DrawProbes(settings, seed), settings.electrode},
       mounting_(TargetMounting::Draw(settings, seed, mounting.number)) {
-  for (const HiddenEffect& effect : hidden_) Build(effect);
+  for (const HiddenEffect& effect : hidden_) {
+    if (effect.entry->in_world != nullptr) effect.entry->in_world(effect, parts_);
+  }
+  settings_.electrode = parts_.electrode;
   for (int axis = 0; axis < kAxes; ++axis) errors_.emplace_back(settings_, axis, seed);
   for (int axis = 0; axis < kAxes; ++axis) heads_.push_back(Install(axis));
-}
-
-void World::Build(const HiddenEffect& effect) {
-  const auto probe = static_cast<std::size_t>(effect.place());
-  switch (effect.cause()) {
-    case Cause::kSquareness: {
-      const bool xy = effect.object == "XY", xz = effect.object == "XZ";
-      double& angle = xy ? squareness_.c0y : xz ? squareness_.b0z : squareness_.a0z;
-      angle += effect.At("angle_urad");
-      break;
-    }
-    case Cause::kProbeGain:
-      probes_[probe].gain += effect.At("delta");
-      break;
-    case Cause::kProbePosition:
-      probes_[probe].along += effect.At("du_mm");
-      probes_[probe].across += effect.At("dv_mm");
-      break;
-    case Cause::kFixtureMisalignment:
-      hidden_angles_ +=
-          Eigen::Vector3d(effect.At("roll_urad"), effect.At("pitch_urad"), effect.At("yaw_urad"));
-      hidden_offsets_ +=
-          Eigen::Vector3d(effect.At("du_mm"), effect.At("ds_mm"), effect.At("dn_mm"));
-      break;
-    case Cause::kProbeTiltResponse:
-      settings_.electrode = effect.At("electrode_radius_mm");
-      break;
-    case Cause::kProbeNonlinearity:
-      response_.quadratic[probe] += effect.At("quadratic_per_mm");
-      response_.any = true;
-      break;
-    case Cause::kProbeCrosstalk:
-      response_.of[probe][static_cast<std::size_t>(effect.places[1])] += effect.At("coefficient");
-      response_.any = true;
-      break;
-    case Cause::kChannelSign:
-      response_.inverted[probe] = true;
-      response_.any = true;
-      break;
-    default:
-      break;
-  }
 }
 
 World::InstalledHead World::Mount(int axis, HeadPlace& place) const {
@@ -96,15 +56,14 @@ World::InstalledHead World::Mount(int axis, HeadPlace& place) const {
   place.position -= settings_.HeadTravel(start);
   if (head_and_target_.head_turned) place.rotation.leftCols<2>() *= -1.0;
   InstalledHead head{DrawInstallation(settings_, axis, seed_, head_and_target_.number), {}, {}};
-  head.installation.angles += hidden_angles_;
-  head.installation.offsets += hidden_offsets_;
+  head.installation.angles += parts_.head_angles;
+  head.installation.offsets += parts_.head_offsets;
   for (const int direction : {2, 1}) {  // n: the top face, s: the side face
     const Eigen::Vector3d nominal = place.rotation.col(direction);
     TargetFace face(settings_, SideOf(nominal), mounting_.NormalOf(nominal), corner,
                     FaceReach(settings_, axis), seed_);
-    for (const HiddenEffect& effect : hidden_) {
-      if (effect.cause() != Cause::kTargetForm || effect.place() != 2 - direction) continue;
-      face.AddForm(settings_, effect.At("rms_um"), FaceReach(settings_, axis), seed_);
+    for (const double rms : parts_.forms[static_cast<std::size_t>(2 - direction)]) {
+      face.AddForm(settings_, rms, FaceReach(settings_, axis), seed_);
     }
     if (head_and_target_.target_reversed) {
       // About the middle of the stretch that the head passes.
@@ -124,7 +83,7 @@ World::InstalledHead World::Install(int axis) const {
   InstalledHead head = Mount(axis, place);
   // The fitter watches the gaps while he sets the head.
   for (int round = 0; round < kSettingRounds; ++round) {
-    head.electrodes = PlaceElectrodes(settings_, place, probes_, head.installation);
+    head.electrodes = PlaceElectrodes(settings_, place, parts_.probes, head.installation);
     const auto sights = SightsOf(head, start);
     for (const bool top : {true, false}) {
       double sum = 0.0, count = 0.0;
@@ -138,8 +97,8 @@ World::InstalledHead World::Install(int axis) const {
           head.installation.set_gap[top ? 0 : 1] - sum / count;
     }
   }
-  head.electrodes = PlaceElectrodes(settings_, place, probes_, head.installation);
-  if (response_.any) {
+  head.electrodes = PlaceElectrodes(settings_, place, parts_.probes, head.installation);
+  if (parts_.response.any) {
     const auto sights = SightsOf(head, start);
     for (int probe = 0; probe < kProbes; ++probe) {
       head.at_start[probe] = ResponseTo(sights[probe], probe);
@@ -155,7 +114,7 @@ Displacement World::PoseOf(const std::string& axes_from_bed, const Eigen::Vector
     const double sense = settings_.sense[axis];
     Motions errors = errors_[axis].At(command[axis]);
     errors[axis] *= sense;
-    pose = pose * CarriageDisplacement(squareness_.LineOf(axis), settings_.reference,
+    pose = pose * CarriageDisplacement(parts_.squareness.LineOf(axis), settings_.reference,
                                        sense * command[axis], errors);
   }
   return pose;
@@ -192,7 +151,7 @@ double World::ResponseTo(const Sight& sight, int probe) const {
   if (settings_.electrode > 0.0 && gap > 0.0) {
     gap = TiltResponse(gap, sight.tilt, settings_.electrode);
   }
-  return middle + (1.0 + probes_[probe].gain) * (gap - middle);
+  return middle + (1.0 + parts_.probes[probe].gain) * (gap - middle);
 }
 
 Readings World::TrueGaps(int axis, const Eigen::Vector3d& command) const {
@@ -206,16 +165,16 @@ Readings World::ReadingsAt(int axis, const Eigen::Vector3d& command) const {
   const auto sights = SightsOf(heads_[axis], command);
   Readings readings{};
   for (int probe = 0; probe < kProbes; ++probe) readings[probe] = ResponseTo(sights[probe], probe);
-  return response_.any ? ResponseOf(heads_[axis], readings) : readings;
+  return parts_.response.any ? ResponseOf(heads_[axis], readings) : readings;
 }
 
 Readings World::ResponseOf(const InstalledHead& head, const Readings& readings) const {
   Readings change{}, shown{};  // d, true and as read
   for (std::size_t i = 0; i < kProbes; ++i) change[i] = head.at_start[i] - readings[i];
   for (std::size_t i = 0; i < kProbes; ++i) {
-    double said = change[i] + response_.quadratic[i] * change[i] * change[i];
-    for (std::size_t k = 0; k < kProbes; ++k) said += response_.of[i][k] * change[k];
-    shown[i] = head.at_start[i] - (response_.inverted[i] ? -said : said);
+    double said = change[i] + parts_.response.quadratic[i] * change[i] * change[i];
+    for (std::size_t k = 0; k < kProbes; ++k) said += parts_.response.of[i][k] * change[k];
+    shown[i] = head.at_start[i] - (parts_.response.inverted[i] ? -said : said);
   }
   return shown;
 }

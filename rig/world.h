@@ -30,6 +30,7 @@
 #include "rig/probe_head.h"
 #include "rig/rig_settings.h"
 #include "rig/rotation.h"
+#include "rig/world_parts.h"
 
 namespace abbe::rig {
 
@@ -53,8 +54,8 @@ class World {
 
   Motions ErrorsOf(int axis, double position) const { return errors_[axis].At(position); }
   double ScaleOf(int axis) const { return errors_[axis].scale(); }
-  const Squareness& squareness() const { return squareness_; }
-  const std::array<ProbeTruth, kProbes>& probes() const { return probes_; }
+  const Squareness& squareness() const { return parts_.squareness; }
+  const std::array<ProbeTruth, kProbes>& probes() const { return parts_.probes; }
   const TargetMounting& target() const { return mounting_; }
   const HeadInstallation& InstallationOf(int axis) const { return heads_[axis].installation; }
 
@@ -76,15 +77,6 @@ class World {
     const TargetFace& FaceOf(const ProbePlace& probe) const { return faces[probe.top ? 0 : 1]; }
   };
 
-  // The hidden response of the probes, in d = gap at the start - gap.
-  struct Response {
-    Readings quadratic{};                                   // 1/m
-    std::array<std::array<double, kProbes>, kProbes> of{};  // of[i][k]: of d of k in the reading i
-    std::array<bool, kProbes> inverted{};
-    bool any = false;
-  };
-
-  void Build(const HiddenEffect& effect);
   InstalledHead Install(int axis) const;
   // The target and the head before the fitter sets the gaps.
   InstalledHead Mount(int axis, HeadPlace& place) const;
@@ -105,12 +97,8 @@ class World {
   HiddenEffects hidden_;
   Mounting head_and_target_;
   std::vector<AxisErrors> errors_;
-  Squareness squareness_;
-  std::array<ProbeTruth, kProbes> probes_;
+  WorldParts parts_;
   TargetMounting mounting_;
-  Response response_;
-  Eigen::Vector3d hidden_angles_ = Eigen::Vector3d::Zero();   // of the head's installation
-  Eigen::Vector3d hidden_offsets_ = Eigen::Vector3d::Zero();  // likewise
   std::vector<InstalledHead> heads_;
 };
 

@@ -5,7 +5,6 @@
 
 #include "settings/unit.h"
 #include "simulation/correction_steps.h"
-#include "simulation/kinds.h"
 
 namespace abbe::simulation {
 
@@ -70,11 +69,5 @@ void Moved::By(std::size_t row, double change) {
 }
 
 std::string PositionColumn(Index axis) { return std::string(1, "xyz"[axis]) + "_mm"; }
-
-Correction Correct(const Recording& recording, const std::vector<ModelledCause>& causes,
-                   const Origin& origin, const Instruments& instruments) {
-  if (causes.empty()) return {recording, {}};
-  return KindOf(recording).Correct(recording, causes, origin, instruments);
-}
 
 }  // namespace abbe::simulation

@@ -1,7 +1,7 @@
 // A recording corrected for causes: so everything that works on recordings can use an extended
 // model.
 //
-//   Correction corrected = Correct(recording, causes, origin, instruments);
+//   Correction corrected = Correct(recording, causes, origin, instruments);  // kinds.h
 //   abbe::probes::ReduceSweep(corrected.recording, setup);
 //
 // The stages of a cause (simulation/disturbance.h) are corrected in:
@@ -47,9 +47,5 @@ struct Correction {
   recording::Recording recording;
   Changes changes;
 };
-
-// `origin`: of the model; a recording begins its own where it says nothing.
-Correction Correct(const recording::Recording& recording, const std::vector<ModelledCause>& causes,
-                   const Origin& origin, const Instruments& instruments);
 
 }  // namespace abbe::simulation

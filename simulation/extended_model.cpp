@@ -12,7 +12,6 @@
 #include "settings/nearest_word.h"
 #include "settings/toml_text.h"
 #include "simulation/causes/registry.h"
-#include "simulation/shaft/shaft_run.h"
 
 namespace abbe::simulation {
 namespace {

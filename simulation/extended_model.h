@@ -3,7 +3,7 @@
 // that is gone. docs/extended-model.md describes the keys.
 //
 //   const ExtendedModel model = ReadExtendedModel("mill.causes.toml", {"demo-mill", true, 3});
-//   Correct(recording, model.causes, model.origin, instruments);  // simulation/correction.h
+//   Correct(recording, model.causes, model.origin, instruments);  // simulation/kinds.h
 //
 // Units: values and deviations SI, in the order of the cause's keys. Failure: InputError with file,
 // line and key for an unknown cause, object or key, a missing key, a number that is not finite or

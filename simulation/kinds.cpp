@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "failure/failure.h"
 
@@ -60,10 +62,22 @@ std::vector<SimulatedRun> SimulateForMap(const RunSource& source,
                                kind.name(), KindNames(&RunKind::MakesMaps)));
 }
 
+Correction Correct(const recording::Recording& recording, const std::vector<ModelledCause>& causes,
+                   const Origin& origin, const Instruments& instruments) {
+  if (causes.empty()) return {recording, {}};
+  return KindOf(recording).Correct(recording, causes, origin, instruments);
+}
+
+recording::Recording Planned(recording::Recording path, const Instruments& instruments) {
+  const RunKind& kind = KindOf(path);
+  return kind.Plan(std::move(path), instruments);
+}
+
 void RefuseStrangers(const std::vector<RunSource>& sources, const Instruments& instruments) {
-  std::map<const RunKind*, std::vector<RunSource>> by_kind;
-  for (const RunSource& source : sources) by_kind[&KindOf(source.head)].push_back(source);
-  for (const auto& [kind, of_kind] : by_kind) {
+  for (const RunKind* kind : Kinds()) {
+    std::vector<RunSource> of_kind;
+    std::ranges::copy_if(sources, std::back_inserter(of_kind),
+                         [&](const RunSource& source) { return &KindOf(source.head) == kind; });
     if (of_kind.size() > 1) kind->RefuseStrangers(of_kind, instruments);
   }
 }

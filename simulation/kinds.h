@@ -1,6 +1,7 @@
 // Every kind of run that abbe knows, and which one a recording is of.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "simulation/run_kind.h"
@@ -42,6 +43,14 @@ std::string KindNames();
 std::vector<SimulatedRun> SimulateForMap(const RunSource& source,
                                          const machine::VolumetricModel& model,
                                          const Instruments& instruments);
+
+// The recording corrected for the causes (correction.h). `origin`: of the model; a recording begins
+// its own where it says nothing.
+Correction Correct(const recording::Recording& recording, const std::vector<ModelledCause>& causes,
+                   const Origin& origin, const Instruments& instruments);
+
+// The path with the readings of a perfect machine (planned_run.h).
+recording::Recording Planned(recording::Recording path, const Instruments& instruments);
 
 // Refuses recordings of one kind that do not belong together. Kinds with one recording are not
 // read.

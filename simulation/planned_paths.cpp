@@ -7,15 +7,13 @@
 
 #include "recording/instant.h"
 #include "settings/toml_text.h"
+#include "settings/unit.h"
 
 namespace abbe::simulation {
 namespace {
 
 using Eigen::Vector3d;
 using recording::Recording;
-
-constexpr double kLengthUnit = 1e-3;
-constexpr double kFeedUnit = kLengthUnit / 60.0;
 
 struct Row {
   double time;
@@ -42,10 +40,10 @@ class PathMaker {
     std::size_t column = 0;
     const auto put = [&](double value) { path_.columns[column++].values.push_back(value); };
     put(row.time);
-    for (const double each : row.axes) put(each / kLengthUnit);
+    for (const double each : row.axes) put(each / settings::kMillimetre);
     put(row.pass);
     put(row.direction);
-    put(row.feed / kFeedUnit);
+    put(row.feed / settings::kMillimetrePerMinute);
     for (const auto& [sensor, temperature] : about_.temperature) put(temperature);
   }
 
@@ -137,7 +135,7 @@ Recording LengthPath(char axis, const Vector3d& middle, const machine::Travel& t
     const double length = (travel.last - travel.first) * place / kPlaces;
     axes[axis - 'X'] = travel.first + length;
     maker.Add({kSeconds * place, axes, 1, 1});
-    lengths.push_back(length / kLengthUnit);
+    lengths.push_back(length / settings::kMillimetre);
   }
   Recording path = maker.Take();
   path.columns.push_back({"u_length_um", std::vector<double>(lengths.size(), kU)});

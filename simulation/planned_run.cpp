@@ -2,18 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
-
-#include "simulation/kinds.h"
 
 namespace abbe::simulation {
 
 using recording::Recording;
-
-Recording Planned(Recording path, const Instruments& instruments) {
-  const RunKind& kind = KindOf(path);
-  return kind.Plan(std::move(path), instruments);
-}
 
 void FlagPlaces(Recording& path) {
   auto& flags = ColumnIn(path, "flags");

@@ -1,7 +1,7 @@
 // A run that is only planned, as a recording: a path with the readings that a perfect machine would
 // give, so that everything that takes a recording takes it.
 //
-//   campaign.Add(Planned(path, campaign.instruments()));
+//   campaign.Add(Planned(path, campaign.instruments()));  // kinds.h
 //
 // `path` is any recording whose kind can be planned; its positions, times and temperatures stay,
 // its readings do not count. The gaps stand in the middle of the range, the angles close the
@@ -17,11 +17,8 @@
 #include <vector>
 
 #include "recording/recording.h"
-#include "simulation/instruments.h"
 
 namespace abbe::simulation {
-
-recording::Recording Planned(recording::Recording path, const Instruments& instruments);
 
 // The steps of a kind that plans:
 

@@ -3,22 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "settings/toml_text.h"
-#include "simulation/kinds.h"
-#include "simulation/linkage/linkage_run.h"
+#include "simulation/planned_paths.h"
 #include "simulation/planned_run.h"
 
 namespace abbe::simulation {
 
 using recording::Recording;
-
-std::string MountingIdOf(const Recording& run) {
-  if (auto id = run.HeaderText("mounting.id")) return *std::move(id);
-  return run.HeaderText("mounting").value_or(run.name);
-}
 
 Recording Again(const Recording& run, const AgainAbout& about) {
   std::string more;
@@ -29,9 +22,7 @@ Recording Again(const Recording& run, const AgainAbout& about) {
     if (const auto value = run.HeaderNumber(key)) more += fmt::format("{} = {}\n", key, *value);
   }
   Recording again = run;
-  again.header =
-      HeaderOf({run.Kind(), about.machine, about.started, more,
-                about.mounting.empty() ? KindOf(run).MountingTable(run) : about.mounting});
+  again.header = HeaderOf({run.Kind(), about.machine, about.started, more, about.mounting});
   return again;
 }
 
@@ -66,21 +57,6 @@ Recording AnHourLater(const Recording& run, AgainAbout about) {
   constexpr double kHour = 3600.0;  // s
   about.started += kHour;
   return Warmer(Again(run, about), kWarmer);
-}
-
-bool Moves(const Recording& run) {
-  constexpr double kMillimetre = 1e-3;
-  std::size_t moved = 0;
-  for (std::size_t row = 1; row < run.rows(); ++row) {
-    double way = 0.0;
-    for (const char* axis : {"x_mm", "y_mm", "z_mm"}) {
-      if (const auto column = run.Find(axis)) {
-        way = std::max(way, std::abs((*column)[row] - (*column)[row - 1]));
-      }
-    }
-    if (way * kMillimetre > kStayWindow) ++moved;
-  }
-  return 2 * moved > run.rows();
 }
 
 std::string ShortName(const Recording& run) {

@@ -1,11 +1,11 @@
 // A recorded run made again, with one thing changed.
 //
-//   const AgainAbout about{.machine = "demo-mill", .started = tomorrow};
+//   const AgainAbout about{"demo-mill", tomorrow, "id = \"as it was\"\n"};
 //   const recording::Recording slower = AtFeed(Again(run, about), 0.2);
 //
 // The rows are those of the recording, readings included (planned_run.h replaces them). The header
-// keeps what a simulation asks for: kind, axis, the rule of the dwells, and the mounting unless
-// another one is given. Units: those of a recording.
+// keeps what a simulation asks for: kind, axis and the rule of the dwells. Units: those of a
+// recording.
 #pragma once
 
 #include <string>
@@ -16,13 +16,10 @@ namespace abbe::simulation {
 
 struct AgainAbout {
   std::string machine;
-  double started = 0.0;       // s since 1970
-  std::string mounting = {};  // the lines of the table [mounting]; empty: as it was
+  double started = 0.0;  // s since 1970
+  std::string mounting;  // the lines of the table [mounting]; each kind has keys of its own
 };
 recording::Recording Again(const recording::Recording& run, const AgainAbout& about);
-
-// The name of the mounting of a run on the machine; of a run without one its own name.
-std::string MountingIdOf(const recording::Recording& run);
 
 // From its end to its beginning, on the same way.
 recording::Recording TurnedRound(recording::Recording run);
@@ -35,9 +32,6 @@ recording::Recording Warmer(recording::Recording run, double kelvin);
 // An hour later, the machine 3 K warmer.
 inline constexpr double kWarmer = 3.0;  // K
 recording::Recording AnHourLater(const recording::Recording& run, AgainAbout about);
-
-// Whether most of its rows are of a motion.
-bool Moves(const recording::Recording& run);
 
 // The file name without folder and extension.
 std::string ShortName(const recording::Recording& run);

@@ -6,8 +6,6 @@
 #include <memory>
 #include <set>
 
-#include "failure/failure.h"
-#include "settings/toml_text.h"
 #include "simulation/planned_run.h"
 
 namespace abbe::simulation {
@@ -16,7 +14,12 @@ using recording::Recording;
 
 RunSource SourceOf(Recording recording) {
   const auto shared = std::make_shared<const Recording>(std::move(recording));
-  return {*shared, [shared](const auto& use) { use(*shared); }, [shared] { return *shared; }};
+  Recording head;
+  head.name = shared->name;
+  head.header = shared->header;
+  for (const auto& column : shared->columns) head.columns.push_back({column.name, {}});
+  return {std::move(head), [shared](const auto& use) { use(*shared); },
+          [shared] { return *shared; }};
 }
 
 std::vector<SimulatedRun> RunKind::ForMap(const RunSource& source, const machine::VolumetricModel&,
@@ -50,10 +53,6 @@ std::optional<std::string> RunKind::HeldOutGroup(const Recording&) const { retur
 Recording RunKind::Plan(Recording path, const Instruments&) const {
   FlagPlaces(path);
   return path;
-}
-
-std::string RunKind::MountingTable(const Recording& run) const {
-  return fmt::format("id = {}\n", settings::Quoted(MountingIdOf(run)));
 }
 
 std::vector<NextRun> RunKind::NextRuns(const std::vector<const Recording*>&, const Instruments&,

@@ -21,12 +21,12 @@
 #include <string_view>
 #include <vector>
 
+#include "failure/failure.h"
 #include "machine/volumetric_model.h"
 #include "recording/recording.h"
 #include "simulation/correction.h"
 #include "simulation/instruments.h"
 #include "simulation/planned_paths.h"
-#include "simulation/repeated_run.h"
 #include "simulation/run_source.h"
 #include "simulation/simulated_run.h"
 #include "simulation/trace.h"
@@ -49,6 +49,17 @@ struct RunFacts {
   virtual ~RunFacts() = default;
 };
 using FactsByRun = std::map<std::string, std::shared_ptr<const RunFacts>>;
+
+// The facts of a run as its kind made them; null: not known yet. InputError where the run of that
+// name is of another kind.
+template <typename Facts>
+std::shared_ptr<const Facts> FactsAs(const FactsByRun& known, const std::string& name) {
+  const auto found = known.find(name);
+  if (found == known.end()) return nullptr;
+  if (auto facts = std::dynamic_pointer_cast<const Facts>(found->second)) return facts;
+  throw InputError(name +
+                   ": a run of another kind has the same name; name each recording differently");
+}
 
 // Rows that were found invalid and left out.
 struct InvalidReadings {
@@ -118,8 +129,6 @@ class RunKind {
   // A path with the readings of a perfect machine (planned_run.h).
   virtual recording::Recording Plan(recording::Recording path,
                                     const Instruments& instruments) const;
-  // The table [mounting] of its header, without the line of its name.
-  virtual std::string MountingTable(const recording::Recording& run) const;
   // `recorded`: the runs of this kind so far.
   virtual std::vector<NextRun> NextRuns(const std::vector<const recording::Recording*>& recorded,
                                         const Instruments& instruments,

@@ -9,7 +9,7 @@
 namespace abbe::simulation {
 
 struct RunSource {
-  recording::Recording head;  // name, header and columns; it needs no rows
+  recording::Recording head;  // name, header and names of the columns; no rows are read of it
   recording::Blocks blocks;
   std::function<recording::Recording()> whole;
 };

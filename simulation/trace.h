@@ -19,9 +19,9 @@
 
 #include "recording/recording.h"
 #include "simulation/disturbance.h"
-#include "simulation/linkage/linkage_rows.h"
-#include "simulation/shaft/rim_readings.h"
-#include "simulation/sweep/head_rows.h"
+#include "simulation/head_rows.h"
+#include "simulation/linkage_rows.h"
+#include "simulation/rim_readings.h"
 
 namespace abbe::simulation {
 

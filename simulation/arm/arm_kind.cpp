@@ -34,15 +34,11 @@ struct ArmFacts : RunFacts {
   ArmBaseline baseline;
 };
 
-const ArmFacts* FactsOf(const std::shared_ptr<const RunFacts>& facts) {
-  return dynamic_cast<const ArmFacts*>(facts.get());
-}
-
 // The linkage with its base where another run with this one's mounting has it, or this run itself.
 relm::LinkageSettings PlacedFor(const LinkageRun& run, const relm::LinkageSettings& settings,
                                 const FactsByRun& known) {
   for (const auto& [name, facts] : known) {
-    const ArmFacts* arm = FactsOf(facts);
+    const auto* arm = dynamic_cast<const ArmFacts*>(facts.get());
     if (arm == nullptr || arm->baseline.mounting != run.mounting) continue;
     return HeldAtOnePlace(arm->baseline.settings, run);
   }
@@ -104,17 +100,18 @@ class ArmRuns : public RunKind {
     LinkageRun run = AtMost(MeansOfStays(ReadLinkageRun(recording, settings)), kMostDiagnosedPoses);
     const double again = settings.noise.repeatability;
     run.reference_sd = (run.reference_sd.array().square() + again * again).sqrt();
-    const auto found = known.find(run.name);
-    const bool is_new = found == known.end();
+    auto facts = FactsAs<ArmFacts>(known, run.name);
+    const bool is_new = facts == nullptr;
     if (is_new && run.poses() < kFewest) {
       throw InputError(fmt::format("{}: has {} poses; an arm is diagnosed from {} on", run.name,
                                    run.poses(), kFewest));
     }
+    if (is_new) {
+      facts = std::make_shared<const ArmFacts>(FitArm(run, PlacedFor(run, settings, known)));
+    }
     PreparedRuns prepared;
-    prepared.facts =
-        is_new ? std::make_shared<const ArmFacts>(FitArm(run, PlacedFor(run, settings, known)))
-               : found->second;
-    const ArmBaseline& baseline = FactsOf(prepared.facts)->baseline;
+    prepared.facts = facts;
+    const ArmBaseline& baseline = facts->baseline;
     const std::vector<Index> far = FarOff(run, baseline);
     const LinkageRun kept = Without(run, far);
     if (is_new) prepared.notes.push_back(NoiseNote(kept, baseline));
@@ -146,8 +143,6 @@ class ArmRuns : public RunKind {
         "{}: has no axis positions x_mm, y_mm, z_mm: the poses of an arm cannot be planned with",
         path.name));
   }
-
-  std::string MountingTable(const Recording& run) const override { return BaseLines(BaseOf(run)); }
 };
 
 }  // namespace

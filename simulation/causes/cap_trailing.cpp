@@ -1,11 +1,12 @@
 // Trailing in the tool cap: the ball stays behind the moving cap, the more the faster it goes, and
 // comes back while it stands: displacement feed / (feed + the feed of half of it).
+#include "settings/unit.h"
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
 
 Cause CapTrailing() {
-  constexpr double kFeed = 1e-3 / 60.0;  // m/s in a mm/min
+  constexpr double kFeed = settings::kMillimetrePerMinute;
   return {
       .id = "cap-trailing",
       .words = {.what = "the ball trails behind its magnetic cap while that moves",

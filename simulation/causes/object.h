@@ -8,7 +8,7 @@
 //   "probe_a", "probe_a+probe_b"  probes of the head
 //   "pivot_1", "link_1"           of a linkage, from its base on
 //   "sensor_1"                    a gap sensor at a turning shaft
-//   "cap", "head", "shaft" ...    whatever there is one of
+//   "cap", "head", "shaft" ...    what a machine has one of
 // each with a blank and the name of a temperature sensor behind it, where one is meant.
 // Failure: none; a name of no such form is a thing known by name.
 #pragma once

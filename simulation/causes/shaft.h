@@ -1,4 +1,4 @@
-// The objects of a turning shaft (simulation/shaft/rim_readings.h), and what its causes have in
+// The objects of a turning shaft (simulation/rim_readings.h), and what its causes have in
 // common.
 #pragma once
 

@@ -7,7 +7,7 @@ Cause Vibration() {
   return {
       .id = "vibration",
       .words = {.what = "an axis vibrates at one frequency",
-                .shows = "a line in time in all channels that feel this axis, whatever it does",
+                .shows = "a line in time in all channels that feel this axis, moving or not",
                 .check = "pumps, fans and drives that run at this speed, resonance of the position "
                          "loop, the foundation",
                 .remedy = "remove or decouple the source, lower the gain of the loop; average over "

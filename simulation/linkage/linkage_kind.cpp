@@ -21,6 +21,7 @@
 #include "simulation/linkage/one_ball.h"
 #include "simulation/planned_run.h"
 #include "simulation/points/reference_simulation.h"
+#include "simulation/repeated_run.h"
 
 namespace abbe::simulation {
 namespace {
@@ -70,6 +71,21 @@ void SetAngles(const Instruments& on, Recording& path) {
   }
 }
 
+// Whether most of its rows are of a motion.
+bool Moves(const Recording& run) {
+  std::size_t moved = 0;
+  for (std::size_t row = 1; row < run.rows(); ++row) {
+    double way = 0.0;
+    for (const char* axis : {"x_mm", "y_mm", "z_mm"}) {
+      if (const auto column = run.Find(axis)) {
+        way = std::max(way, std::abs((*column)[row] - (*column)[row - 1]));
+      }
+    }
+    if (way * settings::kMillimetre > kStayWindow) ++moved;
+  }
+  return 2 * moved > run.rows();
+}
+
 // The runs that could follow those of a linkage.
 class AfterLinkage {
  public:
@@ -92,7 +108,9 @@ class AfterLinkage {
   }
 
  private:
-  AgainAbout AsItWas() const { return {about_.machine, about_.started}; }
+  AgainAbout AsItWas(const Recording& run) const {
+    return {about_.machine, about_.started, BaseLines(BaseOf(run))};
+  }
 
   void AddOtherFeed(const Recording& run) {
     constexpr double kFast = 300.0;     // mm/min
@@ -103,25 +121,25 @@ class AfterLinkage {
     runs_.push_back({feed == 0.0 ? fmt::format("repeat {} at a fifth of its feed", ShortName(run))
                                  : fmt::format("repeat {} at {:.0f} mm/min instead of {:.0f}",
                                                ShortName(run), times * feed, feed),
-                     AtFeed(Again(run, AsItWas()), times)});
+                     AtFeed(Again(run, AsItWas(run)), times)});
   }
 
   void AddAgain(const Recording& run) {
     const std::string name = ShortName(run);
-    runs_.push_back(
-        {fmt::format("repeat {} in the reverse order", name), TurnedRound(Again(run, AsItWas()))});
+    runs_.push_back({fmt::format("repeat {} in the reverse order", name),
+                     TurnedRound(Again(run, AsItWas(run)))});
     runs_.push_back({fmt::format("take the linkage's base off, set it up anew and repeat {}", name),
                      Again(run, {about_.machine, about_.started, BaseLines(kBaseAnew)})});
     runs_.push_back(
         {fmt::format("repeat {} an hour later, the machine {:.0f} K warmer", name, kWarmer),
-         AnHourLater(run, AsItWas())});
+         AnHourLater(run, AsItWas(run))});
     if (!on_.linkage->pivots) return;
     auto other = std::make_shared<Instruments>(on_);
     relm::Elbow& elbow = other->linkage->branch.elbow;
     elbow = elbow == relm::Elbow::kUp ? relm::Elbow::kDown : relm::Elbow::kUp;
     runs_.push_back({fmt::format("repeat {} with the linkage's elbow {}", name,
                                  elbow == relm::Elbow::kUp ? "up" : "down"),
-                     Again(run, AsItWas()), std::move(other)});
+                     Again(run, AsItWas(run)), std::move(other)});
   }
 
   void AddCircles() {
@@ -201,8 +219,6 @@ class LinkageRuns : public RunKind {
     SetAngles(on, path);
     return path;
   }
-
-  std::string MountingTable(const Recording& run) const override { return BaseLines(BaseOf(run)); }
 
   std::vector<NextRun> NextRuns(const std::vector<const Recording*>& recorded,
                                 const Instruments& on, const PathAbout& about) const override {

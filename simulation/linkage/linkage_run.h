@@ -46,6 +46,7 @@ struct LinkageRun {
 LinkageRun ReadLinkageRun(const recording::Recording& recording,
                           const relm::LinkageSettings& settings);
 
+// The stays of a run, each as one pose.
 inline constexpr double kStayWindow = 5e-6;  // m
 LinkageRun MeansOfStays(LinkageRun run, double window = kStayWindow);
 

@@ -50,9 +50,10 @@ class LengthRuns : public RunKind {
     }
     std::vector<NextRun> runs;
     for (const char axis : {'X', 'Y', 'Z'}) {
+      const machine::Travel& travel = on.machine.travels[static_cast<std::size_t>(axis - 'X')];
+      if (travel.first == travel.last) continue;
       runs.push_back({fmt::format("measure a length along {} (interferometer or step gauge)", axis),
-                      LengthPath(axis, middle,
-                                 on.machine.travels[static_cast<std::size_t>(axis - 'X')], about)});
+                      LengthPath(axis, middle, travel, about)});
     }
     return runs;
   }

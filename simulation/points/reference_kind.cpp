@@ -48,12 +48,7 @@ ReferenceRun ReadRun(const Recording& recording, const Instruments& on) {
 // The noise of a run that states none.
 Eigen::Vector3d NoiseOf(const ReferenceRun& run, const Instruments& on, const FactsByRun& known,
                         PreparedRuns& prepared) {
-  const auto found = known.find(run.points.name);
-  if (found != known.end()) {
-    if (const auto* facts = dynamic_cast<const ReferenceFacts*>(found->second.get())) {
-      return facts->sd;
-    }
-  }
+  if (const auto facts = FactsAs<ReferenceFacts>(known, run.points.name)) return facts->sd;
   if (const auto noise = NoiseOfRepeats(run)) {
     prepared.notes.push_back(NoiseText(run, *noise));
     prepared.facts = std::make_shared<const ReferenceFacts>(noise->sd);

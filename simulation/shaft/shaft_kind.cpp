@@ -74,10 +74,11 @@ class ShaftRuns : public RunKind {
                        const Instruments&, const FactsByRun& known) const override {
     PreparedRuns prepared;
     ShaftRun run = ReadShaftRun(recording);
-    const auto found = known.find(run.name);
-    const bool is_new = found == known.end();
-    prepared.facts = is_new ? std::make_shared<const ShaftFacts>(RepeatsOf(run)) : found->second;
-    const RimRepeats& repeats = dynamic_cast<const ShaftFacts&>(*prepared.facts).repeats;
+    auto facts = FactsAs<ShaftFacts>(known, run.name);
+    const bool is_new = facts == nullptr;
+    if (is_new) facts = std::make_shared<const ShaftFacts>(RepeatsOf(run));
+    prepared.facts = facts;
+    const RimRepeats& repeats = facts->repeats;
     if (run.sense == 0) {
       SetSense(repeats.sense, run);
       if (is_new && run.rim.sensors > 1) NoteSense(run, prepared.notes);

@@ -20,12 +20,11 @@
 #include <vector>
 
 #include "recording/recording.h"
-#include "simulation/shaft/rim_readings.h"
+#include "simulation/rim_readings.h"
 
 namespace abbe::simulation {
 
 inline constexpr double kCell = 0.034906585039886591;  // rad: 2 degrees
-inline constexpr int kMostRimSensors = 5;
 
 struct ShaftRun {
   std::string name;  // of the recording

@@ -11,6 +11,7 @@
 #include "settings/unit.h"
 #include "simulation/kinds.h"
 #include "simulation/planned_run.h"
+#include "simulation/repeated_run.h"
 #include "simulation/sweep/sweep_correction.h"
 #include "simulation/sweep/sweep_run.h"
 #include "simulation/sweep/sweep_simulation.h"
@@ -36,6 +37,12 @@ Eigen::Matrix<double, 6, 3> SlopesOf(const machine::Population& population) {
     slopes(axis, axis) = std::hypot(slopes(axis, axis), population.scale);
   }
   return slopes;
+}
+
+// The name of the mounting; of a run without one its own name.
+std::string MountingIdOf(const Recording& run) {
+  if (auto id = run.HeaderText("mounting.id")) return *std::move(id);
+  return run.HeaderText("mounting").value_or(run.name);
 }
 
 std::string MountingLines(const std::string& id, const SweepMounting& mounted) {
@@ -73,10 +80,6 @@ class HeadKind : public RunKind {
     return path;
   }
 
-  std::string MountingTable(const Recording& run) const override {
-    return MountingLines(MountingIdOf(run), MountedOf(run));
-  }
-
  protected:
   // On a machine with a head.
   virtual SweepRun Read(const Recording& recording, const Instruments& on) const = 0;
@@ -104,7 +107,8 @@ class AfterSweep {
     runs.push_back(
         {fmt::format("turn the head by half a turn about its normal and repeat {}", name_),
          Again({.head_turned = true})});
-    const AgainAbout as_it_was{about_.machine, about_.started};
+    const AgainAbout as_it_was{about_.machine, about_.started,
+                               MountingLines(MountingIdOf(sweep_), MountedOf(sweep_))};
     runs.push_back({fmt::format("repeat {} in the reverse order, from the other end", name_),
                     TurnedRound(simulation::Again(sweep_, as_it_was))});
     runs.push_back(

@@ -36,7 +36,7 @@ class FuseTest(ProgramCase):
         grid = result["map"]["grid"]
         z, y, x = np.meshgrid(grid["z"], grid["y"], grid["x"], indexing="ij")
         ours = np.array([x.ravel() * 1e3, y.ravel() * 1e3, z.ravel() * 1e3,
-                         *(1e6 * np.array(grid["error"])), *(1.96e6 * np.array(grid["u"]))]).T
+                         *(1e6 * np.array(grid["error"])), *(2e6 * np.array(grid["u"]))]).T
         np.testing.assert_allclose(ours, rows[:, :9], rtol=1e-4, atol=1e-5)
         errors = result["map"]["errors"]
         self.assertEqual(len(errors), 21)

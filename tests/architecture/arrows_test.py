@@ -1,20 +1,12 @@
 #!/usr/bin/env python3
 """The watch must bark: a forbidden include, a library behind a gate, an unknown folder."""
-import pathlib
-import tempfile
 import unittest
 
 import arrows
+import small_house
 
 
-class ArrowsTest(unittest.TestCase):
-    def house(self, files):
-        root = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
-        for name, text in files.items():
-            (root / name).parent.mkdir(parents=True, exist_ok=True)
-            (root / name).write_text(text)
-        return root
-
+class ArrowsTest(small_house.HouseTest):
     def test_an_arrow_that_goes_back_is_found(self):
         root = self.house({"geometry/rotation.h": '#include "probes/head_model.h"\n'})
         self.assertEqual(len(list(arrows.broken_arrows(root))), 1)

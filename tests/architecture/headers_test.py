@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
 """The checks of the headers' comments must bark: at a name that is gone, at an example that would not be compiled, at
 a contract that got poorer."""
-import pathlib
-import tempfile
 import tomllib
 import unittest
 
 import header_contract
 import header_examples
 import header_names
+import small_house
 
 HEADER = """// What it is.
 //
@@ -32,14 +31,7 @@ class Ball {
 """
 
 
-class HeadersTest(unittest.TestCase):
-    def house(self, files):
-        root = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
-        for name, text in files.items():
-            (root / name).parent.mkdir(parents=True, exist_ok=True)
-            (root / name).write_text(text)
-        return root
-
+class HeadersTest(small_house.HouseTest):
     def names(self, comment):
         root = self.house({"relm/ball.h": HEADER, "docs/sweep.md": "", "relm/a.h": f"// {comment}\n#pragma once\n"})
         return [line.split(": ")[1] for line in header_names.strangers(root)]

@@ -84,7 +84,7 @@ TEST(ArmsHidden, AnUpperArmThatSagsIsNotToldFromItsEncoder) {
   EXPECT_TRUE(names.contains("encoder-eccentricity:pivot_2"));
 }
 
-// Poses that are none count with their rows and nothing is blamed for them.
+// Outliers are counted by their rows, and no cause is blamed for them.
 TEST(ArmsHidden, PosesFarOffAreLeftOut) {
   const Diagnosis diagnosis = DiagnosisOf(ArmWorld::Record(3, {.far_off = 4}));
   ASSERT_EQ(diagnosis.findings.size(), 1U);

@@ -12,7 +12,7 @@
 #include "failure/failure.h"
 #include "random/counter_random.h"
 #include "simulation/causes/registry.h"
-#include "simulation/planned_run.h"
+#include "simulation/kinds.h"
 #include "tests/diagnosis/planned_circles.h"
 #include "tests/hidden_effects/hidden_world.h"
 

@@ -9,6 +9,7 @@
 #include "rig/record_plate.h"
 #include "rig/rig_settings.h"
 #include "settings/document.h"
+#include "standards/coverage.h"
 
 namespace abbe::diagnosis {
 namespace plate_hidden_test {
@@ -69,8 +70,8 @@ TEST(Plates, TellThatAnAxisCreeps) {
     EXPECT_EQ(found.candidate.Name(), "warm-up-drift:X") << seed;
     const Keys keys = KeysOf(found);
     ASSERT_EQ(keys.values.size(), 2);
-    EXPECT_NEAR(keys.values[0], 1e-3 * kDrift, kRarely * kCoverage * keys.u[0]) << seed;
-    EXPECT_NEAR(keys.values[1], kTimeConstant, kRarely * kCoverage * keys.u[1]) << seed;
+    EXPECT_NEAR(keys.values[0], 1e-3 * kDrift, kRarely * standards::kCoverage * keys.u[0]) << seed;
+    EXPECT_NEAR(keys.values[1], kTimeConstant, kRarely * standards::kCoverage * keys.u[1]) << seed;
     EXPECT_GT(keys.u[0], kKnownMachine) << seed;
     EXPECT_LT(keys.u[0], 1.5 * kKnownMachine) << seed;
   }

@@ -56,7 +56,7 @@ std::string Largest(const rig::HiddenEffect& effect) {
 }
 
 bool IsOfData(const rig::HiddenEffect& effect) {
-  return effect.cause() == rig::Cause::kStuckChannel || effect.cause() == rig::Cause::kOutliers;
+  return effect.entry->name == "stuck-channel" || effect.entry->name == "outliers";
 }
 
 // Of the only cause, held out.

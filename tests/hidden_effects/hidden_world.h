@@ -16,6 +16,7 @@
 #include "random/counter_random.h"
 #include "relm/linkage_settings.h"
 #include "rig/campaign.h"
+#include "rig/effects/registry.h"
 #include "settings/document.h"
 
 namespace abbe {
@@ -89,8 +90,8 @@ inline std::string DrawHidden(const random::CounterRandom& random, std::uint64_t
       {rig::kSourceObject, {"linkage", "probes"}}};
   std::vector<std::pair<std::string_view, std::string>> choices;
   std::vector<std::string_view> names;
-  for (const rig::CauseEntry& entry : rig::EffectCatalogue()) {
-    if (entry.variable.empty() != known) continue;
+  for (const rig::Effect& entry : rig::EffectCatalogue()) {
+    if ((entry.variable == nullptr) != known) continue;
     names.push_back(entry.name);
     for (const auto& [kind, objects] : kObjects) {
       if ((entry.objects & kind) == 0) continue;

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "failure/failure.h"
+#include "rig/effects/registry.h"
 #include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {
@@ -28,7 +29,7 @@ void ExpectHas(const std::string& text, const std::string& part) {
 TEST(HiddenEffect, ReadsItsKeysInTheirUnits) {
   const HiddenEffect effect = ParseHidden(
       "leadscrew-cyclic:object=Y:pitch_mm=5:amplitude_um=0.4:phase_rad=-1", 1, DemoSensors());
-  EXPECT_EQ(effect.cause(), Cause::kLeadscrewCyclic);
+  EXPECT_EQ(effect.entry->name, "leadscrew-cyclic");
   EXPECT_EQ(effect.places, std::vector<int>{1});
   EXPECT_DOUBLE_EQ(effect.At("pitch_mm"), 5e-3);
   EXPECT_DOUBLE_EQ(effect.At("amplitude_um"), 0.4e-6);
@@ -66,7 +67,7 @@ TEST(HiddenEffect, DrawsWhatIsMissing) {
       {kPivotObject, "pivot_3"}, {kLinkObject, "link_2"}, {kProbePairObject, "probe_d+probe_e"},
       {kHeadObject, "head"},     {kCapObject, "cap"},     {kFaceObject, "target_side"},
       {kSourceObject, "linkage"}};
-  for (const CauseEntry& entry : EffectCatalogue()) {
+  for (const Effect& entry : EffectCatalogue()) {
     for (const auto& [kind, object] : objects) {
       if ((entry.objects & kind) == 0) continue;
       const std::string text = std::string(entry.name) + ":object=" + object;
@@ -90,6 +91,14 @@ TEST(HiddenEffect, DrawsWhatIsMissing) {
         EXPECT_LE(std::abs(value), key.high * (1.0 + 1e-12)) << text << " " << name;
       }
     }
+  }
+}
+
+TEST(HiddenEffect, ActsSomewhere) {
+  for (const Effect& entry : EffectCatalogue()) {
+    EXPECT_NE(entry.objects, 0U) << entry.name;
+    EXPECT_TRUE(entry.in_world != nullptr || entry.in_linkage != nullptr || entry.in_run != nullptr)
+        << entry.name;
   }
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "rig/hidden_channels.h"
+#include "rig/dragged.h"
 #include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {

@@ -1,12 +1,11 @@
 // Each hidden effect of the axes against its closed form, as a reference instrument sees it.
-#include "rig/hidden_motion.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "rig/dragged.h"
 #include "tests/rig/hidden_worlds.h"
 
 namespace abbe::rig {

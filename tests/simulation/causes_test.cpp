@@ -269,13 +269,13 @@ TEST(Causes, FollowsWhatTheySayThatTheyFollow) {
   for (const Cause& cause : Causes()) {
     if (cause.columns) {
       EXPECT_TRUE(seen.contains(&cause)) << cause.id << " has no columns here";
-    } else if (cause.relaxes) {  // told by the parameter that it sets free
+    } else if (cause.relaxes) {  // follows what the parameter that it sets free does
       const auto objects = cause.objects(carried);
       ASSERT_FALSE(objects.empty()) << cause.id;
       const auto widened = cause.relaxes(objects.front());
       const bool is_warm = !widened.empty() && widened.front().starts_with("expansion.");
       EXPECT_EQ(cause.follows == Follows::kTemperature, is_warm) << cause.id;
-    } else {  // rows that are no readings
+    } else {  // invalid readings
       EXPECT_EQ(cause.follows, Follows::kTime) << cause.id;
     }
   }

@@ -14,6 +14,7 @@
 #include <fstream>
 
 #include "rig/campaign.h"
+#include "simulation/kinds.h"
 #include "simulation/linkage/linkage_simulation.h"
 #include "tests/fusion/rig_campaign.h"
 

@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "failure/failure.h"
+#include "fusion/machine_prior.h"
 #include "recording/check.h"
+#include "tests/diagnosis/arm_world.h"
+#include "tests/diagnosis/shaft_world.h"
 
 namespace abbe::simulation {
 namespace kinds_test {
@@ -40,6 +43,51 @@ TEST(RunKinds, AnUnknownKindIsNamed) {
               testing::ThrowsMessage<InputError>(
                   "head.csv: kind is \"voltage\"; known are sweep, arm, linkage, reference, "
                   "length, plate, shaft, dwell and gap-steps"));
+}
+
+struct FactsOfAnotherKind : RunFacts {};
+
+recording::Recording TwoLinesOfAReference() {
+  recording::Recording recording = HeadOf("reference", {});
+  recording.columns = {{"time_s", {0.0, 1.0}},
+                       {"x_mm", {0.0, 1.0}},
+                       {"y_mm", {0.0, 0.0}},
+                       {"z_mm", {0.0, 0.0}},
+                       {"ref_x_mm", {0.0, 1.0}}};
+  return recording;
+}
+
+TEST(RunKinds, ARunWithTheNameOfAnotherKindIsRefused) {
+  const Instruments on_wheel = SetupOfWheel(), on_arm = ArmWorld::SetupOf();
+  const auto model = fusion::UnknownMachine(on_wheel.machine);
+  const auto refused = [&](const RunKind& kind, const recording::Recording& recording,
+                           const Instruments& on) {
+    const FactsByRun known{{recording.name, std::make_shared<const FactsOfAnotherKind>()}};
+    EXPECT_THAT([&] { kind.Prepare(recording, model, on, known); },
+                testing::ThrowsMessage<InputError>(
+                    recording.name +
+                    ": a run of another kind has the same name; name each recording differently"));
+  };
+  refused(ShaftKind(), WheelUnderSensors({}, 1).Record("wheel.csv"), on_wheel);
+  refused(ArmKind(), ArmWorld::Record(1), on_arm);
+  refused(ReferenceKind(), TwoLinesOfAReference(), on_wheel);
+}
+
+TEST(RunKinds, FactsAreOfTheRunOfThatName) {
+  const auto facts = std::make_shared<const FactsOfAnotherKind>();
+  const FactsByRun known{{"a.csv", facts}};
+  EXPECT_EQ(FactsAs<FactsOfAnotherKind>(known, "a.csv"), facts);
+  EXPECT_EQ(FactsAs<FactsOfAnotherKind>(known, "b.csv"), nullptr);
+}
+
+TEST(RunKinds, NoLengthIsMeasuredAlongAnAxisWithoutTravel) {
+  Instruments on = SetupOfWheel();
+  on.machine.travels[1].last = on.machine.travels[1].first;
+  std::vector<std::string> axes;
+  for (const NextRun& next : LengthKind().NextRuns({}, on, {})) {
+    axes.push_back(next.path.HeaderText("axis").value_or(""));
+  }
+  EXPECT_THAT(axes, testing::ElementsAre("X", "Z"));
 }
 
 }  // namespace kinds_test

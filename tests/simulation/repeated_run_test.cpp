@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "simulation/planned_run.h"
+#include "simulation/kinds.h"
 #include "tests/diagnosis/planned_circles.h"
 
 namespace abbe::simulation {
@@ -46,14 +46,32 @@ TEST(RepeatedRun, AtAFifthOfItsFeedItTakesFiveTimesAsLong) {
 }
 
 TEST(RepeatedRun, KeepsWhatASimulationAsksFor) {
-  const auto again = Again(FourRows(), {"mill \"1\"", 1'795'248'000.0});
+  const auto again = Again(FourRows(), {"mill \"1\"", 1'795'248'000.0, "id = \"anew\"\n"});
   EXPECT_EQ(again.Kind(), "sweep");
   EXPECT_EQ(again.HeaderText("machine"), "mill \"1\"");
   EXPECT_EQ(again.HeaderText("axis"), "X");
   EXPECT_EQ(again.HeaderText("started"), "2026-11-21T08:00:00Z");
   EXPECT_EQ(again.HeaderNumber("sweep.settle_s"), 0.2);
-  EXPECT_EQ(again.HeaderText("mounting.id"), "a \"b\"");
-  EXPECT_EQ(Again(FourRows(), {"mill", 0.0, "id = \"anew\"\n"}).HeaderText("mounting.id"), "anew");
+  EXPECT_EQ(again.HeaderText("mounting.id"), "anew");
+}
+
+// The run of a kind that says "in the reverse order", "at a fifth of its feed" and the like.
+recording::Recording Repeated(const RunKind& kind, const recording::Recording& run,
+                              const std::string& how) {
+  for (const NextRun& next : kind.NextRuns({&run}, diagnosis::DemoInstruments(), {})) {
+    if (next.text.find(how) != std::string::npos) return next.path;
+  }
+  return {};
+}
+
+TEST(RepeatedRun, StaysMountedAsItWas) {
+  EXPECT_EQ(Repeated(SweepKind(), FourRows(), "reverse order").HeaderText("mounting.id"),
+            "a \"b\"");
+  auto circle = diagnosis::CircleAt(600.0);
+  circle.header += "[mounting]\nbase = \"b 2\"\n";
+  EXPECT_EQ(Repeated(LinkageKind(), circle, "reverse order").HeaderText("mounting.base"), "b 2");
+  EXPECT_EQ(Repeated(LinkageKind(), circle, "set it up anew").HeaderText("mounting.base"),
+            "planned anew");
 }
 
 TEST(RepeatedRun, WarmerIsEverySensor) {

@@ -12,6 +12,8 @@
 
 namespace abbe::simulation {
 
+inline constexpr int kMostRimSensors = 5;
+
 struct RimReadings {
   int sensors = 0;           // 0: the run is of something else
   std::vector<int> sensor;   // 0, 1, ...: which one
