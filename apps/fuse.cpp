@@ -32,7 +32,8 @@ using simulation::SimulatedRun;
 
 struct FuseArguments {
   std::vector<fs::path> recordings;
-  fs::path machine, causes, out = "map.toml", json;
+  fs::path machine, out = "map.toml", json;
+  CausesOption causes;
   int holdout = 0;
   bool fixed_smoothness = false, quiet = false;
 };
@@ -81,6 +82,18 @@ std::optional<fusion::FuseReport> FuseIfItFits(const simulation::Instruments& in
   }
 }
 
+// What a map has to be doubted for: without the causes that are not certain it would be `other`.
+fusion::Doubt DoubtOf(const CauseCorrection& causes,
+                      const std::optional<fusion::FuseReport>& other) {
+  if (!causes.WidensU95()) return {};
+  if (!other) {
+    throw NumericalError(
+        "without the causes that are not certain no map fits the recordings, so no U95 can be "
+        "stated; diagnose until they are certain");
+  }
+  return {&other->map, causes.unexplained()};
+}
+
 // The causes that the map does not contain, one line each.
 std::string NotInMap(const std::vector<simulation::ModelledCause>& causes) {
   std::string text;
@@ -113,24 +126,32 @@ int Fuse(const FuseArguments& arguments) {
   const machine::Machine& machine = file.sweep_setup.machine;
   CauseCorrection causes(arguments.causes, file, kForMaps);
   const simulation::Instruments instruments = InstrumentsOf(file);
-  std::vector<RunSource> sources, corrected;
+  std::vector<RunSource> sources, corrected, certain;
   for (const fs::path& path : arguments.recordings) {
     sources.push_back(SourceAt(machine, path));
     if (!causes.Active()) continue;
-    corrected.push_back(simulation::SourceOf(causes.Take(sources.back().whole())));
+    const recording::Recording read = sources.back().whole();
+    corrected.push_back(simulation::SourceOf(causes.Take(read)));
+    certain.push_back(simulation::SourceOf(causes.TakeCertain(read)));
   }
   simulation::RefuseStrangers(sources, instruments);
+  const bool choose = !arguments.fixed_smoothness;
   const auto runs = Simulate(causes.Active() ? corrected : sources, instruments);
-  const fusion::FuseReport report = fusion::Fuse(
-      machine, runs,
-      {.choose_smoothness = !arguments.fixed_smoothness, .holdout = arguments.holdout});
+  std::optional<fusion::FuseReport> other;
+  if (causes.WidensU95()) other = FuseIfItFits(instruments, certain, choose);
+  const fusion::FuseReport report = fusion::Fuse(machine, runs,
+                                                 {.choose_smoothness = choose,
+                                                  .holdout = arguments.holdout,
+                                                  .doubt = DoubtOf(causes, other)});
   map::WriteMap(report.map, arguments.out);
   auto json = FuseJson(report, runs);
   std::string text = FuseTable(report, runs);
   if (causes.Active()) {
     json["causes_taken_out"] = causes.Data();
     text += fmt::format("\n{}\n{}", causes.Line(), NotInMap(causes.taken()));
-    if (const auto without = FuseIfItFits(instruments, sources, !arguments.fixed_smoothness)) {
+    const auto without =
+        other && !causes.TakesCertain() ? other : FuseIfItFits(instruments, sources, choose);
+    if (without) {
       const MapChange change = ChangeOf(without->map, report.map);
       json["map_change_um"] = {{"rms", 1e6 * change.rms}, {"largest", 1e6 * change.largest}};
       text += fmt::format("without them the map would differ by {:.2f} um rms, {:.2f} um at most\n",

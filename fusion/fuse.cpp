@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "estimation/linearization.h"
+#include "failure/failure.h"
 #include "fusion/marginal.h"
 #include "simulation/linkage/linkage_problem.h"
 
@@ -42,6 +43,39 @@ std::vector<int> MachineColumns(const estimation::Layout& layout,
     }
   }
   return columns;
+}
+
+// An unknown displacement anywhere, m: all error functions are as unknown as each other, an angle
+// over the longest travel, and the sum of them moves a point by `displacement`.
+MatrixXd UnknownDisplacement(const machine::VolumetricModel& model, const Eigen::Vector3d& tool,
+                             double displacement) {
+  constexpr Index kPoints = 11;  // along each travel
+  double longest = 0.0;
+  for (const auto& travel : model.travels()) {
+    longest = std::max(longest, travel.last - travel.first);
+  }
+  VectorXd variance = VectorXd::Constant(model.ParameterCount(), 1.0 / (longest * longest));
+  Index first = 0;
+  for (int error = 0; error < machine::kAxes * machine::kMotions; ++error) {
+    const int motion = error % machine::kMotions;
+    const Index size = model.Function(error / machine::kMotions, motion).size();
+    if (motion < machine::kAxes) variance.segment(first, size).setOnes();
+    first += size;
+  }
+  double squares = 0.0;
+  for (Index point = 0; point < kPoints * kPoints * kPoints; ++point) {
+    Eigen::Vector3d at;
+    Index place = point;
+    for (Index axis = 0; axis < 3; ++axis, place /= kPoints) {
+      const auto& travel = model.travels()[static_cast<std::size_t>(axis)];
+      const auto part = static_cast<double>(place % kPoints) / (kPoints - 1);
+      at[axis] = travel.first + part * (travel.last - travel.first);
+    }
+    const Eigen::Matrix3Xd J = model.Linearize(at, tool).J_error_parameters;
+    squares += (J * variance.asDiagonal()).cwiseProduct(J).sum() / 3.0;
+  }
+  const double mean = squares / static_cast<double>(kPoints * kPoints * kPoints);
+  return (displacement * displacement / mean) * MatrixXd(variance.asDiagonal());
 }
 
 map::Source SourceOf(const std::string& kind) {
@@ -238,6 +272,7 @@ class FuseJob {
     };
     const MatrixXd C_prior = of_machine(prior);
     cov_pp_ = of_machine(all);
+    AddDoubt(now.fit);
     std::map<std::string, MatrixXd> C_kinds;
     for (const auto& [kind, information] : kinds) C_kinds[kind] = of_machine(information);
     const auto variance = [](const MatrixXd& E, const MatrixXd& C) {
@@ -261,6 +296,21 @@ class FuseJob {
     scale_.prior = std::sqrt(variance(row, C_prior));
     scale_.u = std::sqrt(variance(row, cov_pp_));
     scale_.calibrated = scale_.u * scale_.u < kHalf * scale_.prior * scale_.prior;
+  }
+
+  void AddDoubt(const Result& fit) {
+    const Doubt& doubt = options_.doubt;
+    if (doubt.other != nullptr) {
+      const VectorXd other = doubt.other->model().Parameters();
+      if (other.size() != cov_pp_.rows()) {
+        throw InputError("maps of different functions cannot be held against each other");
+      }
+      const VectorXd change = ValuesFound(fit, model_.Blocks()) - other;
+      cov_pp_ += change * change.transpose();
+    }
+    if (doubt.displacement > 0.0) {
+      cov_pp_ += UnknownDisplacement(model_, -machine_.reference, doubt.displacement);
+    }
   }
 
   map::ErrorMap MapOf(const Result& fit) {
