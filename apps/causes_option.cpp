@@ -69,9 +69,9 @@ std::string DoubtsOf(const simulation::ExtendedModel& model,
                      const std::vector<ModelledCause>& applied) {
   std::string text = simulation::DoubtText(model, applied);
   if (const double left = simulation::UnexplainedInSpace(model); left > 0.0) {
-    text += fmt::format("{}unexplained: {}; together {:.3g} um rms in space",
-                        text.empty() ? "" : "; ", simulation::UnexplainedText(model),
-                        left / kMicro);
+    text +=
+        fmt::format("{}unexplained: {}; together {:.3g} um rms in space", text.empty() ? "" : "; ",
+                    simulation::UnexplainedText(model), left / kMicro);
   }
   return text;
 }
@@ -159,9 +159,9 @@ Eigen::Matrix3Xd PathCauses::Beside(const Eigen::Matrix3Xd& path) const {
 }
 
 std::string PathCauses::Line() const {
-  std::string line =
-      fmt::format("in addition to the map, from {}: {}", name_,
-                  causes_.empty() ? "nothing" : fmt::format("{}", fmt::join(NamesOf(causes_), ", ")));
+  std::string line = fmt::format(
+      "in addition to the map, from {}: {}", name_,
+      causes_.empty() ? "nothing" : fmt::format("{}", fmt::join(NamesOf(causes_), ", ")));
   if (!left_.empty()) {
     line += fmt::format("; left out, because a path has no time and no temperature: {}",
                         fmt::join(NamesOf(left_), ", "));

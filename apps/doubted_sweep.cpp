@@ -49,15 +49,14 @@ void Widen(ComponentResult& result, const ComponentResult& other, double displac
     Widen(result.reversal->value, other.reversal->value, left, result.reversal->u);
     Widen(result.reversal->mean, other.reversal->mean, left);
     Widen(result.reversal->largest, other.reversal->largest, left);
-    result.reversal->seen = result.reversal->seen &&
-                            std::abs(result.reversal->mean.value) >
-                                result.coverage * result.reversal->mean.u;
+    result.reversal->seen = result.reversal->seen && std::abs(result.reversal->mean.value) >
+                                                         result.coverage * result.reversal->mean.u;
   }
   if (result.range && other.range) Widen(*result.range, *other.range, left);
   if (result.straightness && other.straightness) {
     auto& mine = *result.straightness;
-    mine.u = WithDoubt(mine.u, mine.least_squares.error - other.straightness->least_squares.error,
-                       left);
+    mine.u =
+        WithDoubt(mine.u, mine.least_squares.error - other.straightness->least_squares.error, left);
     Widen(mine.slope, other.straightness->slope, angle);
   }
 }

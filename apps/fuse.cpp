@@ -139,10 +139,9 @@ int Fuse(const FuseArguments& arguments) {
   const auto runs = Simulate(causes.Active() ? corrected : sources, instruments);
   std::optional<fusion::FuseReport> other;
   if (causes.WidensU95()) other = FuseIfItFits(instruments, certain, choose);
-  const fusion::FuseReport report = fusion::Fuse(machine, runs,
-                                                 {.choose_smoothness = choose,
-                                                  .holdout = arguments.holdout,
-                                                  .doubt = DoubtOf(causes, other)});
+  const fusion::FuseReport report = fusion::Fuse(
+      machine, runs,
+      {.choose_smoothness = choose, .holdout = arguments.holdout, .doubt = DoubtOf(causes, other)});
   map::WriteMap(report.map, arguments.out);
   auto json = FuseJson(report, runs);
   std::string text = FuseTable(report, runs);

@@ -23,9 +23,7 @@ struct Machine {
     }
   }
 
-  LinkageReader& Reader(const Recording& recording) {
-    return Reader(recording, reader);
-  }
+  LinkageReader& Reader(const Recording& recording) { return Reader(recording, reader); }
 
   // The change of the path by causes that are not certain.
   Eigen::Matrix3Xd DoubtfulChange(const Recording& recording, const paths::MeasuredPath& path) {

@@ -30,7 +30,7 @@ struct MeasuredPaths {
   // large as its standard deviation: [error][path], 3 x poses, m. The last one, where an extended
   // model is not sure of all its causes: the change by those (simulation/doubt.h).
   std::vector<std::vector<Eigen::Matrix3Xd>> errors;
-  double unexplained = 0.0;  // m rms, beside such a model
+  double unexplained = 0.0;                 // m rms, beside such a model
   std::optional<machine::Machine> machine;  // of the machine file
   // The head of a result, without its command.
   nlohmann::ordered_json head = nlohmann::ordered_json::object();

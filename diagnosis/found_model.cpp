@@ -92,9 +92,8 @@ std::optional<double> InSpace(const Leftover& leftover, const Campaign& campaign
   }
   const auto& linkage = campaign.instruments().linkage;
   if (!leftover.object.starts_with("pivot_")) return leftover.amplitude;
-  return linkage
-             ? std::optional(leftover.amplitude * ReachBeyond(leftover.object, linkage->chain))
-             : std::nullopt;
+  return linkage ? std::optional(leftover.amplitude * ReachBeyond(leftover.object, linkage->chain))
+                 : std::nullopt;
 }
 
 simulation::ExtendedModel FoundModel(const Diagnosis& diagnosis, const Campaign& campaign,

@@ -30,8 +30,7 @@ Eigen::VectorXd FreeValues(const Calibration& calibration) {
 }
 
 // Of the ball, m^2: mean over all poses and coordinates.
-double MeanVariance(const Calibration& calibration,
-                    const std::vector<simulation::LinkageRun>& runs,
+double MeanVariance(const Calibration& calibration, const std::vector<simulation::LinkageRun>& runs,
                     const relm::LinkageSettings& settings) {
   const CalibratedLinkage linkage(settings, calibration);
   double squares = 0.0, count = 0.0;

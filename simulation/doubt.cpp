@@ -36,10 +36,10 @@ void RefuseUnexplained(const ExtendedModel& model, const std::filesystem::path& 
                        bool although) {
   if (!IsUnexplained(model) || although) return;
   const std::string left = UnexplainedText(model);
-  const std::string runs =
-      model.next_runs.empty()
-          ? "find what it is, measure again and diagnose again"
-          : fmt::format("make the runs \"{}\" and diagnose again", fmt::join(model.next_runs, "; "));
+  const std::string runs = model.next_runs.empty()
+                               ? "find what it is, measure again and diagnose again"
+                               : fmt::format("make the runs \"{}\" and diagnose again",
+                                             fmt::join(model.next_runs, "; "));
   throw InputError(fmt::format(
       "{}: its diagnosis left unexplained what no known cause makes{}, so none of its causes is "
       "certain; {}, or give --although-unexplained: then U95 is widened by it",

@@ -165,7 +165,8 @@ std::string DiagnosisText(const ExtendedModel& model) {
         "\n# no known cause explains this\n[[diagnosis.unexplained]]\nobject = {}\nvariable = "
         "{}\namplitude = {}\nunit = {}\n",
         Quoted(one.object), Quoted(one.variable), Float(one.amplitude), Quoted(one.unit));
-    if (one.in_space) text += fmt::format("in_space_um = {}\n", Float(*one.in_space / settings::kMicro));
+    if (one.in_space)
+      text += fmt::format("in_space_um = {}\n", Float(*one.in_space / settings::kMicro));
   }
   return text;
 }

@@ -26,10 +26,10 @@ namespace abbe::simulation {
 struct ModelledCause {
   const Cause* cause;
   Object object;
-  Eigen::VectorXd values;      // of the keys
-  Eigen::VectorXd u95;         // of the values; empty: not stated
-  Eigen::MatrixXd covariance;  // of the coefficients; empty: not stated
-  double probability = 1.0;    // among its rivals
+  Eigen::VectorXd values;                // of the keys
+  Eigen::VectorXd u95;                   // of the values; empty: not stated
+  Eigen::MatrixXd covariance;            // of the coefficients; empty: not stated
+  double probability = 1.0;              // among its rivals
   std::vector<std::string> rivals = {};  // "cap-friction:cap", the most probable first
 
   std::string Name() const;  // "backlash:X", "thermal-growth:X (temp_table_c)"
@@ -59,10 +59,10 @@ inline constexpr const char* kVerdictUnexplained = "unexplained";
 
 struct ExtendedModel {
   std::string machine;
-  std::string verdict = {};               // of the diagnosis; empty: not stated
+  std::string verdict = {};  // of the diagnosis; empty: not stated
   std::vector<Unexplained> unexplained = {};
   std::vector<std::string> next_runs = {};  // that would tell causes from their rivals
-  Origin origin;  // from when on time counts, and how warm it was
+  Origin origin;                            // from when on time counts, and how warm it was
   ModelGain gain;
   std::vector<ModelSource> sources;
   std::vector<ModelledCause> causes;

@@ -33,9 +33,7 @@ constexpr int kPoints = 5;  // along each travel
 struct Judged {
   Eigen::Matrix3Xd off, u95;
 
-  double Rms() const {
-    return std::sqrt(off.squaredNorm() / static_cast<double>(off.cols()));
-  }
+  double Rms() const { return std::sqrt(off.squaredNorm() / static_cast<double>(off.cols())); }
 };
 
 // What the machine really does where it has its tool, in W.
@@ -54,8 +52,8 @@ Judged Judge(const rig::World& world, const map::ErrorMap& map) {
     for (std::size_t axis = 0; axis < 3; ++axis, place /= kPoints) {
       const auto& travel = map.model().travels()[axis];
       at[static_cast<Eigen::Index>(axis)] =
-          travel.first + (travel.last - travel.first) * static_cast<double>(place % kPoints) /
-                             (kPoints - 1);
+          travel.first +
+          (travel.last - travel.first) * static_cast<double>(place % kPoints) / (kPoints - 1);
     }
     const Vector3d& tool = map.origin().tool;
     judged.off.col(point) = map.Error(at, tool) - TrueError(world, map.model().chain(), at);
@@ -110,17 +108,19 @@ TEST(CorrectedMap, IsNeverWorseThanWithoutByMoreThanItsU95) {
     }
     const auto without = MapOf(worlds.setup(), campaign.recordings);
     const auto other = MapOf(worlds.setup(), certain);
-    const auto with =
-        MapOf(worlds.setup(), corrected, {.other = &other.map, .displacement = causes.unexplained()});
+    const auto with = MapOf(worlds.setup(), corrected,
+                            {.other = &other.map, .displacement = causes.unexplained()});
     const rig::World world(worlds.machine().rig, seed);
     const Judged before = Judge(world, without.map), after = Judge(world, with.map);
     const Eigen::Array3Xd worse = after.off.cwiseAbs() - before.off.cwiseAbs();
     const double beyond = (worse - after.u95.array()).maxCoeff();
     changed.Add(worse.abs().maxCoeff() > 1e-9);
-    rms.Add(after.Rms() <= before.Rms() + after.u95.norm() / std::sqrt(static_cast<double>(after.off.cols())));
+    rms.Add(after.Rms() <=
+            before.Rms() + after.u95.norm() / std::sqrt(static_cast<double>(after.off.cols())));
     fmt::print("{} {} {}, {} causes: {:.2f} um rms off without, {:.2f} with, U95 {:.2f}\n", seed,
                hidden, Name(diagnosis.verdict), causes.taken().size(), 1e6 * before.Rms(),
-               1e6 * after.Rms(), 1e6 * after.u95.norm() / std::sqrt(static_cast<double>(after.off.cols())));
+               1e6 * after.Rms(),
+               1e6 * after.u95.norm() / std::sqrt(static_cast<double>(after.off.cols())));
     EXPECT_LE(beyond, 0.0) << seed << ' ' << hidden;
   }
   fmt::print("refused {}, changed {}, rms within U95 {}\n", refused.Text(), changed.Text(),

@@ -33,9 +33,9 @@ ExtendedModel Unexplained() {
 TEST(Doubt, RefusesACauseBesideWhatIsUnexplained) {
   ExtendedModel model = Unexplained();
   EXPECT_THAT([&] { RefuseUnexplained(model, "mill.toml", false); },
-              testing::ThrowsMessage<InputError>(
-                  AllOf(HasSubstr("mill.toml: "), HasSubstr("pivot_1 over temp_c, 10 urad, and 1 more"),
-                        HasSubstr("diagnose again"), HasSubstr("--although-unexplained"))));
+              testing::ThrowsMessage<InputError>(AllOf(
+                  HasSubstr("mill.toml: "), HasSubstr("pivot_1 over temp_c, 10 urad, and 1 more"),
+                  HasSubstr("diagnose again"), HasSubstr("--although-unexplained"))));
   model.next_runs = {"an hour later"};
   EXPECT_THAT([&] { RefuseUnexplained(model, "mill.toml", false); },
               testing::ThrowsMessage<InputError>(HasSubstr("\"an hour later\"")));
