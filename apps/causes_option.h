@@ -3,7 +3,7 @@
 //
 //   CauseCorrection causes(option, file, kForMaps);
 //   const recording::Recording corrected = causes.Take(recording);
-//   if (causes.WidensU95()) ... causes.TakeCertain(recording) ...    // simulation/doubt.h
+//   const recording::Recording other = causes.TakeCertain(recording);  // simulation/doubt.h
 //   fmt::print("{}", causes.Line());
 //
 // Failure: InputError for a model beside which something is unexplained, without

@@ -132,6 +132,7 @@ int Fuse(const FuseArguments& arguments) {
     if (!causes.Active()) continue;
     const recording::Recording read = sources.back().whole();
     corrected.push_back(simulation::SourceOf(causes.Take(read)));
+    if (!causes.WidensU95()) continue;
     certain.push_back(simulation::SourceOf(causes.TakeCertain(read)));
   }
   simulation::RefuseStrangers(sources, instruments);

@@ -2,7 +2,7 @@
 // place of the rule, for every command that takes a model.
 //
 //   RefuseUnexplained(model, "mill.causes.toml", although);     // InputError
-//   if (!IsCertain(model, cause)) ...                           // its change counts as uncertainty
+//   const bool doubtful = !IsCertain(model, cause);   // its change counts as uncertainty
 //   u = WithDoubt(u, with - without, UnexplainedInSpace(model));
 //
 // Where structure is left that no known cause explains, no cause of the model is certain: whatever

@@ -112,7 +112,7 @@ TEST(CorrectedMap, IsNeverWorseThanWithoutByMoreThanItsU95) {
                             {.other = &other.map, .displacement = causes.unexplained()});
     const rig::World world(worlds.machine().rig, seed);
     const Judged before = Judge(world, without.map), after = Judge(world, with.map);
-    const Eigen::Array3Xd worse = after.off.cwiseAbs() - before.off.cwiseAbs();
+    const Eigen::Array3Xd worse = after.off.array().abs() - before.off.array().abs();
     const double beyond = (worse - after.u95.array()).maxCoeff();
     changed.Add(worse.abs().maxCoeff() > 1e-9);
     rms.Add(after.Rms() <=
