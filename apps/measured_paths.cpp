@@ -25,10 +25,10 @@ struct Machine {
 
   LinkageReader& Reader(const Recording& recording) { return Reader(recording, reader); }
 
-  // The change of the path by causes that are not certain.
+  // From a path to the one without the causes that are not certain.
   Eigen::Matrix3Xd DoubtfulChange(const Recording& recording, const paths::MeasuredPath& path) {
-    return path.measured -
-           Reader(recording, reader_of_certain).Path(causes->TakeCertain(recording)).measured;
+    return Reader(recording, reader_of_certain).Path(causes->TakeCertain(recording)).measured -
+           path.measured;
   }
 
   bool WidensU95() const { return causes && causes->WidensU95(); }
