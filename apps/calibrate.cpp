@@ -18,6 +18,7 @@
 #include "apps/machine_recording.h"
 #include "apps/result_file.h"
 #include "fusion/calibration_file.h"
+#include "fusion/doubted_calibration.h"
 #include "simulation/linkage/one_ball.h"
 
 namespace abbe::apps {
@@ -28,7 +29,8 @@ using Eigen::Index;
 
 struct CalibrateArguments {
   std::vector<fs::path> recordings, checks;
-  fs::path machine, causes, out, json;
+  fs::path machine, out, json;
+  CausesOption causes;
   std::optional<relm::ErrorModel> model;
   std::vector<double> volume_mm;
   bool displacement = false, mapped = false, compare = false, study = false, quiet = false;
@@ -102,23 +104,32 @@ class Calibration {
   }
 
   void FromRecordings() {
-    std::vector<simulation::LinkageRun> runs;
+    std::vector<simulation::LinkageRun> runs, certain;
     simulation::OneBall ball;
     for (const fs::path& path : arguments_.recordings) {
       const recording::Recording recording = ReadWithWarnings(path);
-      runs.push_back(simulation::MeansOfStays(
-          simulation::ReadLinkageRun(causes_.Take(recording), *file_.linkage)));
+      const auto means = [&](const recording::Recording& corrected) {
+        return simulation::MeansOfStays(simulation::ReadLinkageRun(corrected, *file_.linkage));
+      };
+      runs.push_back(means(causes_.Take(recording)));
+      if (causes_.WidensU95()) certain.push_back(means(causes_.TakeCertain(recording)));
       ball.Add(recording, runs.back());
     }
-    if (arguments_.poses > 0) KeepBest(runs);
-    fusion::CalibrationReport report =
-        fusion::Calibrate(file_.sweep_setup.machine.chain, *file_.linkage, runs, options_);
+    if (arguments_.poses > 0) KeepBest(runs, certain);
+    fusion::CalibrationReport report = CalibrationOf(runs);
+    if (causes_.WidensU95()) {
+      fusion::AddDoubt(CalibrationOf(certain), causes_.unexplained(), runs, *file_.linkage, report);
+    }
     report.calibration.machine = file_.sweep_setup.machine.name;
     Show(CalibrationTable(report, runs));
     if (!arguments_.out.empty()) fusion::WriteCalibration(report.calibration, arguments_.out);
     auto json = CalibrationJson(report, runs);
     if (causes_.Active()) json["causes_taken_out"] = causes_.Data();
     if (!arguments_.json.empty()) WriteResult(json, arguments_.json);
+  }
+
+  fusion::CalibrationReport CalibrationOf(const std::vector<simulation::LinkageRun>& runs) const {
+    return fusion::Calibrate(file_.sweep_setup.machine.chain, *file_.linkage, runs, options_);
   }
 
   // Plans poses in a box, before anything is measured.
@@ -134,15 +145,18 @@ class Calibration {
     Show(SeenTable(seen));
   }
 
-  // Chooses the poses of one recording that give the best calibration.
-  void KeepBest(std::vector<simulation::LinkageRun>& runs) {
+  // Chooses the poses of one recording that give the best calibration; `others` keep the same.
+  void KeepBest(std::vector<simulation::LinkageRun>& runs,
+                std::vector<simulation::LinkageRun>& others) {
     if (runs.size() != 1) {
       throw InputError(fmt::format("--poses chooses from one recording, {} given", runs.size()));
     }
     const auto simulation = Simulation();
     auto chosen = Choose(fusion::PoseInformation(simulation, runs[0], simulation.Values()));
     std::sort(chosen.begin(), chosen.end());  // in order of time again, for the held-out blocks
-    runs[0] = simulation::Selection(runs[0], chosen);
+    for (auto* of : {&runs, &others}) {
+      for (simulation::LinkageRun& run : *of) run = simulation::Selection(run, chosen);
+    }
   }
 
   void Plan() {

@@ -10,6 +10,7 @@
 #include "apps/instruments.h"
 #include "settings/unit.h"
 #include "simulation/kinds.h"
+#include "simulation/doubt.h"
 #include "simulation/path_displacement.h"
 
 namespace abbe::apps {
@@ -52,28 +53,69 @@ bool Takes(const ModelledCause& cause) {
          cause.object.kind() == simulation::Object::Kind::kLink;
 }
 
-}  // namespace
-
-CLI::Option* AddCausesOption(CLI::App& command, std::filesystem::path& path) {
-  return command.add_option("--causes", path,
-                            "Extended model (abbe diagnose -o): the recordings are corrected "
-                            "for its causes first");
+simulation::ExtendedModel ReadModel(const CausesOption& option,
+                                    const simulation::CauseObjects& objects) {
+  auto model = simulation::ReadExtendedModel(option.path, objects);
+  simulation::RefuseUnexplained(model, option.path, option.although_unexplained);
+  if (model.verdict.empty()) {
+    fmt::print(stderr,
+               "abbe: {}: states no verdict of a diagnosis; its causes are taken as certain\n",
+               option.path.string());
+  }
+  return model;
 }
 
-CauseCorrection::CauseCorrection(const std::filesystem::path& path, const MachineFile& file,
+// What is doubtful of those causes that are applied, and what is unexplained beside them.
+std::string DoubtsOf(const simulation::ExtendedModel& model,
+                     const std::vector<ModelledCause>& applied) {
+  std::string text = simulation::DoubtText(model, applied);
+  if (const double left = simulation::UnexplainedInSpace(model); left > 0.0) {
+    text +=
+        fmt::format("{}unexplained: {}; together {:.3g} um rms in space", text.empty() ? "" : "; ",
+                    simulation::UnexplainedText(model), left / kMicro);
+  }
+  return text;
+}
+
+void AddAlthough(CLI::App& command, CausesOption& option, CLI::Option* causes) {
+  command
+      .add_flag("--although-unexplained", option.although_unexplained,
+                "With --causes: apply causes beside which the diagnosis left something "
+                "unexplained, and widen U95 by both")
+      ->needs(causes);
+}
+
+}  // namespace
+
+void AddCausesOption(CLI::App& command, CausesOption& option) {
+  AddAlthough(command, option,
+              command.add_option("--causes", option.path,
+                                 "Extended model (abbe diagnose -o): the recordings are corrected "
+                                 "for its causes first"));
+}
+
+CauseCorrection::CauseCorrection(const CausesOption& option, const MachineFile& file,
                                  const Corrections& taken)
     : instruments_(InstrumentsOf(file)) {
-  if (path.empty()) return;
-  name_ = path.filename().string();
-  simulation::ExtendedModel model = simulation::ReadExtendedModel(
-      path, {file.sweep_setup.machine.name, true,
-             file.linkage ? file.linkage->chain.joints() : Eigen::Index{0}});
+  if (option.path.empty()) return;
+  name_ = option.path.filename().string();
+  const simulation::ExtendedModel model =
+      ReadModel(option, {file.sweep_setup.machine.name, true,
+                         file.linkage ? file.linkage->chain.joints() : Eigen::Index{0}});
   origin_ = model.origin;
-  for (ModelledCause& cause : model.causes) {
+  verdict_ = model.verdict;
+  unexplained_ = simulation::UnexplainedInSpace(model);
+  for (const ModelledCause& cause : model.causes) {
     const CorrectedBy seat = cause.cause->CorrectedAt(cause.object);
     const bool wanted = std::find(taken.begin(), taken.end(), seat) != taken.end();
-    (wanted && Takes(cause) ? taken_ : left_).push_back(std::move(cause));
+    (wanted && Takes(cause) ? taken_ : left_).push_back(cause);
+    if (wanted && Takes(cause) && simulation::IsCertain(model, cause)) certain_.push_back(cause);
   }
+  doubts_ = DoubtsOf(model, taken_);
+}
+
+recording::Recording CauseCorrection::TakeCertain(const recording::Recording& recording) const {
+  return simulation::Correct(recording, certain_, origin_, instruments_).recording;
 }
 
 recording::Recording CauseCorrection::Take(recording::Recording recording) {
@@ -96,41 +138,50 @@ std::string CauseCorrection::Line() const {
   line += ChangeText("gaps", changes_.gaps, "um");
   line += ChangeText("angles", changes_.angles, "urad");
   if (!left_.empty()) line += fmt::format("; left in: {}", list(left_));
+  if (!doubts_.empty()) line += fmt::format("; {}; U95 is widened by that", doubts_);
   return line;
 }
 
-PathCauses::PathCauses(const std::filesystem::path& path, const std::string& machine,
-                       double feed_mm_min)
+PathCauses::PathCauses(const CausesOption& option, const std::string& machine, double feed_mm_min)
     : feed_(feed_mm_min * settings::UnitOf("_mm_min").si) {
   constexpr Eigen::Index kAnyLinkage = 9;  // pivots: a map has no linkage
-  if (path.empty()) return;
-  name_ = path.filename().string();
-  for (auto& cause : simulation::ReadExtendedModel(path, {machine, true, kAnyLinkage}).causes) {
+  if (option.path.empty()) return;
+  name_ = option.path.filename().string();
+  const simulation::ExtendedModel model = ReadModel(option, {machine, true, kAnyLinkage});
+  for (const ModelledCause& cause : model.causes) {
     if (cause.cause->CorrectedAt(cause.object) != CorrectedBy::kMotion) continue;
-    (simulation::ActsOnPath(cause) ? causes_ : left_).push_back(std::move(cause));
+    (simulation::ActsOnPath(cause) ? causes_ : left_).push_back(cause);
   }
+  doubts_ = DoubtsOf(model, causes_);
 }
 
 Eigen::Matrix3Xd PathCauses::Beside(const Eigen::Matrix3Xd& path) const {
   return simulation::PathDisplacement(path, feed_, causes_);
 }
 
-std::vector<std::string> PathCauses::Names() const { return NamesOf(causes_); }
-
 std::string PathCauses::Line() const {
-  std::string line =
-      fmt::format("in addition to the map, from {}: {}", name_,
-                  causes_.empty() ? "nothing" : fmt::format("{}", fmt::join(Names(), ", ")));
+  std::string line = fmt::format(
+      "in addition to the map, from {}: {}", name_,
+      causes_.empty() ? "nothing" : fmt::format("{}", fmt::join(NamesOf(causes_), ", ")));
   if (!left_.empty()) {
     line += fmt::format("; left out, because a path has no time and no temperature: {}",
                         fmt::join(NamesOf(left_), ", "));
   }
+  if (!doubts_.empty()) line += fmt::format("; {}; the U95 of the map is without that", doubts_);
   return line;
 }
 
-void AddPathCauses(CLI::App& command, std::filesystem::path& path, double& feed_mm_min) {
-  command.add_option("--causes", path,
-                     "Extended model (abbe diagnose -o): errors of the machine that its map lacks");
+void PathCauses::AddTo(nlohmann::ordered_json& result) const {
+  if (!Active()) return;
+  result["causes"] = NamesOf(causes_);
+  if (!doubts_.empty()) result["causes_doubt"] = doubts_;
+}
+
+void AddPathCauses(CLI::App& command, CausesOption& option, double& feed_mm_min) {
+  AddAlthough(command, option,
+              command.add_option("--causes", option.path,
+                                 "Extended model (abbe diagnose -o): errors of the machine that "
+                                 "its map lacks"));
   command
       .add_option("--feed-mm-min", feed_mm_min,
                   "With --causes: the feed, for lag (0: at standstill at each point)")
@@ -138,12 +189,17 @@ void AddPathCauses(CLI::App& command, std::filesystem::path& path, double& feed_
 }
 
 nlohmann::ordered_json CauseCorrection::Data() const {
-  return {{"file", name_},
-          {"taken_out", NamesOf(taken_)},
-          {"left_in", NamesOf(left_)},
-          {"positions_um", ChangeJson(changes_.positions)},
-          {"gaps_um", ChangeJson(changes_.gaps)},
-          {"angles_urad", ChangeJson(changes_.angles)}};
+  nlohmann::ordered_json data{{"file", name_},
+                              {"taken_out", NamesOf(taken_)},
+                              {"left_in", NamesOf(left_)},
+                              {"positions_um", ChangeJson(changes_.positions)},
+                              {"gaps_um", ChangeJson(changes_.gaps)},
+                              {"angles_urad", ChangeJson(changes_.angles)}};
+  if (!verdict_.empty()) data["verdict"] = verdict_;
+  if (doubts_.empty()) return data;
+  data["doubt"] = doubts_;
+  data["unexplained_um"] = unexplained_ / kMicro;
+  return data;
 }
 
 }  // namespace abbe::apps

@@ -15,6 +15,7 @@
 #include "apps/measured_paths.h"
 #include "apps/result_file.h"
 #include "settings/unit.h"
+#include "simulation/doubt.h"
 
 namespace abbe::apps {
 namespace {
@@ -62,6 +63,21 @@ std::vector<Runs> Grouped(Runs&& all) {
   return groups;
 }
 
+// What is unexplained beside an extended model may be on the radius as it is.
+void AddUnexplained(double unexplained, Circle& circle) {
+  for (FigureUncertainties& figures : circle.uncertainties) {
+    for (FigureUncertainty& u : figures) {
+      u.calibration = simulation::WithDoubt(u.calibration, 0.0, unexplained);
+    }
+  }
+  if (!circle.causes) return;
+  for (fusion::CauseEstimate& one : circle.causes->causes) {
+    if (!(one.effect > 0.0)) continue;
+    const double per_metre = std::abs(one.value) / one.effect;
+    one.u = simulation::WithDoubt(one.u, 0.0, unexplained * per_metre);
+  }
+}
+
 // Evaluates the runs of one circle. `shifted`: the runs with each error of the calibration.
 Circle Evaluate(Runs runs, const std::vector<const Runs*>& shifted, const MeasuredPaths& paths,
                 const CircleCommand& command) {
@@ -87,6 +103,7 @@ Circle Evaluate(Runs runs, const std::vector<const Runs*>& shifted, const Measur
     all.push_back(&run);
   }
   if (!all.front()->plane.Inclined()) circle.causes = fusion::FitCircleCauses(all, options);
+  if (!shifted.empty() && paths.unexplained > 0.0) AddUnexplained(paths.unexplained, circle);
   return circle;
 }
 

@@ -29,7 +29,8 @@ namespace {
 
 struct CorrectCommand {
   MapOption map;
-  std::filesystem::path from, causes, out, json;
+  std::filesystem::path from, out, json;
+  CausesOption causes;
   std::vector<double> work_offset_mm = {0.0, 0.0, 0.0};
   std::vector<double> start_mm, zero_mm;
   double chord_um = 1.0, feed_mm_min = 0.0;
@@ -74,7 +75,7 @@ void CorrectCsv(const CorrectCommand& options, const map::ErrorMap& map,
   if (!options.json.empty()) {
     auto result = ResultOf(options, map, "table", table.largest);
     result["rows"] = table.rows;
-    if (causes.Active()) result["causes"] = causes.Names();
+    causes.AddTo(result);
     WriteResult(result, options.json);
   }
   if (options.quiet) return;
@@ -204,7 +205,7 @@ int Correct(const CorrectCommand& options) {
   if (!options.zero_mm.empty()) corrector.KeepZero(VectorOf(options.zero_mm));
   if (options.from.extension() == ".csv") {
     CorrectCsv(options, map, corrector);
-  } else if (!options.causes.empty()) {
+  } else if (!options.causes.path.empty()) {
     throw InputError(fmt::format(
         "{}: --causes is for measured coordinates (.csv); set backlash and lag of a program in the "
         "controller",

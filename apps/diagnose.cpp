@@ -23,6 +23,7 @@
 #include "diagnosis/next_run.h"
 #include "failure/failure.h"
 #include "settings/toml_text.h"
+#include "simulation/doubt.h"
 #include "simulation/kinds.h"
 
 namespace abbe::apps {
@@ -42,6 +43,11 @@ void WriteModel(simulation::ExtendedModel model, const DiagnoseArguments& argume
     model.sources.push_back({path.filename().string(), Sha256Of(path)});
   }
   WriteText(simulation::ExtendedModelText(model), arguments.out);
+  if (!simulation::IsUnexplained(model)) return;
+  fmt::print(stderr,
+             "abbe: {}: other commands will refuse it, because something is left unexplained, "
+             "unless --although-unexplained is given\n",
+             arguments.out.string());
 }
 
 nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,

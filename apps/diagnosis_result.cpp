@@ -44,6 +44,11 @@ std::vector<NamedValue> ParametersOf(const Score& score) {
   return values;
 }
 
+// Beside what no known cause explains nobody should mend a machine for a finding.
+bool GivesAdvice(const Diagnosis& diagnosis) {
+  return diagnosis.verdict != diagnosis::Verdict::kUnexplained;
+}
+
 // The gain by a finding; none for findings in single rows, or if nothing was held out.
 std::optional<HeldOutGain::Without> WorthOf(std::size_t finding, const Diagnosis& diagnosis,
                                             const HeldOutGain& gain) {
@@ -69,10 +74,10 @@ ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const He
     json["parameters"].push_back(parameter);
   }
   const auto& words = finding.score.candidate.cause->words;
-  json["words"] = {{"what", words.what},
-                   {"shows", words.shows},
-                   {"check", words.check},
-                   {"remedy", words.remedy}};
+  json["words"] = {{"what", words.what}, {"shows", words.shows}};
+  if (GivesAdvice(diagnosis)) {
+    json["words"].update({{"check", words.check}, {"remedy", words.remedy}});
+  }
   if (const auto without = WorthOf(which, diagnosis, gain)) {
     json["rms_before"] = without->seen;
     json["rms_after"] = gain.seen;
@@ -111,9 +116,10 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
     text += fmt::format("  {:<28}{:>12.4g} +- {:.2g}\n", each.name, each.value, each.u95);
   }
   const auto& words = finding.score.candidate.cause->words;
-  text +=
-      fmt::format("  what it is   {}\n  how it shows {}\n  check        {}\n  what to do   {}\n",
-                  words.what, words.shows, words.check, words.remedy);
+  text += fmt::format("  what it is   {}\n  how it shows {}\n", words.what, words.shows);
+  if (GivesAdvice(diagnosis)) {
+    text += fmt::format("  check        {}\n  what to do   {}\n", words.check, words.remedy);
+  }
   if (const auto without = WorthOf(which, diagnosis, gain)) {
     text += fmt::format(
         "  gain         rms {:.3f} of the stated noise without it, {:.3f} with it; in held-out "
@@ -136,6 +142,15 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
                         finding.next_run->text, finding.next_run->expected_probability);
   } else if (!finding.rivals.empty()) {
     text += "  no run known to abbe would separate them\n";
+  }
+  return text;
+}
+
+std::string FindingsText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
+  if (diagnosis.findings.empty()) return "";
+  std::string text = GivesAdvice(diagnosis) ? "" : "\nWhat would explain part of it:\n";
+  for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
+    text += FindingText(i, diagnosis, gain);
   }
   return text;
 }
@@ -246,9 +261,13 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
   std::string text =
       fmt::format("verdict: {}\nchi-square per row {:.3f}, with the causes found {:.3f}\n",
                   Name(diagnosis.verdict), diagnosis.chi_before, diagnosis.chi_after);
-  for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
-    text += FindingText(i, diagnosis, gain);
+  for (const Leftover& leftover : diagnosis.leftovers) {
+    text +=
+        fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause explains it\n",
+                    leftover.object, WhatItDoes(leftover), leftover.amplitude / leftover.unit.si,
+                    leftover.unit.name, leftover.p_value);
   }
+  text += FindingsText(diagnosis, gain);
   if (gain.rows > 0) {
     text += fmt::format(
         "\nheld out: {} rows, rms {:.3f} of the stated noise without the causes found, {:.3f} with "
@@ -262,12 +281,6 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
   if (gain.arm_poses > 0) {
     text += fmt::format("{} poses of arms held out: {:.4g} mm rms in space, {:.4g} mm with it\n",
                         gain.arm_poses, 1e3 * gain.arm_before, 1e3 * gain.arm_after);
-  }
-  for (const Leftover& leftover : diagnosis.leftovers) {
-    text +=
-        fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause explains it\n",
-                    leftover.object, WhatItDoes(leftover), leftover.amplitude / leftover.unit.si,
-                    leftover.unit.name, leftover.p_value);
   }
   text += EvidenceText(diagnosis);
   if (!diagnosis.cannot_show.empty()) {

@@ -32,7 +32,8 @@ using simulation::SimulatedRun;
 
 struct FuseArguments {
   std::vector<fs::path> recordings;
-  fs::path machine, causes, out = "map.toml", json;
+  fs::path machine, out = "map.toml", json;
+  CausesOption causes;
   int holdout = 0;
   bool fixed_smoothness = false, quiet = false;
 };
@@ -74,15 +75,27 @@ MapChange ChangeOf(const map::ErrorMap& before, const map::ErrorMap& after) {
 }
 
 // Recordings as they were read, causes and all, may fit no map.
-std::optional<fusion::FuseReport> FuseIfItFits(const simulation::Instruments& instruments,
-                                               const std::vector<RunSource>& sources,
-                                               bool choose_smoothness) {
+std::optional<fusion::FuseReport> FuseIfItFits(
+    const simulation::Instruments& instruments, const std::vector<RunSource>& sources,
+    const std::function<RunSource(const RunSource&)>& as_taken, bool choose_smoothness) {
   try {
-    return fusion::Fuse(instruments.machine, Simulate(sources, instruments, AsRead),
+    return fusion::Fuse(instruments.machine, Simulate(sources, instruments, as_taken),
                         {.choose_smoothness = choose_smoothness});
   } catch (const NumericalError&) {
     return std::nullopt;
   }
+}
+
+// What a map has to be doubted for: without the causes that are not certain it would be `other`.
+fusion::Doubt DoubtOf(const CauseCorrection& causes,
+                      const std::optional<fusion::FuseReport>& other) {
+  if (!causes.WidensU95()) return {};
+  if (!other) {
+    throw NumericalError(
+        "without the causes that are not certain no map fits the recordings, so no U95 can be "
+        "stated; diagnose until they are certain");
+  }
+  return {&other->map, causes.unexplained()};
 }
 
 // The causes that the map does not contain, one line each.
@@ -120,19 +133,30 @@ int Fuse(const FuseArguments& arguments) {
   std::vector<RunSource> sources;
   for (const fs::path& path : arguments.recordings) sources.push_back(SourceAt(machine, path));
   simulation::RefuseStrangers(sources, instruments);
+  const bool choose = !arguments.fixed_smoothness;
   const auto runs = Simulate(sources, instruments, [&](const RunSource& source) {
     return causes.Active() ? simulation::SourceOf(causes.Take(source.whole())) : source;
   });
+  std::optional<fusion::FuseReport> other;
+  if (causes.WidensU95()) {
+    const auto certain = [&](const RunSource& source) {
+      return simulation::SourceOf(causes.TakeCertain(source.whole()));
+    };
+    other = FuseIfItFits(instruments, sources, certain, choose);
+  }
   const fusion::FuseReport report = fusion::Fuse(
       machine, runs,
-      {.choose_smoothness = !arguments.fixed_smoothness, .holdout = arguments.holdout});
+      {.choose_smoothness = choose, .holdout = arguments.holdout, .doubt = DoubtOf(causes, other)});
   map::WriteMap(report.map, arguments.out);
   auto json = FuseJson(report, runs);
   std::string text = FuseTable(report, runs);
   if (causes.Active()) {
     json["causes_taken_out"] = causes.Data();
     text += fmt::format("\n{}\n{}", causes.Line(), NotInMap(causes.taken()));
-    if (const auto without = FuseIfItFits(instruments, sources, !arguments.fixed_smoothness)) {
+    const auto without = other && !causes.TakesCertain()
+                             ? other
+                             : FuseIfItFits(instruments, sources, AsRead, choose);
+    if (without) {
       const MapChange change = ChangeOf(without->map, report.map);
       json["map_change_um"] = {{"rms", 1e6 * change.rms}, {"largest", 1e6 * change.largest}};
       text += fmt::format("without them the map would differ by {:.2f} um rms, {:.2f} um at most\n",

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "apps/causes_option.h"
 #include "apps/linkage_reader.h"
 #include "apps/machine_recording.h"
 #include "apps/protocol.h"
@@ -19,28 +18,40 @@ struct Machine {
     if (!sources.machine.empty()) {
       file = ReadMachineFile(sources.machine);
       causes.emplace(sources.causes, *file, kForMeasuring);
-    } else if (!sources.causes.empty()) {
+    } else if (!sources.causes.path.empty()) {
       throw InputError("--causes needs the machine file; add --machine FILE");
     }
   }
 
-  LinkageReader& Reader(const Recording& recording) {
+  LinkageReader& Reader(const Recording& recording) { return Reader(recording, reader); }
+
+  // From a path to the one without the causes that are not certain.
+  Eigen::Matrix3Xd DoubtfulChange(const Recording& recording, const paths::MeasuredPath& path) {
+    return Reader(recording, reader_of_certain).Path(causes->TakeCertain(recording)).measured -
+           path.measured;
+  }
+
+  bool WidensU95() const { return causes && causes->WidensU95(); }
+
+  LinkageReader& Reader(const Recording& recording, std::optional<LinkageReader>& which) const {
     if (!file) {
       throw InputError(fmt::format(
           "{}: a recording of the linkage is evaluated with its machine file; add --machine FILE",
           recording.name));
     }
-    if (!reader) reader.emplace(*file, calibration);
-    return *reader;
+    if (!which) which.emplace(*file, calibration);
+    return *which;
   }
 
   std::filesystem::path calibration;
   std::optional<MachineFile> file;
   std::optional<CauseCorrection> causes;
-  std::optional<LinkageReader> reader;
+  std::optional<LinkageReader> reader, reader_of_certain;
+  std::vector<Eigen::Matrix3Xd> changes;  // of each path of the linkage
 };
 
-void Add(const Recording& recording, Machine& machine, MeasuredPaths& paths) {
+void Add(const Recording& read, Machine& machine, MeasuredPaths& paths) {
+  const Recording recording = machine.causes ? machine.causes->Take(read) : read;
   const bool angles = recording.Find("pivot_1_rad").has_value();
   const bool reference = paths::HasReference(recording);
   if (!angles && !reference) {
@@ -51,7 +62,12 @@ void Add(const Recording& recording, Machine& machine, MeasuredPaths& paths) {
   }
   if (machine.file)
     recording::RefuseOtherMachine(recording, machine.file->sweep_setup.machine.name);
-  if (angles) paths.linkage.push_back(machine.Reader(recording).Path(recording));
+  if (angles) {
+    paths.linkage.push_back(machine.Reader(recording).Path(recording));
+    if (machine.WidensU95()) {
+      machine.changes.push_back(machine.DoubtfulChange(read, paths.linkage.back()));
+    }
+  }
   if (reference) paths.reference.push_back(paths::ReferencePath(recording));
   for (const char* key : {"machine", "started"}) {
     const auto text = recording.HeaderText(key);
@@ -89,8 +105,7 @@ MeasuredPaths ReadMeasuredPaths(const PathSources& sources) {
   Machine machine(sources);
   MeasuredPaths paths;
   for (const std::filesystem::path& file : sources.recordings) {
-    const Recording recording = ReadWithWarnings(file);
-    Add(machine.causes ? machine.causes->Take(recording) : recording, machine, paths);
+    Add(ReadWithWarnings(file), machine, paths);
   }
   if (machine.file) {
     paths.machine = machine.file->sweep_setup.machine;
@@ -100,6 +115,10 @@ MeasuredPaths ReadMeasuredPaths(const PathSources& sources) {
   }
   if (machine.reader) {
     paths.errors = machine.reader->IndependentErrors();
+    if (machine.WidensU95()) {
+      paths.errors.push_back(machine.changes);
+      paths.unexplained = machine.causes->unexplained();
+    }
     paths.head["linkage"] = machine.reader->Data();
     paths.notes = machine.reader->Notes();
     if (machine.causes->Active()) paths.notes.push_back(machine.causes->Line());

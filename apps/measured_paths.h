@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/causes_option.h"
 #include "machine/machine.h"
 #include "paths/measured_path.h"
 
@@ -16,7 +17,8 @@ namespace abbe::apps {
 
 struct PathSources {
   std::vector<std::filesystem::path> recordings;
-  std::filesystem::path machine, calibration, causes;
+  std::filesystem::path machine, calibration;
+  CausesOption causes;
 };
 
 // The arguments of both commands.
@@ -25,8 +27,10 @@ void AddPathSources(CLI::App& command, PathSources& sources);
 struct MeasuredPaths {
   std::vector<paths::MeasuredPath> linkage, reference;
   // The displacement of the paths of the linkage by each independent error of the calibration, as
-  // large as its standard deviation: [error][path], 3 x poses, m.
+  // large as its standard deviation: [error][path], 3 x poses, m. The last one, where an extended
+  // model is not sure of all its causes: the change by those (simulation/doubt.h).
   std::vector<std::vector<Eigen::Matrix3Xd>> errors;
+  double unexplained = 0.0;                 // m rms, beside such a model
   std::optional<machine::Machine> machine;  // of the machine file
   // The head of a result, without its command.
   nlohmann::ordered_json head = nlohmann::ordered_json::object();

@@ -89,6 +89,12 @@ TestResult Evaluate(const PathCommand& command, const paths::MeasuredPath& path)
   return square;
 }
 
+LeftUnexplained LeftIn(const paths::MeasuredPath& path, double unexplained) {
+  const Eigen::Vector3d extent =
+      path.commanded.rowwise().maxCoeff() - path.commanded.rowwise().minCoeff();
+  return {unexplained, extent.maxCoeff() > 0.0 ? unexplained / extent.maxCoeff() : 0.0};
+}
+
 bool IsNamed(const std::string& test) {
   return test == "stepping" || test == "square" || test == "cap" || test == "articulation";
 }
@@ -117,7 +123,7 @@ class PathTests {
       }
       for (std::size_t i = 0; i < all.size(); ++i) {
         TestResult test = Evaluate(command_, all[i]);
-        AddCalibrationUncertainty(shifted[i], test);
+        AddCalibrationUncertainty(shifted[i], LeftIn(all[i], paths.unexplained), test);
         Keep(all[i].recording, all[i].instrument, test);
       }
       Note(paths.notes);

@@ -8,6 +8,8 @@
 #include <regex>
 #include <string>
 
+#include "settings/unit.h"
+#include "simulation/doubt.h"
 #include "standards/coverage.h"
 
 namespace abbe::apps {
@@ -24,7 +26,8 @@ bool IsFigure(const std::string& pointer, const ordered_json& value) {
 
 }  // namespace
 
-void AddCalibrationUncertainty(const std::vector<TestResult>& shifted, TestResult& test) {
+void AddCalibrationUncertainty(const std::vector<TestResult>& shifted, const LeftUnexplained& left,
+                               TestResult& test) {
   if (shifted.empty()) return;
   const ordered_json before = test.data.flatten();
   ordered_json u;
@@ -37,7 +40,9 @@ void AddCalibrationUncertainty(const std::vector<TestResult>& shifted, TestResul
       const double change = one.data.at(at).get<double>() - value.get<double>();
       squares += change * change;
     }
-    u[pointer] = std::sqrt(squares);
+    const double unexplained =
+        pointer.find("_urad") == std::string::npos ? left.displacement : left.angle;
+    u[pointer] = simulation::WithDoubt(std::sqrt(squares), 0.0, unexplained / settings::kMicro);
   }
   if (u.empty()) return;
   std::map<std::string, double> most;  // the largest of the entries of a list

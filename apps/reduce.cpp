@@ -11,13 +11,13 @@
 #include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/commands.h"
+#include "apps/doubted_sweep.h"
 #include "apps/machine_file.h"
 #include "apps/machine_recording.h"
 #include "apps/protocol.h"
 #include "apps/reduce_reference.h"
 #include "apps/reduce_sweep.h"
 #include "apps/result_file.h"
-#include "probes/sweep_reduction.h"
 
 namespace abbe::apps {
 namespace {
@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 
 struct ReduceOptions {
   std::vector<fs::path> recordings;
-  fs::path machine, causes, out, json;
+  fs::path machine, out, json;
+  CausesOption causes;
   bool squareness = false;
   bool quiet = false;
 };
@@ -39,7 +40,7 @@ class Reduction {
     if (!options_.json.empty() && options_.recordings.size() > 1) {
       throw InputError("--json takes the result of one recording; use --out for several");
     }
-    if (!options_.causes.empty()) Setup();
+    if (!options_.causes.path.empty()) Setup();
     for (const fs::path& path : options_.recordings) {
       const recording::Recording recording = ReadWithWarnings(path);
       Reduce(recording, path);
@@ -67,7 +68,7 @@ class Reduction {
 
   nlohmann::ordered_json Sweep(const recording::Recording& recording) {
     const probes::SweepSetup& setup = Setup();
-    sweeps_.push_back(probes::ReduceSweep(causes_->Take(recording), setup));
+    sweeps_.push_back(ReduceCorrected(recording, setup, *causes_));
     Show(SweepTable(sweeps_.back()));
     auto json = SweepJson(sweeps_.back());
     if (causes_->Active()) json["causes_taken_out"] = causes_->Data();

@@ -23,7 +23,8 @@ using compensation::Figure;
 struct SimulateCommand {
   MapOption map;
   std::string test;
-  std::filesystem::path path, causes, json;
+  std::filesystem::path path, json;
+  CausesOption causes;
   double radius_mm = 0.0, feed_mm_min = 0.0;
   bool corrected = false, quiet = false;
   int draws = 200;
@@ -79,7 +80,7 @@ int Simulate(const SimulateCommand& options) {
                                      {"test", options.test},
                                      {"as_is", FiguresOf(before)}};
     if (options.corrected) result["corrected_95"] = FiguresOf(after);
-    if (causes.Active()) result["causes"] = causes.Names();
+    causes.AddTo(result);
     WriteResult(result, options.json);
   }
   return kDone;

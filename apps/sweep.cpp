@@ -11,6 +11,7 @@
 
 #include "apps/causes_option.h"
 #include "apps/command.h"
+#include "apps/doubted_sweep.h"
 #include "apps/interrupt.h"
 #include "apps/machine_file.h"
 #include "apps/plausible_channels.h"
@@ -30,7 +31,7 @@ constexpr int kFirstReadings = 50;  // checked before anything moves
 struct SweepCommand {
   std::string axis;
   std::string machine;
-  std::filesystem::path causes;
+  CausesOption causes;
   std::filesystem::path out = "out";
   std::string json;
   std::string mounting, operator_name;
@@ -153,8 +154,8 @@ int Sweep(const SweepCommand& options) {
   RefuseUnfinished(outcome, path);
   WarnOfLackingVisits(outcome, plan);
 
-  const recording::Recording recording = causes.Take(recording::Read(path));
-  const probes::SweepResult result = probes::ReduceSweep(recording, file.sweep_setup);
+  const recording::Recording recording = recording::Read(path);
+  const probes::SweepResult result = ReduceCorrected(recording, file.sweep_setup, causes);
   auto json = SweepJson(result);
   AddProtocol(recording, json);
   if (causes.Active()) json["causes_taken_out"] = causes.Data();

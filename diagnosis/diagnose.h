@@ -18,10 +18,11 @@
 #include "diagnosis/evidence.h"
 #include "diagnosis/unexplained.h"
 #include "diagnosis/where_it_shows.h"
+#include "simulation/doubt.h"
 
 namespace abbe::diagnosis {
 
-inline constexpr double kCertain = 0.99;
+inline constexpr double kCertain = simulation::kCertain;  // 0.99
 inline constexpr double kPresent = 0.1;  // probability that a machine has a cause at all
 // No finding is more probable where structure is left that no cause explains: what makes it may make
 // the finding too.

@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "standards/coverage.h"
+
 namespace abbe::diagnosis {
 namespace {
 
@@ -19,13 +21,13 @@ bool IsWithinItsUncertainty(const Finding& finding) {
   if (candidate.cause->IsBinary() || count == 0) return false;
   if (candidate.cause->IsRandomField()) {  // known by its size
     const Keys keys = KeysOf(finding.score);
-    return std::abs(keys.values[0]) < kCoverage * keys.u[0];
+    return std::abs(keys.values[0]) < standards::kCoverage * keys.u[0];
   }
   const Eigen::MatrixXd covariance = finding.score.covariance.topLeftCorner(count, count);
   if (covariance.isZero(0.0)) return false;
   const double square =
       finding.score.coefficients.dot(covariance.ldlt().solve(finding.score.coefficients));
-  return square < kCoverage * kCoverage * static_cast<double>(count);
+  return square < standards::kCoverage * standards::kCoverage * static_cast<double>(count);
 }
 
 // The key that lies beyond its bounds; null: none.

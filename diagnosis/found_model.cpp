@@ -1,10 +1,76 @@
 #include "diagnosis/found_model.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "simulation/causes/cause.h"
 #include "standards/coverage.h"
 
 namespace abbe::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using simulation::PreparedRun;
+
+// From a pivot to the ball, m; the linkage stretched out.
+double ReachBeyond(const std::string& pivot, const relm::SerialChain& chain) {
+  double reach = 0.0;
+  for (Index i = chain.joints(); i-- > 0;) {
+    reach += chain.Link(i).norm();
+    if (pivot == "pivot_" + std::to_string(i + 1)) return reach;
+  }
+  return reach;
+}
+
+VectorXd NominalValues(const PreparedRun& run) {
+  std::vector<double> values;
+  for (const auto& block : run.simulated.blocks) {
+    for (const auto& entry : block.entries) values.push_back(entry.value);
+  }
+  return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
+}
+
+// Standard deviation of one row of a run, m: where the run sees a metre in a stage, its whitened
+// rows are that many noises long. The worst of the probes, of the sensors, or of the axes.
+std::optional<double> NoiseInSpace(const PreparedRun& run) {
+  if (run.simulated.in_space) {
+    const Index rows = run.simulated.residual->Rows();
+    const Eigen::Matrix3Xd noise = run.simulated.in_space(VectorXd::Ones(rows));
+    return std::sqrt(noise.squaredNorm() / static_cast<double>(noise.cols()));
+  }
+  if (!run.simulated.response) return std::nullopt;
+  const auto response = run.simulated.response->At(NominalValues(run));
+  std::vector<Index> stages;
+  for (Index i = 0; i < simulation::kEncoderStage - simulation::kReadingStage; ++i) {
+    stages.push_back(simulation::kReadingStage + i);
+  }
+  if (!run.trace.head && !run.trace.rim) {
+    stages = {simulation::Positioning(0), simulation::Positioning(1), simulation::Positioning(2)};
+  }
+  double noise = 0.0;
+  for (const Index stage : stages) {
+    const Index rows = run.trace.rows();
+    const auto metre = simulation::InStage(run.trace, stage, Eigen::RowVectorXd::Ones(rows));
+    const double seen = response->Columns({metre}).norm();
+    if (seen > 0.0) noise = std::max(noise, std::sqrt(static_cast<double>(rows)) / seen);
+  }
+  return noise > 0.0 ? std::optional(noise) : std::nullopt;
+}
+
+simulation::Unexplained UnexplainedOf(const Leftover& leftover, const Campaign& campaign) {
+  return {leftover.object, leftover.variable, leftover.amplitude / leftover.unit.si,
+          leftover.unit.name, InSpace(leftover, campaign)};
+}
+
+simulation::ModelledCause ModelledOf(const Finding& finding) {
+  simulation::ModelledCause cause = FoundCause(finding.score);
+  cause.probability = finding.probability;
+  for (const Rival& rival : finding.rivals) cause.rivals.push_back(rival.candidate.Name());
+  return cause;
+}
+
+}  // namespace
 
 simulation::ModelledCause FoundCause(const Score& score) {
   const auto [values, u] = KeysOf(score);
@@ -17,6 +83,21 @@ simulation::ModelledCause FoundCause(const Score& score) {
           covariance};
 }
 
+std::optional<double> InSpace(const Leftover& leftover, const Campaign& campaign) {
+  if (leftover.variable == kScatter || leftover.variable == kMemory) {
+    for (const PreparedRun& run : campaign.runs()) {
+      if (run.simulated.name != leftover.object) continue;
+      const auto noise = NoiseInSpace(run);
+      return noise ? std::optional(leftover.amplitude * *noise) : std::nullopt;
+    }
+    return std::nullopt;
+  }
+  const auto& linkage = campaign.instruments().linkage;
+  if (!leftover.object.starts_with("pivot_")) return leftover.amplitude;
+  return linkage ? std::optional(leftover.amplitude * ReachBeyond(leftover.object, linkage->chain))
+                 : std::nullopt;
+}
+
 simulation::ExtendedModel FoundModel(const Diagnosis& diagnosis, const Campaign& campaign,
                                      const HeldOutGain& gain) {
   simulation::ExtendedModel model;
@@ -24,8 +105,13 @@ simulation::ExtendedModel FoundModel(const Diagnosis& diagnosis, const Campaign&
   model.origin = campaign.origin();
   model.gain = {gain.rows, gain.before, gain.after, std::sqrt(diagnosis.chi_before),
                 std::sqrt(diagnosis.chi_after)};
+  model.verdict = Name(diagnosis.verdict);
+  for (const Leftover& leftover : diagnosis.leftovers) {
+    model.unexplained.push_back(UnexplainedOf(leftover, campaign));
+  }
   for (const Finding& finding : diagnosis.findings) {
-    if (IsModelled(finding)) model.causes.push_back(FoundCause(finding.score));
+    if (IsModelled(finding)) model.causes.push_back(ModelledOf(finding));
+    if (finding.next_run) model.next_runs.push_back(finding.next_run->text);
   }
   return model;
 }

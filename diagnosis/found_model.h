@@ -1,4 +1,5 @@
-// What a diagnosis found, as an extended model for the other commands.
+// What a diagnosis found, as an extended model for the other commands, with what it is not sure of:
+// the verdict, the probability and the rivals of each cause, and what is left unexplained.
 //
 //   simulation::ExtendedModel model = FoundModel(diagnosis, campaign, gain);
 //   model.sources = files;                                // which only the caller knows
@@ -9,6 +10,8 @@
 // Rows that are no readings (stuck channels, outliers) are no part of a model. Units: SI.
 #pragma once
 
+#include <optional>
+
 #include "diagnosis/diagnose.h"
 #include "diagnosis/hold_out.h"
 #include "simulation/extended_model.h"
@@ -16,6 +19,11 @@
 namespace abbe::diagnosis {
 
 simulation::ModelledCause FoundCause(const Score& score);
+
+// By how much what is left moves a measured point, m rms: a length as it is; an angle of a pivot
+// times the reach of the linkage beyond that pivot; a scatter times the noise of a reading of its
+// run, as if it did not average out. Empty where the noise of that run in space is not known.
+std::optional<double> InSpace(const Leftover& leftover, const Campaign& campaign);
 
 simulation::ExtendedModel FoundModel(const Diagnosis& diagnosis, const Campaign& campaign,
                                      const HeldOutGain& gain);

@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "estimation/linearization.h"
+#include "failure/failure.h"
 #include "fusion/marginal.h"
+#include "fusion/unknown_displacement.h"
 #include "simulation/linkage/linkage_problem.h"
 
 namespace abbe::fusion {
@@ -238,6 +240,7 @@ class FuseJob {
     };
     const MatrixXd C_prior = of_machine(prior);
     cov_pp_ = of_machine(all);
+    AddDoubt(now.fit);
     std::map<std::string, MatrixXd> C_kinds;
     for (const auto& [kind, information] : kinds) C_kinds[kind] = of_machine(information);
     const auto variance = [](const MatrixXd& E, const MatrixXd& C) {
@@ -261,6 +264,21 @@ class FuseJob {
     scale_.prior = std::sqrt(variance(row, C_prior));
     scale_.u = std::sqrt(variance(row, cov_pp_));
     scale_.calibrated = scale_.u * scale_.u < kHalf * scale_.prior * scale_.prior;
+  }
+
+  void AddDoubt(const Result& fit) {
+    const Doubt& doubt = options_.doubt;
+    if (doubt.other != nullptr) {
+      const VectorXd other = doubt.other->model().Parameters();
+      if (other.size() != cov_pp_.rows()) {
+        throw InputError("maps of different functions cannot be held against each other");
+      }
+      const VectorXd change = ValuesFound(fit, model_.Blocks()) - other;
+      cov_pp_ += change * change.transpose();
+    }
+    if (doubt.displacement > 0.0) {
+      cov_pp_ += UnknownDisplacement(model_, -machine_.reference, doubt.displacement);
+    }
   }
 
   map::ErrorMap MapOf(const Result& fit) {

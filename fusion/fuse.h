@@ -17,7 +17,8 @@
 // of EXX, EYY and EZZ: it is calibrated when the data at least halve its prior variance, else
 // "prior only".
 //
-// Units: SI. Failure: InputError for no run; NumericalError when the estimate does not converge.
+// Units: SI. Failure: InputError for no run, or a map of other functions to be doubted for;
+// NumericalError when the estimate does not converge.
 // Source: Rasmussen and Williams (2006), 5.4.1 for the marginal likelihood.
 #pragma once
 
@@ -32,10 +33,19 @@
 
 namespace abbe::fusion {
 
+// Beside the noise of the runs (simulation/doubt.h).
+struct Doubt {
+  // The map may as well be this one: the difference counts as one standard uncertainty.
+  const map::ErrorMap* other = nullptr;
+  // m: standard deviation of an unknown displacement, rms over the travels and the components.
+  double displacement = 0.0;
+};
+
 struct FuseOptions {
   bool choose_smoothness = true;  // else that of the machine file
   int holdout = 0;                // every n-th block of rows of each run; 0: none
   int threads = 0;
+  Doubt doubt = {};  // widens the covariance of the map
 };
 
 struct FunctionSeen {

@@ -11,6 +11,7 @@
 #include "settings/document.h"
 #include "settings/nearest_word.h"
 #include "settings/toml_text.h"
+#include "settings/unit.h"
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
@@ -100,6 +101,9 @@ ModelledCause ReadCause(const Table& table, const CauseObjects& machine) {
     u95.RefuseUnknown();
   }
   ReadCovariance(table, cause);
+  cause.probability =
+      table.Number("probability", {.fallback = 1.0, .at_least = 0.0, .at_most = 1.0});
+  cause.rivals = table.Texts("rivals", 0, std::vector<std::string>{});
   table.RefuseUnknown();
   return cause;
 }
@@ -131,6 +135,41 @@ ModelGain ReadGain(const Table& root) {
   return gain;
 }
 
+void ReadDiagnosis(const Table& root, ExtendedModel& model) {
+  if (!root.Has("diagnosis")) return;
+  const Table table = root.Child("diagnosis");
+  model.verdict =
+      table.Choice("verdict", {"clean", "explained", "ambiguous", kVerdictUnexplained}, true);
+  model.next_runs = table.Texts("next_runs", 0, std::vector<std::string>{});
+  for (const Table& left : table.Children("unexplained")) {
+    Unexplained& one = model.unexplained.emplace_back();
+    one.object = left.Text("object");
+    one.variable = left.Text("variable");
+    one.amplitude = left.Number("amplitude", {.at_least = 0.0});
+    one.unit = left.Text("unit");
+    if (left.Has("in_space_um")) one.in_space = left.Quantity("in_space_um", {.at_least = 0.0});
+    left.RefuseUnknown();
+  }
+  table.RefuseUnknown();
+}
+
+std::string DiagnosisText(const ExtendedModel& model) {
+  if (model.verdict.empty()) return "";
+  std::string text = fmt::format("\n[diagnosis]\nverdict = {}\n", Quoted(model.verdict));
+  if (!model.next_runs.empty()) {
+    text += fmt::format("next_runs = {}\n", settings::QuotedList(model.next_runs));
+  }
+  for (const Unexplained& one : model.unexplained) {
+    text += fmt::format(
+        "\n# no known cause explains this\n[[diagnosis.unexplained]]\nobject = {}\nvariable = "
+        "{}\namplitude = {}\nunit = {}\n",
+        Quoted(one.object), Quoted(one.variable), Float(one.amplitude), Quoted(one.unit));
+    if (one.in_space)
+      text += fmt::format("in_space_um = {}\n", Float(*one.in_space / settings::kMicro));
+  }
+  return text;
+}
+
 std::string CauseText(const ModelledCause& cause) {
   std::string text =
       fmt::format("\n# {}\n[[cause]]\nid = {}\nobject = {}\n", cause.cause->words.what,
@@ -146,6 +185,10 @@ std::string CauseText(const ModelledCause& cause) {
     if (cause.u95.size() == 0) continue;
     u95 += fmt::format("{}{} = {}", u95.empty() ? "" : ", ", key.name,
                        Float(cause.u95[at] / key.unit));
+  }
+  text += fmt::format("probability = {}\n", Float(cause.probability));
+  if (!cause.rivals.empty()) {
+    text += fmt::format("rivals = {}\n", settings::QuotedList(cause.rivals));
   }
   if (!u95.empty()) text += fmt::format("u95 = {{ {} }}\n", u95);
   if (cause.covariance.size() > 0) {
@@ -179,6 +222,7 @@ ExtendedModel ReadExtendedModel(const std::filesystem::path& path, const CauseOb
                                             model.machine, objects.machine));
   }
   model.origin = ReadOrigin(root);
+  ReadDiagnosis(root, model);
   model.gain = ReadGain(root);
   for (const Table& source : root.Children("data")) {
     model.sources.push_back({source.Text("file"), source.Text("sha256", "")});
@@ -200,6 +244,7 @@ std::string ExtendedModelText(const ExtendedModel& model) {
   if (model.origin.started != 0.0) {
     text += fmt::format("started = {}\n", Quoted(recording::InstantText(model.origin.started)));
   }
+  text += DiagnosisText(model);
   for (const ModelledCause& cause : model.causes) text += CauseText(cause);
   const ModelGain& gain = model.gain;
   text += "\n# Measured less simulated, in units of the stated noise.\n[gain]\n";

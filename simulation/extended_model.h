@@ -5,6 +5,8 @@
 //   const ExtendedModel model = ReadExtendedModel("mill.causes.toml", {"demo-mill", true, 3});
 //   Correct(recording, model.causes, model.origin, instruments);  // simulation/kinds.h
 //
+// What the diagnosis was not sure of stands there too; simulation/doubt.h says what follows of it.
+//
 // Units: values and deviations SI, in the order of the cause's keys. Failure: InputError with file,
 // line and key for an unknown cause, object or key, a missing key, a number that is not finite or
 // beyond what is plausible, the model of another machine, a file that is no extended model.
@@ -12,6 +14,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,9 +26,11 @@ namespace abbe::simulation {
 struct ModelledCause {
   const Cause* cause;
   Object object;
-  Eigen::VectorXd values;      // of the keys
-  Eigen::VectorXd u95;         // of the values; empty: not stated
-  Eigen::MatrixXd covariance;  // of the coefficients; empty: not stated
+  Eigen::VectorXd values;                // of the keys
+  Eigen::VectorXd u95;                   // of the values; empty: not stated
+  Eigen::MatrixXd covariance;            // of the coefficients; empty: not stated
+  double probability = 1.0;              // among its rivals
+  std::vector<std::string> rivals = {};  // "cap-friction:cap", the most probable first
 
   std::string Name() const;  // "backlash:X", "thermal-growth:X (temp_table_c)"
 };
@@ -41,9 +46,23 @@ struct ModelGain {
   double fitted_before = 0.0, fitted_after = 0.0;
 };
 
+// What no known cause explains (diagnosis/unexplained.h).
+struct Unexplained {
+  std::string object, variable;  // "probe_a", "time"
+  double amplitude = 0.0;        // rms, in `unit`
+  std::string unit;              // "um", "urad", "times the noise"
+  // m: what it moves a measured point by, rms; empty: nobody knows.
+  std::optional<double> in_space = {};
+};
+
+inline constexpr const char* kVerdictUnexplained = "unexplained";
+
 struct ExtendedModel {
   std::string machine;
-  Origin origin;  // from when on time counts, and how warm it was
+  std::string verdict = {};  // of the diagnosis; empty: not stated
+  std::vector<Unexplained> unexplained = {};
+  std::vector<std::string> next_runs = {};  // that would tell causes from their rivals
+  Origin origin;                            // from when on time counts, and how warm it was
   ModelGain gain;
   std::vector<ModelSource> sources;
   std::vector<ModelledCause> causes;

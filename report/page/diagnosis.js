@@ -32,7 +32,9 @@ const percent = (share) =>
 function diagnosisSummary(result) {
   const found = (result.findings ?? []).map(findingName);
   const verdict = VERDICTS[result.verdict] ?? capital(String(result.verdict ?? ''));
-  return found.length ? `${verdict} Found: ${found.join('; ')}.` : verdict;
+  if (!found.length) return verdict;
+  const told = result.verdict === 'unexplained' ? 'What would explain part of it' : 'Found';
+  return `${verdict} ${told}: ${found.join('; ')}.`;
 }
 
 // "Width" of width_um: the unit has a column of its own.
@@ -212,6 +214,10 @@ function leftoverBlock(result) {
   }));
 }
 
+const inPart = (result) => result.verdict === 'unexplained' && result.findings?.length ?
+    element('p', {}, 'What would explain part of it, but is not certain beside what is left:') :
+    null;
+
 function gainTable(result) {
   const {heldout, chi2_per_row_before: before, chi2_per_row_after: after} = result;
   const rows = [
@@ -241,7 +247,7 @@ registerSection({
       ['Recordings', (result.recordings ?? []).join(', '), true], ['Extended model', result.model],
       ['The error map changes by up to', result.map_change_um > 0 && result.findings?.length ?
          `${significant(result.map_change_um)}\u00a0\u00b5m` : null]],
-  body: (result) => [leftoverBlock(result), ...(result.findings ?? []).map((one) => findingGroup(one, result.heldout)),
+  body: (result) => [leftoverBlock(result), inPart(result), ...(result.findings ?? []).map((one) => findingGroup(one, result.heldout)),
                      rivalsTable(result), gainTable(result), evidenceTable(result),
                      cannotShowBlock(result)]
                         .flat()

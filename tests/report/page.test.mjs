@@ -260,7 +260,7 @@ test(
 test(
     'a diagnosis tells what it found, what else it could be and what it cannot show',
     () => withPage({}, async (page) => {
-      const section = page.locator('section.result', {hasText: 'what the simulation lacks'});
+      const section = page.locator('section.result', {hasText: 'Backlash, axis X; Probe gain'});
       assert.match(await section.locator('.summary').textContent(), /Backlash, axis X; Probe gain/);
       const backlash = section.locator('section.group', {hasText: 'Backlash, axis X'}).first();
       assert.match(await backlash.locator('tr', {hasText: 'Width'}).textContent(), /6\.020\u00b10\.080/);
@@ -279,6 +279,19 @@ test(
           /held-out rows 0\.971 without it, 0\.970 with it.*these 1.240 rows falls by 2\.41: an rms is a mean over all rows/);
       const gain = section.locator('tr', {hasText: 'held-out rows'});
       assert.match(await gain.textContent(), /1.240.*1\.880.*1\.030/);
+    }));
+
+test(
+    'beside what is unexplained a diagnosis gives no advice',
+    () => withPage({}, async (page) => {
+      const section = page.locator('section.result', {hasText: 'is not certain beside what is left'});
+      assert.match(
+          await section.locator('.summary').textContent(),
+          /What would explain part of it: Backlash, axis X/);
+      const text = await section.textContent();
+      assert.match(text, /How it shows/);
+      assert.doesNotMatch(text, /What to check|What to do/);
+      await section.screenshot({path: join(screenshots, 'diagnosis_in_part.png')});
     }));
 
 test(

@@ -590,6 +590,13 @@ export function diagnosisResult() {
   };
 }
 
+// The first cause of the above beside something that no known cause makes: without advice.
+export function diagnosisInPart() {
+  const result = diagnosisResult();
+  const [{words: {what, shows}, ...finding}] = result.findings;
+  return {...result, verdict: 'unexplained', rivals: [], findings: [{...finding, words: {what, shows}}]};
+}
+
 // Two causes that a set of runs shows and confuses, and one that it does not.
 export function planResult() {
   const cause = (name, object, visible_sd, sizes) =>
@@ -626,6 +633,7 @@ export function writeSamples(folder) {
     'correct.json': correctResult(),
     'export.json': exportResult(),
     'diagnosis.json': diagnosisResult(),
+    'diagnosis_in_part.json': diagnosisInPart(),
     'plan.json': planResult(),
     // A result of a later version: no section of its own, and text that tries to leave its element.
     'compare_X.json': {

@@ -58,6 +58,12 @@ ExtendedModel SomeModel() {
   model.causes.push_back({&cyclic, "Y", Eigen::Vector3d(5e-3, 2e-6, 0.5),
                           Eigen::Vector3d(0.0, 4e-8, 0.02), covariance});
   model.causes.push_back({&growth, "Z temp_table_c", VectorXd::Constant(1, 1e-5), {}, {}});
+  model.verdict = kVerdictUnexplained;
+  model.next_runs = {"repeat 04_circle_XY at 120 mm/min instead of 600"};
+  model.unexplained = {{"probe_a", "time", 0.25, "um", 2.5e-7},
+                       {"07_arm", "scatter", 3.5, "times the noise", std::nullopt}};
+  model.causes[0].probability = 0.75;
+  model.causes[0].rivals = {"servo-lag:X", "reversal-spike:X"};
   return model;
 }
 
@@ -80,6 +86,32 @@ TEST(ExtendedModel, IsReadAsItWasWritten) {
     EXPECT_EQ(one.covariance, other.covariance);
   }
   EXPECT_EQ(read.causes[2].Name(), "thermal-growth:Z (temp_table_c)");
+}
+
+TEST(ExtendedModel, StatesWhatTheDiagnosisIsNotSureOf) {
+  const ExtendedModel model = SomeModel();
+  const ExtendedModel read = ReadExtendedModel(Written(ExtendedModelText(model)), kMill);
+  EXPECT_EQ(read.verdict, "unexplained");
+  EXPECT_EQ(read.next_runs, model.next_runs);
+  EXPECT_EQ(read.causes[0].probability, 0.75);
+  EXPECT_EQ(read.causes[0].rivals, model.causes[0].rivals);
+  ASSERT_EQ(read.unexplained.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(read.unexplained[i].object, model.unexplained[i].object);
+    EXPECT_EQ(read.unexplained[i].variable, model.unexplained[i].variable);
+    EXPECT_EQ(read.unexplained[i].amplitude, model.unexplained[i].amplitude);
+    EXPECT_EQ(read.unexplained[i].unit, model.unexplained[i].unit);
+  }
+  EXPECT_DOUBLE_EQ(read.unexplained[0].in_space.value(), 2.5e-7);
+  EXPECT_FALSE(read.unexplained[1].in_space);
+  EXPECT_EQ(ExtendedModelText(read), ExtendedModelText(model));
+}
+
+TEST(ExtendedModel, MayStateNoVerdict) {
+  const ExtendedModel read = Read("[[cause]]\nid = \"backlash\"\nobject = \"X\"\nwidth_um = 6.0\n");
+  EXPECT_EQ(read.verdict, "");
+  EXPECT_EQ(read.causes[0].probability, 1.0);
+  EXPECT_TRUE(read.unexplained.empty());
 }
 
 TEST(ExtendedModel, ATableThatIsDeletedIsACauseThatIsGone) {
@@ -134,6 +166,8 @@ TEST(ExtendedModel, SaysWhatIsWrongAndWhere) {
   ExpectRefused(
       "[[cause]]\nid = \"backlash\"\nobject = \"X\"\nwidth_um = 6.0\ncovariance = [1.0, 2.0]",
       {"covariance", "1 numbers"});
+  ExpectRefused("[diagnosis]\nverdict = \"sure\"\n", {"test.toml:4:", "sure"});
+  ExpectRefused("[diagnosis]\nverdict = \"clean\"\nverdicts = 1\n", {"test.toml:5:", "verdict"});
   ExpectRefused("started = \"yesterday\"\n", {"test.toml:3:", "is no time"});
 }
 
