@@ -53,24 +53,26 @@ def history(q):
     return sense, since
 
 
-def stays(places, rows, period, settle, keep=None, feed=FEED):
-    """Rows at standstill at each of the places (n, 3); moving between them is not recorded."""
+def stays(draw, places, rows, settle, keep=None):
+    """Rows at standstill at each of the places (n, 3), some 20 a second and never quite even; moving between
+    them is not recorded."""
+    period = draw.uniform(0.040, 0.055)
     places = np.asarray(places, float)
     keep = np.ones(len(places), bool) if keep is None else keep
     sense, since = history(places)
     clock, times, index = 0.0, [], []
     for i, place in enumerate(places):
         if i:
-            clock += np.linalg.norm(place - places[i - 1]) / feed + settle
+            clock += np.linalg.norm(place - places[i - 1]) / FEED + settle
         if keep[i]:
-            times.append(clock + period * np.arange(rows))
+            times.append(clock + period * np.arange(rows) + draw.uniform(0, 1e-3, rows))
             index.append(np.full(rows, i))
-            clock += period * (rows - 1)
+            clock += period * rows
     index = np.concatenate(index)
     return np.concatenate(times), places[index], sense[index], since[index], index
 
 
-def sweep(axis, start, passes=5, mounting="first", head="0deg"):
+def sweep(draw, axis, start, passes=5, mounting="first", head="0deg"):
     k = "XYZ".index(axis)
     there = [*STATIONS, STATIONS[-1] + 5e-4]
     back = [*STATIONS[::-1], STATIONS[0] - 5e-4]
@@ -78,7 +80,7 @@ def sweep(axis, start, passes=5, mounting="first", head="0deg"):
     places = np.zeros((len(line), 3))
     places[:, k] = line
     on = np.isin(line, STATIONS)
-    t, q, sense, since, index = stays(places, 13, 0.05, 0.02, on)
+    t, q, sense, since, index = stays(draw, places, 13, 0.02, on)
     number = (index - 1) // (2 * len(there)) + 1
     header = [f'axis = "{axis}"', "[sweep]", "window_um = 20", "settle_s = 0.1", "[mounting]",
               f'id = "{mounting}"', f'head = "{head}"', "target_shift_mm = 0.0", "target_reversed = false"]
@@ -112,21 +114,21 @@ def circle(plane, feed, start, radius=0.020):
                since[keep], v[keep], np.ones(n, int), way[keep], np.full(n, feed), header)
 
 
-def space(start, draw, points=5, rows=6):
+def space(draw, start, points=5, rows=6):
     """Stays at points all over the travels, row by row and back, each a little off its grid."""
     grid = np.linspace(0.0015, 0.0585, points)
     places = [(grid[x if y % 2 == 0 else -1 - x], grid[y if z % 2 == 0 else -1 - y], grid[z])
               for z in range(points) for y in range(points) for x in range(points)]
     places = np.array(places) + draw.uniform(-1e-3, 1e-3, (len(places), 3))
-    t, q, sense, since, index = stays(places, rows, 0.04, 0.1)
+    t, q, sense, since, index = stays(draw, places, rows, 0.1)
     header = ['course = "cube"', 'elbow = "up"', "[mounting]", 'base = "first"']
     n = len(t)
     return Run("space", "linkage", "", start, t, q, sense, since, np.zeros((n, 3)), np.ones(n, int),
                sense[:, 0], np.full(n, FEED), header)
 
 
-def standstill(start):
-    t = 0.1 * np.arange(600)
+def standstill(draw, start):
+    t = 0.09 * np.arange(600) + draw.uniform(0, 1e-3, 600)
     n = len(t)
     header = ['axis = "X"', 'elbow = "up"', "[mounting]", 'id = "first"', 'head = "0deg"',
               "target_shift_mm = 0.0", "target_reversed = false", 'base = "first"']
@@ -134,11 +136,11 @@ def standstill(start):
                np.zeros((n, 3)), np.ones(n, int), np.zeros(n), np.zeros(n), header)
 
 
-def length(axis, start):
+def length(draw, axis, start):
     k = "XYZ".index(axis)
     places = np.full((13, 3), 0.030)
     places[:, k] = np.linspace(0, 0.060, 13)
-    t, q, sense, since, _ = stays(places, 1, 1.0, 1.0)
+    t, q, sense, since, _ = stays(draw, places, 1, 1.0)
     n = len(t)
     return Run(f"length_{axis}", "length", axis, start, t, q, sense, since, np.zeros((n, 3)),
                np.ones(n, int), sense[:, k], np.full(n, FEED), ["u_scale_ppm = 2"])
@@ -159,9 +161,9 @@ class Weather:
 
 def plan(draw):
     """The runs of a campaign in their order, one after the other with pauses."""
-    makers = [lambda s, a=a: sweep(a, s) for a in "XYZ"]
+    makers = [lambda s, a=a: sweep(draw, a, s) for a in "XYZ"]
     makers += [lambda s, p=p, f=f: circle(p, f / 60e3, s) for p in ("XY", "YZ", "ZX") for f in (600, 120)]
-    makers += [lambda s: space(s, draw), standstill, lambda s: length("X", s)]
+    makers += [lambda s: space(draw, s), lambda s: standstill(draw, s), lambda s: length(draw, "X", s)]
     runs, clock, weather = [], 0.0, Weather(draw)
     for number, make in enumerate(makers):
         run = make(clock)

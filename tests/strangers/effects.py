@@ -23,7 +23,7 @@ AXES = "XYZ"
 class Effect:
     hooks: dict
     says: str  # where it is and how large, for the reader
-    named_by: tuple = ()  # a leftover in a variable or object with one of these words has found the place
+    named_by: tuple = ()  # a leftover in one of these variables, or of one of these objects, has found the place
     # Findings that are honestly the same thing: (cause, object or None, {parameter: (lowest, highest)}).
     same_as: tuple = ()
 
@@ -54,7 +54,7 @@ def warmth(runs, sensor):
 def angular_play(draw, runs):
     k, c, h = draw.integers(3), draw.integers(3, 6), size(draw, 2e-6, 2e-5)
     return Effect({"carriage": lambda r: motion(k, c, h / 2 * r.sense[:, k])},
-                  f"E{'ABC'[c - 3]}{AXES[k]} jumps by {h * 1e6:.1f} urad at reversal", ("direction", "travel"))
+                  f"E{'ABC'[c - 3]}{AXES[k]} jumps by {h * 1e6:.1f} urad at reversal", ("direction", "way"))
 
 
 def growing_bow(draw, runs):
@@ -70,7 +70,7 @@ def varying_play(draw, runs):
     width = lambda q: h * np.exp(-(((q - place) / 0.012) ** 2))
     return Effect({"travel": lambda r: np.eye(3)[k] * (width(r.q[:, k]) * r.sense[:, k] / 2)[:, None]},
                   f"{AXES[k]} has {h * 1e6:.2f} um of play about {place * 1e3:.0f} mm only",
-                  ("direction", "position"), (("backlash", AXES[k], {}),))
+                  ("direction", "xyz"[k]), (("backlash", AXES[k], {}),))
 
 
 def product_of_positions(draw, runs):
@@ -78,7 +78,7 @@ def product_of_positions(draw, runs):
     c, h = draw.integers(3), size(draw, 1e-6, 1e-5)
     return Effect({"carriage": lambda r: motion(i, c, h * (r.q[:, i] / TRAVEL) * (r.q[:, j] / TRAVEL))},
                   f"{AXES[i]} moves along {AXES[c]} by {h * 1e6:.1f} um times the positions of {AXES[i]} and {AXES[j]}",
-                  ("position", "x_mm", "y_mm", "z_mm"))
+                  ("xyz"[i], "xyz"[j]))
 
 
 def bend_with_temperature(draw, runs):
@@ -88,7 +88,7 @@ def bend_with_temperature(draw, runs):
     bow = lambda r: h * (r.temps[:, s] - mean) / spread * 4 * r.q[:, k] / TRAVEL * (1 - r.q[:, k] / TRAVEL)
     return Effect({"carriage": lambda r: motion(k, c, bow(r))},
                   f"{AXES[k]} bows by {h * 1e6:.2f} um a usual change of temp_{('column', 'table')[s]}_c",
-                  ("temp", "time", "pass"))
+                  (("temp_column_c", "temp_table_c")[s], "time", "pass"))
 
 
 def bend_with_rate(draw, runs):
@@ -98,7 +98,7 @@ def bend_with_rate(draw, runs):
     c = draw.integers(3, 6)
     return Effect({"carriage": lambda r: motion(k, c, h * rate(r))},
                   f"E{'ABC'[c - 3]}{AXES[k]} by {h * 1e6:.1f} urad with the rate of temp_{('column', 'table')[s]}_c",
-                  ("temp", "time", "pass"))
+                  (("temp_column_c", "temp_table_c")[s], "time", "pass"))
 
 
 def beyond_threshold(draw, runs):
@@ -106,12 +106,13 @@ def beyond_threshold(draw, runs):
     c, place, h = draw.integers(3, 6), draw.uniform(0.02, 0.045), size(draw, 1e-5, 1e-4)
     return Effect({"carriage": lambda r: motion(i, c, h * np.maximum(r.q[:, j] - place, 0) / 0.03)},
                   f"E{'ABC'[c - 3]}{AXES[i]} leans once {AXES[j]} is beyond {place * 1e3:.0f} mm",
-                  ("position", "x_mm", "y_mm", "z_mm"))
+                  ("xyz"[i], "xyz"[j]))
 
 
 def late_threshold(draw, runs):
     k, c, h = draw.integers(3), draw.integers(3, 6), size(draw, 2e-6, 2e-5)
-    begin = draw.uniform(0.1, 0.7) * span(runs)
+    begin = next(r for r in runs if r.axis == AXES[k]).clock
+    begin = begin[0] + draw.uniform(0.2, 0.8) * (begin[-1] - begin[0])  # while that axis is swept
     ramp = lambda r: h * r.q[:, k] / TRAVEL * (r.clock > begin)
     return Effect({"carriage": lambda r: motion(k, c, ramp(r))},
                   f"{AXES[k]} turns by {h * 1e6:.1f} urad over its travel from {begin:.0f} s on", ("time", "pass"))
@@ -124,7 +125,7 @@ def stick_slip(draw, runs):
     both = lambda r: np.stack([saw(r), 0 * r.t, 0 * r.t, 0 * r.t, 0 * r.t, saw(r) / abs(h) * turned], axis=1)
     return Effect({"carriage": lambda r: {AXES[k]: np.roll(both(r), k, axis=1) if k else both(r)}},
                   f"{AXES[k]} sticks and slips by {h * 1e6:.2f} um every {period * 1e3:.1f} mm since it turned",
-                  ("direction", "travel", "position"))
+                  ("direction", "way", "xyz"[k]))
 
 
 def two_scales(draw, runs):
@@ -132,13 +133,13 @@ def two_scales(draw, runs):
     joint = lambda r: h * np.maximum(r.q[:, k] - place, 0)
     return Effect({"travel": lambda r: np.eye(3)[k] * joint(r)[:, None]},
                   f"the scale of {AXES[k]} is {h * 1e6:.0f} ppm longer beyond {place * 1e3:.0f} mm",
-                  ("position",), (("scale-error", AXES[k], {}),))
+                  ("xyz"[k],), (("scale-error", AXES[k], {}),))
 
 
 def quantised_positions(draw, runs):
     k, step = draw.integers(3), abs(size(draw, 2e-6, 1e-5))
     return Effect({"travel": lambda r: np.eye(3)[k] * (r.q[:, k] - step * np.round(r.q[:, k] / step))[:, None]},
-                  f"{AXES[k]} stands on the nearest {step * 1e6:.1f} um, not where it is recorded", ("position",))
+                  f"{AXES[k]} stands on the nearest {step * 1e6:.1f} um, not where it is recorded", ("xyz"[k],))
 
 
 def gears(draw, runs):
@@ -151,16 +152,16 @@ def gears(draw, runs):
                          for i in range(2))
     pitches = [p / n for p in periods for n in order]
     same = tuple(("leadscrew-cyclic", AXES[k], {"pitch_mm": (p * 980, p * 1020)}) for p in pitches)
-    return Effect({"travel": lambda r: np.eye(3)[k] * (h * wave(r.q))[:, None]},
+    return Effect({"travel": lambda r: np.eye(3)[k] * (h * wave(r.q[:, k]))[:, None]},
                   f"{AXES[k]} runs on wheels of {periods[0] * 1e3:.2f} and {periods[1] * 1e3:.2f} mm, "
-                  f"{h * 1e6:.2f} um", ("position",), same)
+                  f"{h * 1e6:.2f} um", ("xyz"[k],), same)
 
 
 def speed_squared(draw, runs):
     k, c, h = draw.integers(3), draw.integers(3), size(draw, 3e-7, 3e-6)
     return Effect({"carriage": lambda r: motion(k, c, h * (r.speed[:, k] / 0.01) ** 2)},
                   f"{AXES[k]} lifts along {AXES[c]} by {h * 1e6:.2f} um with the square of its speed",
-                  ("speed", "feed"))
+                  ("speed", "feed", "xyz"[k]))
 
 
 def floor_vibration(draw, runs):
@@ -175,11 +176,11 @@ def floor_vibration(draw, runs):
 
 def rougher_machine(draw, runs):
     factor = draw.uniform(2, 3)
-    return Effect({"machine": {"roughness": factor}}, f"errors {factor:.1f} times as rough", ("position",))
+    return Effect({"machine": {"roughness": factor}}, f"errors {factor:.1f} times as rough", tuple("xyz"))
 
 
 def kinked_machine(draw, runs):
-    return Effect({"machine": {"sharp": True}}, "every error function has a sharp bend", ("position",))
+    return Effect({"machine": {"sharp": True}}, "every error function has a sharp bend", tuple("xyz"))
 
 
 def larger_errors(draw, runs):
@@ -197,7 +198,7 @@ def probe_hysteresis(draw, runs):
         value = np.zeros_like(gaps)
         value[:, p] = h / 2 * run.sense[:, k] * np.minimum(run.since[:, k] / 0.003, 1.0)
         return value
-    return Effect({"gaps": lag}, f"probe {'abcde'[p]} lags by {h * 1e9:.0f} nm", ("direction", "travel", f"probe_{'abcde'[p]}"))
+    return Effect({"gaps": lag}, f"probe {'abcde'[p]} lags by {h * 1e9:.0f} nm", ("direction", "way", f"probe_{'abcde'[p]}"))
 
 
 def form_four_times(draw, runs):
@@ -303,5 +304,4 @@ EFFECTS = {f.__name__: f for f in (
     floor_vibration, rougher_machine, kinked_machine, larger_errors, probe_hysteresis, form_four_times,
     wandering_target, tailed_probe_noise, probe_noise_with_memory, unequal_probes, encoder_noise_with_memory,
     tailed_encoder_noise, fine_subdivision, late_encoder, dragging_encoder, reseated_ball)}
-# Worlds in which a noise or a size is other than stated, yet nothing is wrong with the machine.
-HARMLESS = ("rougher_machine", "larger_errors", "form_four_times", "tailed_probe_noise", "unequal_probes")
+

@@ -10,7 +10,7 @@ import numpy as np
 
 from campaign import plan
 from instruments import Head, Linkage, Target
-from machine import Machine
+from machine import Machine, apply, inverse, joined
 
 STREAMS = {"machine": 1, "head": 2, "target": 3, "linkage": 4, "plan": 5, "noise": 6, "effect": 7}
 PROBES = [f"probe_{p}_um" for p in "abcde"]
@@ -81,11 +81,20 @@ class World:
         probe, encoder = self.noise(run)
         return (None if gaps is None else gaps + probe), (None if angles is None else angles + encoder)
 
+    def tip(self, q, tool=(0.0, 0.0, 0.0)):
+        """The tool point in the workpiece (n, 3) at positions q, by the errors of the machine alone."""
+        nothing = {a: np.zeros((len(q), 6)) for a in "XYZ"}
+        work, carried = self.machine.poses(q, nothing)
+        R, p = joined(inverse(work), carried)
+        return p + apply(R, tool)
+
+    def tool_error(self, q, tool):
+        """Where the tool point is less where it should be, (n, 3); X and Y carry the workpiece."""
+        return self.tip(q, tool) - (np.array(tool) + q * [-1, -1, 1])
+
     def lengths(self, run):
         """The calibrated distance from the first row: the line stands on the table, the tool points at it."""
-        work, tool = self.machine.poses(run.q, {a: np.zeros((len(run.t), 6)) for a in "XYZ"})
-        R, p = work
-        place = np.einsum("nji,nj->ni", R, tool[1] - p)
+        place = self.tip(run.q)
         noise = 1e-7 * self.stream("noise", run.number, 3).normal(size=len(run.t))
         scale = 1 + 2e-6 * self.stream("noise", run.number, 4).normal()
         return np.where(np.arange(len(run.t)) == 0, 0.0,
@@ -103,6 +112,7 @@ class World:
         if run.kind == "length":
             columns += [("length_mm", self.lengths(run) * 1e3, "%.8f"), ("u_length_um", 0.1 + 0 * run.t, "%g")]
         columns += [(f"temp_{n}_c", run.temps[:, k], "%.5f") for k, n in enumerate(("column", "table"))]
+        columns += [("flags", 0 * run.t, "%d")]
         began = datetime.datetime(2026, 11, 21, 8) + datetime.timedelta(seconds=run.start)
         header = ["abbe-recording = 1", f'kind = "{run.kind}"', f'machine = "{self.settings["name"]}"',
                   f"started = {began.isoformat(timespec='milliseconds')}Z", *run.header]
@@ -117,14 +127,16 @@ class World:
         return [self.write(run, folder) for run in self.runs if kinds is None or run.kind in kinds]
 
 
-def visible_size(world, plain):
-    """How far the effect moves the readings, in standard deviations of the stated noise: the root of the sum
-    of squares over all readings, each channel of a run less its mean."""
-    total = 0.0
+def changes(world, plain):
+    """How far the effect moves the readings of each run, in standard deviations of the stated noise: the root of
+    the sum of squares over all readings, each channel less its mean, before any parameter is fitted."""
     noise = world.settings["noise"]["probe_nm"] * 1e-9, world.settings["linkage"]["noise"]["encoder_urad"] * 1e-6
+    found = {}
     for run in world.runs:
+        total = 0.0
         for with_it, without, sigma in zip(world.readings(run), plain.readings(run), noise):
             if with_it is not None:
                 change = (with_it - without) / sigma
                 total += ((change - change.mean(axis=0)) ** 2).sum()
-    return float(np.sqrt(total))
+        found[run.name] = float(np.sqrt(total))
+    return found
