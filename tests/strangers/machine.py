@@ -49,7 +49,7 @@ class Shape:
                                draw.uniform(0, 2 * np.pi, count)])
         self.bow = draw.normal(size=4) * [0.5, 0.5, 0.3, 0.2] * draw.choice([0.0, 1.0])
         self.kink = (draw.normal() * draw.choice([0.0, 1.0]) + 1.5 * sharp, draw.uniform(0.2, 0.8) * TRAVEL,
-                     2e-4 if sharp else length)
+                     2e-4 if sharp else 2 * length)
         self.offset, self.size = 0.0, 1.0
         value = self(np.linspace(0, TRAVEL, 200))
         self.offset, self.size = value.mean(), value.std()
@@ -78,9 +78,9 @@ class Machine:
                 self.shape[name] = Shape(draw, population["smoothness_mm"] * 1e-3 / roughness, sharp)
                 self.amount[name] = size * population[kind] * 1e-6 * heavy()
                 self.line[name] = size * population["scale_ppm"] * 1e-6 * draw.normal() if m == k else 0.0
-                if m < 3 and m != k:  # the least-squares line belongs to the squareness
+                if m < 3:  # the least-squares line of a shape belongs to the scale or the squareness
                     u = (np.arange(2000) + 0.5) * TRAVEL / 2000
-                    self.line[name] = -self.amount[name] * np.polyfit(u, self.shape[name](u), 1)[0]
+                    self.line[name] -= self.amount[name] * np.polyfit(u, self.shape[name](u), 1)[0]
         self.squareness = size * population["squareness_urad"] * 1e-6 * draw.normal(size=3)  # A0Z B0Z C0Y
 
     def error(self, name, q):

@@ -20,9 +20,9 @@ import functools
 import json
 import multiprocessing
 import pathlib
+import resource
 import subprocess
 import tempfile
-import time
 
 import judge
 import table
@@ -35,17 +35,18 @@ MAPPED = ("sweep", "space", "length")  # names of the runs of which a map is mad
 
 
 def abbe(program, *arguments, limit=900):
-    """(result or None, message, exit code, seconds) of a command with --json."""
-    began = time.time()
+    """(result or None, message, exit code, processor seconds) of a command with --json."""
+    spent = lambda: resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    began = spent()
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "result.json"
         try:
             run = subprocess.run([program, *map(str, arguments), "--json", out], capture_output=True, text=True,
                                  timeout=limit, check=False)
         except subprocess.TimeoutExpired:
-            return None, f"more than {limit} s", -1, time.time() - began
+            return None, f"more than {limit} s", -1, spent() - began
         result = json.loads(out.read_text()) if out.exists() else None
-    return result, run.stderr.strip(), run.returncode, time.time() - began
+    return result, run.stderr.strip(), run.returncode, spent() - began
 
 
 def diagnosed(program, world, folder):
