@@ -183,6 +183,10 @@ def kinked_machine(draw, runs):
     return Effect({"machine": {"sharp": True}}, "every error function has a sharp bend", tuple("xyz"))
 
 
+def heavy_tails(draw, runs):
+    return Effect({"machine": {"tails": True}}, "sizes of the error functions of Student's t, 3 degrees")
+
+
 def larger_errors(draw, runs):
     factor = draw.uniform(2, 3)
     return Effect({"machine": {"size": factor}}, f"errors {factor:.1f} times as large")
@@ -301,7 +305,7 @@ def reseated_ball(draw, runs):
 EFFECTS = {f.__name__: f for f in (
     angular_play, growing_bow, varying_play, product_of_positions, bend_with_temperature, bend_with_rate,
     beyond_threshold, late_threshold, stick_slip, two_scales, quantised_positions, gears, speed_squared,
-    floor_vibration, rougher_machine, kinked_machine, larger_errors, probe_hysteresis, form_four_times,
+    floor_vibration, rougher_machine, kinked_machine, heavy_tails, larger_errors, probe_hysteresis, form_four_times,
     wandering_target, tailed_probe_noise, probe_noise_with_memory, unequal_probes, encoder_noise_with_memory,
     tailed_encoder_noise, fine_subdivision, late_encoder, dragging_encoder, reseated_ball)}
 

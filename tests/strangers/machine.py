@@ -1,7 +1,7 @@
 """A machine whose 21 errors no Gaussian process has drawn. SI units, angles in rad.
 
-Each error function is a sum of a few sinusoids, a bow and a rounded (or sharp) kink, its size drawn with a
-heavy tail. Its gauge is that of docs/theory-volumetric.md: zero at the first end of the travel, a
+Each error function is a sum of a few sinusoids, a bow and a rounded kink, as smooth and as large as the machine
+file says; where asked, rougher, larger, with a sharp kink or with sizes of a heavy tail. Its gauge is that of docs/theory-volumetric.md: zero at the first end of the travel, a
 straightness without its least-squares line, the squarenesses beside it.
 """
 import numpy as np
@@ -45,9 +45,9 @@ class Shape:
     def __init__(self, draw, length, sharp=False):
         count = draw.integers(1, 6)
         stretch = draw.uniform(1.0, 2.5, count)  # several scales, from `length` upwards
-        self.waves = np.array([draw.normal(size=count), draw.uniform(0.3, 1.6, count) / (length * stretch),
+        self.waves = np.array([draw.normal(size=count), draw.uniform(0.3, 1.2, count) / (length * stretch),
                                draw.uniform(0, 2 * np.pi, count)])
-        self.bow = draw.normal(size=4) * [0.5, 0.5, 0.3, 0.2] * draw.choice([0.0, 1.0])
+        self.bow = draw.normal(size=3) * [0.5, 0.5, 0.1] * draw.choice([0.0, 1.0])
         self.kink = (draw.normal() * draw.choice([0.0, 1.0]) + 1.5 * sharp, draw.uniform(0.2, 0.8) * TRAVEL,
                      2e-4 if sharp else 2 * length)
         self.offset, self.size = 0.0, 1.0
@@ -67,8 +67,8 @@ class Shape:
 class Machine:
     """The chain [w X Y b Z t], X and Y counted as their carriages go, reference point in the origin."""
 
-    def __init__(self, draw, population, size=1.0, roughness=1.0, sharp=False):
-        heavy = lambda: draw.standard_t(5) / np.sqrt(5 / 3)
+    def __init__(self, draw, population, size=1.0, roughness=1.0, sharp=False, tails=False):
+        amount = lambda: draw.standard_t(3) / np.sqrt(3) if tails else draw.choice([-1, 1]) * draw.uniform(0.3, 1.6)
         self.shape, self.amount, self.line = {}, {}, {}
         for k, axis in enumerate(AXES):
             for m, motion in enumerate(MOTIONS):
@@ -76,7 +76,7 @@ class Machine:
                     "roll_urad" if m == k + 3 else "pitch_urad"
                 name = motion + axis
                 self.shape[name] = Shape(draw, population["smoothness_mm"] * 1e-3 / roughness, sharp)
-                self.amount[name] = size * population[kind] * 1e-6 * heavy()
+                self.amount[name] = size * population[kind] * 1e-6 * amount()
                 self.line[name] = size * population["scale_ppm"] * 1e-6 * draw.normal() if m == k else 0.0
                 if m < 3:  # the least-squares line of a shape belongs to the scale or the squareness
                     u = (np.arange(2000) + 0.5) * TRAVEL / 2000
