@@ -4,6 +4,7 @@ Everything is drawn from streams of their own, so the same seed with and without
 machine, the same runs and the same noise, and the difference of both is the effect.
 """
 import datetime
+import pathlib
 import tomllib
 
 import numpy as np
@@ -35,7 +36,7 @@ def white(draw, run, columns):
 class World:
     def __init__(self, seed, machine_file, effect=None):
         self.seed, self.file = seed, machine_file
-        self.settings = tomllib.loads(open(machine_file, encoding="utf-8").read())
+        self.settings = tomllib.loads(pathlib.Path(machine_file).read_text(encoding="utf-8"))
         s = self.settings
         self.runs = plan(self.stream("plan"))
         self.effect = effect(self.stream("effect"), self.runs) if effect else None
