@@ -77,7 +77,7 @@ def product_of_positions(draw, runs):
     i, j = draw.permutation(3)[:2]
     c, h = draw.integers(3), size(draw, 1e-6, 1e-5)
     return Effect({"carriage": lambda r: motion(i, c, h * (r.q[:, i] / TRAVEL) * (r.q[:, j] / TRAVEL))},
-                  f"{AXES[i]} moves along {AXES[c]} by {h * 1e6:.1f} um times the positions of {AXES[i]} and {AXES[j]}",
+                  f"{AXES[i]} moves along {AXES[c]} by {h * 1e6:.1f} um times both positions, {AXES[i]} and {AXES[j]}",
                   ("xyz"[i], "xyz"[j]))
 
 
@@ -171,7 +171,8 @@ def floor_vibration(draw, runs):
         np.sin(2 * np.pi * rate * r.clock + phase[1])
     return Effect({"carriage": lambda r: motion(2, c, shake(r))},
                   f"the column shakes along {AXES[c]} by {h * 1e6:.2f} um at {rate:.2f} Hz, on and off",
-                  ("time", "scatter", "memory"), (("vibration", None, {"frequency_hz": (rate - 0.05, rate + 0.05)}),))
+                  ("time", "scatter", "memory"),
+                  (("vibration", None, {"frequency_hz": (rate - 0.05, rate + 0.05)}),))
 
 
 def rougher_machine(draw, runs):
@@ -202,7 +203,8 @@ def probe_hysteresis(draw, runs):
         value = np.zeros_like(gaps)
         value[:, p] = h / 2 * run.sense[:, k] * np.minimum(run.since[:, k] / 0.003, 1.0)
         return value
-    return Effect({"gaps": lag}, f"probe {'abcde'[p]} lags by {h * 1e9:.0f} nm", ("direction", "way", f"probe_{'abcde'[p]}"))
+    return Effect({"gaps": lag}, f"probe {'abcde'[p]} lags by {h * 1e9:.0f} nm",
+                  ("direction", "way", f"probe_{'abcde'[p]}"))
 
 
 def form_four_times(draw, runs):
@@ -226,7 +228,8 @@ def wandering_target(draw, runs):
 
 def tailed_probe_noise(draw, runs):
     noise = lambda g, run, n: g.standard_t(3, size=(len(run.t), n)) / np.sqrt(3)
-    return Effect({"probe_noise": noise}, "probe noise of Student's t, 3 degrees", ("scatter",), (("outliers", None, {}),))
+    return Effect({"probe_noise": noise}, "probe noise of Student's t, 3 degrees", ("scatter",),
+                  (("outliers", None, {}),))
 
 
 def remembering(rho):
@@ -259,13 +262,16 @@ def encoder_noise_with_memory(draw, runs):
 
 def tailed_encoder_noise(draw, runs):
     noise = lambda g, run, n: g.standard_t(3, size=(len(run.t), n)) / np.sqrt(3)
-    return Effect({"encoder_noise": noise}, "encoder noise of Student's t, 3 degrees", ("scatter",), (("outliers", None, {}),))
+    return Effect({"encoder_noise": noise}, "encoder noise of Student's t, 3 degrees", ("scatter",),
+                  (("outliers", None, {}),))
 
 
 def fine_subdivision(draw, runs):
-    i, lines, h, phase = draw.integers(3), draw.integers(1000, 5000), abs(size(draw, 3e-6, 2e-5)), draw.uniform(0, 6.28)
+    i, lines, h = draw.integers(3), draw.integers(1000, 5000), abs(size(draw, 3e-6, 2e-5))
+    phase = draw.uniform(0, 6.28)
     wave = lambda run, q: np.eye(3)[i] * (h * np.sin(lines * q[:, i] + phase))[:, None]
-    return Effect({"angles": wave}, f"pivot {i + 1}: {h * 1e6:.1f} urad {lines} times a turn", (f"pivot_{i + 1}", "scatter"))
+    return Effect({"angles": wave}, f"pivot {i + 1}: {h * 1e6:.1f} urad {lines} times a turn",
+                  (f"pivot_{i + 1}", "scatter"))
 
 
 def late_encoder(draw, runs):
@@ -277,7 +283,8 @@ def late_encoder(draw, runs):
         part = np.r_[0, np.cumsum(np.diff(run.t) > 1.0)]  # the two senses of a circle
         rate = np.concatenate([np.gradient(q[part == n, i], run.t[part == n]) for n in np.unique(part)])
         return -late * np.eye(3)[i] * rate[:, None]
-    return Effect({"angles": lag}, f"the encoder of pivot {i + 1} is {late * 1e3:.2f} ms late", ("speed", "feed", f"pivot_{i + 1}"))
+    return Effect({"angles": lag}, f"the encoder of pivot {i + 1} is {late * 1e3:.2f} ms late",
+                  ("speed", "feed", f"pivot_{i + 1}"))
 
 
 def dragging_encoder(draw, runs):
@@ -299,7 +306,8 @@ def dragging_encoder(draw, runs):
 def reseated_ball(draw, runs):
     h = abs(size(draw, 3e-7, 3e-6))
     seat = h * draw.normal(size=(len(runs), 3))
-    return Effect({"ball": lambda r: seat[r.number] + 0 * r.q}, f"the ball seats anew each run, {h * 1e6:.2f} um", ("run", "time"))
+    return Effect({"ball": lambda r: seat[r.number] + 0 * r.q},
+                  f"the ball seats anew each run, {h * 1e6:.2f} um", ("run", "time"))
 
 
 EFFECTS = {f.__name__: f for f in (

@@ -136,7 +136,7 @@ class Linkage:
         """Encoder angles (n, 3) while the ball follows the tool point, by Newton's method; `ball` (n, 3) in m:
         how far it stands off in its cap."""
         warmth = temperature - self.warm_from
-        X_MB = joined(work, (np.broadcast_to(self.base[0], work[0].shape), np.broadcast_to(self.base[1], work[1].shape)))
+        X_MB = joined(work, self.base)
         R, p = inverse(X_MB)
         wanted = p + apply(R, tool[1] + apply(tool[0], ball))
         q = self.first_guess(wanted)

@@ -27,7 +27,8 @@ def diagnosis(result, effect):
     leftovers = [(u["variable"], u["object"]) for u in result["unexplained"]]
     words = {w for variable, thing in leftovers for w in (*variable.split("-"), variable, thing)}
     return {"verdict": result["verdict"], "findings": list(zip(told, chance)), "wrong": wrong,
-            "advised": [t for t, f in zip(told, result["findings"]) if t in wrong and f.get("words", {}).get("remedy")],
+            "advised": [t for t, f in zip(told, result["findings"])
+                        if t in wrong and f.get("words", {}).get("remedy")],
             "unexplained": leftovers, "right": right,
             "named": right or bool(effect and words & set(effect.named_by))}
 
@@ -65,7 +66,7 @@ def volume_error(result, world):
     off = np.array(grid["error"]).reshape(3, -1) - truth
     u = np.array(grid["u"]).reshape(3, -1)
     return {"rms": float(np.sqrt(np.mean(off**2))), "u": float(np.sqrt(np.mean(u**2))),
-            "worst": float(np.abs(off).max()), "inside": coverage((off / u)[u > 0])}
+            "worst": float(np.abs(off).max()), "inside": coverage(off[u > 0] / u[u > 0])}
 
 
 def sweep_pulls(result, machine, axis):

@@ -1,8 +1,9 @@
 """A machine whose 21 errors no Gaussian process has drawn. SI units, angles in rad.
 
-Each error function is a sum of a few sinusoids, a bow and a rounded kink, as smooth and as large as the machine
-file says; where asked, rougher, larger, with a sharp kink or with sizes of a heavy tail. Its gauge is that of docs/theory-volumetric.md: zero at the first end of the travel, a
-straightness without its least-squares line, the squarenesses beside it.
+Each error function is a sum of a few sinusoids, a bow and a rounded kink, as smooth and as large as the
+machine file says; where asked, rougher, larger, with a sharp kink or with sizes of a heavy tail. Its gauge is
+that of docs/theory-volumetric.md: zero at the first end of the travel, a straightness without its
+least-squares line, the squarenesses beside it.
 """
 import numpy as np
 
@@ -68,7 +69,8 @@ class Machine:
     """The chain [w X Y b Z t], X and Y counted as their carriages go, reference point in the origin."""
 
     def __init__(self, draw, population, size=1.0, roughness=1.0, sharp=False, tails=False):
-        amount = lambda: draw.standard_t(3) / np.sqrt(3) if tails else draw.choice([-1, 1]) * draw.uniform(0.3, 1.6)
+        even = lambda: draw.choice([-1, 1]) * draw.uniform(0.3, 1.6)  # 1 rms
+        amount = lambda: draw.standard_t(3) / np.sqrt(3) if tails else even()
         self.shape, self.amount, self.line = {}, {}, {}
         for k, axis in enumerate(AXES):
             for m, motion in enumerate(MOTIONS):

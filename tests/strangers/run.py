@@ -59,7 +59,8 @@ def diagnosed(program, world, folder):
 def map_of(program, world, folder, *options):
     """A map of sweeps, stays in space and lengths, and how well its statements hold."""
     files = [f for f in world.write_all(folder) if any(word in f.name for word in MAPPED)]
-    result, message, code, seconds = abbe(program, "fuse", *files, "--machine", MACHINE, *options)
+    result, message, code, seconds = abbe(program, "fuse", *files, "--machine", MACHINE,
+                                          "-o", folder / "map.toml", "--force", *options)
     if result is None:
         return {"map": "refused", "message": message, "exit": code, "seconds": seconds}
     ratios = judge.map_pulls(result, world.machine)
@@ -86,7 +87,8 @@ def mapped(program, world, folder):
 def applied(program, world, folder):
     """The map with the findings of a diagnosis taken out of the recordings, beside that without."""
     causes = folder / "causes.toml"
-    result, message, _, seconds = abbe(program, "diagnose", *world.write_all(folder), "--machine", MACHINE, "-o", causes)
+    result, message, _, seconds = abbe(program, "diagnose", *world.write_all(folder), "--machine", MACHINE,
+                                       "-o", causes)
     if result is None:
         return {"verdict": "refused", "message": message, "wrong": []}
     found = judge.diagnosis(result, world.effect)

@@ -48,7 +48,8 @@ def maps(lines):
         body.append((name, ", ".join(f"{n} {v}" for v, n in what.items()), mean([m["inside"] for m in made]),
                      mean([m["volume"]["inside"] for m in made]), mean(sweeps), count(made, lambda m: m["innocent"]),
                      ", ".join(sorted({b for m in made for b in m["innocent"]})) if name != "all" else ""))
-    return rows(("effect", "maps", "functions inside", "volume inside", "sweeps inside", "blames an innocent", "whom"), body)
+    return rows(("effect", "maps", "functions inside", "volume inside", "sweeps inside", "blames an innocent",
+                 "whom"), body)
 
 
 def corrections(lines):
@@ -59,7 +60,8 @@ def corrections(lines):
         body.append((name, middle([um(r.get("without", {}), "rms") for r in some]),
                      middle([um(r.get("with", {}), "rms") for r in some]),
                      middle([um(r.get("with", {}), "u") for r in some]),
-                     count(some, lambda r: r.get("with", {}).get("map") == "refused"), count(some, lambda r: r.get("worse"))))
+                     count(some, lambda r: r.get("with", {}).get("map") == "refused"),
+                     count(some, lambda r: r.get("worse"))))
     return rows(("effect", "without um", "with um", "u um", "refused", "worse by more than U95"), body)
 
 
