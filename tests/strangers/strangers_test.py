@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""A few fixed worlds of strangers: nothing certain is wrong in them, and clean worlds are called clean.
+
+    ABBE=path/to/abbe strangers_test.py
+"""
+import os
+import pathlib
+import tempfile
+import unittest
+
+import numpy as np
+
+import run
+from effects import EFFECTS
+from instruments import Head, Linkage, Target
+from machine import turn
+from world import World
+
+PROGRAM = os.environ["ABBE"]
+
+
+class Nominal:
+    """A random generator that draws what is nominal: zeros."""
+
+    def normal(self, size=()):
+        return np.zeros(size)
+
+    def uniform(self, low, high, size=()):
+        return np.zeros(size)
+
+
+class TheWorldItself(unittest.TestCase):
+    """Against the first-order equations of the sources, which it does not use."""
+
+    def setUp(self):
+        self.world = World(1, run.MACHINE)
+        self.nothing = Nominal()
+
+    def test_gaps_of_a_moving_target(self):
+        head = Head(self.nothing, self.world.settings["head"])
+        target = Target(self.nothing, self.world.settings["target"], 0.0)
+        turned, moved = np.array([2e-5, -3e-5, 4e-5]), np.array([1e-6, 2e-6, -3e-6])
+        d, origin = 0.06, head.origin["X"]
+        # The errors are those of the target at the head's origin, not at the machine's.
+        R = turn(turned)
+        work = R, (origin + [d, 0, 0] + moved)[None] - R @ origin
+        tool = np.eye(3)[None], np.zeros((1, 3))
+        change = 1e-4 - head.gaps("X", work, tool, target)[0]
+        (ea, eb, ec), (_, ey, ez) = turned, moved
+        top = [ez + y * ea + (d - x) * eb for x, y in ((0.01, 0), (0, 0.01), (0, -0.01))]
+        side = [ey - z * ea - (d - x) * ec for x, z in ((0, 0.02), (0.01, 0.02))]
+        # Second order: a product of two angles times 60 mm, or an angle times a shift.
+        np.testing.assert_allclose(change, top + side, atol=2e-10)
+
+    def test_angles_of_a_perfect_linkage(self):
+        linkage = Linkage(self.nothing, self.world.settings["linkage"])
+        q, (L1, L2) = np.array([[0.1, -0.9, -2.9], [-0.2, -1.2, -3.0]]), (0.12, 0.12)
+        t1, t2, t3 = q.T
+        reach = L2 * np.cos(t3) * np.sin(t2) + np.cos(t2) * (L1 + L2 * np.sin(t3))
+        tip = np.stack([np.cos(t1) * reach, np.sin(t1) * reach,
+                        L2 * np.cos(t2) * np.cos(t3) - np.sin(t2) * (L1 + L2 * np.sin(t3))], axis=1)
+        np.testing.assert_allclose(linkage.tip(q, np.zeros(2)), tip, atol=1e-15)
+        bed = np.broadcast_to(np.eye(3), (2, 3, 3)), np.zeros((2, 3))
+        held = bed[0], tip + linkage.base[1]
+        np.testing.assert_allclose(linkage.angles(bed, held, np.full(2, 20.0)), q, atol=1e-11)
+
+
+class DiagnosisOfStrangers(unittest.TestCase):
+    def diagnosed(self, seed, effect):
+        with tempfile.TemporaryDirectory() as folder:
+            world = World(seed, run.MACHINE, EFFECTS.get(effect))
+            return run.diagnosed(PROGRAM, world, pathlib.Path(folder))
+
+    def test_clean_worlds_stay_clean(self):
+        for seed in (2, 3, 4):
+            with self.subTest(seed=seed):
+                self.assertEqual(self.diagnosed(seed, "clean")["verdict"], "clean")
+
+    def test_nothing_certain_is_wrong(self):
+        for seed, effect in ((21, "bend_with_rate"), (22, "beyond_threshold"), (23, "unequal_probes"),
+                             (24, "speed_squared"), (25, "encoder_noise_with_memory")):
+            with self.subTest(seed=seed, effect=effect):
+                found = self.diagnosed(seed, effect)
+                self.assertNotEqual(found["verdict"], "refused", found)
+                self.assertEqual(found["wrong"], [], found)
+
+
+if __name__ == "__main__":
+    unittest.main()
