@@ -43,8 +43,8 @@ RunSource SourceAt(const machine::Machine& machine, const fs::path& path) {
 }
 
 std::vector<SimulatedRun> Simulate(const std::vector<RunSource>& sources,
-                                   const simulation::Instruments& instruments) {
-  const machine::VolumetricModel model = fusion::UnknownMachine(instruments.machine);
+                                   const simulation::Instruments& instruments,
+                                   const machine::VolumetricModel& model) {
   std::vector<SimulatedRun> runs;
   for (const RunSource& source : sources) {
     for (SimulatedRun& run : simulation::SimulateForMap(source, model, instruments)) {
@@ -52,6 +52,16 @@ std::vector<SimulatedRun> Simulate(const std::vector<RunSource>& sources,
     }
   }
   return runs;
+}
+
+fusion::FuseReport FuseSources(const std::vector<RunSource>& sources,
+                               const simulation::Instruments& instruments,
+                               fusion::FuseOptions options) {
+  options.runs_on = [&](const machine::VolumetricModel& model) {
+    return Simulate(sources, instruments, model);
+  };
+  return fusion::Fuse(instruments.machine,
+                      options.runs_on(fusion::UnknownMachine(instruments.machine)), options);
 }
 
 struct MapChange {
@@ -74,8 +84,7 @@ std::optional<fusion::FuseReport> FuseIfItFits(const simulation::Instruments& in
                                                const std::vector<RunSource>& sources,
                                                bool choose_smoothness) {
   try {
-    return fusion::Fuse(instruments.machine, Simulate(sources, instruments),
-                        {.choose_smoothness = choose_smoothness});
+    return FuseSources(sources, instruments, {.choose_smoothness = choose_smoothness});
   } catch (const NumericalError&) {
     return std::nullopt;
   }
@@ -120,13 +129,12 @@ int Fuse(const FuseArguments& arguments) {
     corrected.push_back(simulation::SourceOf(causes.Take(sources.back().whole())));
   }
   simulation::RefuseStrangers(sources, instruments);
-  const auto runs = Simulate(causes.Active() ? corrected : sources, instruments);
-  const fusion::FuseReport report = fusion::Fuse(
-      machine, runs,
-      {.choose_smoothness = !arguments.fixed_smoothness, .holdout = arguments.holdout});
+  const fusion::FuseReport report =
+      FuseSources(causes.Active() ? corrected : sources, instruments,
+                  {.choose_smoothness = !arguments.fixed_smoothness, .holdout = arguments.holdout});
   map::WriteMap(report.map, arguments.out);
-  auto json = FuseJson(report, runs);
-  std::string text = FuseTable(report, runs);
+  auto json = FuseJson(report);
+  std::string text = FuseTable(report);
   if (causes.Active()) {
     json["causes_taken_out"] = causes.Data();
     text += fmt::format("\n{}\n{}", causes.Line(), NotInMap(causes.taken()));
@@ -157,7 +165,7 @@ void AddFuse(CLI::App& program, int& exit_code) {
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   AddCausesOption(*command, arguments->causes);
   command->add_flag("--fixed-smoothness", arguments->fixed_smoothness,
-                    "Keep population.smoothness_mm of the machine file");
+                    "Keep [population], the noise and the form of the machine file");
   command->add_option(
       "--holdout", arguments->holdout,
       "Fit once more without every n-th block of rows of each run and predict them");
