@@ -46,17 +46,21 @@ RunSource SourceAt(const machine::Machine& machine, const fs::path& path) {
 RunSource AsRead(const RunSource& source) { return source; }
 
 // One source after the other, each as `as_taken` has it.
-std::vector<SimulatedRun> Simulate(const std::vector<RunSource>& sources,
-                                   const simulation::Instruments& instruments,
-                                   const std::function<RunSource(const RunSource&)>& as_taken) {
-  const machine::VolumetricModel model = fusion::UnknownMachine(instruments.machine);
-  std::vector<SimulatedRun> runs;
-  for (const RunSource& source : sources) {
-    for (SimulatedRun& run : simulation::SimulateForMap(as_taken(source), model, instruments)) {
-      runs.push_back(std::move(run));
+fusion::FuseReport FuseSources(const std::vector<RunSource>& sources,
+                               const std::function<RunSource(const RunSource&)>& as_taken,
+                               const simulation::Instruments& instruments,
+                               fusion::FuseOptions options) {
+  options.runs_on = [&](const machine::VolumetricModel& model) {
+    std::vector<SimulatedRun> runs;
+    for (const RunSource& source : sources) {
+      for (auto& run : simulation::SimulateForMap(as_taken(source), model, instruments)) {
+        runs.push_back(std::move(run));
+      }
     }
-  }
-  return runs;
+    return runs;
+  };
+  return fusion::Fuse(instruments.machine,
+                      options.runs_on(fusion::UnknownMachine(instruments.machine)), options);
 }
 
 struct MapChange {
@@ -79,8 +83,7 @@ std::optional<fusion::FuseReport> FuseIfItFits(
     const simulation::Instruments& instruments, const std::vector<RunSource>& sources,
     const std::function<RunSource(const RunSource&)>& as_taken, bool choose_smoothness) {
   try {
-    return fusion::Fuse(instruments.machine, Simulate(sources, instruments, as_taken),
-                        {.choose_smoothness = choose_smoothness});
+    return FuseSources(sources, as_taken, instruments, {.choose_smoothness = choose_smoothness});
   } catch (const NumericalError&) {
     return std::nullopt;
   }
@@ -134,9 +137,6 @@ int Fuse(const FuseArguments& arguments) {
   for (const fs::path& path : arguments.recordings) sources.push_back(SourceAt(machine, path));
   simulation::RefuseStrangers(sources, instruments);
   const bool choose = !arguments.fixed_smoothness;
-  const auto runs = Simulate(sources, instruments, [&](const RunSource& source) {
-    return causes.Active() ? simulation::SourceOf(causes.Take(source.whole())) : source;
-  });
   std::optional<fusion::FuseReport> other;
   if (causes.WidensU95()) {
     const auto certain = [&](const RunSource& source) {
@@ -144,12 +144,15 @@ int Fuse(const FuseArguments& arguments) {
     };
     other = FuseIfItFits(instruments, sources, certain, choose);
   }
-  const fusion::FuseReport report = fusion::Fuse(
-      machine, runs,
+  const auto corrected = [&](const RunSource& source) {
+    return causes.Active() ? simulation::SourceOf(causes.Take(source.whole())) : source;
+  };
+  const fusion::FuseReport report = FuseSources(
+      sources, corrected, instruments,
       {.choose_smoothness = choose, .holdout = arguments.holdout, .doubt = DoubtOf(causes, other)});
   map::WriteMap(report.map, arguments.out);
-  auto json = FuseJson(report, runs);
-  std::string text = FuseTable(report, runs);
+  auto json = FuseJson(report);
+  std::string text = FuseTable(report);
   if (causes.Active()) {
     json["causes_taken_out"] = causes.Data();
     text += fmt::format("\n{}\n{}", causes.Line(), NotInMap(causes.taken()));
@@ -183,7 +186,7 @@ void AddFuse(CLI::App& program, int& exit_code) {
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   AddCausesOption(*command, arguments->causes);
   command->add_flag("--fixed-smoothness", arguments->fixed_smoothness,
-                    "Keep population.smoothness_mm of the machine file");
+                    "Keep [population], the noise and the form of the machine file");
   command->add_option(
       "--holdout", arguments->holdout,
       "Fit once more without every n-th block of rows of each run and predict them");

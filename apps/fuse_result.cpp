@@ -18,6 +18,7 @@ using nlohmann::ordered_json;
 
 using settings::kMicro;
 constexpr double kFarOff = 9.0;  // chi-square over redundancy: three times the stated noise
+constexpr double kOneAfterTheOther = 0.3;  // correlation from row to row; that of noise is less
 
 std::string ScaleText(const fusion::ScaleSeen& scale) {
   return fmt::format(
@@ -35,40 +36,84 @@ std::vector<std::string> PriorOnly(const fusion::FuseReport& report) {
   return names;
 }
 
+// Chi-square over redundancy of a run under its stated noise; 0 where nothing is redundant.
+double ExcessOf(const fusion::FuseReport& report, std::size_t run) {
+  const auto& source = report.fit.sources[run];
+  if (!(source.redundancy > 0.0)) return 0.0;
+  return std::pow(report.noise[run], 2) * source.chi_square / source.redundancy;
+}
+
 // Runs with residuals far beyond their stated noise.
 std::vector<std::string> Misfits(const fusion::FuseReport& report) {
   std::vector<std::string> names;
-  for (const auto& source : report.fit.sources) {
-    if (source.is_prior || !(source.redundancy > 0.0)) continue;
-    if (source.chi_square > kFarOff * source.redundancy) names.push_back(source.name);
+  for (std::size_t i = 0; i < report.runs.size(); ++i) {
+    if (ExcessOf(report, i) > kFarOff) names.push_back(report.fit.sources[i].name);
   }
   return names;
 }
 
-std::string RunTable(const fusion::FuseReport& report,
-                     const std::vector<simulation::SimulatedRun>& runs) {
+// Lines of the machine file that the runs refute.
+std::string MachineFileNotes(const fusion::FuseReport& report) {
+  std::string text;
+  for (const auto& line : report.statements) {
+    if (!line.Refuted()) continue;
+    text += fmt::format(
+        "\nMACHINE FILE: {} = {:.3g}, but the runs say {:.3g}; the map follows the "
+        "runs; state it\n",
+        line.key, line.stated / line.unit, line.seen / line.unit);
+  }
+  for (std::size_t i = 0; i < report.noise.size(); ++i) {
+    if (report.noise[i] == 1.0) continue;
+    text += fmt::format(
+        "\nMACHINE FILE: the noise of {} is {:.2g} times what is stated, and is taken so; state "
+        "it\n",
+        report.fit.sources[i].name, report.noise[i]);
+  }
+  return text;
+}
+
+const char* WordsOf(fusion::Suspect suspect) {
+  switch (suspect) {
+    case fusion::Suspect::kMounting:
+      return "it agrees if it was mounted anew: state another mounting in its header, or leave it "
+             "out and fuse again.";
+    case fusion::Suspect::kInstrument:
+      return "it agrees if its instrument was another: check that it was made with the same head, "
+             "target, linkage and ball, or leave it out and fuse again.";
+    case fusion::Suspect::kNone:
+      break;
+  }
+  return "neither rougher nor larger errors, larger noise, a less flat target, another mounting "
+         "nor another instrument explains it; look at its set-up, or leave it out and fuse again.";
+}
+
+std::string RunTable(const fusion::FuseReport& report) {
   std::string text = fmt::format("\n{:<32}{:<11}{:>7}{:>13}{:>22}\n", "run", "kind", "rows",
                                  "chi2/redund.", "p of its agreement");
   for (std::size_t i = 0; i < report.runs.size(); ++i) {
     const auto& source = report.fit.sources[i];
-    text += fmt::format(
-        "{:<32}{:<11}{:>7}{:>13.3f}{:>22}\n", source.name, runs[i].kind, source.rows,
-        source.redundancy > 0.0 ? source.chi_square / source.redundancy : 0.0,
-        report.runs[i].directions == 0 ? "no other run sees it"
-                                       : fmt::format("{:.2g}", report.runs[i].probability));
+    text += fmt::format("{:<32}{:<11}{:>7}{:>13.3f}{:>22}\n", source.name, report.kinds[i],
+                        source.rows, ExcessOf(report, i),
+                        report.runs[i].directions == 0
+                            ? "no other run sees it"
+                            : fmt::format("{:.2g}", report.runs[i].probability));
   }
-  for (const std::string& name : Misfits(report)) {
+  for (std::size_t i = 0; i < report.runs.size(); ++i) {
+    if (!(ExcessOf(report, i) > kFarOff)) continue;
     text += fmt::format(
-        "\nDOES NOT FIT: {} is off by many times its noise; check that chain, [head] and [linkage] "
-        "of the machine file are those of the recording, and its noise.\n",
-        name);
+        "\nDOES NOT FIT: {} is off by {:.1f} times its noise; {}.\n", report.runs[i].name,
+        std::sqrt(ExcessOf(report, i)),
+        report.follows[i] < kOneAfterTheOther
+            ? "what is left scatters from row to row, so larger noise fits: state it"
+            : "what is left goes on from row to row, so neither larger noise nor rougher errors "
+              "nor a less flat target fits; check that chain, [head] and [linkage] of the machine "
+              "file are those of the recording");
   }
   if (report.contradicting >= 0) {
     const auto& run = report.runs[static_cast<std::size_t>(report.contradicting)];
     text += fmt::format(
-        "\nCONTRADICTION: {} disagrees with all other runs (chi-square {:.1f} of {}); look at its "
-        "set-up, or leave it out and fuse again.\n",
-        run.name, run.statistic, run.directions);
+        "\nCONTRADICTION: {} disagrees with all other runs (chi-square {:.1f} of {}); {}\n",
+        run.name, run.statistic, run.directions, WordsOf(report.suspect));
   }
   return text;
 }
@@ -92,16 +137,14 @@ std::string DeterminedBy(const fusion::FunctionSeen& function) {
              : fmt::format("{}", fmt::join(function.determined_by, ", "));
 }
 
-std::string RunsText(const fusion::FuseReport& report,
-                     const std::vector<simulation::SimulatedRun>& runs) {
+std::string RunsText(const fusion::FuseReport& report) {
   return ScaleText(report.scale) +
          fmt::format("Correlation length of the error functions: {:.1f} mm\n",
                      1e3 * report.chosen_smoothness) +
-         RunTable(report, runs);
+         MachineFileNotes(report) + RunTable(report);
 }
 
-ordered_json FuseJson(const fusion::FuseReport& report,
-                      const std::vector<simulation::SimulatedRun>& runs) {
+ordered_json FuseJson(const fusion::FuseReport& report) {
   ordered_json json{{"abbe", ABBE_VERSION},
                     {"command", "fuse"},
                     {"machine", report.map.origin().machine},
@@ -111,9 +154,12 @@ ordered_json FuseJson(const fusion::FuseReport& report,
                    {"prior_ppm", report.scale.prior / kMicro},
                    {"statement", report.map.Scale()}};
   json["smoothness_mm"] = 1e3 * report.chosen_smoothness;
-  for (const auto& each : report.smoothness) {
-    json["smoothness_tried"].push_back(
-        {{"length_mm", 1e3 * each.length}, {"log_evidence", each.log_evidence}});
+  json["machine_file"] = ordered_json::object();
+  for (const auto& line : report.statements) {
+    json["machine_file"][std::string(line.key)] = {{"stated", line.stated / line.unit},
+                                                   {"seen", line.seen / line.unit},
+                                                   {"u_log", line.u_log},
+                                                   {"refuted", line.Refuted()}};
   }
   for (const auto& function : report.functions) {
     json["observability"][function.name] = {
@@ -122,11 +168,12 @@ ordered_json FuseJson(const fusion::FuseReport& report,
   for (std::size_t i = 0; i < report.runs.size(); ++i) {
     const auto& source = report.fit.sources[i];
     json["chi2"].push_back({{"run", source.name},
-                            {"kind", runs[i].kind},
+                            {"kind", report.kinds[i]},
                             {"rows", source.rows},
                             {"chi2", source.chi_square},
                             {"redundancy", source.redundancy},
                             {"outliers", source.outlier_count},
+                            {"noise", report.noise[i]},
                             {"agreement",
                              {{"statistic", report.runs[i].statistic},
                               {"directions", report.runs[i].directions},
@@ -151,8 +198,7 @@ ordered_json FuseJson(const fusion::FuseReport& report,
   return json;
 }
 
-std::string FuseTable(const fusion::FuseReport& report,
-                      const std::vector<simulation::SimulatedRun>& runs) {
+std::string FuseTable(const fusion::FuseReport& report) {
   std::string text =
       fmt::format("{:<7}{:>10}{:>10}  {:<6}{}\n", "error", "before", "u", "unit", "determined by");
   for (const auto& function : report.functions) {
@@ -166,7 +212,7 @@ std::string FuseTable(const fusion::FuseReport& report,
         "\nPRIOR ONLY: no run determines {}; the map has the prior of the machine file for them.\n",
         fmt::join(names, ", "));
   }
-  return text + RunsText(report, runs) + HoldoutTable(report);
+  return text + RunsText(report) + HoldoutTable(report);
 }
 
 }  // namespace abbe::apps

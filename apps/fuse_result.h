@@ -10,14 +10,11 @@
 
 namespace abbe::apps {
 
-nlohmann::ordered_json FuseJson(const fusion::FuseReport& report,
-                                const std::vector<simulation::SimulatedRun>& runs);
+nlohmann::ordered_json FuseJson(const fusion::FuseReport& report);
 // The scale and, one line each, the runs.
-std::string RunsText(const fusion::FuseReport& report,
-                     const std::vector<simulation::SimulatedRun>& runs);
+std::string RunsText(const fusion::FuseReport& report);
 // The kinds of runs that determine an error function; "prior only" if none does.
 std::string DeterminedBy(const fusion::FunctionSeen& function);
-std::string FuseTable(const fusion::FuseReport& report,
-                      const std::vector<simulation::SimulatedRun>& runs);
+std::string FuseTable(const fusion::FuseReport& report);
 
 }  // namespace abbe::apps

@@ -55,11 +55,7 @@ int Plate(const PlateArguments& arguments) {
     runs.push_back(simulation::SimulatePlate(model, machine.reference, setup));
   }
   PlateResult result{
-      fusion::Fuse(machine, runs, {.choose_smoothness = !arguments.fixed_smoothness}),
-      runs,
-      {},
-      {},
-      {}};
+      fusion::Fuse(machine, runs, {.choose_smoothness = !arguments.fixed_smoothness}), {}, {}, {}};
   const fusion::FuseReport& fused = result.fused;
   result.diagonals =
       fusion::SquarenessByDiagonals(fused.map.model(), machine.reference, setups, fused.fit);
@@ -93,7 +89,7 @@ void AddPlate(CLI::App& program, int& exit_code) {
   command->add_flag("--network", arguments->network,
                     "Write the error functions as networks, without uncertainty");
   command->add_flag("--fixed-smoothness", arguments->fixed_smoothness,
-                    "Keep population.smoothness_mm of the machine file");
+                    "Keep [population], the noise and the form of the machine file");
   command->add_option("-o,--out", arguments->out, "Error map (TOML)");
   command->add_option("--json", arguments->json, "File for the result as data");
   command->add_flag("--quiet", arguments->quiet, "No tables");

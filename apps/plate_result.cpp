@@ -87,7 +87,7 @@ std::vector<double> List(const VectorXd& values) { return {values.begin(), value
 }  // namespace
 
 ordered_json PlateJson(const PlateResult& result) {
-  ordered_json json = FuseJson(result.fused, result.runs);
+  ordered_json json = FuseJson(result.fused);
   for (int error = 0; error < kMotionErrors; ++error) {
     const VectorXd stations = StationsOf(result, error);
     const auto curve = result.fused.map.CurveOf(error, stations);
@@ -122,7 +122,7 @@ ordered_json PlateJson(const PlateResult& result) {
 }
 
 std::string PlateTable(const PlateResult& result) {
-  return ErrorTable(result) + SquarenessTable(result) + RunsText(result.fused, result.runs) +
+  return ErrorTable(result) + SquarenessTable(result) + RunsText(result.fused) +
          InterpolatorTable(result) + SpecimenTable(result);
 }
 

@@ -16,7 +16,6 @@ namespace abbe::apps {
 
 struct PlateResult {
   fusion::FuseReport fused;
-  std::vector<simulation::SimulatedRun> runs;
   std::array<fusion::DiagonalSquareness, 3> diagonals;
   std::vector<fusion::InterpolatorCheck> interpolators;  // empty: nothing was held out
   std::vector<fusion::SpecimenLength> specimen;          // empty: none given

@@ -1,16 +1,15 @@
 #include "fusion/fuse.h"
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <map>
+#include <iterator>
+#include <string>
 #include <utility>
 
 #include "estimation/linearization.h"
-#include "failure/failure.h"
-#include "fusion/marginal.h"
+#include "fusion/target_form.h"
 #include "fusion/unknown_displacement.h"
 #include "simulation/linkage/linkage_problem.h"
 
@@ -18,32 +17,63 @@ namespace abbe::fusion {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using estimation::Linearization;
 using estimation::Problem;
 using estimation::Result;
 using simulation::SimulatedRun;
 
-constexpr std::array<double, 6> kLengthsTried{0.5, 0.71, 1.0, 1.41, 2.0, 2.83};  // of the file's
-constexpr double kHalf = 0.5;
-constexpr Index kTravelStations = 25;  // over a travel, for variances
+// Knots may be so many correlation lengths apart before finer ones are made, and are then made so.
+constexpr double kCoarse = 0.6, kFine = 0.4;
+constexpr double kFinest = 1.0 / 12.0;  // of the correlation length of the machine file
+constexpr std::array kMounted{"target_tilt", "head_turn", "head_place", "base"};
+constexpr Index kFewRows = 50;          // too few to tell a correlation
+constexpr int kFits = 5;                // at most, until noise and knots have settled
+constexpr double kNoiseSettled = 0.05;  // of its logarithm
+// Standard uncertainties from the solution: of the last fit, and of those before it, whose priors
+// and knots may be wrong.
+constexpr double kSettled = 1e-4, kFirstLook = 0.03, kTolerated = 3.0;
 
-double LogDeterminant(const Eigen::LDLT<MatrixXd>& factor) {
-  return factor.vectorD().cwiseMax(std::numeric_limits<double>::min()).array().log().sum();
-}
-
-// The parameters of the machine among all columns of a problem.
-std::vector<int> MachineColumns(const estimation::Layout& layout,
-                                const machine::VolumetricModel& model) {
+// The parameters of these blocks among all columns of a problem.
+std::vector<int> ColumnsOf(const estimation::Layout& layout,
+                           const std::vector<estimation::ParameterBlock>& blocks) {
   std::vector<int> columns;
-  for (const auto& block : model.Blocks()) {
+  for (const auto& block : blocks) {
     for (std::size_t i = 0; i < block.entries.size(); ++i) {
       const auto at = std::find(layout.names.begin(), layout.names.end(), block.FullName(i));
       columns.push_back(static_cast<int>(at - layout.names.begin()));
     }
   }
   return columns;
+}
+
+// The parameters of `model` whose functions come nearest to those of another: the same ones where
+// both have the same knots.
+VectorXd ParametersOn(const machine::VolumetricModel& model,
+                      const machine::VolumetricModel& other) {
+  constexpr Index kStations = 4;  // for each parameter
+  VectorXd parameters = model.Parameters();
+  if (other.ParameterCount() == model.ParameterCount()) return other.Parameters();
+  parameters.tail<3>() = other.Parameters().tail<3>();
+  Index first = 0;
+  for (int error = 0; error < machine::kAxes * machine::kMotions; ++error) {
+    const int axis = error / machine::kMotions, motion = error % machine::kMotions;
+    const auto& function = model.Function(axis, motion);
+    const Index size = function.size();
+    if (size == 0) continue;
+    const auto& travel = model.travels()[static_cast<std::size_t>(axis)];
+    const VectorXd x = VectorXd::LinSpaced(kStations * size, travel.first, travel.last);
+    Eigen::MatrixXd rows(x.size(), size);
+    VectorXd values(x.size()), gradient(size);
+    for (Index i = 0; i < x.size(); ++i) {
+      function.Evaluate(x[i], nullptr, gradient.data());
+      rows.row(i) = gradient.transpose();
+      values[i] = other.Function(axis, motion).Evaluate(x[i]);
+    }
+    parameters.segment(first, size) = rows.completeOrthogonalDecomposition().solve(values);
+    first += size;
+  }
+  return parameters;
 }
 
 map::Source SourceOf(const std::string& kind) {
@@ -60,57 +90,62 @@ struct Fitted {
 
 class FuseJob {
  public:
-  FuseJob(const machine::Machine& machine, const std::vector<SimulatedRun>& runs,
+  FuseJob(const machine::Machine& machine, std::vector<SimulatedRun> runs,
           const FuseOptions& options)
-      : machine_(machine), runs_(runs), options_(options), model_(UnknownMachine(machine)) {}
+      : machine_(machine),
+        runs_(std::move(runs)),
+        options_(options),
+        model_(UnknownMachine(machine)),
+        population_(PopulationOf(machine)),
+        noise_(runs_.size(), 1.0) {
+    const double apart = 0.5 * machine.population.smoothness;
+    knots_ = {apart, apart, apart};
+    if (options_.choose_smoothness) AllowForm();
+  }
 
   FuseReport Run() {
-    double length = machine_.population.smoothness;
-    Fitted now = Fit(length, {});
-    if (Condense(now.fit)) now = Fit(length, now.fit.blocks);
-    std::vector<SmoothnessTried> tried;
-    if (options_.choose_smoothness) {
-      tried = TryLengths(now);
-      const auto best = std::max_element(
-          tried.begin(), tried.end(),
-          [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
-      if (best->length != length) {
-        length = best->length;
-        now = Fit(length, now.fit.blocks);
-      }
+    Fitted now = Fit({}, options_.choose_smoothness);
+    for (int fits = 1; fits < kFits; ++fits) {
+      Change change = Change::kNone;
+      if (options_.choose_smoothness) change = Estimate(now);
+      // Runs on new knots have nothing to be replaced by yet.
+      const bool condensed = change != Change::kKnots && Condense(now.fit);
+      if (!options_.choose_smoothness && !condensed) break;
+      const bool last = change == Change::kNone || fits + 1 == kFits;
+      now = Fit(now.fit.blocks, !last);
+      if (last) break;
     }
-    Describe(now);
-    FuseReport report{.map = MapOf(now.fit)};
-    report.functions = std::move(functions_);
-    report.scale = scale_;
-    report.smoothness = std::move(tried);
-    report.chosen_smoothness = length;
-    report.runs = CheckRuns(now.problem, now.at);
-    report.contradicting = Contradicting(report.runs);
-    if (options_.holdout > 0) {
-      const MachinePrior prior(machine_, model_, length);
-      report.held_out = HoldOut(options_.holdout, runs_, [&](const auto& runs) {
-        return MakeMachineProblem(machine_, model_, prior, runs);
-      });
-    }
-    report.fit = std::move(now.fit);
-    return report;
+    return Report(std::move(now));
   }
 
  private:
-  // Starts at the values of `start`, or at the nominal ones where it is empty.
-  Fitted Fit(double length, const std::vector<estimation::ParameterBlock>& start) const {
-    Fitted fitted{
-        MakeMachineProblem(machine_, model_, MachinePrior(machine_, model_, length), runs_)};
-    for (const auto& block : start) {
-      auto& entries = fitted.problem.Block(fitted.problem.Find(block.name)).entries;
-      for (std::size_t i = 0; i < entries.size(); ++i) entries[i].value = block.entries[i].value;
+  // Starts at the values of `start` where they are of the same size, else at the nominal ones.
+  Fitted Fit(const std::vector<estimation::ParameterBlock>& start, bool first_look) const {
+    Fitted fitted{MakeMachineProblem(machine_, model_, Prior(), runs_, noise_)};
+    for (const auto& known : fitted.problem.blocks()) {
+      const auto from = std::find_if(start.begin(), start.end(), [&](const auto& block) {
+        return block.name == known.name && block.size() == known.size();
+      });
+      if (from == start.end()) continue;
+      auto& entries = fitted.problem.Block(fitted.problem.Find(known.name)).entries;
+      for (std::size_t i = 0; i < entries.size(); ++i) entries[i].value = from->entries[i].value;
     }
-    fitted.fit = simulation::SolveLinkage(fitted.problem, options_.threads, false);
+    fitted.fit =
+        simulation::SolveLinkage(fitted.problem, options_.threads, false,
+                                 first_look ? kFirstLook : kSettled, first_look ? kTolerated : 0.0);
     fitted.at = estimation::Linearize(fitted.problem, estimation::Layout(fitted.problem),
                                       ValuesFound(fitted.fit, fitted.fit.blocks), options_.threads);
     return fitted;
   }
+
+  void AllowForm() {
+    for (SimulatedRun& run : runs_) {
+      WithForm(run);
+      SetForm(form_, run);
+    }
+  }
+
+  MachinePrior Prior() const { return {machine_, model_, population_}; }
 
   // Replaces the residuals that need a first fit; false when there are none.
   bool Condense(const Result& fit) {
@@ -124,188 +159,205 @@ class FuseJob {
     return any;
   }
 
-  // The precision of the smoothness prior among all columns, and its log determinant.
-  std::pair<MatrixXd, double> Smoothness(double length, const std::vector<int>& machine_columns,
-                                         Index n) const {
-    const MachinePrior prior(machine_, model_, length);
-    MatrixXd precision = MatrixXd::Zero(n, n);
-    double log_determinant = 0.0;
-    std::size_t at = 0;
+  // What of a fit has to be settled by another.
+  enum class Change { kNone, kNoise, kKnots };
+
+  // Sizes, smoothness and noise from a fit.
+  Change Estimate(const Fitted& now) {
+    const estimation::Layout layout(now.problem);
+    std::vector<estimation::ParameterBlock> forms;
+    LinearRuns runs{.prior = now.at.prior,
+                    .runs = {},
+                    .rows = {},
+                    .noise = noise_,
+                    .theta = theta_,
+                    .squareness = population_.squareness,
+                    .machine = ColumnsOf(layout, model_.Blocks()),
+                    .form = {},
+                    .form_stated = 0.0,
+                    .form_times = form_,
+                    .values = ValuesFound(now.fit, model_.Blocks()),
+                    .form_values = {}};
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      runs.runs.push_back(now.at.sources[r]);
+      runs.rows.push_back(now.problem.sources()[r].rows);
+      runs.form_stated = std::max(runs.form_stated, runs_[r].form_stated);
+      std::copy_if(runs_[r].blocks.begin(), runs_[r].blocks.end(), std::back_inserter(forms),
+                   IsForm);
+    }
+    runs.form = ColumnsOf(layout, forms);
+    runs.form_values = ValuesFound(now.fit, forms);
+    PopulationEstimate seen = EstimatePopulation(machine_, model_, runs);
+    bool noise = false;
+    for (std::size_t r = 0; r < noise_.size(); ++r) {
+      noise = noise || std::abs(std::log(seen.noise[r] / noise_[r])) > kNoiseSettled;
+    }
+    population_ = seen.population;
+    theta_ = std::move(seen.theta);
+    noise_ = std::move(seen.noise);
+    if (seen.form != form_) noise = true;
+    form_ = seen.form;
+    for (SimulatedRun& run : runs_) SetForm(form_, run);
+    statements_ = std::move(seen.statements);
+    by_theta_ = std::move(seen.by_theta);
+    if (Refine()) return Change::kKnots;
+    return noise ? Change::kNoise : Change::kNone;
+  }
+
+  // Finer knots where a function needs them; false where none does.
+  bool Refine() {
+    if (!options_.runs_on) return false;
+    bool finer = false;
     for (int axis = 0; axis < machine::kAxes; ++axis) {
-      for (int motion = 0; motion < machine::kMotions; ++motion) {
-        const MatrixXd W = prior.Whitening(axis, motion);
-        const auto size = static_cast<std::size_t>(W.cols());
-        const std::vector<int> columns(
-            machine_columns.begin() + static_cast<std::ptrdiff_t>(at),
-            machine_columns.begin() + static_cast<std::ptrdiff_t>(at + size));
-        const MatrixXd P = W.transpose() * W;
-        precision(columns, columns) += P;
-        // W = diag(1/sd) V': det P is the product of 1/sd^2, and the rows of W have the length
-        // 1/sd.
-        log_determinant += 2.0 * W.rowwise().norm().array().log().sum();
-        at += size;
+      const auto i = static_cast<std::size_t>(axis);
+      const double length = population_.length.row(axis).minCoeff();
+      const double least = kFinest * machine_.population.smoothness;
+      if (!(kCoarse * length < knots_[i]) || knots_[i] <= least) continue;
+      knots_[i] = std::max(least, kFine * length);
+      finer = true;
+    }
+    if (!finer) return false;
+    model_ = UnknownMachine(machine_, knots_);
+    runs_ = options_.runs_on(model_);
+    AllowForm();
+    return true;
+  }
+
+  FuseReport Report(Fitted now) {
+    machine::VolumetricModel found = model_;
+    found.SetParameters(ValuesFound(now.fit, model_.Blocks()));
+    SeenErrors seen =
+        SeeErrors(machine_, found, runs_,
+                  ColumnsOf(estimation::Layout(now.problem), model_.Blocks()), now.at);
+    if (by_theta_.size() > 0) seen.covariance += by_theta_ * by_theta_.transpose();
+    AddDoubt(found, seen.covariance);
+    FuseReport report{.map = MapOf(found, seen)};
+    report.functions = std::move(seen.functions);
+    report.scale = seen.scale;
+    report.chosen_smoothness = SmoothnessSeen();
+    report.statements = std::move(statements_);
+    report.noise = noise_;
+    for (const SimulatedRun& run : runs_) report.kinds.push_back(run.kind);
+    report.runs = CheckRuns(now.problem, now.at);
+    report.contradicting = Contradicting(report.runs);
+    if (report.contradicting >= 0) {
+      report.suspect = SuspectOf(static_cast<std::size_t>(report.contradicting), now.fit);
+    }
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      report.follows.push_back(Follows(now, r));
+    }
+    if (options_.holdout > 0) {
+      report.held_out = HoldOut(options_.holdout, runs_, [&](const auto& runs) {
+        return MakeMachineProblem(machine_, model_, Prior(), runs, noise_);
+      });
+    }
+    report.fit = std::move(now.fit);
+    return report;
+  }
+
+  // What, if the run had it of its own, would make it agree with the others.
+  Suspect SuspectOf(std::size_t run, const Result& found) {
+    const std::vector<estimation::ParameterBlock> shared = runs_[run].blocks;
+    const auto agrees = [&](Suspect suspect) {
+      bool any = false;
+      for (auto& block : runs_[run].blocks) {
+        const bool others = std::any_of(runs_.begin(), runs_.end(), [&](const SimulatedRun& other) {
+          return &other != &runs_[run] &&
+                 std::any_of(other.blocks.begin(), other.blocks.end(),
+                             [&](const auto& each) { return each.name == block.name; });
+        });
+        if (!others || !Belongs(block, suspect)) continue;
+        block.name += " of " + runs_[run].name;
+        any = true;
+      }
+      bool yes = false;
+      if (any) {
+        const Fitted apart = Fit(found.blocks, true);
+        yes = Contradicting(CheckRuns(apart.problem, apart.at)) != static_cast<int>(run);
+      }
+      runs_[run].blocks = shared;
+      return yes;
+    };
+    for (const Suspect suspect : {Suspect::kMounting, Suspect::kInstrument}) {
+      if (agrees(suspect)) return suspect;
+    }
+    return Suspect::kNone;
+  }
+
+  bool Belongs(const estimation::ParameterBlock& block, Suspect suspect) const {
+    for (const auto& of_machine : model_.Blocks()) {
+      if (of_machine.name == block.name) return false;
+    }
+    const bool mounting = std::any_of(kMounted.begin(), kMounted.end(), [&](const char* what) {
+      return block.name.starts_with(what);
+    });
+    return mounting == (suspect == Suspect::kMounting);
+  }
+
+  // The largest correlation of whitened rows of a run with those one or three after them: probes
+  // stand one after the other, places in threes. White noise has nearly none.
+  double Follows(const Fitted& now, std::size_t run) const {
+    double largest = 0.0;
+    const estimation::Layout layout(now.problem);
+    const VectorXd x = ValuesFound(now.fit, now.fit.blocks);
+    for (const auto& term : now.problem.terms()) {
+      if (term.source.index != static_cast<int>(run)) continue;
+      estimation::RowEvaluator rows(now.problem, layout);
+      const auto* found = rows.Evaluate(term, x, false);
+      if (found == nullptr) continue;
+      for (const Index lag : {Index{1}, Index{3}}) {
+        const Index n = found->r.size() - lag;
+        if (n < kFewRows) continue;
+        largest =
+            std::max(largest, found->r.head(n).dot(found->r.tail(n)) / found->r.squaredNorm());
       }
     }
-    return {precision, log_determinant};
+    return largest;
   }
 
-  std::vector<SmoothnessTried> TryLengths(const Fitted& fitted) const {
-    const estimation::Layout layout(fitted.problem);
-    const VectorXd x = ValuesFound(fitted.fit, fitted.fit.blocks);
-    const Linearization& at = fitted.at;
-    const std::vector<int> columns = MachineColumns(layout, model_);
-    // Information and gradient at x without the smoothness prior; its own part comes from x below.
-    MatrixXd information = at.prior.information;
-    VectorXd gradient = at.prior.gradient;
-    for (std::size_t s = 0; s < runs_.size(); ++s) {
-      information += at.sources[s].information;
-      gradient += at.sources[s].gradient;
+  double SmoothnessSeen() const {
+    for (const Statement& each : statements_) {
+      if (each.key == kSmoothnessKey) return each.seen;
     }
-    VectorXd now(layout.columns());
-    for (Index c = 0; c < now.size(); ++c) {
-      now[c] = x[layout.entry_of_column[static_cast<std::size_t>(c)]];
-    }
-    VectorXd coefficients = VectorXd::Zero(now.size());
-    for (std::size_t i = 0; i + 3 < columns.size(); ++i) coefficients[columns[i]] = now[columns[i]];
-    std::vector<SmoothnessTried> tried;
-    double base = 0.0;
-    for (const double factor : kLengthsTried) {
-      const double length = factor * machine_.population.smoothness;
-      const auto [precision, log_determinant] = Smoothness(length, columns, now.size());
-      const MatrixXd H = information + precision;
-      const VectorXd g = gradient + precision * coefficients;
-      const Eigen::LDLT<MatrixXd> factorized(H);
-      const double chi_square =
-          coefficients.dot(precision * coefficients) - g.dot(factorized.solve(g));
-      const double evidence = 0.5 * (log_determinant - LogDeterminant(factorized) - chi_square);
-      if (factor == 1.0) base = evidence;
-      tried.push_back({length, evidence});
-    }
-    for (auto& each : tried) each.log_evidence -= base;
-    return tried;
+    return machine_.population.smoothness;
   }
 
-  // The rows that give the values of one error over the travel; of a squareness itself.
-  MatrixXd ValuesOf(int error) const {
-    const Index n = model_.ParameterCount();
-    if (error >= machine::kAxes * machine::kMotions) {
-      return Eigen::RowVectorXd::Unit(n, n - 3 + error - machine::kAxes * machine::kMotions);
-    }
-    const int axis = error / machine::kMotions, motion = error % machine::kMotions;
-    Index first = 0;
-    for (int e = 0; e < error; ++e) {
-      first += model_.Function(e / machine::kMotions, e % machine::kMotions).size();
-    }
-    const auto& function = model_.Function(axis, motion);
-    const auto& travel = machine_.travels[static_cast<std::size_t>(axis)];
-    const VectorXd stations = VectorXd::LinSpaced(kTravelStations, travel.first, travel.last);
-    MatrixXd rows = MatrixXd::Zero(kTravelStations, n);
-    VectorXd gradient(function.size());
-    for (Index i = 0; i < kTravelStations; ++i) {
-      function.Evaluate(stations[i], nullptr, gradient.data());
-      rows.row(i).segment(first, function.size()) = gradient.transpose();
-    }
-    return rows;
-  }
-
-  // The mean slope of EXX, EYY and EZZ over the axes of the machine.
-  Eigen::RowVectorXd ScaleRow() const {
-    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(model_.ParameterCount());
-    int axes = 0;
-    for (int axis = 0; axis < machine::kAxes; ++axis) {
-      const auto& travel = machine_.travels[static_cast<std::size_t>(axis)];
-      if (!(travel.last > travel.first)) continue;
-      const VectorXd x = VectorXd::LinSpaced(kTravelStations, travel.first, travel.last);
-      const VectorXd centred = x.array() - x.mean();
-      row +=
-          centred.transpose() * ValuesOf(machine::kMotions * axis + axis) / centred.squaredNorm();
-      ++axes;
-    }
-    return row / axes;
-  }
-
-  void Describe(const Fitted& now) {
-    const Linearization& at = now.at;
-    const std::vector<int> columns = MachineColumns(estimation::Layout(now.problem), model_);
-    MatrixXd prior = at.prior.information + at.sources.back().information;
-    MatrixXd all = prior;
-    std::map<std::string, MatrixXd> kinds;
-    for (std::size_t s = 0; s < runs_.size(); ++s) {
-      auto& kind = kinds.try_emplace(runs_[s].kind, prior).first->second;
-      kind += at.sources[s].information;
-      all += at.sources[s].information;
-    }
-    const auto of_machine = [&](const MatrixXd& information) {
-      return MarginalCovariance(information, columns);
-    };
-    const MatrixXd C_prior = of_machine(prior);
-    cov_pp_ = of_machine(all);
-    AddDoubt(now.fit);
-    std::map<std::string, MatrixXd> C_kinds;
-    for (const auto& [kind, information] : kinds) C_kinds[kind] = of_machine(information);
-    const auto variance = [](const MatrixXd& E, const MatrixXd& C) {
-      return (E * C).cwiseProduct(E).sum() / static_cast<double>(E.rows());
-    };
-    for (int error = 0; error < map::kErrors; ++error) {
-      const MatrixXd E = ValuesOf(error);
-      const double before = variance(E, C_prior);
-      FunctionSeen seen{
-          map::ErrorName(error), std::sqrt(before), std::sqrt(variance(E, cov_pp_)), {}};
-      std::vector<std::pair<double, std::string>> by;
-      for (const auto& [kind, C] : C_kinds) {
-        const double after = variance(E, C);
-        if (after < kHalf * before) by.emplace_back(after, kind);
-      }
-      std::sort(by.begin(), by.end());
-      for (auto& [after, kind] : by) seen.determined_by.push_back(kind);
-      functions_.push_back(std::move(seen));
-    }
-    const Eigen::RowVectorXd row = ScaleRow();
-    scale_.prior = std::sqrt(variance(row, C_prior));
-    scale_.u = std::sqrt(variance(row, cov_pp_));
-    scale_.calibrated = scale_.u * scale_.u < kHalf * scale_.prior * scale_.prior;
-  }
-
-  void AddDoubt(const Result& fit) {
+  void AddDoubt(const machine::VolumetricModel& found, Eigen::MatrixXd& covariance) const {
     const Doubt& doubt = options_.doubt;
     if (doubt.other != nullptr) {
-      const VectorXd other = doubt.other->model().Parameters();
-      if (other.size() != cov_pp_.rows()) {
-        throw InputError("maps of different functions cannot be held against each other");
-      }
-      const VectorXd change = ValuesFound(fit, model_.Blocks()) - other;
-      cov_pp_ += change * change.transpose();
+      const VectorXd change = found.Parameters() - ParametersOn(found, doubt.other->model());
+      covariance += change * change.transpose();
     }
     if (doubt.displacement > 0.0) {
-      cov_pp_ += UnknownDisplacement(model_, -machine_.reference, doubt.displacement);
+      covariance += UnknownDisplacement(found, -machine_.reference, doubt.displacement);
     }
   }
 
-  map::ErrorMap MapOf(const Result& fit) {
-    machine::VolumetricModel model = model_;
-    const VectorXd values = ValuesFound(fit, model.Blocks());
-    model.SetParameters(values);
-    scale_.value = ScaleRow().dot(values);
+  map::ErrorMap MapOf(const machine::VolumetricModel& found, const SeenErrors& seen) const {
     map::MapOrigin origin;
     origin.machine = machine_.name;
     origin.reference = machine_.reference;
     origin.tool = -machine_.reference;
-    origin.scale_is_calibrated = scale_.calibrated;
+    origin.scale_is_calibrated = seen.scale.calibrated;
     origin.limits = machine_.limits;
-    for (std::size_t error = 0; error < functions_.size(); ++error) {
-      const auto& by = functions_[error].determined_by;
+    for (std::size_t error = 0; error < seen.functions.size(); ++error) {
+      const auto& by = seen.functions[error].determined_by;
       if (!by.empty()) origin.sources[error] = SourceOf(by.front());
     }
-    return {origin, model, cov_pp_};
+    return {origin, found, seen.covariance};
   }
 
   const machine::Machine& machine_;
   std::vector<SimulatedRun> runs_;
   const FuseOptions options_;
-  const machine::VolumetricModel model_;
-  MatrixXd cov_pp_;
-  std::vector<FunctionSeen> functions_;
-  ScaleSeen scale_;
+  machine::VolumetricModel model_;
+  std::array<double, machine::kAxes> knots_;  // m apart, of model_
+  ErrorPopulation population_;
+  VectorXd theta_;  // population_estimate.h
+  std::vector<double> noise_;
+  double form_ = kHardlyMoreForm;  // of the target, over what the file states
+  std::vector<Statement> statements_;
+  Eigen::MatrixXd by_theta_;  // population_estimate.h
 };
 
 }  // namespace

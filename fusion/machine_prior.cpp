@@ -22,66 +22,104 @@ constexpr double kKnotsPerLength = 2.0;
 constexpr int kPointsPerCoefficient = 6;
 constexpr double kHardlyAllowed = 1e-7;  // least eigenvalue, of the largest variance
 
-BSplineBasis BasisOf(const machine::Travel& travel, Index size) {
-  return BSplineBasis::Uniform(kDegree, travel.first, travel.last, static_cast<int>(size));
+ErrorPopulation WithLength(ErrorPopulation population, double smoothness) {
+  population.length = smoothness;
+  return population;
 }
 
 }  // namespace
 
+ErrorPopulation PopulationOf(const machine::Machine& machine) {
+  ErrorPopulation population{{},
+                             ErrorPopulation::OfFunctions::Constant(machine.population.smoothness),
+                             machine.population.squareness,
+                             machine.population.scale};
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    for (int motion = 0; motion < machine::kMotions; ++motion) {
+      population.deviation(axis, motion) =
+          machine::PopulationDeviation(machine.population, axis, motion);
+    }
+  }
+  return population;
+}
+
 machine::VolumetricModel UnknownMachine(const machine::Machine& machine) {
+  const double knots = machine.population.smoothness / kKnotsPerLength;
+  return UnknownMachine(machine, {knots, knots, knots});
+}
+
+machine::VolumetricModel UnknownMachine(const machine::Machine& machine,
+                                        const std::array<double, machine::kAxes>& knots) {
   machine::VolumetricModel model(machine.chain, machine.travels);
   for (int axis = 0; axis < machine::kAxes; ++axis) {
-    const machine::Travel& travel = machine.travels[static_cast<std::size_t>(axis)];
+    const auto i = static_cast<std::size_t>(axis);
+    const machine::Travel& travel = machine.travels[i];
     if (!(travel.last > travel.first)) continue;  // the machine has no such axis
-    const double spans =
-        std::ceil(kKnotsPerLength * (travel.last - travel.first) / machine.population.smoothness);
-    const auto form = machine::MakeBSplineForm(
-        BasisOf(travel, static_cast<Index>(std::max(1.0, spans)) + kDegree));
+    const double spans = std::ceil((travel.last - travel.first) / knots[i]);
+    const auto form = machine::MakeBSplineForm(BSplineBasis::Uniform(
+        kDegree, travel.first, travel.last, static_cast<int>(std::max(1.0, spans)) + kDegree));
     for (int motion = 0; motion < machine::kMotions; ++motion) model.SetForm(axis, motion, form);
   }
   return model;
 }
 
 MachinePrior::MachinePrior(const machine::Machine& machine, const machine::VolumetricModel& model,
-                           double smoothness)
-    : machine_(machine), sizes_{}, smoothness_(smoothness) {
-  if (!(smoothness > 0.0)) {
-    throw InputError(
-        fmt::format("a correlation length of {} mm must be above 0", 1e3 * smoothness));
+                           const ErrorPopulation& population)
+    : population_(population) {
+  if (!(population.length > 0.0).all()) {
+    throw InputError(fmt::format("a correlation length of {} mm must be above 0",
+                                 1e3 * population.length.minCoeff()));
   }
   for (int axis = 0; axis < machine::kAxes; ++axis) {
-    for (int motion = 0; motion < machine::kMotions; ++motion) {
-      sizes_[axis][motion] = model.Function(axis, motion).size();
-    }
+    const int size = model.Function(axis, 0).size();
+    if (size == 0) continue;
+    const auto i = static_cast<std::size_t>(axis);
+    const machine::Travel& travel = machine.travels[i];
+    const auto basis = BSplineBasis::Uniform(kDegree, travel.first, travel.last, size);
+    const Index points = Index{kPointsPerCoefficient} * size;
+    Projected& on = axes_[i];
+    on.x = VectorXd::LinSpaced(points, travel.first, travel.last);
+    MatrixXd B(points, size);
+    for (Index row = 0; row < points; ++row) B.row(row) = basis.Row(on.x[row]);
+    on.onto = B.colPivHouseholderQr().solve(MatrixXd::Identity(points, points));
+    on.line = basis.LineCoefficients();
   }
 }
 
-MatrixXd MachinePrior::Covariance(int axis, int motion) const {
-  const machine::Travel& travel = machine_.travels[static_cast<std::size_t>(axis)];
-  const BSplineBasis basis = BasisOf(travel, sizes_[axis][motion]);
-  const Index points = kPointsPerCoefficient * sizes_[axis][motion];
-  const VectorXd x = VectorXd::LinSpaced(points, travel.first, travel.last);
-  MatrixXd B(points, basis.size());
-  for (Index i = 0; i < points; ++i) B.row(i) = basis.Row(x[i]);
-  const double sd = machine::PopulationDeviation(machine_.population, axis, motion);
-  MatrixXd K(points, points);
+MachinePrior::MachinePrior(const machine::Machine& machine, const machine::VolumetricModel& model,
+                           double smoothness)
+    : MachinePrior(machine, model, WithLength(PopulationOf(machine), smoothness)) {}
+
+MachinePrior::Unit MachinePrior::UnitCovariance(int axis, int motion) const {
+  const Projected& on = axes_[static_cast<std::size_t>(axis)];
+  const Index points = on.x.size();
+  const double length = population_.length(axis, motion);
+  MatrixXd K(points, points), by_length(points, points);
   for (Index j = 0; j < points; ++j) {
-    K.col(j) = sd * sd * (-0.5 * ((x.array() - x[j]) / smoothness_).square()).exp();
+    const Eigen::ArrayXd square = ((on.x.array() - on.x[j]) / length).square();
+    K.col(j) = (-0.5 * square).exp();
+    by_length.col(j) = K.col(j).array() * square;
   }
-  const MatrixXd P = B.colPivHouseholderQr().solve(MatrixXd::Identity(points, points));
-  MatrixXd V = P * K * P.transpose();
-  if (motion == axis) {
-    const VectorXd line = basis.LineCoefficients();
-    V += machine_.population.scale * machine_.population.scale * line * line.transpose();
-  }
-  return V;
+  return {on.onto * K * on.onto.transpose(), on.onto * by_length * on.onto.transpose()};
+}
+
+MatrixXd MachinePrior::UnitSlope(int axis) const {
+  const VectorXd& line = axes_[static_cast<std::size_t>(axis)].line;
+  return line * line.transpose();
+}
+
+MachinePrior::Spread MachinePrior::SpreadOf(int axis, int motion) const {
+  MatrixXd V =
+      std::pow(population_.deviation(axis, motion), 2) * UnitCovariance(axis, motion).covariance;
+  if (motion == axis) V += population_.scale * population_.scale * UnitSlope(axis);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(V);
+  const double least = kHardlyAllowed * eigen.eigenvalues().maxCoeff();
+  return {eigen.eigenvectors(), eigen.eigenvalues().cwiseMax(least).cwiseSqrt()};
 }
 
 MatrixXd MachinePrior::Whitening(int axis, int motion) const {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(Covariance(axis, motion));
-  const double least = kHardlyAllowed * eigen.eigenvalues().maxCoeff();
-  const VectorXd deviations = eigen.eigenvalues().cwiseMax(least).cwiseSqrt();
-  return deviations.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+  const Spread spread = SpreadOf(axis, motion);
+  return spread.deviations.cwiseInverse().asDiagonal() * spread.axes.transpose();
 }
 
 }  // namespace abbe::fusion

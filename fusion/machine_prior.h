@@ -1,18 +1,21 @@
 // The prior of a machine's error functions: their form and their covariance before any measurement.
 //
 //   const machine::VolumetricModel model = UnknownMachine(mill);
-//   const MachinePrior prior(mill, model, 0.015);              // correlation length, m
+//   const MachinePrior prior(mill, model, PopulationOf(mill));
 //
-// Each function is a Gaussian process over its axis with the standard deviation of the population
-// in the machine file and covariance sd^2 exp(-(d / smoothness)^2 / 2); a positioning error has a
-// random slope (scale) besides. It is projected on a quintic B-spline with knots half a correlation
-// length apart, which represents it to 0.02 % of sd (rms); the gauge of machine/error_function.h
-// then removes the value at the reference and the slope of a straightness. Units: SI. Shapes:
-// covariance n x n of the coefficients of a function. Failure: InputError for a correlation length
-// that is not above 0. Source: Rasmussen and Williams, Gaussian Processes (2006), 2.2 and 4.2.
+// Each function is a Gaussian process over its axis with a standard deviation and a correlation
+// length of its own, those of the machine file unless the runs say otherwise
+// (population_estimate.h): covariance sd^2 exp(-(d / length)^2 / 2); a positioning error has a
+// random slope (scale) besides. It is projected on a quintic B-spline; with knots half a
+// correlation length apart that represents it to 0.02 % of sd (rms). The gauge of
+// machine/error_function.h then removes the value at the reference and the slope of a straightness.
+// Units: SI. Shapes: covariance n x n of the coefficients of a function. Failure: InputError for a
+// correlation length that is not above 0. Source: Rasmussen and Williams, Gaussian Processes
+// (2006), 2.2 and 4.2.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "estimation/problem.h"
 #include "machine/machine.h"
@@ -20,24 +23,61 @@
 
 namespace abbe::fusion {
 
-// All error functions zero, with B-splines for the correlation length of the machine file.
+// Of each error function, of the squarenesses and of the slopes of the positioning errors.
+struct ErrorPopulation {
+  using OfFunctions = Eigen::Array<double, machine::kAxes, machine::kMotions>;
+  OfFunctions deviation;  // m or rad
+  OfFunctions length;     // m
+  double squareness;      // rad
+  double scale;           // relative
+};
+
+// As the machine file says.
+ErrorPopulation PopulationOf(const machine::Machine& machine);
+
+// All error functions zero, with B-splines of knots half the correlation length of the machine file
+// apart, or at most as far apart as stated for each axis, m.
 machine::VolumetricModel UnknownMachine(const machine::Machine& machine);
+machine::VolumetricModel UnknownMachine(const machine::Machine& machine,
+                                        const std::array<double, machine::kAxes>& knots);
 
 class MachinePrior {
  public:
   MachinePrior(const machine::Machine& machine, const machine::VolumetricModel& model,
+               const ErrorPopulation& population);
+  // One correlation length for all, all else as the machine file says.
+  MachinePrior(const machine::Machine& machine, const machine::VolumetricModel& model,
                double smoothness);
 
-  double smoothness() const { return smoothness_; }
-  Eigen::MatrixXd Covariance(int axis, int motion) const;
-  // W with W' W the inverse of the covariance, whose eigenvalues below 1e-7 of the largest are
-  // raised to that.
+  const ErrorPopulation& population() const { return population_; }
+  // The covariance of a function of deviation 1 without its slope, and its derivative by the
+  // logarithm of the correlation length.
+  struct Unit {
+    Eigen::MatrixXd covariance, by_length;
+  };
+  Unit UnitCovariance(int axis, int motion) const;
+  // That of a random slope of standard deviation 1.
+  Eigen::MatrixXd UnitSlope(int axis) const;
+
+  // The standard deviations along the axes of the covariance of a function, which are the columns
+  // of `axes`. Eigenvalues below 1e-7 of the largest are raised to that.
+  struct Spread {
+    Eigen::MatrixXd axes;
+    Eigen::VectorXd deviations;
+  };
+  Spread SpreadOf(int axis, int motion) const;
+  // W with W' W the inverse of the covariance.
   Eigen::MatrixXd Whitening(int axis, int motion) const;
 
  private:
-  machine::Machine machine_;
-  std::array<std::array<Eigen::Index, machine::kMotions>, machine::kAxes> sizes_;
-  double smoothness_;
+  struct Projected {
+    Eigen::VectorXd x;     // points on the axis
+    Eigen::MatrixXd onto;  // from values there to coefficients
+    Eigen::VectorXd line;  // coefficients of a slope of 1
+  };
+
+  std::array<Projected, machine::kAxes> axes_;
+  ErrorPopulation population_;
 };
 
 }  // namespace abbe::fusion

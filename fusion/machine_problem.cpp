@@ -15,11 +15,11 @@ namespace {
 using estimation::BlockId;
 using estimation::ParameterBlock;
 
-void AddMachine(const machine::Machine& machine, const machine::VolumetricModel& model,
+void AddMachine(const MachinePrior& prior, const machine::VolumetricModel& model,
                 estimation::Problem& problem, std::map<std::string, BlockId>& known) {
   for (ParameterBlock& block : model.Blocks()) {
     if (block.name == "squareness") {
-      for (auto& entry : block.entries) entry.prior_sd = machine.population.squareness;
+      for (auto& entry : block.entries) entry.prior_sd = prior.population().squareness;
     }
     const std::string name = block.name;
     known.emplace(name, problem.Add(std::move(block)));
@@ -42,14 +42,15 @@ void AddSmoothness(const MachinePrior& prior, const machine::VolumetricModel& mo
 
 }  // namespace
 
-estimation::Problem MakeMachineProblem(const machine::Machine& machine,
+estimation::Problem MakeMachineProblem(const machine::Machine& /*machine*/,
                                        const machine::VolumetricModel& model,
                                        const MachinePrior& prior,
-                                       const std::vector<simulation::SimulatedRun>& runs) {
+                                       const std::vector<simulation::SimulatedRun>& runs,
+                                       const std::vector<double>& noise) {
   if (runs.empty()) throw InputError("no recording to fuse; name at least one");
   estimation::Problem problem;
   std::map<std::string, BlockId> known;
-  AddMachine(machine, model, problem, known);
+  AddMachine(prior, model, problem, known);
   for (std::size_t r = 0; r < runs.size(); ++r) {
     std::vector<estimation::Input> inputs;
     for (const ParameterBlock& block : runs[r].blocks) {
@@ -70,7 +71,7 @@ estimation::Problem MakeMachineProblem(const machine::Machine& machine,
     const auto source =
         problem.AddSource(unique ? runs[r].name : fmt::format("{} ({})", runs[r].name, r + 1),
                           {.loss = runs[r].loss});
-    problem.Add(source, runs[r].residual, inputs, 1.0);
+    problem.Add(source, runs[r].residual, inputs, noise.empty() ? 1.0 : noise[r]);
   }
   AddSmoothness(prior, model, problem);
   return problem;

@@ -2,6 +2,7 @@
 //
 //   estimation::Problem problem = MakeMachineProblem(mill, model, prior, runs);
 //
+// `noise`: that of each run, over what is stated; empty: as stated.
 // Blocks: the functions of the machine and its squareness, then the blocks of the runs, shared by
 // name. Sources: one for each run in their order, then "smoothness", the prior of the functions.
 // Failure: InputError for no run.
@@ -22,7 +23,8 @@ inline constexpr std::string_view kSmoothnessSource = "smoothness";
 estimation::Problem MakeMachineProblem(const machine::Machine& machine,
                                        const machine::VolumetricModel& model,
                                        const MachinePrior& prior,
-                                       const std::vector<simulation::SimulatedRun>& runs);
+                                       const std::vector<simulation::SimulatedRun>& runs,
+                                       const std::vector<double>& noise = {});
 
 // The estimates of all entries of these blocks, in their order.
 Eigen::VectorXd ValuesFound(const estimation::Result& fit,

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr double kSeen = 0.5;           // lambda
 constexpr double kSignificance = 0.01;  // of the whole set
-constexpr double kUnknown = 1e-12;      // least share of the others in a parameter's information
+constexpr double kLeastShare = 1e-12;   // least share of the others in a parameter's information
 
 struct Quadratic {
   MatrixXd information;
@@ -40,7 +40,7 @@ RunConsistency Check(const std::string& name, const estimation::SourceSums& run,
   const MatrixXd rest = all - run.information;
   std::vector<int> others, own;
   for (Index i = 0; i < all.rows(); ++i) {
-    (rest(i, i) > kUnknown * all(i, i) ? others : own).push_back(static_cast<int>(i));
+    (rest(i, i) > kLeastShare * all(i, i) ? others : own).push_back(static_cast<int>(i));
   }
   const Quadratic seen = Eliminate({run.information, run.gradient}, others, own);
   RunConsistency check{.name = name};

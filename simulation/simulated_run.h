@@ -65,6 +65,11 @@ struct SimulatedRun {
   std::shared_ptr<const Responsive> response = nullptr;  // `residual` itself, where it can tell
   std::function<std::shared_ptr<const estimation::Residual>(const Eigen::VectorXd& x)> condense =
       {};
+  // Whitened columns: what an instrument's form does that its noise contains already, of the size
+  // that the machine file states (target.form_nm); independent draws of one standard deviation.
+  // Empty: none is stated.
+  std::function<Eigen::MatrixXd()> form = {};
+  double form_stated = 0.0;  // m
   // m: whitened rows as they are in space, one column for each pose; empty: rows are no places.
   std::function<Eigen::Matrix3Xd(const Eigen::VectorXd& whitened)> in_space = {};
 };

@@ -74,17 +74,20 @@ std::vector<int> ColumnsOf(const std::vector<ParameterBlock>& blocks, const std:
 }
 
 estimation::Result SolveLinkage(const estimation::Problem& problem, int threads,
-                                bool weak_directions, double settled) {
+                                bool weak_directions, double settled, double tolerated) {
   constexpr int kFewPasses = 20;
   try {
     return problem.Solve({.max_iterations = kFewPasses,
                           .threads = threads,
                           .settled = settled,
+                          .tolerated = tolerated,
                           .jacobian_bytes = 0,
                           .weak_directions = weak_directions});
   } catch (const NumericalError&) {
-    return problem.Solve(
-        {.threads = threads, .settled = settled, .weak_directions = weak_directions});
+    return problem.Solve({.threads = threads,
+                          .settled = settled,
+                          .tolerated = tolerated,
+                          .weak_directions = weak_directions});
   }
 }
 

@@ -31,9 +31,10 @@ struct LinkageProblemOptions {
 // Solves by a few passes from the nominal linkage; where these do not converge, as with a base
 // known to some decimetres only, with the trust region. `settled`: remaining distance to the
 // solution, in standard uncertainties; with a robust loss few poses do not come much nearer than
-// the default. Failure: that of Problem::Solve.
+// the default. `tolerated`: that of a first look, accepted after the last pass. Failure: that of Problem::Solve.
 estimation::Result SolveLinkage(const estimation::Problem& problem, int threads = 0,
-                                bool weak_directions = true, double settled = 1e-4);
+                                bool weak_directions = true, double settled = 1e-4,
+                                double tolerated = 0.0);
 
 estimation::Problem MakeLinkageProblem(const LinkageSimulation& simulation,
                                        const std::vector<LinkageRun>& runs,

@@ -4,6 +4,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "failure/failure.h"
@@ -17,31 +19,66 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr std::array<std::size_t, 3> kFaceBounds{0, kTopProbes, kProbes};
+
+// How the form of a face correlates between two readings: row g of probe p, row h of probe q.
+class FormOfFace {
+ public:
+  FormOfFace(const SweepPlan& plan, const SweepInstrument& instrument, const SweepRun& run)
+      : head_(instrument.head.layout),
+        run_(run),
+        sign_(plan.chain.ToolSense(run.axis) * plan.R_MH.col(0)[plan.axis]),
+        length_(instrument.target.form_length) {}
+
+  double operator()(std::size_t p, Index g, std::size_t q, Index h) const {
+    const Eigen::Vector2d apart = PlaceOf(head_, p) - PlaceOf(head_, q);
+    const double along = apart[0] + sign_ * (run_.position[g] - run_.position[h]);
+    return FormCorrelation(along * along + apart[1] * apart[1], length_);
+  }
+
+ private:
+  const probes::HeadLayout<>& head_;
+  const SweepRun& run_;
+  double sign_, length_;
+};
+
 // cov of the readings of the probes of one face: noise of each, form of the face for all.
 MatrixXd FaceCovariance(const SweepPlan& plan, const SweepInstrument& instrument,
                         const SweepRun& run, std::size_t first, std::size_t count) {
   const Index n = run.rows();
   const auto probes_of_face = static_cast<Index>(count);
-  const double sign = plan.chain.ToolSense(run.axis) * plan.R_MH.col(0)[plan.axis];
+  const FormOfFace form(plan, instrument, run);
   const double variance = instrument.target.form * instrument.target.form;
-  const double length = instrument.target.form_length;
-  MatrixXd V(n * probes_of_face, n * probes_of_face);
+  MatrixXd V = MatrixXd::Zero(n * probes_of_face, n * probes_of_face);
   for (std::size_t p = 0; p < count; ++p) {
     for (std::size_t q = 0; q < count; ++q) {
-      const Eigen::Vector2d apart =
-          PlaceOf(instrument.head.layout, first + p) - PlaceOf(instrument.head.layout, first + q);
       auto block = V.block(static_cast<Index>(p) * n, static_cast<Index>(q) * n, n, n);
-      for (Index h = 0; h < n; ++h) {
-        for (Index g = 0; g < n; ++g) {
-          const double along = apart[0] + sign * (run.position[g] - run.position[h]);
-          const double square = along * along + apart[1] * apart[1];
-          block(g, h) = variance == 0.0 ? 0.0 : variance * FormCorrelation(square, length);
-        }
+      for (Index h = 0; h < n && variance > 0.0; ++h) {
+        for (Index g = 0; g < n; ++g) block(g, h) = variance * form(first + p, g, first + q, h);
       }
       if (p == q) block += run.covariance[first + p];
     }
   }
   return V;
+}
+
+// L with L L' = K but for what is below kHardly of its diagonal, which is 1: a Cholesky factor with
+// pivots (Higham, "Analysis of the Cholesky decomposition of a semi-definite matrix", 1990).
+template <typename Element>
+MatrixXd LowRankFactor(Index n, const Element& K) {
+  constexpr double kHardly = 1e-4;
+  MatrixXd L(n, 0);
+  VectorXd left = VectorXd::Ones(n);
+  for (Index pivot = 0; left.maxCoeff(&pivot) > kHardly;) {
+    VectorXd column = -L * L.row(pivot).transpose();
+    for (Index row = 0; row < n; ++row) column[row] += K(row, pivot);
+    column /= std::sqrt(left[pivot]);
+    L.conservativeResize(Eigen::NoChange, L.cols() + 1);
+    L.rightCols<1>() = column;
+    left -= column.cwiseAbs2();
+    left[pivot] = 0.0;
+  }
+  return L;
 }
 
 // The diagonal of the inverse, L^-T L^-1: the columns of L^-1 begin with zeros.
@@ -63,10 +100,9 @@ VectorXd InverseDiagonal(const Eigen::LLT<MatrixXd>& factor) {
 
 FaceNoise FaceNoiseOf(const SweepPlan& plan, const SweepInstrument& instrument,
                       const SweepRun& run) {
-  const std::array<std::size_t, 3> bounds{0, kTopProbes, kProbes};
   FaceNoise noise{{}, VectorXd(static_cast<Index>(kProbes) * run.rows())};
   for (std::size_t face = 0; face < noise.factors.size(); ++face) {
-    const std::size_t first = bounds[face], count = bounds[face + 1] - first;
+    const std::size_t first = kFaceBounds[face], count = kFaceBounds[face + 1] - first;
     auto& factor = noise.factors[face];
     factor.compute(FaceCovariance(plan, instrument, run, first, count));
     if (factor.info() != Eigen::Success) {
@@ -77,6 +113,26 @@ FaceNoise FaceNoiseOf(const SweepPlan& plan, const SweepInstrument& instrument,
         InverseDiagonal(factor);
   }
   return noise;
+}
+
+MatrixXd FormColumns(const SweepPlan& plan, const SweepInstrument& instrument, const SweepRun& run,
+                     double deviation) {
+  const FormOfFace form(plan, instrument, run);
+  const Index n = run.rows();
+  MatrixXd columns(static_cast<Index>(kProbes) * n, 0);
+  for (std::size_t face = 0; face + 1 < kFaceBounds.size(); ++face) {
+    const auto first = static_cast<Index>(kFaceBounds[face]);
+    const auto count = static_cast<Index>(kFaceBounds[face + 1]) - first;
+    const MatrixXd L = LowRankFactor(count * n, [&](Index i, Index j) {
+      return form(static_cast<std::size_t>(first + i / n), i % n,
+                  static_cast<std::size_t>(first + j / n), j % n);
+    });
+    const Index before = columns.cols();
+    columns.conservativeResize(Eigen::NoChange, before + L.cols());
+    columns.rightCols(L.cols()).setZero();
+    columns.block(first * n, before, count * n, L.cols()) = deviation * L;
+  }
+  return columns;
 }
 
 ReadingResponse::ReadingResponse(MatrixXd by_motions, MatrixXd gaps, MatrixXd tilts,

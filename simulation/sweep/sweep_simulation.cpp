@@ -81,6 +81,12 @@ class SweepResidual : public Responsive {
 
   std::shared_ptr<const Response> At(const VectorXd& x) const override;
 
+  MatrixXd FormOfTarget(const SweepInstrument& instrument) const {
+    MatrixXd columns = FormColumns(plan_, instrument, run_, instrument.target.form);
+    WhitenRows(*noise_, columns);
+    return columns;
+  }
+
  private:
   using MotionJacobian = Eigen::Matrix<double, kProbes, kToolStage>;
 
@@ -331,8 +337,12 @@ SimulatedRun SimulateSweep(const machine::VolumetricModel& model, const Vector3d
   for (ParameterBlock& block : InstrumentBlocks(instrument, run)) {
     simulated.blocks.push_back(std::move(block));
   }
-  simulated.response = std::make_shared<SweepResidual>(model, plan, instrument, within);
-  simulated.residual = simulated.response;
+  const auto residual = std::make_shared<SweepResidual>(model, plan, instrument, within);
+  simulated.residual = simulated.response = residual;
+  if (instrument.target.form > 0.0) {
+    simulated.form = [=] { return residual->FormOfTarget(instrument); };
+    simulated.form_stated = instrument.target.form;
+  }
   return simulated;
 }
 

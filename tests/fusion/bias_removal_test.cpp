@@ -25,7 +25,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using simulation::SimulatedRun;
 
-constexpr FuseOptions kFixed{.choose_smoothness = false};
+const FuseOptions kFixed{.choose_smoothness = false};
 constexpr double kTool = 0.05;  // m: of the tools that show the angles
 
 // A grid over the volume and how the parts of a field of errors on it are told apart.

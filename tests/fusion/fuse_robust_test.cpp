@@ -17,7 +17,7 @@ using simulation::SimulatedRun;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-constexpr FuseOptions kFixed{.choose_smoothness = false};
+const FuseOptions kFixed{.choose_smoothness = false};
 
 const Campaign& World() {
   static const Campaign campaign(CampaignMachine(), 5);

@@ -38,7 +38,11 @@ inline settings::Document CampaignMachine(
 }
 
 struct Campaign {
-  explicit Campaign(const settings::Document& document, std::uint64_t seed)
+  Campaign(const settings::Document& document, std::uint64_t seed)
+      : Campaign(document, document, seed) {}
+
+  // Of a machine that is as `truth` says and believed to be as `document` says.
+  Campaign(const settings::Document& truth, const settings::Document& document, std::uint64_t seed)
       : machine(machine::ReadMachine(document.Root())),
         reference(machine.reference),
         instrument{probes::ReadHeadSettings(document.Root()),
@@ -47,8 +51,8 @@ struct Campaign {
         linkage(relm::ReadLinkageSettings(document.Root())),
         model(UnknownMachine(machine)),
         channels(rig::ChannelsOf(hal::ReadDevices(document.Root().Child("devices")))),
-        rig(rig::World(rig::ReadRigSettings(document.Root()), seed),
-            rig::Linkage(rig::ReadLinkage(document.Root()), seed)) {}
+        rig(rig::World(rig::ReadRigSettings(truth.Root()), seed),
+            rig::Linkage(rig::ReadLinkage(truth.Root()), seed)) {}
 
   recording::Recording SweepRecording(char axis, std::uint64_t run = 1) const {
     const rig::RecordSweepOptions options{
@@ -60,9 +64,23 @@ struct Campaign {
 
   // As abbe fuse simulates it.
   simulation::SimulatedRun Simulated(const recording::Recording& recording) const {
-    return simulation::SimulateForMap(simulation::SourceOf(recording), model,
+    return Simulated(recording, model);
+  }
+  simulation::SimulatedRun Simulated(const recording::Recording& recording,
+                                     const machine::VolumetricModel& on) const {
+    return simulation::SimulateForMap(simulation::SourceOf(recording), on,
                                       {machine, instrument.head, instrument.target, noise, linkage})
         .front();
+  }
+  // As abbe fuse does it, knots and all.
+  FuseReport Fused(const std::vector<recording::Recording>& recordings) const {
+    FuseOptions options;
+    options.runs_on = [&](const machine::VolumetricModel& on) {
+      std::vector<simulation::SimulatedRun> runs;
+      for (const auto& each : recordings) runs.push_back(Simulated(each, on));
+      return runs;
+    };
+    return Fuse(machine, options.runs_on(model), options);
   }
 
   simulation::SimulatedRun Sweep(const recording::Recording& recording) const {

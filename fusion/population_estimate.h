@@ -1,0 +1,85 @@
+// What the runs say of the errors before their values: their sizes, their correlation lengths, and
+// how noisy each run is.
+//
+//   const PopulationEstimate seen = EstimatePopulation(machine, model, columns, runs, priors, x);
+//   seen.population.length(0, 4);       // of EBX, m
+//   seen.noise[3];                      // of the fourth run, over what is stated
+//   seen.statements[kSmoothness];       // what the runs say of population.smoothness_mm alone
+//
+// The logarithms of all sizes and lengths against those of the machine file are theta; their
+// prior is normal around 0 with a standard deviation of 0.7 (a factor of two; of four at two
+// standard deviations), half of its variance common to the whole machine: where the runs tell
+// nothing of an error, it follows those that they tell of. theta maximises
+//
+//   log Z(theta) - theta' Pi theta / 2
+//   log Z = (h' L (1 + L'HL)^-1 L'h - log det(1 + L' H L)) / 2
+//
+// H, h: information of the runs on the functions, all other parameters marginalised, and its
+// product with the value that fits it; L L' = V(theta), their prior covariance. Steps by Fisher
+// scoring: with A = (V + H^-1)^-1 and b = h - H C h, C the posterior covariance,
+//
+//   d log Z / d theta_i = (b' V_i b - tr(A V_i)) / 2        F_ij = tr(A V_i A V_j) / 2
+//
+// from the best of several common lengths. Between the steps the noise of each run is set to what
+// its rows leave: k^2 = (chi-square + n) / (redundancy + n), n = 20, where that differs from 1 by
+// more than four standard deviations.
+// So is the form of the target, k >= 1 times what the file states, over a grid of k with a normal
+// prior of ln k with standard deviation 0.7.
+// Units: SI. Source: Rasmussen and Williams (2006), 5.4; Bates et al., "Fitting linear
+// mixed-effects models" (2015), for the idea. Validity: to first order in the parameters.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "estimation/linearization.h"
+#include "fusion/machine_prior.h"
+
+namespace abbe::fusion {
+
+inline constexpr std::string_view kSmoothnessKey = "population.smoothness_mm";
+
+// A line of the machine file and what the runs say of it.
+struct Statement {
+  std::string_view key;  // "population.smoothness_mm"
+  double unit;           // of the key, SI
+  double stated;         // SI
+  double seen = 0.0;     // SI
+  double u_log = 0.0;    // of the logarithm of `seen`; infinite: the runs do not tell
+  // Off by more than its uncertainty explains, and by more than a third.
+  bool Refuted() const;
+};
+
+struct PopulationEstimate {
+  Eigen::VectorXd theta;
+  ErrorPopulation population;
+  std::vector<double> noise;  // of each run
+  double form = 1.0;          // of the target, over what is stated; at least kHardlyMoreForm
+  std::vector<Statement> statements;
+  // By how much the functions and squarenesses move with theta: columns that are independent of
+  // each other, of one standard deviation.
+  Eigen::MatrixXd by_theta;
+};
+
+// The runs at one point x: their sums, whitened with the noise `stated` times `noise`.
+struct LinearRuns {
+  estimation::SourceSums prior;  // of all parameters but the functions
+  std::vector<estimation::SourceSums> runs;
+  std::vector<Eigen::Index> rows;       // of each run
+  std::vector<double> noise;            // of each run
+  Eigen::VectorXd theta;                // of an estimate before, to start from; or empty
+  double squareness;                    // rad: standard deviation in `prior`
+  std::vector<int> machine;             // columns of the functions and the squarenesses
+  std::vector<int> form;                // columns of more form of the target: target_form.h
+  double form_stated;                   // m
+  double form_times;                    // of all form, over what is stated, in their prior
+  Eigen::VectorXd values, form_values;  // of these, at x
+};
+
+PopulationEstimate EstimatePopulation(const machine::Machine& machine,
+                                      const machine::VolumetricModel& model,
+                                      const LinearRuns& runs);
+
+}  // namespace abbe::fusion

@@ -1,0 +1,174 @@
+#include "fusion/population_evidence.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <utility>
+
+namespace abbe::fusion {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Standard deviations of theta: what all sizes and what all lengths share, and what each has of its
+// own.
+constexpr double kCommonSize = 0.57, kOwnSize = 0.4;
+constexpr double kCommonLength = 0.65, kOwnLength = 0.25;
+constexpr double kHardlyAllowed = 4e-4;  // deviation, of the largest of a function: taken as 0
+Line LineOf(int axis, int motion) {
+  if (motion < 3) return motion == axis ? kPositioning : kStraightness;
+  if (motion - 3 == axis) return kRoll;
+  return motion - 3 == (axis == 1 ? 0 : 1) ? kPitch : kYaw;
+}
+
+}  // namespace
+
+PopulationEvidence::PopulationEvidence(const machine::Machine& machine,
+                                       const machine::VolumetricModel& model)
+    : machine_(machine), model_(model) {
+  Index first = 0;
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    for (int motion = 0; motion < machine::kMotions; ++motion) {
+      first_[axis][motion] = first;
+      first += model.Function(axis, motion).size();
+      if (model.Function(axis, motion).size() == 0) continue;
+      knobs_.push_back({LineOf(axis, motion), axis, motion});
+      knobs_.push_back({kSmoothness, axis, motion});
+    }
+  }
+  squareness_ = first;
+  knobs_.push_back({kSquareness, -1, -1});
+  knobs_.push_back({kScale, -1, -1});
+  MatrixXd cov = MatrixXd::Zero(count(), count());
+  for (Index i = 0; i < count(); ++i) {
+    for (Index j = 0; j < count(); ++j) {
+      const bool length = IsLength(i);
+      if (length == IsLength(j)) cov(i, j) = std::pow(length ? kCommonLength : kCommonSize, 2);
+    }
+    cov(i, i) += std::pow(IsLength(i) ? kOwnLength : kOwnSize, 2);
+  }
+  pi_ = cov.inverse();
+}
+
+ErrorPopulation PopulationEvidence::PopulationAt(const VectorXd& theta) const {
+  ErrorPopulation population = PopulationOf(machine_);
+  for (std::size_t i = 0; i < knobs_.size(); ++i) {
+    const auto [line, axis, motion] = knobs_[i];
+    const double factor = std::exp(theta[static_cast<Index>(i)]);
+    if (line == kSquareness)
+      population.squareness *= factor;
+    else if (line == kScale)
+      population.scale *= factor;
+    else if (line == kSmoothness)
+      population.length(axis, motion) *= factor;
+    else
+      population.deviation(axis, motion) *= factor;
+  }
+  return population;
+}
+
+MatrixXd PopulationEvidence::FactorAt(const VectorXd& theta) const {
+  const ErrorPopulation population = PopulationAt(theta);
+  const MachinePrior prior(machine_, model_, population);
+  const Index n = squareness_ + 3;
+  MatrixXd L = MatrixXd::Zero(n, n);
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    for (int motion = 0; motion < machine::kMotions; ++motion) {
+      const Index size = model_.Function(axis, motion).size(), at = first_[axis][motion];
+      if (size == 0) continue;
+      const auto spread = prior.SpreadOf(axis, motion);
+      const double least = kHardlyAllowed * spread.deviations.maxCoeff();
+      const VectorXd deviations =
+          (spread.deviations.array() < least).select(0.0, spread.deviations);
+      L.block(at, at, size, size) = spread.axes * deviations.asDiagonal();
+    }
+  }
+  L.diagonal().tail<3>().setConstant(population.squareness);
+  return L;
+}
+
+PopulationEvidence::Evidence PopulationEvidence::At(const Quadratic& of_machine,
+                                                    const VectorXd& theta) const {
+  const MatrixXd all = FactorAt(theta);
+  std::vector<Index> allowed;
+  for (Index column = 0; column < all.cols(); ++column) {
+    if (!all.col(column).isZero(0.0)) allowed.push_back(column);
+  }
+  const MatrixXd L = all(Eigen::all, allowed);
+  const MatrixXd LH = L.transpose() * of_machine.information;
+  MatrixXd B = LH * L;
+  B.diagonal().array() += 1.0;
+  const Eigen::LLT<MatrixXd> factor(B);
+  const VectorXd w = factor.matrixL().solve(L.transpose() * of_machine.vector);
+  const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  Evidence evidence;
+  evidence.log = 0.5 * (w.squaredNorm() - log_determinant - theta.dot(pi_ * theta));
+  evidence.half = factor.matrixL().solve(LH);
+  evidence.b = of_machine.vector - evidence.half.transpose() * w;
+  return evidence;
+}
+
+std::vector<PopulationEvidence::Part> PopulationEvidence::Parts(const VectorXd& theta) const {
+  const ErrorPopulation population = PopulationAt(theta);
+  const MachinePrior prior(machine_, model_, population);
+  std::vector<Part> parts;
+  for (Index i = 0; i < count(); i += 2) {
+    const auto [line, axis, motion] = knobs_[static_cast<std::size_t>(i)];
+    if (axis < 0) break;
+    const Index at = first_[axis][motion];
+    const auto unit = prior.UnitCovariance(axis, motion);
+    const double variance = std::pow(population.deviation(axis, motion), 2);
+    parts.push_back({i, at, 2.0 * variance * unit.covariance});
+    parts.push_back({i + 1, at, variance * unit.by_length});
+    if (line != kPositioning) continue;
+    parts.push_back(
+        {count() - 1, at, 2.0 * population.scale * population.scale * prior.UnitSlope(axis)});
+  }
+  parts.push_back({count() - 2, squareness_,
+                   2.0 * std::pow(population.squareness, 2) * MatrixXd::Identity(3, 3)});
+  return parts;
+}
+
+PopulationEvidence::Slopes PopulationEvidence::SlopesAt(const Quadratic& of_machine,
+                                                        const VectorXd& theta,
+                                                        const Evidence& evidence) const {
+  const std::vector<Part> parts = Parts(theta);
+  const MatrixXd A = of_machine.information - evidence.half.transpose() * evidence.half;
+  Slopes local{VectorXd::Zero(count()), MatrixXd::Zero(count(), count())};
+  for (const Part& one : parts) {
+    const Index n = one.slope.rows();
+    const auto b = evidence.b.segment(one.at, n);
+    local.gradient[one.knob] +=
+        0.5 * (b.dot(one.slope * b) - one.slope.cwiseProduct(A.block(one.at, one.at, n, n)).sum());
+  }
+  std::vector<MatrixXd> rows;  // slope * A, of each part
+  for (const Part& one : parts) rows.push_back(one.slope * A.middleRows(one.at, one.slope.rows()));
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    for (std::size_t j = 0; j < parts.size(); ++j) {
+      const Index m = parts[i].slope.rows(), n = parts[j].slope.rows();
+      local.fisher(parts[i].knob, parts[j].knob) +=
+          0.5 * rows[i]
+                    .middleCols(parts[j].at, n)
+                    .cwiseProduct(rows[j].middleCols(parts[i].at, m).transpose())
+                    .sum();
+    }
+  }
+  return local;
+}
+
+MatrixXd PopulationEvidence::MovedByTheta(const Quadratic& of_machine, const VectorXd& theta,
+                                          const MatrixXd& cov) const {
+  const Evidence evidence = At(of_machine, theta);
+  const MatrixXd A = of_machine.information - evidence.half.transpose() * evidence.half;
+  const MatrixXd L = FactorAt(theta);
+  MatrixXd moved = MatrixXd::Zero(evidence.b.size(), theta.size());
+  for (const Part& part : Parts(theta)) {
+    const Index n = part.slope.rows();
+    moved.block(part.at, part.knob, n, 1) += part.slope * evidence.b.segment(part.at, n);
+  }
+  moved -= L * (L.transpose() * (A * moved));
+  return moved * MatrixXd(cov.llt().matrixL());
+}
+
+}  // namespace abbe::fusion

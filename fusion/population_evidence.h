@@ -1,0 +1,97 @@
+// The probability of what the runs say of the functions, for given sizes and correlation lengths,
+// and its slopes: the equations of population_estimate.h.
+//
+//   const PopulationEvidence evidence(machine, model);
+//   const auto now = evidence.At(of_machine, theta);
+//   const auto local = evidence.SlopesAt(of_machine, theta, now);
+//
+// theta: logarithms over what the machine file says; of each function its size, then its length;
+// then of the squarenesses and of the slopes of the positioning errors. Units: SI. Failure: none.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "fusion/machine_prior.h"
+
+namespace abbe::fusion {
+
+// The lines of [population]; each size belongs to one.
+enum Line {
+  kPositioning,
+  kStraightness,
+  kRoll,
+  kPitch,
+  kYaw,
+  kSquareness,
+  kScale,
+  kSmoothness,
+  kLines
+};
+
+// One of theta.
+struct Knob {
+  Line line;
+  int axis, motion;  // of the function; -1: of none alone
+};
+
+// H and h of the functions and squarenesses, or the same of all parameters.
+struct Quadratic {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd vector;
+  double log = 0.0;  // of the evidence: what marginalising the others contributes
+};
+
+class PopulationEvidence {
+ public:
+  PopulationEvidence(const machine::Machine& machine, const machine::VolumetricModel& model);
+
+  const std::vector<Knob>& knobs() const { return knobs_; }
+  Eigen::Index count() const { return static_cast<Eigen::Index>(knobs_.size()); }
+  bool IsLength(Eigen::Index knob) const {
+    return knobs_[static_cast<std::size_t>(knob)].line == kSmoothness;
+  }
+  Eigen::Index squareness() const { return squareness_; }   // where the squarenesses begin
+  const Eigen::MatrixXd& precision() const { return pi_; }  // Pi: of the prior of theta
+
+  ErrorPopulation PopulationAt(const Eigen::VectorXd& theta) const;
+  // L with L L' = V but for what a function hardly does; a column of zeros for each of that.
+  Eigen::MatrixXd FactorAt(const Eigen::VectorXd& theta) const;
+
+  struct Evidence {
+    double log = 0.0;      // log Z with the prior of theta
+    Eigen::MatrixXd half;  // (1 + L' H L)^-1/2 L' H
+    Eigen::VectorXd b;
+  };
+  Evidence At(const Quadratic& of_machine, const Eigen::VectorXd& theta) const;
+
+  struct Slopes {
+    Eigen::VectorXd gradient;  // of log Z without the prior of theta
+    Eigen::MatrixXd fisher;    // F
+  };
+  Slopes SlopesAt(const Quadratic& of_machine, const Eigen::VectorXd& theta,
+                  const Evidence& evidence) const;
+
+  // How the estimates move with theta of covariance `cov`, to first order (I - V A) V_i b: columns
+  // that are independent of each other, of one standard deviation.
+  Eigen::MatrixXd MovedByTheta(const Quadratic& of_machine, const Eigen::VectorXd& theta,
+                               const Eigen::MatrixXd& cov) const;
+
+ private:
+  // The slope of V by one of theta, in one block of it.
+  struct Part {
+    Eigen::Index knob, at;
+    Eigen::MatrixXd slope;
+  };
+  std::vector<Part> Parts(const Eigen::VectorXd& theta) const;
+
+  const machine::Machine& machine_;
+  const machine::VolumetricModel& model_;
+  std::vector<Knob> knobs_;
+  std::array<std::array<Eigen::Index, machine::kMotions>, machine::kAxes> first_{};
+  Eigen::Index squareness_ = 0;
+  Eigen::MatrixXd pi_;
+};
+
+}  // namespace abbe::fusion
