@@ -10,7 +10,7 @@
 //                      + sum over its effects of (x_j - rest_j) * factor * basis(reading)
 //
 // where basis is 1, sin or cos of a multiple of an encoder angle, the lean of an arm under gravity,
-// the lever of a weight, or the warmth of the links. So a model is a list of motions and a list of effects, and
+// the lever of a weight, or the warmth of the links. A model is a list of motions and of effects;
 // its Jacobian is geometry: a turn moves the ball by (line x arm), a shift along its direction.
 //
 // Frames: B, the linkage base; T, the ball. Units: m, rad, K. Shapes: `angles` one per joint, `x`

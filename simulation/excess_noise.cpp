@@ -8,13 +8,15 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// The residual without the drift of the time constant that explains most, whatever its size.
+// The residual without its level and the drift of the time constant that explains most, whatever
+// their sizes.
 VectorXd WithoutDrift(const VectorXd& left) {
   constexpr double kFirst = 5.0, kStep = 1.5;  // poses
   const Index poses = left.size() / 3;
   const auto rows = left.reshaped(3, poses);
   const VectorXd order = VectorXd::LinSpaced(poses, 0.0, static_cast<double>(poses - 1));
   double most = 0.0;
+  const Eigen::Vector3d level = rows.rowwise().mean();
   VectorXd drift = VectorXd::Zero(left.size());
   for (double tau = kFirst; tau < 4.0 * static_cast<double>(poses); tau *= kStep) {
     VectorXd fading = (-order / tau).array().exp();
@@ -25,7 +27,7 @@ VectorXd WithoutDrift(const VectorXd& left) {
     most = gain;
     drift = (amplitude * fading.transpose()).reshaped();
   }
-  return left - drift;
+  return left - drift - level.replicate(poses, 1);
 }
 
 // Poses that share what is left, 1 of white noise.

@@ -29,7 +29,7 @@ VectorXd Left(double size, double drift, double tau) {
   return left;
 }
 
-double ExcessOf(const VectorXd& left) {
+double ExcessIn(const VectorXd& left) {
   estimation::SourceResult run;
   run.chi_square = left.squaredNorm();
   run.redundancy = static_cast<double>(left.size());
@@ -40,13 +40,13 @@ double ExcessOf(const VectorXd& left) {
 constexpr double kByChance = 0.1;
 
 TEST(ExcessNoise, OfWhiteNoiseIsItsSize) {
-  EXPECT_EQ(ExcessOf(Left(1.0, 0.0, 1.0)), 1.0);
-  EXPECT_NEAR(ExcessOf(Left(8.0, 0.0, 1.0)), 8.0, 8.0 * kByChance);
+  EXPECT_EQ(ExcessIn(Left(1.0, 0.0, 1.0)), 1.0);
+  EXPECT_NEAR(ExcessIn(Left(8.0, 0.0, 1.0)), 8.0, 8.0 * kByChance);
 }
 
 TEST(ExcessNoise, DoesNotCountADrift) {
   for (const double tau : {30.0, 170.0, 2000.0}) {
-    EXPECT_NEAR(ExcessOf(Left(8.0, 20.0, tau)), ExcessOf(Left(8.0, 0.0, tau)), 8.0 * kByChance)
+    EXPECT_NEAR(ExcessIn(Left(8.0, 20.0, tau)), ExcessIn(Left(8.0, 0.0, tau)), 8.0 * kByChance)
         << tau;
   }
 }
@@ -58,7 +58,7 @@ TEST(ExcessNoise, CountsWhatNeighboursShareAsOftenAsTheyDo) {
     left.segment<3>(3 * pose) = left.segment<3>(3 * (pose - pose % kTogether)).eval();
   }
   // The mean of such a run scatters like that of a tenth of the poses.
-  EXPECT_NEAR(ExcessOf(left) / (8.0 * std::sqrt(10.0)), 1.0, 0.3);
+  EXPECT_NEAR(ExcessIn(left) / (8.0 * std::sqrt(10.0)), 1.0, 0.3);
 }
 
 }  // namespace excess_noise_test
