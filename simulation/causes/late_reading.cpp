@@ -9,7 +9,7 @@ namespace abbe::simulation {
 namespace {
 
 bool KnowsCommands(const Trace* trace) {
-  return trace->linkage && trace->linkage->commanded.size() > 0;
+  return trace->linkage && trace->linkage->behind.size() > 0;
 }
 
 }  // namespace
@@ -34,8 +34,7 @@ Cause LateReading() {
         if (!KnowsCommands(&trace)) return {};
         Disturbance early = NoDisturbance(trace);
         for (Eigen::Index pivot = 0; pivot < trace.pivots(); ++pivot) {
-          early.row(kEncoderStage + pivot) =
-              trace.linkage->angles.row(pivot) - trace.linkage->commanded.row(pivot);
+          early.row(kEncoderStage + pivot) = trace.linkage->behind.row(pivot);
         }
         return {early};
       },

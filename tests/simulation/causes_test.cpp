@@ -136,7 +136,7 @@ TEST(Causes, AnglesReadTooEarlyAreBehindTheCommandedOnes) {
   trace.linkage->is_arm = true;
   const Scene unknown{{&trace}, Eigen::Vector3d::Zero()};
   EXPECT_TRUE(LateReading().objects(unknown).empty());
-  trace.linkage->commanded = trace.linkage->angles.array() + 2e-3;
+  trace.linkage->behind.setConstant(1, trace.rows(), -2e-3);
   EXPECT_EQ(LateReading().objects(unknown), std::vector<Object>{"arm"});
   const auto columns = LateReading().columns(trace, "arm", {});
   ASSERT_EQ(columns.size(), 1U);
@@ -221,7 +221,7 @@ Trace Recorded(bool of_shaft) {
   Trace trace = ToAndFro();
   const Eigen::Index rows = trace.rows();
   trace.linkage->is_arm = true;
-  trace.linkage->commanded = 1.001 * trace.linkage->angles;
+  trace.linkage->behind = 1e-3 * trace.linkage->angles;
   trace.axis = 'X';
   trace.temperature = trace.warming;
   trace.pass.assign(static_cast<std::size_t>(rows), 1);
