@@ -5,6 +5,7 @@
 
 #include "relm/error_models.h"
 #include "relm/model_builder.h"
+#include "relm/weights.h"
 
 namespace abbe::relm {
 namespace {
@@ -103,6 +104,23 @@ void AddEncoders(const LinkageSettings& settings, const std::vector<PivotMotions
   }
 }
 
+// Each joint gives by itself under each weight that it carries, for neither the weights nor the
+// compliances are known; an upright one gives to none.
+void AddWeights(const LinkageSettings& settings, const std::vector<PivotMotions>& pivots,
+                ModelBuilder& model) {
+  if (settings.tolerance.weight == 0.0) return;
+  model.Block("weight", kMicroradiansPerMetre);
+  for (int i = 0; i < static_cast<int>(pivots.size()); ++i) {
+    const Vector3d& axis = settings.chain.axes()[static_cast<std::size_t>(i)].direction;
+    if (i == 0 && axis.cross(settings.DownB()).norm() < kParallel) continue;
+    for (const Weight& weight : WeightsBeyond(settings.chain, i)) {
+      const int hangs = model.motions.Weigh(static_cast<int>(weight.carrier), weight.point);
+      model.Entry(PivotName(i) + "_" + weight.name, settings.tolerance.weight,
+                  {.motion = pivots[i].turn, .basis = Basis::kWeight, .joint = i, .order = hangs});
+    }
+  }
+}
+
 void AddPhysics(const LinkageSettings& settings, const std::vector<PivotMotions>& pivots,
                 ModelBuilder& model) {
   const LinkageTolerance& sd = settings.tolerance;
@@ -121,6 +139,7 @@ void AddPhysics(const LinkageSettings& settings, const std::vector<PivotMotions>
     model.Entry(PivotName(i), sd.compliance,
                 {.motion = pivots[i].turn, .basis = Basis::kGravity, .joint = i});
   }
+  AddWeights(settings, pivots, model);
   model.Block("expansion", kPartsPerMillionPerKelvin);
   for (int i = 0; i < count; ++i) {
     if (pivots[i].growth < 0) continue;

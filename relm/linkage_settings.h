@@ -40,6 +40,7 @@ struct LinkageTolerance {
   double ball;            // m: of the ball's centre across the last link
   double compliance;      // rad: deflection of a pivot under a horizontal link
   double thermal;         // 1/K: of the coefficient of expansion
+  double weight = 0.0;  // rad/m: turn of a pivot under a weight, over its lever; 0: no such errors
 };
 
 struct LinkageNoise {

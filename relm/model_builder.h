@@ -42,6 +42,7 @@ class ModelBuilder {
 };
 
 inline const estimation::PrintUnit kMicroradians{"urad", settings::kMicroradian};
+inline const estimation::PrintUnit kMicroradiansPerMetre{"urad/m", settings::kMicroradian};
 inline const estimation::PrintUnit kMicrometres{"um", settings::kMicrometre};
 inline const estimation::PrintUnit kMillimetres{"mm", settings::kMillimetre};
 inline const estimation::PrintUnit kPartsPerMillionPerKelvin{"ppm/degC", 1e-6};

@@ -42,9 +42,14 @@ int MotionChain::Parameter(double rest) {
   return static_cast<int>(rest_.size()) - 1;
 }
 
+int MotionChain::Weigh(int carrier, const Vector3d& point) {
+  weights_.push_back({carrier, point});
+  return static_cast<int>(weights_.size()) - 1;
+}
+
 void MotionChain::Add(const Effect& effect) {
   effects_.push_back(effect);
-  orders_ = std::max(orders_, effect.order + 1);
+  if (effect.basis != Basis::kWeight) orders_ = std::max(orders_, effect.order + 1);
   gravity_ = gravity_ || effect.basis == Basis::kGravity;
 }
 
@@ -71,16 +76,19 @@ void MotionChain::Amounts(const double* angles, double warmth, const double* x,
   w.sines.resize(harmonics);
   w.cosines.resize(harmonics);
   w.leans.resize(lean_direction_.size());
+  w.levers.resize(lean_direction_.size() * weights_.size());
   w.bases.resize(effects_.size());
   w.amounts.assign(motions_.size(), 0.0);
   Harmonics(angles, w.sines.data(), w.cosines.data());
   Leans(angles, w.leans.data());
+  Levers(angles, w.levers.data());
   for (std::size_t k = 0; k < motions_.size(); ++k) {
     if (motions_[k].joint >= 0) w.amounts[k] = angles[motions_[k].joint];
   }
   for (std::size_t e = 0; e < effects_.size(); ++e) {
     const Effect& effect = effects_[e];
-    w.bases[e] = BasisOf(effect, w.sines.data(), w.cosines.data(), w.leans.data(), warmth);
+    w.bases[e] =
+        BasisOf(effect, w.sines.data(), w.cosines.data(), w.leans.data(), w.levers.data(), warmth);
     w.amounts[At(effect.motion)] +=
         (x[effect.parameter] - rest_[At(effect.parameter)]) * w.bases[e];
   }
@@ -102,9 +110,34 @@ void MotionChain::LeanSlopes(const double* angles, Workspace& w) const {
   }
 }
 
+// A turn of a joint nearer to the base, or of the own one, is that of gravity the other way; one
+// between the joint and the weight moves the weight.
+void MotionChain::LeverSlopes(const double* angles, Workspace& w) const {
+  if (weights_.empty()) return;
+  const Pose<double> pose = PoseAt(angles);
+  w.lever_slopes.setZero(static_cast<Eigen::Index>(w.levers.size()), joints());
+  Eigen::Index row = 0;
+  for (Eigen::Index i = 0; i < joints(); ++i) {
+    const Vector3d axis = pose.directions.col(i);
+    for (std::size_t k = 0; k < weights_.size(); ++k, ++row) {
+      const Vector3d weight = pose.weights.col(static_cast<Eigen::Index>(k));
+      for (Eigen::Index j = 0; j <= weights_[k].carrier; ++j) {
+        const Vector3d turned = pose.directions.col(j);
+        const Vector3d arm = weight - pose.points.col(i);
+        w.lever_slopes(row, j) =
+            j <= i ? axis.dot(arm.cross(down_B_.cross(turned)))
+                   : axis.dot(turned.cross(weight - pose.points.col(j)).cross(down_B_));
+      }
+    }
+  }
+}
+
 double MotionChain::BasisSlope(const Effect& effect, Eigen::Index joint, const Workspace& w) const {
   if (effect.basis == Basis::kGravity) {
     return effect.factor * w.lean_slopes(effect.joint, joint);
+  }
+  if (effect.basis == Basis::kWeight) {
+    return effect.factor * w.lever_slopes(static_cast<Eigen::Index>(LeverOf(effect)), joint);
   }
   if (effect.joint != joint) return 0;
   const std::size_t harmonic = At(effect.joint * orders_ + effect.order);
@@ -164,6 +197,7 @@ Vector3d MotionChain::Differentiate(const double* angles, double warmth, const d
       if (motions_[At(k)].joint >= 0) J.col(motions_[At(k)].joint) += w.lines.col(k);
     }
     LeanSlopes(angles, w);
+    LeverSlopes(angles, w);
     for (const Effect& effect : effects_) {
       const double deviation = x[effect.parameter] - rest_[At(effect.parameter)];
       for (Eigen::Index joint = 0; joint < joints(); ++joint) {

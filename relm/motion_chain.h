@@ -10,14 +10,13 @@
 //                      + sum over its effects of (x_j - rest_j) * factor * basis(reading)
 //
 // where basis is 1, sin or cos of a multiple of an encoder angle, the lean of an arm under gravity,
-// or the warmth of the links. So a model is a list of motions and a list of effects, and
+// the lever of a weight, or the warmth of the links. A model is a list of motions and of effects;
 // its Jacobian is geometry: a turn moves the ball by (line x arm), a shift along its direction.
 //
 // Frames: B, the linkage base; T, the ball. Units: m, rad, K. Shapes: `angles` one per joint, `x`
 // one per parameter; T is any scalar, also ceres::Jet. Failure: none; a wrong index is a
-// programming error. Source: docs/theory-linkage.md. Validity: the lean under gravity is taken on
-// the nominal chain at the encoder angles: an error of 1 mrad changes it by 0.1 % of the
-// compliance.
+// programming error. Source: docs/theory-linkage.md. Validity: lean and levers under gravity are
+// taken on the nominal chain at the encoder angles: an error of 1 mrad changes them by 0.1 %.
 #pragma once
 
 #include <Eigen/Core>
@@ -41,6 +40,7 @@ enum class Basis {
   kSine,     // sin(order * angle)
   kCosine,   // cos(order * angle)
   kGravity,  // lean of the arm after the joint: +-1 when horizontal, 0 when upright
+  kWeight,   // lever of a weight about the joint, m: torque over weight
   kWarmth,   // temperature - reference, K
 };
 
@@ -49,7 +49,7 @@ struct Effect {
   int parameter = 0;  // filled in by ModelBuilder
   Basis basis = Basis::kOne;
   int joint = 0;      // of the angle, or of the arm
-  int order = 0;      // of a harmonic, from 1
+  int order = 0;      // of a harmonic, from 1; of a weight, what Weigh gave
   double factor = 1;  // e.g. the length that grows with warmth
 };
 
@@ -63,6 +63,8 @@ class MotionChain {
   int Shift(const Eigen::Vector3d& direction);
   int Joint(int joint);        // the turn of an axis of the chain; each joint once
   int Parameter(double rest);  // `rest`: the value at which its effects vanish
+  // A point, in B at zero angles, that joint `carrier` is the last to move, pulled down.
+  int Weigh(int carrier, const Eigen::Vector3d& point);
   void Add(const Effect& effect);
 
   const SerialChain& chain() const { return chain_; }
@@ -80,9 +82,10 @@ class MotionChain {
 
   // Memory for Differentiate, to be kept over many poses.
   struct Workspace {
-    std::vector<double> sines, cosines, leans, bases, amounts;
+    std::vector<double> sines, cosines, leans, levers, bases, amounts;
     Eigen::Matrix3Xd lines, points;  // of the motions, in B, as they stand in the pose
     Eigen::MatrixXd lean_slopes;     // d lean_i / d q_j
+    Eigen::MatrixXd lever_slopes;    // d lever / d q_j, a row for each lever
   };
   // The tip and its derivatives: `J_tip_x` 3 x parameters and `J_tip_q` 3 x joints, both row after
   // row; either may be null.
@@ -95,11 +98,26 @@ class MotionChain {
   void Harmonics(const T* angles, T* sines, T* cosines) const;
   template <typename T>
   void Leans(const T* angles, T* leans) const;
+  // The axes and the weights as they stand in a pose.
   template <typename T>
-  T BasisOf(const Effect& effect, const T* sines, const T* cosines, const T* leans,
+  struct Pose {
+    Eigen::Matrix3X<T> directions, points, weights;
+  };
+  template <typename T>
+  Pose<T> PoseAt(const T* angles) const;
+  // Of weight k about joint i at i * weights_.size() + k.
+  template <typename T>
+  void Levers(const T* angles, T* levers) const;
+  std::size_t LeverOf(const Effect& effect) const {
+    return static_cast<std::size_t>(effect.joint) * weights_.size() +
+           static_cast<std::size_t>(effect.order);
+  }
+  template <typename T>
+  T BasisOf(const Effect& effect, const T* sines, const T* cosines, const T* leans, const T* levers,
             const T& warmth) const;
   double BasisSlope(const Effect& effect, Eigen::Index joint, const Workspace& workspace) const;
   void LeanSlopes(const double* angles, Workspace& workspace) const;
+  void LeverSlopes(const double* angles, Workspace& workspace) const;
   void Amounts(const double* angles, double warmth, const double* x, Workspace& workspace) const;
 
   SerialChain chain_;
@@ -108,6 +126,11 @@ class MotionChain {
   std::vector<Motion> motions_;
   std::vector<Effect> effects_;
   std::vector<double> rest_;
+  struct Hanging {
+    int carrier;
+    Eigen::Vector3d point;
+  };
+  std::vector<Hanging> weights_;
   int orders_ = 1;
   bool gravity_ = false;
 };
@@ -142,8 +165,46 @@ void MotionChain::Leans(const T* angles, T* leans) const {
 }
 
 template <typename T>
+MotionChain::Pose<T> MotionChain::PoseAt(const T* angles) const {
+  Pose<T> pose{Eigen::Matrix3X<T>(3, joints()), Eigen::Matrix3X<T>(3, joints()),
+               Eigen::Matrix3X<T>(3, static_cast<Eigen::Index>(weights_.size()))};
+  Eigen::Matrix3<T> R = Eigen::Matrix3<T>::Identity();
+  Eigen::Vector3<T> p = Eigen::Vector3<T>::Zero();
+  for (Eigen::Index i = 0; i < joints(); ++i) {
+    const JointAxis& axis = chain_.axes()[static_cast<std::size_t>(i)];
+    const Eigen::Vector3<T> point = axis.point.cast<T>();
+    pose.directions.col(i) = R * axis.direction.cast<T>();
+    pose.points.col(i) = R * point + p;
+    Eigen::Matrix3<T> turn;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      turn.col(k) = Turned<T>(Eigen::Vector3<T>::Unit(k), axis.direction, angles[i]);
+    }
+    R = (R * turn).eval();
+    p = pose.points.col(i) - R * point;
+    for (std::size_t k = 0; k < weights_.size(); ++k) {
+      if (weights_[k].carrier != i) continue;
+      pose.weights.col(static_cast<Eigen::Index>(k)) = R * weights_[k].point.cast<T>() + p;
+    }
+  }
+  return pose;
+}
+
+template <typename T>
+void MotionChain::Levers(const T* angles, T* levers) const {
+  if (weights_.empty()) return;
+  const Pose<T> pose = PoseAt(angles);
+  const Eigen::Vector3<T> down = down_B_.cast<T>();
+  for (Eigen::Index i = 0; i < joints(); ++i) {
+    for (Eigen::Index k = 0; k < pose.weights.cols(); ++k) {
+      const Eigen::Vector3<T> arm = pose.weights.col(k) - pose.points.col(i);
+      *levers++ = pose.directions.col(i).dot(arm.cross(down));
+    }
+  }
+}
+
+template <typename T>
 T MotionChain::BasisOf(const Effect& effect, const T* sines, const T* cosines, const T* leans,
-                       const T& warmth) const {
+                       const T* levers, const T& warmth) const {
   const int harmonic = effect.joint * orders_ + effect.order;
   switch (effect.basis) {
     case Basis::kSine:
@@ -152,6 +213,8 @@ T MotionChain::BasisOf(const Effect& effect, const T* sines, const T* cosines, c
       return cosines[harmonic] * effect.factor;
     case Basis::kGravity:
       return leans[effect.joint] * effect.factor;
+    case Basis::kWeight:
+      return levers[LeverOf(effect)] * effect.factor;
     case Basis::kWarmth:
       return warmth * effect.factor;
     default:
@@ -163,12 +226,14 @@ template <typename T>
 Eigen::Vector3<T> MotionChain::Tip(const T* angles, const T& warmth, const T* x) const {
   const std::size_t joints = lean_direction_.size();
   const std::size_t harmonics = joints * static_cast<std::size_t>(orders_);
-  std::vector<T> values(2 * harmonics + joints, T(0));
+  std::vector<T> values(2 * harmonics + joints * (1 + weights_.size()), T(0));
   T* const sines = values.data();
   T* const cosines = sines + harmonics;
   T* const leans = cosines + harmonics;
+  T* const levers = leans + joints;
   Harmonics(angles, sines, cosines);
   Leans(angles, leans);
+  Levers(angles, levers);
   std::vector<T> amounts(motions_.size(), T(0));
   for (std::size_t k = 0; k < motions_.size(); ++k) {
     if (motions_[k].joint >= 0) amounts[k] = angles[motions_[k].joint];
@@ -176,7 +241,7 @@ Eigen::Vector3<T> MotionChain::Tip(const T* angles, const T& warmth, const T* x)
   for (const Effect& effect : effects_) {
     const auto j = static_cast<std::size_t>(effect.parameter);
     amounts[static_cast<std::size_t>(effect.motion)] +=
-        (x[j] - T(rest_[j])) * BasisOf(effect, sines, cosines, leans, warmth);
+        (x[j] - T(rest_[j])) * BasisOf(effect, sines, cosines, leans, levers, warmth);
   }
   Eigen::Vector3<T> p = chain_.tip().cast<T>();
   for (std::size_t k = motions_.size(); k-- > 0;) {

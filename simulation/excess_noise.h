@@ -2,7 +2,9 @@
 //
 // What a model of an arm leaves beyond the stated noise is noise until a cause explains it: no such
 // model is as exact as a tracker, and against the noise of the tracker every cause would be
-// certain. Poses that follow each other share it, so its variance counts as often as they do:
+// certain. A slow drift is none: what a level and one exp(-pose / tau) of any tau explain in x, y
+// and z is taken out before. Poses that follow each other share the rest, so its variance counts
+// as often as they do:
 //
 //   excess^2 = chi-square / redundancy * (1 + 2 sum of rho_k),   rho_k: correlation k poses apart,
 //

@@ -7,6 +7,7 @@ namespace abbe::simulation {
 
 struct LinkageRows {
   Eigen::MatrixXd angles;   // rad, as read, pivots x rows
+  Eigen::MatrixXd behind;   // rad, as read less as commanded; empty where not recorded
   Eigen::MatrixXd heading;  // of the pivots: +1, -1; 0: not moved yet
   // rad: how far a pivot leaves a straight line between its angles in two rows that stand, when the
   // axes go straight from one to the other; kWaySteps rows for each pivot, or empty.

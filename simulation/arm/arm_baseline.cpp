@@ -86,7 +86,7 @@ void RefuseOtherArm(const LinkageRun& run, const ArmBaseline& baseline) {
 ArmBaseline Fitting(const LinkageRun& run, ArmBaseline baseline) {
   auto& tolerance = baseline.lenient.tolerance;
   tolerance.eccentricity = std::max(kLenient, tolerance.eccentricity);
-  tolerance.compliance = std::max(kLenient, tolerance.compliance);
+  tolerance.weight = std::max(kLenient, tolerance.weight);
   tolerance.graduation = std::max(kLenient, tolerance.graduation);
   baseline.lenient.graduation_harmonics = {2, 3};
   std::vector<Index> kept = Within(VectorXd::Zero(run.poses()), 0.0);

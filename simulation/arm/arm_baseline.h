@@ -4,9 +4,10 @@
 //   const std::vector<Eigen::Index> far = FarOff(run, baseline);     // no readings of this arm
 //
 // Outliers: the arm with the tolerances of its machine file, but joints that may err up to three
-// times per turn and under gravity by kLenient, lest a cause make outliers, is fitted; a pose whose
-// gap is more than kFar times the usual one (from the median, as if normal) is left out, and the
-// rest fitted again. Where more than a tenth would go they are no outliers: all stay.
+// times per turn by kLenient, and by that a metre under weights, lest a cause make outliers, is
+// fitted; a pose whose gap is more than kFar times the usual one (from the median, as if normal) is
+// left out, and the rest fitted again. Where more than a tenth would go they are no outliers: all
+// stay.
 // The rest is fitted with the tolerances as they are.
 // What the fit leaves beyond the stated noise is excess noise (excess_noise.h).
 // Units: m, rad; gaps whitened with the stated noise. Failure: InputError where angles and places
@@ -22,7 +23,7 @@
 
 namespace abbe::simulation {
 
-inline constexpr double kLenient = 2e-3;  // rad
+inline constexpr double kLenient = 2e-3;  // rad, rad/m
 
 struct ArmBaseline {
   std::string mounting;            // of its base

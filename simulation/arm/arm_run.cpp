@@ -59,6 +59,8 @@ relm::LinkageSettings Placed(relm::LinkageSettings settings, const LinkageRun& r
   settings.down_M = settings.X_MB.R * down_B;
   settings.tolerance.base_position = kAnywhere;
   settings.tolerance.base_angle = kAnyTurn;
+  settings.tolerance.compliance = 0.0;
+  settings.tolerance.weight = kLight;
   return settings;
 }
 

@@ -21,9 +21,11 @@ namespace abbe::simulation {
 bool IsArm(const recording::Recording& recording);
 
 // The linkage with its base where the nominal arm fits best what the instrument saw, free to stand
-// kAnywhere and kAnyTurn off. Gravity keeps its direction in the frame of the base.
-// Units: m, rad. Failure: InputError for poses on one line, about which the turn is open.
-inline constexpr double kAnywhere = 0.5, kAnyTurn = 1.0, kTooNear = 20e-3;
+// kAnywhere and kAnyTurn off. Gravity keeps its direction in the frame of the base; weights act by
+// their levers (relm/weights.h), with a turn of kLight a metre until a cause says more, and not by
+// the compliance of single links, which hangs on the points that are written.
+// Units: m, rad, rad/m. Failure: InputError for poses on one line, about which the turn is open.
+inline constexpr double kAnywhere = 0.5, kAnyTurn = 1.0, kTooNear = 20e-3, kLight = 20e-6;
 relm::LinkageSettings Placed(relm::LinkageSettings settings, const LinkageRun& run);
 
 // A run that stays within kTooNear (rms) of one place tells nothing of the geometry: then all of it

@@ -19,6 +19,11 @@ bool Scene::OnlyShafts() const {
                                         [](const Trace* trace) { return trace->rim.has_value(); });
 }
 
+bool Scene::HasArms() const {
+  return std::any_of(traces.begin(), traces.end(),
+                     [](const Trace* trace) { return trace->linkage && trace->linkage->is_arm; });
+}
+
 Eigen::Index Scene::Pivots() const {
   Eigen::Index pivots = 0;
   for (const Trace* trace : traces) pivots = std::max(pivots, trace->pivots());
@@ -77,6 +82,14 @@ std::vector<Object> PivotsOf(const Scene& scene) {
   for (Eigen::Index i = 1; i <= scene.Pivots(); ++i)
     pivots.emplace_back("pivot_" + std::to_string(i));
   return pivots;
+}
+
+std::vector<Object> JointsOfArms(const Scene& scene) {
+  return scene.HasArms() ? PivotsOf(scene) : std::vector<Object>{};
+}
+
+std::vector<Object> ArmOf(const Scene& scene) {
+  return scene.HasArms() ? std::vector<Object>{"arm"} : std::vector<Object>{};
 }
 
 int Positioning(int axis) { return MotionStage(axis, axis); }

@@ -38,6 +38,7 @@ struct Scene {
   double form_length = 0.0;  // m: correlation length of the form of the target; 0: not known
 
   bool HasSweeps() const;
+  bool HasArms() const;
   bool OnlyShafts() const;      // which say nothing of the axes
   Eigen::Index Pivots() const;  // 0 without a linkage
   std::vector<std::string> Sensors() const;
@@ -134,6 +135,8 @@ std::vector<Object> AxesOf(const Scene& scene);
 std::vector<Object> AxisPairsOf(const Scene& scene);
 std::vector<Object> ProbesOf(const Scene& scene);
 std::vector<Object> PivotsOf(const Scene& scene);
+std::vector<Object> JointsOfArms(const Scene& scene);
+std::vector<Object> ArmOf(const Scene& scene);
 
 // The stage of the positioning error of an axis: EXX, EYY, EZZ.
 int Positioning(int axis);

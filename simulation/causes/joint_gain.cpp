@@ -5,20 +5,6 @@
 
 namespace abbe::simulation {
 
-namespace {
-
-std::vector<Object> JointsOf(const Scene& scene) {
-  Eigen::Index joints = 0;
-  for (const Trace* trace : scene.traces) {
-    if (trace->linkage && trace->linkage->is_arm) joints = std::max(joints, trace->pivots());
-  }
-  std::vector<Object> pivots;
-  for (Eigen::Index i = 1; i <= joints; ++i) pivots.emplace_back("pivot_" + std::to_string(i));
-  return pivots;
-}
-
-}  // namespace
-
 Cause JointGain() {
   return {
       .id = "joint-gain",
@@ -28,7 +14,7 @@ Cause JointGain() {
                 .remedy = "correct the ratio in the controller"},
       .keys = {{"gain_ppm", 1e-6, -20000.0, 20000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 300e-6),
-      .objects = JointsOf,
+      .objects = JointsOfArms,
       .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.linkage || !trace.linkage->is_arm) return {};

@@ -1,5 +1,5 @@
-// Gravity: a pivot gives under the weight of its link, compliance times the cosine of the
-// elevation.
+// Gravity: a pivot of a linkage on a machine gives under the weight of its link, compliance times
+// the cosine of the elevation. Of arms: joint_compliance.cpp.
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
@@ -14,7 +14,9 @@ Cause LinkGravityBend() {
                     "balance the link, or keep the compliance as a parameter of the calibration"},
       .keys = {{"compliance_urad", 1e-6, -20000.0, 20000.0}},
       .plausible = Eigen::VectorXd::Constant(1, 200e-6),
-      .objects = PivotsOf,
+      .objects = [](const Scene& scene) -> std::vector<Object> {
+        return scene.HasArms() ? std::vector<Object>{} : PivotsOf(scene);
+      },
       .relaxes = [](const Object& object) -> std::vector<std::string> {
         return {std::string("compliance.") + object.name()};
       },

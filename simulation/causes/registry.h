@@ -45,6 +45,9 @@ namespace abbe::simulation {
   CAUSE(LinkGravityBend) \
   CAUSE(JointHysteresis) \
   CAUSE(JointGain) \
+  CAUSE(JointCompliance) \
+  CAUSE(ArmDrift) \
+  CAUSE(LateReading) \
   CAUSE(CapFriction) \
   CAUSE(CapTrailing) \
   CAUSE(ClockSkew) \

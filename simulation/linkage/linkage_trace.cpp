@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "failure/failure.h"
 #include "relm/linkage_model.h"
@@ -136,10 +138,27 @@ Trace TraceOf(const recording::Recording& recording, const LinkageRun& run,
   return trace;
 }
 
+// Less pivot_1_commanded_rad ...; empty unless all are there.
+MatrixXd BehindCommands(const recording::Recording& recording, const LinkageRun& run) {
+  MatrixXd behind = run.readings.angles;
+  for (Index pivot = 0; pivot < behind.rows(); ++pivot) {
+    const auto sent = recording.Find(fmt::format("pivot_{}_commanded_rad", pivot + 1));
+    if (!sent) return {};
+    for (Index pose = 0; pose < run.poses(); ++pose) {
+      const std::size_t row = run.rows[static_cast<std::size_t>(pose)] - recording.first_row;
+      // A command may count a turn more.
+      behind(pivot, pose) =
+          std::remainder(behind(pivot, pose) - (*sent)[row], 2.0 * std::numbers::pi);
+    }
+  }
+  return behind;
+}
+
 Trace ArmTraceOf(const recording::Recording& recording, const LinkageRun& run,
                  const LinkageSimulation& linkage) {
   Trace trace = PivotsOfRun(recording, run, linkage);
   trace.linkage->is_arm = true;
+  trace.linkage->behind = BehindCommands(recording, run);
   trace.SetAxes(run.reference);
   trace.linkage->cap_direction = Eigen::Matrix3Xd::Zero(3, trace.rows());
   return trace;

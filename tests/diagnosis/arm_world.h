@@ -23,10 +23,14 @@ struct HiddenInArm {
   int joint = 0;
   double eccentricity_sin = 0.0, eccentricity_cos = 0.0;  // rad
   double gain = 0.0;
-  double sag = 0.0;      // rad, that the joint gives when the link after it lies flat
-  double slip = 0.0;     // rad, from the middle of the run on
-  int far_off = 0;       // poses that the tracker saw elsewhere
-  double far_by = 3e-3;  // m
+  // rad/m: what the joint gives over the lever of a weight at the end of its own link, where axes 5
+  // and 6 meet, and in the ball.
+  double own = 0.0, wrist = 0.0, load = 0.0;
+  double slip = 0.0;                                       // rad, from the middle of the run on
+  int far_off = 0;                                         // poses that the tracker saw elsewhere
+  double far_by = 3e-3;                                    // m
+  double drift_x = 0.0, drift_z = 0.0, drift_poses = 1.0;  // mm, first order, in the base frame
+  double behind = 0.0;  // rad: scatter of what the joints were read before they stood
 };
 
 class ArmWorld {
@@ -87,6 +91,8 @@ reference_um = 5.0
     recording.columns.push_back({"time_s", {}});
     for (int i = 1; i <= kJoints; ++i)
       recording.columns.push_back({fmt::format("pivot_{}_rad", i), {}});
+    for (int i = 1; hidden.behind > 0.0 && i <= kJoints; ++i)
+      recording.columns.push_back({fmt::format("pivot_{}_commanded_rad", i), {}});
     for (const char* axis : {"x", "y", "z"}) {
       recording.columns.push_back({fmt::format("ref_{}_mm", axis), {}});
     }
@@ -102,14 +108,25 @@ reference_um = 5.0
       shown[joint] += hidden.eccentricity_sin * std::sin(q) +
                       hidden.eccentricity_cos * std::cos(q) + hidden.gain * q +
                       (2 * pose >= kPoses ? hidden.slip : 0.0);
-      turned[joint] += hidden.sag * SagOf(rows, turned, joint);
-      Eigen::Vector3d tip = R_tracker * TipOf(rows, turned, ball) + p_tracker;
+      const std::array<double, kJoints> sent = turned;
+      for (std::size_t i = 0; hidden.behind > 0.0 && i < shown.size(); ++i) {
+        shown[i] += normal(hidden.behind);
+      }
+      turned[joint] += hidden.own * LeverOf(rows, sent, joint, {0, 0, 0}, joint + 1) +
+                       hidden.wrist * LeverOf(rows, sent, joint, {0, 0, 0}, kJoints - 1) +
+                       hidden.load * LeverOf(rows, sent, joint, ball, kJoints);
+      const double warm = 1.0 - std::exp(-pose / hidden.drift_poses);
+      const Eigen::Vector3d drift(hidden.drift_x * warm, 0.0, hidden.drift_z * warm);
+      Eigen::Vector3d tip = R_tracker * (TipOf(rows, turned, ball) + drift) + p_tracker;
       for (int k = 0; k < 3; ++k) tip[k] += normal(5e-3);
       if (hidden.far_off > 0 && pose % (kPoses / hidden.far_off) == 7)
         tip[1] += 1e3 * hidden.far_by;
       auto column = recording.columns.begin();
       (column++)->values.push_back(pose);
       for (const double angle : shown) (column++)->values.push_back(angle);
+      for (std::size_t i = 0; hidden.behind > 0.0 && i < sent.size(); ++i) {
+        (column++)->values.push_back(sent[i]);
+      }
       for (int k = 0; k < 3; ++k) (column++)->values.push_back(tip[k]);
     }
     return recording;
@@ -150,17 +167,17 @@ reference_um = 5.0
     return p;
   }
 
-  // Cosine of the elevation of the link after a joint, from this joint to the next, with the sign
-  // of the turn that lowers it.
-  static double SagOf(const std::array<Row, kJoints>& rows,
-                      const std::array<double, kJoints>& angles, std::size_t joint) {
+  // m: what the height of a point, fixed after the first `count` rows, loses by a turn of the joint.
+  static double LeverOf(const std::array<Row, kJoints>& rows,
+                        const std::array<double, kJoints>& angles, std::size_t joint,
+                        const Eigen::Vector3d& point, std::size_t count) {
     constexpr double kStep = 1e-4;
     const auto height = [&](double turn) {
       std::array<double, kJoints> moved = angles;
       moved[joint] += turn;
-      return TipOf(rows, moved, Eigen::Vector3d::Zero(), joint + 1).z();
+      return 1e-3 * TipOf(rows, moved, point, count).z();
     };
-    return -(height(kStep) - height(-kStep)) / (2.0 * kStep) / rows[joint].a;
+    return (height(-kStep) - height(kStep)) / (2.0 * kStep);
   }
 };
 

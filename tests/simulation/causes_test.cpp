@@ -130,6 +130,31 @@ TEST(Causes, AJointWithAGainShowsMoreInProportionToItsAngle) {
   EXPECT_EQ(At(columns[0], kEncoderStage, "joint-gain"), RowVectorXd(trace.linkage->angles.row(0)));
 }
 
+// What was read stays behind what was sent; there is one share for all joints.
+TEST(Causes, AnglesReadTooEarlyAreBehindTheCommandedOnes) {
+  Trace trace = ToAndFro();
+  trace.linkage->is_arm = true;
+  const Scene unknown{{&trace}, Eigen::Vector3d::Zero()};
+  EXPECT_TRUE(LateReading().objects(unknown).empty());
+  trace.linkage->behind.setConstant(1, trace.rows(), -2e-3);
+  EXPECT_EQ(LateReading().objects(unknown), std::vector<Object>{"arm"});
+  const auto columns = LateReading().columns(trace, "arm", {});
+  ASSERT_EQ(columns.size(), 1U);
+  EXPECT_TRUE(At(columns[0], kEncoderStage, "late-reading").isApproxToConstant(-2e-3, 1e-9));
+}
+
+TEST(Causes, AnArmDriftsAlongThreeDirectionsAsItWarmsUp) {
+  Trace trace = ToAndFro();
+  EXPECT_TRUE(ArmDrift().columns(trace, "arm", VectorXd::Constant(1, 4.0)).empty());
+  trace.linkage->is_arm = true;
+  const auto columns = ArmDrift().columns(trace, "arm", VectorXd::Constant(1, 4.0));
+  ASSERT_EQ(columns.size(), 3U);
+  for (int k = 0; k < 3; ++k) {
+    const RowVectorXd& moved = columns[static_cast<std::size_t>(k)].stages().at(kTipStage + k);
+    EXPECT_NEAR(moved[4], 1.0 - std::exp(-trace.clock[4] / 4.0), 1e-12);
+  }
+}
+
 TEST(Causes, AGainOfTheTrueGapIsToldFromWhatWasRead) {
   // Delta' = (1 + delta) Delta, so delta Delta = delta / (1 + delta) Delta'.
   const double delta = 0.02;
@@ -196,6 +221,7 @@ Trace Recorded(bool of_shaft) {
   Trace trace = ToAndFro();
   const Eigen::Index rows = trace.rows();
   trace.linkage->is_arm = true;
+  trace.linkage->behind = 1e-3 * trace.linkage->angles;
   trace.axis = 'X';
   trace.temperature = trace.warming;
   trace.pass.assign(static_cast<std::size_t>(rows), 1);
@@ -265,12 +291,16 @@ TEST(Causes, FollowsWhatTheySayThatTheyFollow) {
   }
   Trace linkage = Recorded(false);
   linkage.linkage->angles = linkage.linkage->angles.replicate(3, 1).eval();
-  const Scene carried{{&linkage}, Eigen::Vector3d::Constant(0.06)};
+  const Scene arm{{&linkage}, Eigen::Vector3d::Constant(0.06)};
+  Trace on_machine = linkage;
+  on_machine.linkage->is_arm = false;
+  const Scene carried{{&on_machine}, Eigen::Vector3d::Constant(0.06)};
   for (const Cause& cause : Causes()) {
     if (cause.columns) {
       EXPECT_TRUE(seen.contains(&cause)) << cause.id << " has no columns here";
     } else if (cause.relaxes) {  // follows what the parameter that it sets free does
-      const auto objects = cause.objects(carried);
+      auto objects = cause.objects(carried);
+      if (objects.empty()) objects = cause.objects(arm);
       ASSERT_FALSE(objects.empty()) << cause.id;
       const auto widened = cause.relaxes(objects.front());
       const bool is_warm = !widened.empty() && widened.front().starts_with("expansion.");
@@ -284,7 +314,7 @@ TEST(Causes, FollowsWhatTheySayThatTheyFollow) {
 // A file, a result and the page take the unit from the end of the name (settings/unit.h), the fit
 // from CauseKey::unit.
 TEST(Causes, TheNameOfEachKeySaysItsUnit) {
-  const std::set<std::string_view> plain{"delta", "coefficient", "order", "count"};
+  const std::set<std::string_view> plain{"delta", "coefficient", "order", "count", "share"};
   for (const Cause& cause : Causes()) {
     for (const CauseKey& key : cause.keys) {
       const settings::Unit unit = settings::UnitOf(key.name);
