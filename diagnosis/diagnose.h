@@ -8,7 +8,8 @@
 // How: search.h.
 // Verdict: clean, nothing found, nothing left; explained, each finding is at least kCertain among
 // its rivals and nothing is left; ambiguous, rivals; unexplained, structure is left.
-// Units: SI. Failure: that of Fit.
+// Source: MacKay, Neural Computation 4 (1992), for evidence and Occam factor. Units: SI. Failure:
+// that of Fit.
 #pragma once
 
 #include <optional>
@@ -24,8 +25,8 @@ namespace abbe::diagnosis {
 
 inline constexpr double kCertain = simulation::kCertain;  // 0.99
 inline constexpr double kPresent = 0.1;  // probability that a machine has a cause at all
-// No finding is more probable where structure is left that no cause explains: what makes it may make
-// the finding too.
+// No finding is more probable where structure is left that no cause explains: what makes it may
+// make the finding too.
 inline constexpr double kBesideUnexplained = 0.9;
 inline constexpr double kShowable = 5.0;  // standard deviations of a plausible size
 

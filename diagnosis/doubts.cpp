@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "standards/coverage.h"
@@ -70,6 +71,15 @@ double PeriodOf(const Finding& finding) {
   return KeysOf(finding.score).values[pitch - keys.begin()];
 }
 
+// Readings that stand out in several channels of an instrument are hardly broken one by one.
+bool AreOutliersOfSeveral(const Finding& finding, const std::vector<Finding>& findings) {
+  const auto are = [&](const Finding& each) {
+    return each.score.candidate.cause->id == "outliers" &&
+           each.score.candidate.object.kind() == finding.score.candidate.object.kind();
+  };
+  return are(finding) && std::ranges::count_if(findings, are) > 1;
+}
+
 std::vector<std::string> DoubtsOf(const Finding& finding, const simulation::Scene& scene) {
   std::vector<std::string> doubts;
   if (IsWithinItsUncertainty(finding)) {
@@ -96,15 +106,22 @@ std::vector<std::string> DoubtsOf(const Finding& finding, const simulation::Scen
 void AddDoubts(const simulation::Scene& scene, const HeldOutGain& gain, Diagnosis& diagnosis) {
   std::size_t modelled = 0;
   for (Finding& finding : diagnosis.findings) {
-    if (!IsModelled(finding)) continue;
-    finding.doubts = DoubtsOf(finding, scene);
-    const std::size_t place = modelled++;
-    if (place < gain.without.size() && !finding.score.candidate.cause->one_event &&
-        gain.without[place].held < gain.after) {
-      finding.doubts.push_back(fmt::format(
-          "rows that were held out come out worse with it: rms {:.3f} instead of {:.3f} of the "
-          "stated noise",
-          gain.after, gain.without[place].held));
+    if (AreOutliersOfSeveral(finding, diagnosis.findings)) {
+      finding.doubts.push_back(
+          "readings stand out in several channels: their noise has heavy tails, or something shook "
+          "them all");
+    }
+    if (IsModelled(finding)) {
+      for (std::string& doubt : DoubtsOf(finding, scene))
+        finding.doubts.push_back(std::move(doubt));
+      const std::size_t place = modelled++;
+      if (place < gain.without.size() && !finding.score.candidate.cause->one_event &&
+          gain.without[place].held < gain.after) {
+        finding.doubts.push_back(fmt::format(
+            "rows that were held out come out worse with it: rms {:.3f} instead of {:.3f} of the "
+            "stated noise",
+            gain.after, gain.without[place].held));
+      }
     }
     if (finding.doubts.empty()) continue;
     finding.probability = std::min(finding.probability, kDoubtful);

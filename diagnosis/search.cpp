@@ -169,8 +169,8 @@ bool Search::MayOutweigh(const std::vector<Named>& names) const {
   });
 }
 
-// Whether the best cause goes first: it is more probable than something else, or explains most of what
-// that does, and something else may follow.
+// Whether the best cause goes first: it is more probable than something else, or explains most of
+// what that does, and something else may follow.
 bool Search::Outweighs(std::vector<Named>& names, FitPointer& fitted) const {
   constexpr double kMostOfIt = 0.75;
   if (names.empty()) return false;
@@ -367,6 +367,18 @@ void Search::AddBadData() {
   }
 }
 
+// Probability that something else does what a cause does, all other causes known by now.
+double Search::SomethingElseInstead(std::size_t i) const {
+  const FitPointer without = FitWith(Others(i));
+  if (!without) return members_[i].finding.something_else;
+  const std::vector<Found> structures = FindStructures(*without);
+  const auto other = MostProbable(*without, structures);
+  if (!other) return 0.0;
+  const double cause = fit_->log_likelihood() - without->log_likelihood() + members_[i].log_prior;
+  return ProbabilityOf(LogPosterior(*other, structures.size()) -
+                       LogSumOfExponentials({0.0, cause}));
+}
+
 void Search::Describe() {
   for (std::size_t i = 0; i < members_.size(); ++i) {
     Member& member = members_[i];
@@ -380,9 +392,11 @@ void Search::Describe() {
     score.visible = visible;
     score.log_evidence = log_evidence;
     member.finding.curve = CurveOf(*base_, *fit_, i);
-    // Where something else is there, the cause is judged beside it; else against it.
+    // Where something else is there, the cause was judged beside it; else against it.
     double& something_else = member.finding.something_else;
-    if (CausesTaken() < members_.size() || something_else < kNegligible) something_else = 0.0;
+    if (CausesTaken() < members_.size()) something_else = 0.0;
+    if (something_else > kNegligible) something_else = SomethingElseInstead(i);
+    if (something_else < kNegligible) something_else = 0.0;
     member.finding.probability *= member.beside * (1.0 - something_else);
     // What was found was shown after all.
     std::erase(diagnosis_.cannot_show, score.candidate.Name());

@@ -60,6 +60,7 @@ class Search {
   std::vector<Candidate> Others(std::size_t than) const;
   std::size_t CausesTaken() const;
   bool IsBeyondDoubt(std::size_t i) const;
+  double SomethingElseInstead(std::size_t i) const;
   double LogPosteriorBeside(const Fit& without, std::size_t i) const;
   void DropSuperfluous();
 

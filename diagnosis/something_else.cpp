@@ -8,8 +8,8 @@ namespace {
 
 constexpr const char* kId = "something-else";
 
-// A wave of an axis along itself, of a pivot over its own angle, of a sensor over that of the shaft:
-// screws, encoders and targets make those.
+// A wave of an axis along itself, of a pivot over its own angle, of a sensor over that of the
+// shaft: screws, encoders and targets make those.
 bool IsInCatalogue(const Structure& structure) {
   return structure.form == Structure::Form::kLine &&
          (structure.IsOfItself() || structure.variable == "shaft");
@@ -31,8 +31,6 @@ Candidate SomethingElse::CandidateOf(const Found& found) {
   return {causes_.back().get(), simulation::Object(structure.channel.object),
           Eigen::Vector2d(found.drawn.sd, 0.0)};
 }
-
-bool SomethingElse::Is(const Candidate& candidate) { return candidate.cause->id.starts_with(kId); }
 
 std::optional<Found> MostProbable(const Fit& fit, const std::vector<Found>& found) {
   std::optional<Found> most;

@@ -8,7 +8,8 @@
 // (simulation::Amount::kRandomField): zero where nothing is left. In a comparison it has the prior
 // probability kElse, shared by all structures that are asked for; a cause has to win against it,
 // and where it is there, beside it. It is never a finding, but a part of what is unexplained.
-// Units: SI. Failure: none.
+// Units: SI. Shapes: one coefficient for each term of the structure. Failure: none. Validity: as
+// long as the object that made it lives.
 #pragma once
 
 #include <memory>
@@ -16,7 +17,7 @@
 #include <vector>
 
 #include "diagnosis/candidate.h"
-#include "diagnosis/unexplained.h"
+#include "diagnosis/structure_search.h"
 
 namespace abbe::diagnosis {
 
@@ -26,7 +27,6 @@ class SomethingElse {
  public:
   // Valid as long as this object is.
   Candidate CandidateOf(const Found& found);
-  static bool Is(const Candidate& candidate);
 
  private:
   std::vector<std::unique_ptr<const simulation::Cause>> causes_;

@@ -1,7 +1,7 @@
 // Structure: a dependence of one channel on one recorded variable, without a cause.
 //
 //   const Structure structure{channel, "feed", range};
-//   structure.ColumnsOf(trace);              // one disturbance of the channel's stage for each term
+//   structure.ColumnsOf(trace);       // one disturbance of the channel's stage for each term
 //
 // A channel is the reading of a probe or of a sensor at a shaft, the angle of a pivot, or an error
 // motion of an axis. Forms, of a variable v over its range:
@@ -10,9 +10,10 @@
 //   interval   1 from `from` to `to`, 0 elsewhere
 //   product    of two variables "x*y": products of their Legendre polynomials of degree 1 and 2
 // Variables (variables.h) with a factor, as the direction of motion, have it in each term, and
-// k = 0 ... terms - 1; of an axis or a pivot over its own direction k = 1 ... terms, for lost motion
-// that is the same everywhere is a cause. Units: SI. Used to test what is left (unexplained.h) and to let something
-// that is in no catalogue compete with the causes (something_else.h).
+// k = 0 ... terms - 1; of an axis or a pivot over its own direction k = 1 ... terms, for lost
+// motion that is the same everywhere is a cause. Units: SI. Used to test what is left
+// (structure_search.h) and to let something that is in no catalogue compete with the causes
+// (something_else.h).
 #pragma once
 
 #include <limits>

@@ -1,7 +1,7 @@
 // The recorded variables on which something may depend, by name: "time", "x", "x+y", "pivot_2",
-// "shaft", "temp_table_c", "feed". Two have a factor, the direction of motion (+1, -1): "direction of
-// x" is that direction, over the position, "reversal of x" the same over the logarithm of the way
-// since the reversal.
+// "shaft", "temp_table_c", "feed". Two have a factor, the direction of motion (+1, -1): "direction
+// of x" is that direction, over the position, "reversal of x" the same over the logarithm of the
+// way since the reversal.
 #pragma once
 
 #include <Eigen/Core>

@@ -12,6 +12,7 @@
 // (population_estimate.h); where a function is rougher than the knots of its spline can follow,
 // the runs are simulated on finer ones.
 //
+// Source: Rasmussen and Williams (2006), 5.4.1 for the marginal likelihood.
 // Units: SI. Failure: InputError for no run; NumericalError when the estimate does not converge.
 #pragma once
 

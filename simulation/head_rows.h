@@ -1,4 +1,5 @@
 // What the head of probes read in the rows of a run: the part of a trace that sweeps have.
+// Units: m, rad. Shapes: one column for each row of the run.
 #pragma once
 
 #include <Eigen/Core>

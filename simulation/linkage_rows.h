@@ -1,4 +1,5 @@
 // What the encoders of a linkage read in the rows of a run: the part of a trace that linkages have.
+// Units: rad. Shapes: one column for each row of the run.
 #pragma once
 
 #include <Eigen/Core>

@@ -60,6 +60,20 @@ TEST(Doubts, TakeCertaintyFromASizeBeyondItsBounds) {
   ASSERT_EQ(Doubted(finding).findings.front().doubts.size(), 1u);
 }
 
+// What shakes a head stands out in all of its probes.
+TEST(Doubts, TakeCertaintyFromOutliersOfSeveralChannels) {
+  const Eigen::VectorXd count = Eigen::VectorXd::Constant(1, 7.0);
+  Diagnosis diagnosis = With(FindingOf("outliers", "probe_a", count, 0.0));
+  AddDoubts({}, {}, diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
+  diagnosis.findings.push_back(FindingOf("outliers", "pivot_1", count, 0.0));
+  AddDoubts({}, {}, diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
+  diagnosis.findings.push_back(FindingOf("outliers", "probe_d", count, 0.0));
+  AddDoubts({}, {}, diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
+}
+
 // Targets 10 mm apart tell a pitch of 2.96 mm from one of 4.2 mm by no reading.
 TEST(Doubts, TakeCertaintyFromAPeriodBelowTwoTargets) {
   simulation::Trace trace;

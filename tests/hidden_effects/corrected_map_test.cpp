@@ -44,7 +44,7 @@ Vector3d TrueError(const rig::World& world, const machine::Chain& chain, const V
 }
 
 Judged Judge(const rig::World& world, const map::ErrorMap& map) {
-  Judged judged{Eigen::Matrix3Xd(3, kPoints * kPoints * kPoints), {}};
+  Judged judged{Eigen::Matrix3Xd::Zero(3, kPoints * kPoints * kPoints), {}};
   judged.u95 = judged.off;
   for (Eigen::Index point = 0; point < judged.off.cols(); ++point) {
     Vector3d at;
@@ -57,7 +57,7 @@ Judged Judge(const rig::World& world, const map::ErrorMap& map) {
     }
     const Vector3d& tool = map.origin().tool;
     judged.off.col(point) = map.Error(at, tool) - TrueError(world, map.model().chain(), at);
-    judged.u95.col(point) = 1.96 * map.StandardUncertainty(at, tool);
+    judged.u95.col(point) = 2.0 * map.StandardUncertainty(at, tool);
   }
   return judged;
 }

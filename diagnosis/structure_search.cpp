@@ -1,4 +1,4 @@
-#include "diagnosis/unexplained.h"
+#include "diagnosis/structure_search.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
