@@ -155,8 +155,10 @@ double Fit::FollowShapes() {
     const VectorXd found = result_.Block(BlockOf(cause)).Values();
     const VectorXd coefficients = found.head(cause.cause->coefficients());
     if (cause.cause->IsRandomField()) {
+      constexpr double kLeast = 0.01;  // of what it was: a deviation of zero is no prior
       const double before = cause.shape[0];
-      cause.shape[0] *= std::sqrt(coefficients.squaredNorm() / SeenOf(cause)) / before;
+      cause.shape[0] =
+          std::max(kLeast * before, std::sqrt(coefficients.squaredNorm() / SeenOf(cause)));
       // So few draws tell their deviation no better.
       const double moved = std::abs(1.0 - cause.shape[0] / before);
       if (moved > kDrawnFound) most = std::max(most, moved);

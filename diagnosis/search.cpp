@@ -88,7 +88,8 @@ bool Search::TakeBest() {
   std::erase_if(names, [&](const Named& named) {
     return Known(taken, named.best.candidate) || Known(refused_, named.best.candidate);
   });
-  if (structures_.empty()) {
+  // What no model of an arm reaches is in its noise, and a cause has to predict there.
+  if (structures_.empty() && !(fit_->left_out() > 0.0)) {
     structures_ = FindStructures(*fit_);
     other_ = MostProbable(*fit_, structures_);
   }

@@ -1,7 +1,7 @@
 // The structures that the data show beside a fit, strongest first.
 //
 //   const std::vector<Found> found = FindStructures(fit);
-//   for (const Leftover& leftover : LeftoversOf(fit, found)) ...       // nothing: all is explained
+//   const std::vector<Leftover> left = LeftoversOf(fit, found);       // empty: all is explained
 //
 // Each channel is asked of each recorded variable whether a structure (structure.h) would make the
 // channel fit better, free of everything that the simulation could be instead (fit.h): a smooth

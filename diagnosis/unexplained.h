@@ -1,7 +1,4 @@
 // What is left of the data after all causes: structure that no known cause explains.
-//
-//   for (const Leftover& left : diagnosis.leftovers) ...       // nothing: all is explained
-//
 // A channel depends on a recorded variable (structure_search.h), or a run scatters or remembers
 // more than its noise does (scatter.h). Units: SI.
 #pragma once

@@ -1,10 +1,10 @@
 // What the runs say of the errors before their values: their sizes, their correlation lengths, and
 // how noisy each run is.
 //
-//   const PopulationEstimate seen = EstimatePopulation(machine, model, columns, runs, priors, x);
+//   const PopulationEstimate seen = EstimatePopulation(machine, model, runs);
 //   seen.population.length(0, 4);       // of EBX, m
 //   seen.noise[3];                      // of the fourth run, over what is stated
-//   seen.statements[kSmoothness];       // what the runs say of population.smoothness_mm alone
+//   seen.statements.front().seen;       // what the runs say of a line of the machine file
 //
 // The logarithms of all sizes and lengths against those of the machine file are theta; their
 // prior is normal around 0 with a standard deviation of 0.7 (a factor of two; of four at two

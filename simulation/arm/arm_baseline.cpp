@@ -18,7 +18,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kRounds = 10;            // of leaving out
+constexpr int kRounds = 2;             // of leaving out: the worst hide others, once
 constexpr double kSettled = 0.02;      // standard uncertainties, as Fit
 constexpr double kFar = 8.0;           // times the usual gap, as invalid readings
 constexpr double kMedianNorm = 1.538;  // of three normal numbers of deviation 1

@@ -6,8 +6,8 @@
 // Outliers: the arm with the tolerances of its machine file, but joints that may err up to three
 // times per turn by kLenient, and by that a metre under weights, lest a cause make outliers, is
 // fitted; a pose whose gap is more than kFar times the usual one (from the median, as if normal) is
-// left out, and the rest fitted again. Where more than a tenth would go they are no outliers: all
-// stay.
+// left out, and the rest fitted and looked at once more: further looks would take out what the model
+// lacks. Where more than a tenth would go they are no outliers: all stay.
 // The rest is fitted with the tolerances as they are.
 // What the fit leaves beyond the stated noise is excess noise (excess_noise.h).
 // Units: m, rad; gaps whitened with the stated noise. Failure: InputError where angles and places

@@ -92,7 +92,7 @@ class CausesTest(ProgramCase):
                   "--feed", 6000)
         hidden, clean = self.pair("volume.csv", "backlash:object=X:width_um=6", *course)
         others = [self.rig_record("line.csv", "--length", "X"),
-                  *(self.rig_record(f"{axis}.csv", "--axis", axis, "--mounting", "A", "--rate", 20)
+                  *(self.rig_record(f"{axis}.csv", "--axis", axis, "--mounting", "A", "--rate", 50)
                     for axis in "XYZ")]
         model = self.model('[[cause]]\nid = "backlash"\nobject = "X"\nwidth_um = 6.0\n'
                            '[[cause]]\nid = "scale-error"\nobject = "Y"\ngain_ppm = 50.0\n')
@@ -234,7 +234,7 @@ class CausesTest(ProgramCase):
     def test_what_is_unexplained_stands_in_the_model_and_gives_no_advice(self):
         campaign = self.path / "campaign"
         self.done("--machine", MACHINE, "--seed", 7, "--campaign", "minimal", "--reduced", "--hide",
-                  "unknown-feed-square:object=X:height_um=8", "--hide", "backlash:object=Y:width_um=6",
+                  "unknown-hum:object=probe_a:amplitude_um=0.3", "--hide", "backlash:object=Y:width_um=6",
                   "--out", campaign, command="rig record")
         out, result = self.path / "found.toml", self.path / "found.json"
         run = self.run_program(*sorted(campaign.glob("*.h5")), "--machine", MACHINE, "-o", out, "--json", result,

@@ -158,7 +158,8 @@ TEST_F(RealRobot, GivesUnderItsWeightAndWarmsUp) {
        {"joint-compliance:pivot_2", "joint-compliance:pivot_3", "joint-compliance:pivot_4",
         "joint-compliance:pivot_5", "arm-drift:arm"}) {
     ASSERT_NE(found.Of(name), nullptr) << name;
-    EXPECT_GE(found.Of(name)->probability, kCertain) << name;
+    // Nothing is more probable beside what a real arm leaves unexplained.
+    EXPECT_GE(found.Of(name)->probability, kBesideUnexplained) << name;
   }
   constexpr double kDeviations = 2.0;
   const auto expect = [&](const char* name, Eigen::Index coefficient, double least, double most,
