@@ -176,7 +176,7 @@ class CausesTest(ProgramCase):
                                 "--dwell", 0.1, "--feed", 6000),
                 *(self.rig_record(f"{axis}.csv", "--axis", axis, "--mounting", "A", "--rate", 20) for axis in "XYZ")]
         without, certain, doubted = self.doubted(
-            "fuse", runs, '[[cause]]\nid = "backlash"\nobject = "X"\nwidth_um = 20.0\n',
+            "fuse", runs, '[[cause]]\nid = "backlash"\nobject = "X"\nwidth_um = 6.0\n',
             "-o", self.path / "map.toml", "--fixed-smoothness")
         of = lambda result, key: np.array(result["map"]["grid"][key])
         np.testing.assert_array_equal(of(doubted, "error"), of(certain, "error"))
