@@ -9,8 +9,8 @@
 
 #include "apps/instruments.h"
 #include "settings/unit.h"
-#include "simulation/kinds.h"
 #include "simulation/doubt.h"
+#include "simulation/kinds.h"
 #include "simulation/path_displacement.h"
 
 namespace abbe::apps {
