@@ -143,6 +143,7 @@ PopulationEvidence::Slopes PopulationEvidence::SlopesAt(const Quadratic& of_mach
         0.5 * (b.dot(one.slope * b) - one.slope.cwiseProduct(A.block(one.at, one.at, n, n)).sum());
   }
   std::vector<MatrixXd> rows;  // slope * A, of each part
+  rows.reserve(parts.size());
   for (const Part& one : parts) rows.push_back(one.slope * A.middleRows(one.at, one.slope.rows()));
   for (std::size_t i = 0; i < parts.size(); ++i) {
     for (std::size_t j = 0; j < parts.size(); ++j) {
