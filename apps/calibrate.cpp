@@ -16,6 +16,7 @@
 #include "apps/error_model_option.h"
 #include "apps/machine_file.h"
 #include "apps/machine_recording.h"
+#include "apps/protocol.h"
 #include "apps/result_file.h"
 #include "fusion/calibration_file.h"
 #include "fusion/doubted_calibration.h"
@@ -106,6 +107,7 @@ class Calibration {
   void FromRecordings() {
     std::vector<simulation::LinkageRun> runs, certain;
     simulation::OneBall ball;
+    nlohmann::ordered_json whose;
     for (const fs::path& path : arguments_.recordings) {
       const recording::Recording recording = ReadWithWarnings(path);
       const auto means = [&](const recording::Recording& corrected) {
@@ -114,6 +116,7 @@ class Calibration {
       runs.push_back(means(causes_.Take(recording)));
       if (causes_.WidensU95()) certain.push_back(means(causes_.TakeCertain(recording)));
       ball.Add(recording, runs.back());
+      AddProtocol(recording, whose);
     }
     if (arguments_.poses > 0) KeepBest(runs, certain);
     fusion::CalibrationReport report = CalibrationOf(runs);
@@ -124,6 +127,7 @@ class Calibration {
     Show(CalibrationTable(report, runs));
     if (!arguments_.out.empty()) fusion::WriteCalibration(report.calibration, arguments_.out);
     auto json = CalibrationJson(report, runs);
+    json.update(whose);
     if (causes_.Active()) json["causes_taken_out"] = causes_.Data();
     if (!arguments_.json.empty()) WriteResult(json, arguments_.json);
   }

@@ -16,6 +16,7 @@
 #include "apps/file_hash.h"
 #include "apps/instruments.h"
 #include "apps/machine_recording.h"
+#include "apps/protocol.h"
 #include "apps/result_file.h"
 #include "diagnosis/doubts.h"
 #include "diagnosis/found_model.h"
@@ -51,6 +52,7 @@ void WriteModel(simulation::ExtendedModel model, const DiagnoseArguments& argume
 }
 
 nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
+                              const std::vector<recording::Recording>& recordings,
                               const diagnosis::Campaign& campaign,
                               const diagnosis::Diagnosis& diagnosis,
                               const diagnosis::HeldOutGain& gain) {
@@ -60,6 +62,7 @@ nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
   for (const fs::path& path : arguments.recordings) {
     json["recordings"].push_back(path.filename().string());
   }
+  for (const auto& recording : recordings) AddProtocol(recording, json);
   json["notes"] = campaign.notes();
   if (!arguments.out.empty()) json["model"] = arguments.out.filename().string();
   return json;
@@ -116,7 +119,7 @@ int Diagnose(const DiagnoseArguments& arguments) {
     WriteModel(diagnosis::FoundModel(diagnosis, campaign, gain), arguments);
   }
   if (!arguments.json.empty())
-    WriteResult(JsonOf(arguments, campaign, diagnosis, gain), arguments.json);
+    WriteResult(JsonOf(arguments, recordings, campaign, diagnosis, gain), arguments.json);
   if (arguments.quiet) return kDone;
   fmt::print("{}", DiagnosisText(diagnosis, gain));
   for (const std::string& note : campaign.notes()) fmt::print("\nNote: {}\n", note);

@@ -18,6 +18,7 @@
 #include "apps/fuse_result.h"
 #include "apps/instruments.h"
 #include "apps/machine_recording.h"
+#include "apps/protocol.h"
 #include "apps/result_file.h"
 #include "map/map_file.h"
 #include "map/map_grid.h"
@@ -152,6 +153,7 @@ int Fuse(const FuseArguments& arguments) {
       {.choose_smoothness = choose, .holdout = arguments.holdout, .doubt = DoubtOf(causes, other)});
   map::WriteMap(report.map, arguments.out);
   auto json = FuseJson(report);
+  for (const RunSource& source : sources) AddProtocol(source.head, json);
   std::string text = FuseTable(report);
   if (causes.Active()) {
     json["causes_taken_out"] = causes.Data();

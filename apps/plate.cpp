@@ -11,6 +11,7 @@
 #include "apps/machine_file.h"
 #include "apps/machine_recording.h"
 #include "apps/plate_result.h"
+#include "apps/protocol.h"
 #include "apps/result_file.h"
 #include "map/map_file.h"
 
@@ -26,11 +27,14 @@ struct PlateArguments {
   bool network = false, fixed_smoothness = false, quiet = false;
 };
 
+// Adds whose measurements they are to `result`.
 std::vector<simulation::PlateSetup> ReadSetups(const PlateArguments& arguments,
-                                               const machine::Machine& machine) {
+                                               const machine::Machine& machine,
+                                               nlohmann::ordered_json& result) {
   std::vector<simulation::PlateSetup> setups;
   for (const fs::path& path : arguments.recordings) {
     const recording::Recording recording = ReadRecordingOf(machine, path);
+    AddProtocol(recording, result);
     for (auto& setup : simulation::ReadPlate(recording)) setups.push_back(std::move(setup));
   }
   return setups;
@@ -47,7 +51,8 @@ map::ErrorMap WithNetworks(const map::ErrorMap& map,
 
 int Plate(const PlateArguments& arguments) {
   const machine::Machine machine = ReadMachineOf(arguments.machine);
-  const auto setups = ReadSetups(arguments, machine);
+  nlohmann::ordered_json whose;
+  const auto setups = ReadSetups(arguments, machine, whose);
   const machine::VolumetricModel model = fusion::UnknownMachine(machine);
   std::vector<simulation::SimulatedRun> runs;
   runs.reserve(setups.size());
@@ -68,7 +73,11 @@ int Plate(const PlateArguments& arguments) {
         fusion::CheckSpecimen(fused.map, ReadRecordingOf(machine, arguments.specimen));
   }
   map::WriteMap(arguments.network ? WithNetworks(fused.map, setups) : fused.map, arguments.out);
-  if (!arguments.json.empty()) WriteResult(PlateJson(result), arguments.json);
+  if (!arguments.json.empty()) {
+    auto json = PlateJson(result);
+    json.update(whose);
+    WriteResult(json, arguments.json);
+  }
   if (!arguments.quiet) fmt::print("{}\nmap: {}\n", PlateTable(result), arguments.out.string());
   return kDone;
 }

@@ -30,6 +30,7 @@ void AddProtocol(const recording::Recording& recording, nlohmann::ordered_json& 
     if (text && !text->empty() && !result["protocol"].contains(key))
       result["protocol"][key] = *text;
   }
+  if (recording.IsSimulated()) result["simulated"] = true;
 }
 
 }  // namespace abbe::apps

@@ -27,7 +27,8 @@ Protocol ReadProtocol(const settings::Table& root);
 // stated.
 std::string ProtocolText(const settings::Document& machine, const std::string& operator_name);
 
-// Adds the table of the header as result["protocol"]; existing entries are kept.
+// Adds the table of the header as result["protocol"], and result["simulated"] = true where no
+// machine was measured; existing entries of the table are kept.
 void AddProtocol(const recording::Recording& recording, nlohmann::ordered_json& result);
 
 }  // namespace abbe::apps

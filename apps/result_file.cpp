@@ -30,9 +30,9 @@ nlohmann::ordered_json ReadResult(const std::filesystem::path& path) {
     return nlohmann::ordered_json::parse(file);
   } catch (const nlohmann::json::parse_error& failure) {
     throw InputError(fmt::format("{}: not valid JSON at byte {}", path.string(), failure.byte));
-  } catch (const nlohmann::json::out_of_range& failure) {
-    throw InputError(fmt::format("{}: contains a number that is out of range; write it again ({})",
-                                 path.string(), failure.what()));
+  } catch (const nlohmann::json::out_of_range&) {
+    throw InputError(fmt::format(
+        "{}: contains a number beyond 1e308; correct it or write the file again", path.string()));
   }
 }
 

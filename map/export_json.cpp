@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "failure/failure.h"
@@ -80,8 +81,10 @@ GridFile ReadJsonGrid(const std::filesystem::path& path) {
   try {
     return FileOf(Json::parse(ReadWhole(path)), path.string());
   } catch (const nlohmann::json::exception& failure) {
+    const std::string_view what =
+        failure.what();  // "[json.exception.type_error.302] type must ..."
     throw InputError(fmt::format("{}: is not a grid of a map from abbe export: {}", path.string(),
-                                 failure.what()));
+                                 what.substr(what.find("] ") + 2)));
   }
 }
 

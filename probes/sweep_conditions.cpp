@@ -33,8 +33,7 @@ Spread SpreadOf(const recording::Recording& recording, std::span<const double> v
 SweepConditions ConditionsOf(const recording::Recording& recording) {
   SweepConditions conditions;
   conditions.started = recording.HeaderText("started").value_or("");
-  conditions.simulated =
-      recording.HeaderText("simulated") == "true" || recording.HeaderText("rig").has_value();
+  conditions.simulated = recording.IsSimulated();
   const auto time = recording.At("time_s");
   if (!time.empty()) conditions.duration = time.back() - time.front();
   if (const auto feed = recording.Find("feed_mm_min")) {

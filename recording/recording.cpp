@@ -85,4 +85,8 @@ bool Recording::KnowsTimes() const {
   return Find("time_s") && HeaderText("time").value_or("") != "order";
 }
 
+bool Recording::IsSimulated() const {
+  return HeaderText("simulated") == "true" || HeaderText("rig").has_value();
+}
+
 }  // namespace abbe::recording

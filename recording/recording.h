@@ -58,6 +58,8 @@ struct Recording {
   std::string Kind() const;  // HeaderText("kind"); InputError when missing
   // Whether time_s holds times, not only the order of the rows (header time = "order").
   bool KnowsTimes() const;
+  // Whether a device or the virtual rig said that no machine was measured.
+  bool IsSimulated() const;
 };
 
 }  // namespace abbe::recording

@@ -76,6 +76,7 @@ function protocolText(sections) {
     days.length ? `Measured ${texts([days[0], days.at(-1)]).join(' to ')}` : null,
     operator ? `Operator ${operator}` : null,
     serial ? `Serial numbers ${serial}` : null,
+    sections.some(({result}) => result.simulated) ? 'Contains simulated readings' : null,
   ].filter(Boolean).join(' \u00b7 ');
 }
 

@@ -63,6 +63,7 @@ class FuseTest(ProgramCase):
         self.assertNotIn("PRIOR ONLY", text)
         result = json.loads(json_file.read_text())
         self.assertEqual(result["contradictions"], [])
+        self.assertTrue(result["simulated"])
         self.assertEqual([run["kind"] for run in result["chi2"]], 3 * ["sweep"] + ["linkage", "length"])
         self.assertEqual(len(result["observability"]), 21)
         truth = json.loads((self.path / "truth.json").read_text())

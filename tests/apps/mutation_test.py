@@ -124,6 +124,14 @@ JOBS = (
     Job("calibrate cube.csv --machine mill.toml --folds 1 -o {out}.toml", ("cube.csv",), ("{out}.toml",)),
     Job("circle linkage.csv --machine mill.toml --calibration linkage.toml --json {out}.json", ("linkage.toml",),
         ("{out}.json",)),
+    Job("path square.csv --machine mill.toml --test square --json {out}.json", ("square.csv",), ("{out}.json",)),
+    Job("path square.csv --machine mill.toml --test path.csv --json {out}.json", ("path.csv",), ("{out}.json",)),
+    Job("diagnose sweep.csv --machine mill.toml -o {out}.toml --json {out}.json", ("sweep.csv", "mill.toml"),
+        ("{out}.toml", "{out}.json")),
+    Job("fuse sweep.csv --machine mill.toml --fixed-smoothness -o {out}.toml --json {out}.json",
+        ("sweep.csv", "mill.toml"), ("{out}.toml", "{out}.json")),
+    Job("fuse sweep.csv --machine mill.toml --fixed-smoothness --causes causes.toml -o {out}.toml", ("causes.toml",),
+        ("{out}.toml",)),
     Job("plate holes.csv --machine mill.toml -o {out}.toml", ("holes.csv",), ("{out}.toml",)),
     Job("export map.toml --format csv --points 3 --out {out}.csv", ("map.toml",), ("{out}.csv",)),
     Job("export map.isg --chain [w.X.Y.b.Z.t] --format csv --points 3 --out {out}.csv", ("map.isg",), ("{out}.csv",)),
@@ -175,6 +183,7 @@ class MutationTest(unittest.TestCase):
         record("cube.csv", "--course", "cube", "--points", "4,3,3", "--dwell", 0.01, "--reference", "--feed", 6000)
         record("linkage.csv", "--course", "circle", "--size", 10, "--rate", 20)
         record("circle.csv", "--course", "circle", "--size", 10, "--rate", 20, "--kind", "reference")
+        record("square.csv", "--course", "square", "--kind", "reference", "--size", 10, "--rate", 20)
         record("holes.csv", "--plate")
         cls.abbe("calibrate", "cube.csv", "--machine", "mill.toml", "--folds", 1, "-o", "linkage.toml", "--quiet")
         cls.abbe("reduce", "sweep.csv", "--machine", "mill.toml", "--json", "results/sweep.json", "--quiet")

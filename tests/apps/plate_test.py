@@ -35,6 +35,7 @@ class PlateTest(ProgramCase):
             self.assertIn(words, text)
         self.assertNotIn("prior only", text)
         result, truth = json.loads(json_file.read_text()), json.loads(truth_file.read_text())
+        self.assertTrue(result["simulated"])
         self.assertEqual(sorted(result["errors"]), sorted(MOTIONS))
         pulls = []
         for name, curve in result["errors"].items():

@@ -91,11 +91,11 @@ test(
     }));
 
 test(
-    'the title says when, who and with what',
+    'the title says when, who and with what, and that a part is simulated',
     () => withPage({}, async (page) => {
       assert.match(
           await page.locator('#protocol').textContent(),
-          /^Measured 2\d Nov 2026.* \u00b7 Operator A\. Smith \u00b7 Serial numbers mill 4711, head P-12$/);
+          /^Measured 2\d Nov 2026.* \u00b7 Operator A\. Smith \u00b7 Serial numbers mill 4711, head P-12 \u00b7 Contains simulated readings$/);
     }));
 
 test(

@@ -363,6 +363,7 @@ export function calibrationResult() {
   const centres = [0.01, 0.02];
   return {
     abbe: '0.1.0',
+    simulated: true,
     command: 'calibrate',
     kind: 'calibration',
     recordings: ['cube.csv'],
