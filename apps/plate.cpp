@@ -57,8 +57,7 @@ int Plate(const PlateArguments& arguments) {
   PlateResult result{
       fusion::Fuse(machine, runs, {.choose_smoothness = !arguments.fixed_smoothness}), {}, {}, {}};
   const fusion::FuseReport& fused = result.fused;
-  result.diagonals =
-      fusion::SquarenessByDiagonals(fused.map.model(), machine.reference, setups, fused.fit);
+  result.diagonals = fusion::SquarenessByDiagonals(fused, machine.reference, setups);
   if (arguments.holdout > 0) {
     result.interpolators =
         fusion::CompareInterpolators(machine, fused.chosen_smoothness, setups, arguments.holdout);

@@ -68,8 +68,7 @@ TEST(PlateAccuracy, StatesTrueUncertainties) {
       each[static_cast<std::size_t>(error)].Add(off, curve.u[0], kCoverage);
       if (error == chosen) one.Add(off, curve.u[0], kCoverage);
     }
-    const auto by = SquarenessByDiagonals(measured.report.map.model(), campaign.reference,
-                                          measured.setups, measured.report.fit);
+    const auto by = SquarenessByDiagonals(measured.report, campaign.reference, measured.setups);
     for (std::size_t k = 0; k < by.size(); ++k) {
       const double truth = TrueError(campaign.rig.world(), kMotionErrors + static_cast<int>(k), 0);
       diagonals[k].Add(by[k].value - truth, by[k].u, kCoverage);
