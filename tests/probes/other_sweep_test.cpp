@@ -164,11 +164,19 @@ TEST(SweepOfAnotherWorld, FollowsTheNoise) {
       {.name = "readings x 3", .change = [](rig::RigSettings& rig) { rig.white *= 3.0; }},
       {.name = "drift x 3", .change = drift(3.0), .note = scatter},
       {.name = "drift x 10", .change = drift(10.0), .note = scatter},
+      {.name = "readings and drift x 3",
+       .change =
+           [](rig::RigSettings& rig) {
+             rig.white *= 3.0;
+             rig.drift *= 3.0;
+           },
+       .note = scatter},
       {.name = "drift three times as fast",
        .change = [](rig::RigSettings& rig) { rig.drift_time /= 3.0; },
        .note = scatter},
       {.name = "heavy tails", .extra = HeavyTails},
       {.name = "memory of 0.1 s", .extra = Memory(0.1), .note = scatter},
+      {.name = "memory of 1 s", .extra = Memory(1.0), .note = scatter},
       {.name = "memory of 10 s", .extra = Memory(10.0), .note = scatter},
       {.name = "memory of 60 s", .extra = Memory(60.0), .note = scatter},
       {.name = "drift x 3, one pass",
