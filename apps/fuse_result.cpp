@@ -9,6 +9,7 @@
 
 #include "apps/map_json.h"
 #include "apps/parameters_json.h"
+#include "fusion/plate_form.h"
 #include "settings/unit.h"
 
 namespace abbe::apps {
@@ -58,9 +59,10 @@ std::string MachineFileNotes(const fusion::FuseReport& report) {
   for (const auto& line : report.statements) {
     if (!line.Refuted()) continue;
     text += fmt::format(
-        "\nMACHINE FILE: {} = {:.3g}, but the runs say {:.3g}; the map follows the "
+        "\n{}: {} = {:.3g}, but the runs say {:.3g}; the map follows the "
         "runs; state it\n",
-        line.key, line.stated / line.unit, line.seen / line.unit);
+        line.key == fusion::kPlateFormKey ? "RECORDING" : "MACHINE FILE", line.key,
+        line.stated / line.unit, line.seen / line.unit);
   }
   for (std::size_t i = 0; i < report.noise.size(); ++i) {
     if (report.noise[i] == 1.0) continue;

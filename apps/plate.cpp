@@ -53,17 +53,22 @@ int Plate(const PlateArguments& arguments) {
   const machine::Machine machine = ReadMachineOf(arguments.machine);
   nlohmann::ordered_json whose;
   const auto setups = ReadSetups(arguments, machine, whose);
-  const machine::VolumetricModel model = fusion::UnknownMachine(machine);
-  std::vector<simulation::SimulatedRun> runs;
-  runs.reserve(setups.size());
-  for (const auto& setup : setups) {
-    runs.push_back(simulation::SimulatePlate(model, machine.reference, setup));
-  }
+  const auto runs_on = [&](const machine::VolumetricModel& model) {
+    std::vector<simulation::SimulatedRun> runs;
+    runs.reserve(setups.size());
+    for (const auto& setup : setups) {
+      runs.push_back(simulation::SimulatePlate(model, machine.reference, setup));
+    }
+    return runs;
+  };
   PlateResult result{
-      fusion::Fuse(machine, runs, {.choose_smoothness = !arguments.fixed_smoothness}), {}, {}, {}};
+      fusion::Fuse(machine, runs_on(fusion::UnknownMachine(machine)),
+                   {.choose_smoothness = !arguments.fixed_smoothness, .runs_on = runs_on}),
+      {},
+      {},
+      {}};
   const fusion::FuseReport& fused = result.fused;
-  result.diagonals =
-      fusion::SquarenessByDiagonals(fused.map.model(), machine.reference, setups, fused.fit);
+  result.diagonals = fusion::SquarenessByDiagonals(fused, machine.reference, setups);
   if (arguments.holdout > 0) {
     result.interpolators =
         fusion::CompareInterpolators(machine, fused.chosen_smoothness, setups, arguments.holdout);

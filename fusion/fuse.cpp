@@ -1,6 +1,5 @@
 #include "fusion/fuse.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,8 +8,9 @@
 #include <utility>
 
 #include "estimation/linearization.h"
+#include "fusion/plate_form.h"
 #include "fusion/target_form.h"
-#include "fusion/unknown_displacement.h"
+#include "settings/unit.h"
 #include "simulation/linkage/linkage_problem.h"
 
 namespace abbe::fusion {
@@ -45,35 +45,6 @@ std::vector<int> ColumnsOf(const estimation::Layout& layout,
     }
   }
   return columns;
-}
-
-// The parameters of `model` whose functions come nearest to those of another: the same ones where
-// both have the same knots.
-VectorXd ParametersOn(const machine::VolumetricModel& model,
-                      const machine::VolumetricModel& other) {
-  constexpr Index kStations = 4;  // for each parameter
-  VectorXd parameters = model.Parameters();
-  if (other.ParameterCount() == model.ParameterCount()) return other.Parameters();
-  parameters.tail<3>() = other.Parameters().tail<3>();
-  Index first = 0;
-  for (int error = 0; error < machine::kAxes * machine::kMotions; ++error) {
-    const int axis = error / machine::kMotions, motion = error % machine::kMotions;
-    const auto& function = model.Function(axis, motion);
-    const Index size = function.size();
-    if (size == 0) continue;
-    const auto& travel = model.travels()[static_cast<std::size_t>(axis)];
-    const VectorXd x = VectorXd::LinSpaced(kStations * size, travel.first, travel.last);
-    Eigen::MatrixXd rows(x.size(), size);
-    VectorXd values(x.size()), gradient(size);
-    for (Index i = 0; i < x.size(); ++i) {
-      function.Evaluate(x[i], nullptr, gradient.data());
-      rows.row(i) = gradient.transpose();
-      values[i] = other.Function(axis, motion).Evaluate(x[i]);
-    }
-    parameters.segment(first, size) = rows.completeOrthogonalDecomposition().solve(values);
-    first += size;
-  }
-  return parameters;
 }
 
 map::Source SourceOf(const std::string& kind) {
@@ -199,9 +170,24 @@ class FuseJob {
     form_ = seen.form;
     for (SimulatedRun& run : runs_) SetForm(form_, run);
     statements_ = std::move(seen.statements);
+    if (SetHoles(now.fit)) noise = true;
     by_theta_ = std::move(seen.by_theta);
     if (Refine()) return Change::kKnots;
     return noise ? Change::kNoise : Change::kNone;
+  }
+
+  // The form of a plate; false where it has settled.
+  bool SetHoles(const Result& fit) {
+    const PlateForm found = EstimatePlateForm(fit, runs_, holes_);
+    if (found.stated == 0.0) return false;
+    statements_.push_back({.key = kPlateFormKey,
+                           .unit = settings::kMicro,
+                           .stated = found.stated,
+                           .seen = found.times * found.stated,
+                           .u_log = found.u_log});
+    const double before = std::exchange(holes_, found.times);
+    SetPlateForm(holes_, before, runs_);
+    return std::abs(std::log(holes_ / before)) > kNoiseSettled;
   }
 
   // Finer knots where a function needs them; false where none does.
@@ -219,6 +205,7 @@ class FuseJob {
     if (!finer) return false;
     model_ = UnknownMachine(machine_, knots_);
     runs_ = options_.runs_on(model_);
+    SetPlateForm(holes_, 1.0, runs_);
     AllowForm();
     return true;
   }
@@ -230,7 +217,7 @@ class FuseJob {
         SeeErrors(machine_, found, runs_,
                   ColumnsOf(estimation::Layout(now.problem), model_.Blocks()), now.at);
     if (by_theta_.size() > 0) seen.covariance += by_theta_ * by_theta_.transpose();
-    AddDoubt(found, seen.covariance);
+    AddDoubt(options_.doubt, found, -machine_.reference, seen.covariance);
     FuseReport report{.map = MapOf(found, seen)};
     report.functions = std::move(seen.functions);
     report.scale = seen.scale;
@@ -322,17 +309,6 @@ class FuseJob {
     return machine_.population.smoothness;
   }
 
-  void AddDoubt(const machine::VolumetricModel& found, Eigen::MatrixXd& covariance) const {
-    const Doubt& doubt = options_.doubt;
-    if (doubt.other != nullptr) {
-      const VectorXd change = found.Parameters() - ParametersOn(found, doubt.other->model());
-      covariance += change * change.transpose();
-    }
-    if (doubt.displacement > 0.0) {
-      covariance += UnknownDisplacement(found, -machine_.reference, doubt.displacement);
-    }
-  }
-
   map::ErrorMap MapOf(const machine::VolumetricModel& found, const SeenErrors& seen) const {
     map::MapOrigin origin;
     origin.machine = machine_.name;
@@ -356,6 +332,7 @@ class FuseJob {
   VectorXd theta_;  // population_estimate.h
   std::vector<double> noise_;
   double form_ = kHardlyMoreForm;  // of the target, over what the file states
+  double holes_ = 1.0;             // of the form of a plate, the same
   std::vector<Statement> statements_;
   Eigen::MatrixXd by_theta_;  // population_estimate.h
 };

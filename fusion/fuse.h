@@ -23,20 +23,13 @@
 #include "estimation/result.h"
 #include "fusion/holdout.h"
 #include "fusion/machine_problem.h"
+#include "fusion/map_doubt.h"
 #include "fusion/population_estimate.h"
 #include "fusion/run_consistency.h"
 #include "fusion/seen_errors.h"
 #include "map/error_map.h"
 
 namespace abbe::fusion {
-
-// Beside the noise of the runs (simulation/doubt.h).
-struct Doubt {
-  // The map may as well be this one: the difference counts as one standard uncertainty.
-  const map::ErrorMap* other = nullptr;
-  // m: standard deviation of an unknown displacement, rms over the travels and the components.
-  double displacement = 0.0;
-};
 
 // What explains a contradiction: the run agrees with the others once it has this of its own. kNone:
 // nothing of these.

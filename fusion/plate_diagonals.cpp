@@ -113,33 +113,35 @@ VectorXd ByParameters(const simulation::SimulatedRun& run, const VectorXd& b, co
 
 }  // namespace
 
-std::array<DiagonalSquareness, 3> SquarenessByDiagonals(const machine::VolumetricModel& model,
+std::array<DiagonalSquareness, 3> SquarenessByDiagonals(const FuseReport& fused,
                                                         const Vector3d& reference,
-                                                        const std::vector<PlateSetup>& setups,
-                                                        const Result& fit) {
+                                                        const std::vector<PlateSetup>& setups) {
+  const machine::VolumetricModel& model = fused.map.model();
+  const Result& fit = fused.fit;
   machine::VolumetricModel square = model;
   square.SetSquareness(Vector3d::Zero());
   std::array<DiagonalSquareness, 3> found{};
   std::array<double, 3> bb{};
   std::array<VectorXd, 3> Jb;
   Jb.fill(VectorXd::Zero(fit.covariance.cols()));
-  for (const PlateSetup& setup : setups) {
+  for (std::size_t i = 0; i < setups.size(); ++i) {
+    const PlateSetup& setup = setups[i];
     const auto here = SquarenessOf(square, reference, setup, fit);
     if (!here) continue;
     const auto k = static_cast<std::size_t>(here->normal);
     found[k].value += here->value;
     ++found[k].setups;
-    bb[k] += here->b.squaredNorm();
+    bb[k] += std::pow(fused.noise[i], 2) * here->b.squaredNorm();
     Jb[k] += ByParameters(simulation::SimulatePlate(model, reference, setup), here->b, fit);
   }
-  const Eigen::Matrix3d of_fit = fit.Covariance("squareness", "squareness");
   for (std::size_t k = 0; k < found.size(); ++k) {
     auto& [value, u, count] = found[k];
     const double seen = bb[k] - Jb[k].dot(fit.covariance * Jb[k]);
-    const auto diagonal = static_cast<Index>(k);
+    const int error = machine::kAxes * machine::kMotions + static_cast<int>(k);
+    const double u_fit = fused.map.CurveOf(error, VectorXd::Zero(1)).u[0];
     value = count == 0 ? std::numeric_limits<double>::quiet_NaN() : value / count;
     u = count == 0 ? std::numeric_limits<double>::infinity()
-                   : std::sqrt(of_fit(diagonal, diagonal) + std::max(seen, 0.0) / (count * count));
+                   : std::sqrt(u_fit * u_fit + std::max(seen, 0.0) / (count * count));
   }
   return found;
 }

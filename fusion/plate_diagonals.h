@@ -1,6 +1,6 @@
 // Squareness from the diagonals of a hole plate, to compare with that of the fit.
 //
-//   SquarenessByDiagonals(model, reference, setups, fit)
+//   SquarenessByDiagonals(fused, reference, setups)
 //
 // On a machine whose axes are not square, one diagonal of a plate in their plane is measured too
 // long, the other too short. With the other errors of the machine and the form of the plate
@@ -19,6 +19,8 @@
 //
 //   u^2 = u_fit^2 + b' b - (J' b)' C (J' b)
 //
+// with u_fit that of the map and the noise of each set-up as the fit found it.
+//
 // Units: rad. Failure: none; without a plate in a plane `setups` is 0 and the value NaN.
 // Source: Ha and Khanh, "An application of neural network in calibration of coordinate measuring
 // machines" (2011), section 3: squareness by the diagonal method and the errors calculated before;
@@ -28,7 +30,7 @@
 #include <array>
 #include <vector>
 
-#include "estimation/result.h"
+#include "fusion/fuse.h"
 #include "simulation/points/plate_simulation.h"
 
 namespace abbe::fusion {
@@ -38,9 +40,9 @@ struct DiagonalSquareness {
   int setups;
 };
 
-// A0Z, B0Z, C0Y. `model` as fitted, `fit` with the form of the plate.
+// A0Z, B0Z, C0Y. `fused`: of the set-ups, in their order, and of no other runs before them.
 std::array<DiagonalSquareness, 3> SquarenessByDiagonals(
-    const machine::VolumetricModel& model, const Eigen::Vector3d& reference,
-    const std::vector<simulation::PlateSetup>& setups, const estimation::Result& fit);
+    const FuseReport& fused, const Eigen::Vector3d& reference,
+    const std::vector<simulation::PlateSetup>& setups);
 
 }  // namespace abbe::fusion

@@ -116,6 +116,7 @@ TargetSettings ReadTargetSettings(const Table& root) {
   const Table table = root.Child("target");
   const TargetSettings target{
       .form = table.Quantity("form_nm", {.fallback = 10.0, .at_least = 0.0}),
+      .form_known_to = table.Number("form_known_to", {.fallback = kKnownTo, .at_least = 1.0}),
       .form_length = table.Quantity("form_length_mm", {.fallback = 15.0, .above = 0.0}),
       .squareness = table.Quantity("squareness_urad", {.fallback = 0.0}),
       .u_squareness = table.Quantity("u_squareness_urad", {.fallback = 0.0, .at_least = 0.0})};

@@ -62,11 +62,15 @@ struct HeadSettings {
   const AxisFrame& Frame(char axis) const { return axes[machine::AxisIndex(axis)]; }
 };
 
+// The factor to which a stated size is known where neither data nor the file say more.
+inline constexpr double kKnownTo = 2.0;
+
 struct TargetSettings {
-  double form;          // m: standard deviation of the flatness of a face
-  double form_length;   // m: its correlation length
-  double squareness;    // rad: side face against top face, from its certificate
-  double u_squareness;  // rad: standard uncertainty of that
+  double form;           // m: standard deviation of the flatness of a face
+  double form_known_to;  // the factor to which that is known; 1: measured
+  double form_length;    // m: its correlation length
+  double squareness;     // rad: side face against top face, from its certificate
+  double u_squareness;   // rad: standard uncertainty of that
 };
 
 struct ProbeNoise {

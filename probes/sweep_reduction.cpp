@@ -8,8 +8,10 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "failure/failure.h"
 #include "probes/sweep_slips.h"
@@ -37,6 +39,9 @@ double RootMeanSquare(const Eigen::MatrixXd& covariance) {
 std::vector<double> ToList(const Eigen::VectorXd& values) {
   return {values.data(), values.data() + values.size()};
 }
+
+// Whether passes show the noise.
+bool Checked(const StationMeans& means) { return means.noise.dof > 0.0; }
 
 // Turns the errors and covariances of groups into the results of one component.
 class ComponentEvaluation {
@@ -77,8 +82,9 @@ class ComponentEvaluation {
     result.coverage = Quantile(0.975, dof);
     if (result.reversal) {
       const Uncertain& mean = result.reversal->mean;
-      result.reversal->seen =
-          std::abs(mean.value) > Quantile(1.0 - kFalseAlarm / 2.0, dof) * mean.u;
+      const double beyond =
+          Checked(means_) ? Quantile(1.0 - kFalseAlarm / 2.0, dof) : kBeyondUnchecked;
+      result.reversal->seen = std::abs(mean.value) > beyond * mean.u;
     }
     return result;
   }
@@ -151,6 +157,8 @@ class ComponentEvaluation {
 
   static constexpr double kKnown = 2e6;               // degrees of freedom as good as infinite
   static constexpr double kFalseAlarm = 0.01 / 15.0;  // of one reversal
+  // Of a normal number of lognormal size (UncheckedTimes(kKnownTo)) in its rms, two-sided.
+  static constexpr double kBeyondUnchecked = 7.8;
 
   const StationMeans& means_;
   const SweepGauge& gauge_;
@@ -185,6 +193,33 @@ std::string LeverText(const SweepResult& result, const GroupErrors& errors,
     }
   }
   return text;
+}
+
+// How much rests on the stated form of the target, which one sweep cannot check.
+std::optional<std::string> FormNote(const TargetSettings& target, const SweepResult& result) {
+  constexpr double kMatters = 0.1;  // of a variance
+  constexpr double kTimes = 3.0;
+  constexpr std::size_t kForm = kSources - 1;
+  if (target.form_known_to == 1.0) return std::nullopt;
+  double most = 0.0;
+  std::string name;
+  for (const ComponentResult& component : result.components) {
+    double all = 0.0;
+    for (const double source : component.budget) all += source * source;
+    const double share = all > 0.0 ? std::pow(component.budget[kForm], 2) / all : 0.0;
+    if (share <= most) continue;
+    most = share;
+    name = component.component.name;
+  }
+  if (most < kMatters) return std::nullopt;
+  const double flatter = std::pow(UncheckedTimes(target.form_known_to), -2);
+  return fmt::format(
+      "{:.0f} % of the variance of {} rest on target.form_nm = {:.3g}, which one sweep cannot check: "
+      "u holds it as known to a factor of {:.3g}; on a target with {:.0f} times that form U95 would "
+      "be {:.1f} times as large. Measure the flatness of the faces and state it with form_known_to "
+      "= 1, or sweep once more with the target shifted or reversed and fuse",
+      100.0 * most, name, target.form * 1e9, target.form_known_to, kTimes,
+      std::sqrt(1.0 + most * (kTimes * kTimes * flatter - 1.0)));
 }
 
 std::vector<std::string> AssumptionNotes(const HeadSettings& head, const SweepResult& result,
@@ -226,7 +261,12 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
   recording::RefuseOtherMachine(recording, setup.machine.name);
   const SweepDwells sweep = FindDwells(recording, DwellRuleOf(recording), setup.head.Ranges());
   RefuseSlips(recording.name, sweep, setup.machine, setup.head);
-  const StationMeans means = FitStations(recording.name, sweep, setup.noise);
+  StationMeans means = FitStations(recording.name, sweep, setup.noise);
+  if (!Checked(means)) {
+    for (auto& covariance : means.covariance) {
+      covariance *= std::pow(UncheckedTimes(kKnownTo), 2);
+    }
+  }
   const SweepInversion inversion(setup.machine, setup.head, sweep.axis, sweep.start);
   const auto directions = static_cast<Eigen::Index>(means.directions.size());
   const GroupErrors errors = inversion.Errors(means.gap, means.position, directions);
@@ -263,6 +303,7 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
                  uncertainty.Covariance(i), errors.row(at_target).transpose(),
                  uncertainty.Covariance(at_target));
   }
+  if (auto note = FormNote(setup.target, result)) result.notes.push_back(std::move(*note));
   std::ranges::move(AssumptionNotes(setup.head, result, errors, gauge),
                     std::back_inserter(result.notes));
   return result;

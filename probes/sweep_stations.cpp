@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
@@ -60,7 +61,7 @@ void KeepCompleteStations(const std::string& name, const SweepDwells& sweep, Sta
 // The fits of all probes under one noise model.
 class DwellFit {
  public:
-  DwellFit(const StationMeans& means, const ProbeNoise& noise) : noise_(noise) {
+  explicit DwellFit(const StationMeans& means) {
     const auto directions = static_cast<int>(means.directions.size());
     const auto dwells = static_cast<Eigen::Index>(means.dwells.size());
     values_.resize(dwells, kProbes);
@@ -81,25 +82,28 @@ class DwellFit {
     return static_cast<double>(kProbes) * static_cast<double>(values_.rows() - group_count_);
   }
 
-  // `white`: m^2, dwells x probes. Returns chi2 of all probes.
-  double Run(const Eigen::MatrixXd& white, StationMeans& means) const {
-    double chi2 = 0.0;
+  struct Sums {
+    double chi2 = 0.0, log_likelihood = 0.0;  // of all probes
+  };
+  // `white`: m^2, dwells x probes.
+  Sums Run(const Eigen::MatrixXd& white, const ProbeNoise& noise, StationMeans& means) const {
+    Sums sums;
     means.gap.resize(kProbes, group_count_);
     for (std::size_t probe = 0; probe < kProbes; ++probe) {
       const Eigen::VectorXd white_of_probe = white.col(Row(probe));
       const auto fit = estimation::FitGroupsUnderDrift(
           times_, groups_, values_.col(Row(probe)),
           std::span(white_of_probe.data(), static_cast<std::size_t>(white_of_probe.size())),
-          noise_.drift, noise_.drift_time, group_count_);
+          noise.drift, noise.drift_time, group_count_);
       means.gap.row(Row(probe)) = fit.values.col(0).transpose();
       means.covariance[probe] = fit.covariance;
-      chi2 += fit.chi_square[0];
+      sums.chi2 += fit.chi_square[0];
+      sums.log_likelihood += fit.log_restricted_likelihood[0];
     }
-    return chi2;
+    return sums;
   }
 
  private:
-  const ProbeNoise& noise_;
   std::vector<double> times_;
   std::vector<int> groups_;
   Eigen::MatrixXd values_;
@@ -132,11 +136,12 @@ Eigen::MatrixXd Constant(const StationMeans& means, double variance) {
 }
 
 // The variance of a dwell for which the scatter between the passes has chi2 = dof.
-double WhiteFromPasses(const DwellFit& fit, StationMeans& means) {
+double WhiteFromPasses(const DwellFit& fit, const ProbeNoise& noise, StationMeans& means) {
   double low = 1e-12, high = 1e-3;  // m
   for (int step = 0; step < 50; ++step) {
     const double middle = std::sqrt(low * high);
-    (fit.Run(Constant(means, middle * middle), means) > fit.dof() ? low : high) = middle;
+    (fit.Run(Constant(means, middle * middle), noise, means).chi2 > fit.dof() ? low : high) =
+        middle;
   }
   return low * high;
 }
@@ -160,7 +165,7 @@ Eigen::MatrixXd ChooseWhite(const SweepDwells& sweep, const ProbeNoise& noise, c
                     "scatter between "
                     "the passes, with {} degrees of freedom",
                     fit.dof()));
-    return Constant(means, WhiteFromPasses(fit, means));
+    return Constant(means, WhiteFromPasses(fit, noise, means));
   }
   means.notes.push_back(
       "one reading per dwell and one pass show no noise: it is taken from noise.probe_nm of the "
@@ -169,9 +174,55 @@ Eigen::MatrixXd ChooseWhite(const SweepDwells& sweep, const ProbeNoise& noise, c
   return Constant(means, noise.probe * noise.probe);
 }
 
-// Tests the noise model against the scatter between the passes; where that is significantly larger,
-// scales the covariances up.
-void CheckAgainstPasses(double chi2, double dof, StationMeans& means) {
+// The logarithms of the white noise, the drift and its time against what is stated.
+using Factors = std::array<double, 3>;
+
+ProbeNoise Times(ProbeNoise noise, const Factors& logs) {
+  noise.drift *= std::exp(logs[1]);
+  noise.drift_time *= std::exp(logs[2]);
+  return noise;
+}
+
+// The noise that makes the dwells most probable: each of `logs` is normal with kUnknown before. One
+// after the other is moved by ever smaller steps.
+Factors MostProbableNoise(const DwellFit& fit, const ProbeNoise& noise, StationMeans means) {
+  constexpr double kUnknown = 0.7, kFirstStep = 0.7, kLastStep = 0.05;
+  const Eigen::MatrixXd white = means.white;
+  const auto probability = [&](const Factors& logs) {
+    double log = fit.Run(std::exp(2.0 * logs[0]) * white, Times(noise, logs), means).log_likelihood;
+    for (const double each : logs) log -= 0.5 * std::pow(each / kUnknown, 2);
+    return log;
+  };
+  Factors best{};
+  double most = probability(best);
+  for (double step = kFirstStep; step > kLastStep;) {
+    bool moved = false;
+    for (double& each : best) {
+      for (const double way : {step, -step}) {
+        each += way;
+        const double here = probability(best);
+        if (here > most) {
+          most = here;
+          moved = true;
+          break;
+        }
+        each -= way;
+      }
+    }
+    if (!moved) step /= 2.0;
+  }
+  return best;
+}
+
+bool Scattered(double chi2, double dof) {
+  return chi2 > boost::math::quantile(boost::math::chi_squared(dof), kSignificance);
+}
+
+// Tests the noise model against the scatter between the passes. Where that is significantly larger,
+// takes the noise from it; what that does not explain scales the covariances up.
+void CheckAgainstPasses(const DwellFit& fit, const ProbeNoise& noise, double chi2,
+                        StationMeans& means) {
+  const double dof = fit.dof();
   means.noise.chi2 = chi2;
   means.noise.dof = dof;
   if (dof <= 0.0) {
@@ -179,15 +230,21 @@ void CheckAgainstPasses(double chi2, double dof, StationMeans& means) {
         "one pass: nothing checks the noise model; measure at least two passes to see the scatter");
     return;
   }
-  if (chi2 <= boost::math::quantile(boost::math::chi_squared(dof), kSignificance)) return;
+  if (!Scattered(chi2, dof)) return;
   means.noise.scale = std::sqrt(chi2 / dof);
   means.noise.u_dof = dof;
-  for (Eigen::MatrixXd& covariance : means.covariance) covariance *= chi2 / dof;
+  const Factors found = MostProbableNoise(fit, noise, means);
+  means.white *= std::exp(2.0 * found[0]);
+  const double left = fit.Run(means.white, Times(noise, found), means).chi2;
+  if (Scattered(left, dof)) {
+    for (Eigen::MatrixXd& covariance : means.covariance) covariance *= left / dof;
+  }
   means.notes.push_back(fmt::format(
-      "the passes scatter {:.2f} times more than the noise model predicts: the noise part "
-      "of u is scaled "
-      "up by it; look for drift, vibration or a loose mounting, or correct [noise]",
-      means.noise.scale));
+      "the passes scatter {:.2f} times more than the noise model predicts: the noise part of u is "
+      "scaled up to what they show, white noise {:.1f} times, drift {:.1f} times and its time "
+      "{:.1f} times what the dwells and [noise] say; look for drift, vibration or a loose "
+      "mounting, or correct [noise]",
+      means.noise.scale, std::exp(found[0]), std::exp(found[1]), std::exp(found[2])));
 }
 
 void FillResidualsAndFigures(const SweepDwells& sweep, const DwellFit& fit, StationMeans& means) {
@@ -221,11 +278,11 @@ StationMeans FitStations(const std::string& name, const SweepDwells& sweep,
                          const ProbeNoise& noise) {
   StationMeans means;
   KeepCompleteStations(name, sweep, means);
-  const DwellFit fit(means, noise);
+  const DwellFit fit(means);
   means.white = ChooseWhite(sweep, noise, fit, means);
-  const double chi2 = fit.Run(means.white, means);
+  const double chi2 = fit.Run(means.white, noise, means).chi2;
+  CheckAgainstPasses(fit, noise, chi2, means);
   FillResidualsAndFigures(sweep, fit, means);
-  CheckAgainstPasses(chi2, fit.dof(), means);
   return means;
 }
 

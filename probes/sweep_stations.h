@@ -14,6 +14,10 @@
 // With one reading per dwell there is no such scatter: the variance is then that of the scatter
 // between the passes or, with one pass, that of the machine file.
 //
+// The scatter between the passes tests this (chi2). Where it is significantly larger, white noise,
+// drift and its time are those that make the dwells most probable (restricted maximum likelihood,
+// each within a factor of two of what was said before, normal in its logarithm).
+//
 // Groups are numbered station * directions + k, k in the order of `directions`. Units: m, s.
 // Failure: InputError when fewer than three stations were approached from every direction of the
 // sweep.
@@ -38,7 +42,7 @@ struct NoiseFigures {
   PerProbe<ProbeFigures> probes;
   double chi2 = 0.0;   // of the scatter between passes under the noise model, all probes
   double dof = 0.0;    // its degrees of freedom; 0 with one pass
-  double scale = 1.0;  // the covariance was multiplied by scale^2
+  double scale = 1.0;  // sqrt(chi2 / dof) where that is significant
   double u_dof = 0.0;  // degrees of freedom of the noise's standard uncertainty
 };
 

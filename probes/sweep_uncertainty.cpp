@@ -17,6 +17,8 @@ bool OnTop(std::size_t probe) { return probe < kTopProbes; }
 
 }  // namespace
 
+double UncheckedTimes(double known_to) { return std::exp(std::pow(std::log(known_to), 2)); }
+
 SweepUncertainty::SweepUncertainty(const machine::Machine& machine, const HeadSettings& head,
                                    const TargetSettings& target, char axis,
                                    const Eigen::Vector3d& start, const StationMeans& means)
@@ -101,7 +103,7 @@ Eigen::MatrixXd SweepUncertainty::NoiseCovariance(Eigen::Index row) const {
 void SweepUncertainty::AddForm() {
   const Eigen::Index groups = means_.groups();
   const double sense = moving_ == MovingBody::kTarget ? -1.0 : 1.0;
-  const double variance = target_.form * target_.form;
+  const double variance = std::pow(target_.form * UncheckedTimes(target_.form_known_to), 2);
   const double scale = -0.5 / (target_.form_length * target_.form_length);
   for (std::size_t p = 0; p < kProbes; ++p) {
     for (std::size_t q = 0; q < kProbes; ++q) {

@@ -5,7 +5,8 @@
 //   position      of each probe in the fixture (head.tolerance.probe_position)
 //   installation  of the head: three angles, three offsets (head.tolerance)
 //   form          of the target: a Gaussian process over each face with standard deviation
-//                 target.form and correlation exp(-(distance / form_length)^2 / 2)
+//                 target.form and correlation exp(-(distance / form_length)^2 / 2), larger by
+//                 UncheckedTimes(target.form_known_to)
 //
 // A reading contains the form at the point where its measuring line meets the face: at u - d where
 // the target moves, at u + d where the head moves. Probes that follow each other along one line
@@ -36,6 +37,11 @@ namespace abbe::probes {
 inline constexpr std::size_t kSources = 5;
 inline constexpr std::array<std::string_view, kSources> kSourceNames = {"noise", "gain", "position",
                                                                         "installation", "form"};
+
+// A size that nothing checks is lognormal about what is stated, with the logarithm of `known_to` as
+// standard deviation: its root mean square over what is stated. 1 for a size that is known, 1.62
+// for one that is known to a factor of two. In multiples of that rms, U95 is 2.03, near 1.96.
+double UncheckedTimes(double known_to);
 
 class SweepUncertainty {
  public:

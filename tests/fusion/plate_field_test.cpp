@@ -69,8 +69,7 @@ TEST_F(PlugPlate, HasTheSquarenessOfItsAffineFit) {
   ASSERT_EQ(setups_.at(0).holes.size(), 650u);
   const FuseReport report = Fused();
   const double squareness = report.map.model().squareness().z();
-  const auto by =
-      SquarenessByDiagonals(report.map.model(), machine_->reference, setups_, report.fit);
+  const auto by = SquarenessByDiagonals(report, machine_->reference, setups_);
   fmt::print("squareness {:.2f} urad, u {:.2f}; by diagonals {:.2f}; smooth over {:.0f} mm\n",
              1e6 * squareness, 1e6 * report.functions.back().u, 1e6 * by[2].value,
              1e3 * report.chosen_smoothness);

@@ -49,6 +49,7 @@ class Campaign {
         devices_(hal::ReadDevices(document_.Root().Child("devices"))),
         setup_(ReadSweepSetup(document_.Root())),
         rig_(rig::ReadRigSettings(document_.Root())) {
+    setup_.target.form_known_to = 1.0;  // the target of the rig is as flat as the file says
     if (head == Head::kPerfect) {
       setup_.head.tolerance = {};
       setup_.target.form = 0.0;

@@ -106,6 +106,36 @@ TEST(SweepReduction, OneDirectionHasNoReversal) {
   EXPECT_THAT(result.notes, testing::Contains(testing::HasSubstr("one pass")));
 }
 
+// Known to a factor of two, lognormal: its mean square is larger by exp(2 ln(2)^2).
+TEST(SweepReduction, AFormThatNobodyMeasuredCountsMoreAndIsNamed) {
+  SweepSetup setup = TestSetup();
+  const recording::Recording recording = Record({.white = 20e-9}, setup);
+  const SweepResult stated = ReduceSweep(recording, setup);
+  setup.target.form_known_to = 1.0;
+  const SweepResult measured = ReduceSweep(recording, setup);
+  constexpr std::size_t kForm = kSources - 1;
+  const double larger = std::exp(2.0 * std::log(2.0) * std::log(2.0));
+  for (std::size_t c = 0; c < kComponents; ++c) {
+    EXPECT_NEAR(std::pow(stated.components[c].budget[kForm], 2),
+                larger * std::pow(measured.components[c].budget[kForm], 2), 1e-22);
+  }
+  EXPECT_THAT(stated.notes, testing::Contains(testing::HasSubstr("target.form_nm = 10")));
+  EXPECT_THAT(measured.notes, testing::Not(testing::Contains(testing::HasSubstr("form_nm"))));
+}
+
+// Of one pass the drift may be three times what is stated, and no reversal is seen for it.
+TEST(SweepReduction, OnePassKnowsItsNoiseToAFactorOfTwo) {
+  SweepSetup setup = NoiseOnly();
+  const SweepResult one = ReduceSweep(Record({.passes = 1, .white = 20e-9}, setup), setup);
+  const SweepResult five = ReduceSweep(Record({.passes = 5, .white = 20e-9}, setup), setup);
+  EXPECT_GT(Of(one, "ECX").u[5], 1.4 * std::sqrt(5.0) * Of(five, "ECX").u[5]);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const SyntheticSweep drifting{.passes = 1, .white = 5e-9, .drift = 90e-9, .seed = seed};
+    const SweepResult result = ReduceSweep(Record(drifting, setup), setup);
+    for (const auto& component : result.components) EXPECT_FALSE(component.reversal->seen) << seed;
+  }
+}
+
 TEST(SweepReduction, TooFewStationsAreRefused) {
   const SyntheticSweep sweep{.stations = 2};
   try {

@@ -97,8 +97,24 @@ class SweepDraws {
   Eigen::MatrixXd form_;
 };
 
+// The sizes of 1e5 targets that are known to a factor of two, the form of each at one place.
+TEST(SweepUncertainty, ASizeKnownToAFactorKeepsItsCoverage) {
+  const random::CounterRandom random(1, 1);
+  constexpr std::uint64_t kDraws = 100000;
+  double squares = 0.0, inside = 0.0;
+  for (std::uint64_t i = 0; i < kDraws; ++i) {
+    const double form = std::exp(std::log(2.0) * random.Normal(2 * i)) * random.Normal(2 * i + 1);
+    squares += form * form / kDraws;
+    inside += std::abs(form) < 1.96 * UncheckedTimes(2.0) ? 1.0 / kDraws : 0.0;
+  }
+  EXPECT_NEAR(std::sqrt(squares) / UncheckedTimes(2.0), 1.0, 0.05);
+  EXPECT_NEAR(inside, 0.95, 0.008);
+  EXPECT_DOUBLE_EQ(UncheckedTimes(1.0), 1.0);
+}
+
 void CheckAgainstMonteCarlo(char axis, MovingBody moving) {
-  const SweepSetup setup = TestSetup();
+  SweepSetup setup = TestSetup();
+  setup.target.form_known_to = 1.0;  // all draws are of the form that is stated
   // A target tilted by 0.5 mrad makes the gains matter.
   const SyntheticSweep wanted{.axis = axis,
                               .moving = moving,

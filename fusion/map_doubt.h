@@ -1,0 +1,26 @@
+// What makes a map less certain beside the noise of its runs.
+//
+//   AddDoubt({.displacement = 1e-6}, model, -reference, covariance);
+//
+// Units: m, rad. Failure: none.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "map/error_map.h"
+
+namespace abbe::fusion {
+
+// Beside the noise of the runs (simulation/doubt.h).
+struct Doubt {
+  // The map may as well be this one: the difference counts as one standard uncertainty.
+  const map::ErrorMap* other = nullptr;
+  // m: standard deviation of an unknown displacement, rms over the travels and the components.
+  double displacement = 0.0;
+};
+
+// Widens the covariance of the parameters of `found`; `tool`: m, of the tool point in T.
+void AddDoubt(const Doubt& doubt, const machine::VolumetricModel& found,
+              const Eigen::Vector3d& tool, Eigen::MatrixXd& covariance);
+
+}  // namespace abbe::fusion
