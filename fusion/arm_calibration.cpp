@@ -42,7 +42,7 @@ relm::LinkageSettings GeometryOf(relm::LinkageSettings settings) {
 }
 
 struct FittedRun {
-  LinkageRun kept;
+  LinkageRun kept, recorded;  // without and with causes
   ArmBaseline baseline;
   Index left_out;
   SimulatedRun simulated;
@@ -96,14 +96,18 @@ class ArmJob {
     const auto far = FarOff(run.corrected, baseline);
     const LinkageRun kept = WithoutPoses(run.corrected, far);
     fitted_.push_back(
-        {kept, baseline, static_cast<Index>(far.size()),
+        {kept, WithoutPoses(run.recorded, far), baseline, static_cast<Index>(far.size()),
          SimulateArm(simulation::ArmSimulation(placed), kept, baseline.x, baseline.excess)});
   }
 
   // `placed`: the geometry stays, but for where instrument and further balls stand.
   Result Fit(bool placed) const {
     std::vector<SimulatedRun> runs;
-    for (const FittedRun& run : fitted_) runs.push_back(run.simulated);
+    for (const FittedRun& run : fitted_) {
+      runs.push_back(placed ? simulation::SimulateArm(ArmOf(run.kept), run.recorded, run.baseline.x,
+                                                      run.baseline.excess)
+                            : run.simulated);
+    }
     estimation::Problem problem = simulation::ArmProblem(runs);
     for (std::size_t b = 0; placed && b < problem.blocks().size(); ++b) {
       auto& block = problem.Block({static_cast<int>(b)});
@@ -287,7 +291,9 @@ ArmCalibration CalibrateArm(const relm::LinkageSettings& settings,
 
 void AddDoubt(const ArmCalibration& without, double unexplained, ArmCalibration& found) {
   const VectorXd change = found.written.Numbers() - without.written.Numbers();
-  const double wider = std::hypot(1.0, unexplained / found.ball_noise);
+  double left = 0.0;  // of a coordinate: what is unexplained moves the ball by no more
+  for (const ArmFigures& run : found.runs) left = std::max(left, run.after.rms / std::sqrt(3.0));
+  const double wider = std::hypot(1.0, std::min(unexplained, left) / found.ball_noise);
   found.u95 = ((wider * found.u95).array().square() + (2.0 * change).array().square()).sqrt();
 }
 

@@ -55,7 +55,8 @@ ArmCalibration CalibrateArm(const relm::LinkageSettings& settings,
                             const std::vector<ArmPoses>& runs, const std::vector<ArmPoses>& tests);
 
 // Causes that are not certain, or beside which something is unexplained, m rms (simulation/doubt.h):
-// U95 contains the change against the calibration `without` them and that.
+// U95 contains the change against the calibration `without` them and that, as far as it is left of
+// the ball in the runs.
 void AddDoubt(const ArmCalibration& without, double unexplained, ArmCalibration& found);
 
 }  // namespace abbe::fusion

@@ -42,13 +42,13 @@ WrittenChain Axes() { return {{}, Rows().Chain().axes(), Rows().Chain().tip()}; 
 SerialChain Moved(const SerialChain& chain, std::uint64_t seed) {
   const random::CounterRandom random(seed, 4);
   std::uint64_t draw = 0;
-  const auto triple = [&](double size) {
+  const auto triple = [&](double size) -> Vector3d {
+    draw += 3;
     return size * Vector3d(random.Normal(draw), random.Normal(draw + 1), random.Normal(draw + 2));
   };
   std::vector<JointAxis> axes = chain.axes();
   const auto whole = Eigen::AngleAxisd(0.05, triple(1.0).normalized());
   for (JointAxis& axis : axes) {
-    draw += 6;
     axis.point = whole * (axis.point + triple(2e-3));
     axis.direction = whole * (axis.direction + triple(3e-3));
   }
