@@ -2,7 +2,7 @@
 // another chain: what a calibration found of an arm.
 //
 //   const WrittenChain nominal = WrittenChain::Of(settings);
-//   const WrittenChain found = nominal.Of(model.ChainAt(x));
+//   const WrittenChain found = nominal.With(model.ChainAt(x));
 //   found.Chain().Tip(q);                            // found.X_BW.Inverse() * the tip of the chain
 //
 // Where the base frame of an arm stands is open: the first axis stays where it was, and so does the

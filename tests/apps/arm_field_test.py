@@ -99,6 +99,21 @@ class RealArm(ProgramCase):
         self.assertIn("arm-drift:arm", result["causes_taken_out"]["taken_out"])
         self.assertLess(result["tests"][0]["after"]["rms_mm"], 0.086)
 
+    def test_reflectors_are_as_far_apart_as_the_tracker_sees_them(self):
+        seen = [np.loadtxt(DATA / f"measured_SMR_{n}.txt") for n in (1, 2, 3)]
+        runs = []
+        for n, places in enumerate(seen, 1):
+            runs.append(self.convert(f"smr{n}.csv", range(0, 1000, 2), "--column=order=n", seen=places))
+            text = runs[-1].read_text()
+            runs[-1].write_text(text.replace('# time', f'# mounting.ball = "SMR {n}"\n# time', 1))
+        result = self.result(*runs, "--machine", self.machine)
+        first = [n["value"] for n in result["numbers"] if n["of"] == "ball"]
+        found = [np.array(first)] + [np.array(ball["place_mm"]) for ball in result["balls"]]
+        for i, j in ((0, 1), (0, 2), (1, 2)):
+            apart = np.median(np.linalg.norm(seen[i] - seen[j], axis=1))
+            # The geometry leaves 0.26 mm of each of 500 poses.
+            self.assertAlmostEqual(np.linalg.norm(found[i] - found[j]), apart, delta=4 * 0.26 / math.sqrt(500))
+
     def test_the_order_of_the_lines_does_not_matter(self):
         shuffled = np.random.default_rng(1).permutation(len(self.q))
         in_order = self.convert("a.csv", range(len(self.q)), "--column=order=n")

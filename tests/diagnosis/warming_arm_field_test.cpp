@@ -209,14 +209,15 @@ TEST_F(RealRobot, IsTheSameHoweverItsChainIsWritten) {
   }
 }
 
-// One arm, whatever reflector is looked at. The second one leaves more of itself; both together leave
-// what both leave in the mean, and tell no more than two arms would.
+// One arm, whatever reflector is looked at. Both together leave what each of them leaves alone in the
+// mean, and a tenth more at most, for one geometry has to do for both. They tell no more than two
+// arms would.
 TEST_F(RealRobot, IsOneArmUnderTwoReflectors) {
   const Found one = Diagnosed(WithReflector(1), kRows), two = Diagnosed(WithReflector(2), kRows);
   const Found both = Diagnosed(std::vector{WithReflector(1), WithReflector(2)}, kRows);
-  constexpr double kSame = 1.05;
+  constexpr double kTenth = 1.1;
   EXPECT_LE(both.gain.arm_after,
-            kSame * std::hypot(one.gain.arm_after, two.gain.arm_after) / std::sqrt(2.0));
+            kTenth * std::hypot(one.gain.arm_after, two.gain.arm_after) / std::sqrt(2.0));
   for (const char* name :
        {"joint-compliance:pivot_2", "joint-compliance:pivot_3", "joint-compliance:pivot_4",
         "joint-compliance:pivot_5", "arm-drift:arm"}) {
