@@ -9,17 +9,21 @@
 #include <string>
 #include <vector>
 
+#include "apps/calibrate_arm.h"
 #include "apps/calibration_tables.h"
 #include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/error_model_option.h"
+#include "apps/instruments.h"
 #include "apps/machine_file.h"
 #include "apps/machine_recording.h"
 #include "apps/protocol.h"
 #include "apps/result_file.h"
 #include "fusion/calibration_file.h"
 #include "fusion/doubted_calibration.h"
+#include "recording/recording_file.h"
+#include "simulation/arm/arm_run.h"
 #include "simulation/linkage/one_ball.h"
 
 namespace abbe::apps {
@@ -106,7 +110,7 @@ class Calibration {
 
   void FromRecordings() {
     std::vector<simulation::LinkageRun> runs, certain;
-    simulation::OneBall ball;
+    simulation::OneBall ball("give recordings of one ball at a time");
     nlohmann::ordered_json whose;
     for (const fs::path& path : arguments_.recordings) {
       const recording::Recording recording = ReadWithWarnings(path);
@@ -216,6 +220,25 @@ class Calibration {
   fusion::CalibrateOptions options_;
 };
 
+// Whether the first recording is of an arm, which no machine carries.
+bool IsOfArm(const CalibrateArguments& arguments) {
+  return !arguments.recordings.empty() &&
+         simulation::IsArm(recording::ReadHead(arguments.recordings.front())) &&
+         !ReadInstruments(arguments.machine).HasAxes();
+}
+
+ArmArguments OfArm(const CalibrateArguments& a) {
+  if (a.displacement || a.mapped || a.compare || a.study || a.poses > 0 || a.model ||
+      !a.volume_mm.empty()) {
+    throw InputError(fmt::format(
+        "{}: is of an arm, whose rows or axes are fitted as they are: --model, --displacement, "
+        "--mapped, --compare, --poses, --volume and --study are for a linkage on a machine; leave "
+        "them out",
+        a.recordings.front().string()));
+  }
+  return {a.recordings, a.checks, a.machine, a.out, a.json, a.causes, a.quiet};
+}
+
 }  // namespace
 
 void AddCalibrate(CLI::App& program, int& exit_code) {
@@ -233,8 +256,10 @@ void AddCalibrate(CLI::App& program, int& exit_code) {
   command->add_flag("--compare", arguments->compare,
                     "All models side by side, mapped and not, instead of a calibration");
   command
-      ->add_option("--check", arguments->checks,
-                   "With --compare: a recording that takes no part, such as a circle; repeatable")
+      ->add_option(
+          "--check", arguments->checks,
+          "A recording that takes no part: with --compare, such as a circle; of an arm, the "
+          "poses to test with; repeatable")
       ->allow_extra_args(false);
   command
       ->add_option("--poses", arguments->poses,
@@ -249,11 +274,17 @@ void AddCalibrate(CLI::App& program, int& exit_code) {
   command->add_flag("--study", arguments->study, "Which calibration volume and spacing");
   command->add_option("--folds", arguments->folds, "Blocks held out in turn; 1: none")
       ->check(CLI::Range(1, 100));
-  command->add_option("-o,--out", arguments->out, "Calibration file (TOML); for a plan: CSV");
+  command->add_option("-o,--out", arguments->out,
+                      "Calibration file (TOML); of an arm: the new machine file; for a plan: CSV");
   command->add_option("--json", arguments->json, "File for the result as data");
   command->add_flag("--quiet", arguments->quiet, "No tables");
-  command->footer("Example: abbe calibrate cube.csv --machine mill.toml -o linkage.toml");
-  command->callback([arguments, &exit_code] { exit_code = Calibration(*arguments).Run(); });
+  command->footer(
+      "Example: abbe calibrate cube.csv --machine mill.toml -o linkage.toml\n"
+      "         abbe calibrate poses.csv --check test.csv --machine arm.toml -o arm_now.toml");
+  command->callback([arguments, &exit_code] {
+    exit_code =
+        IsOfArm(*arguments) ? CalibrateArm(OfArm(*arguments)) : Calibration(*arguments).Run();
+  });
 }
 
 }  // namespace abbe::apps

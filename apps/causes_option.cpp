@@ -96,12 +96,16 @@ void AddCausesOption(CLI::App& command, CausesOption& option) {
 
 CauseCorrection::CauseCorrection(const CausesOption& option, const MachineFile& file,
                                  const Corrections& taken)
-    : instruments_(InstrumentsOf(file)) {
+    : CauseCorrection(option, InstrumentsOf(file), taken) {}
+
+CauseCorrection::CauseCorrection(const CausesOption& option, simulation::Instruments instruments,
+                                 const Corrections& taken)
+    : instruments_(std::move(instruments)) {
   if (option.path.empty()) return;
   name_ = option.path.filename().string();
-  const simulation::ExtendedModel model =
-      ReadModel(option, {file.sweep_setup.machine.name, true,
-                         file.linkage ? file.linkage->chain.joints() : Eigen::Index{0}});
+  const simulation::ExtendedModel model = ReadModel(
+      option, {instruments_.machine.name, true,
+               instruments_.linkage ? instruments_.linkage->chain.joints() : Eigen::Index{0}});
   origin_ = model.origin;
   verdict_ = model.verdict;
   unexplained_ = simulation::UnexplainedInSpace(model);

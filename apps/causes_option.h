@@ -46,6 +46,8 @@ class CauseCorrection {
  public:
   // Without a path nothing is corrected.
   CauseCorrection(const CausesOption& option, const MachineFile& file, const Corrections& taken);
+  CauseCorrection(const CausesOption& option, simulation::Instruments instruments,
+                  const Corrections& taken);
 
   bool Active() const { return !name_.empty(); }
   // Returns the corrected recording and adds its changes to Line() and Data().

@@ -32,6 +32,7 @@ struct ConvertOptions {
   std::string kind;
   std::string machine;
   std::string device;
+  bool shuffled = false;
   bool quiet = false;
 };
 
@@ -83,7 +84,8 @@ std::vector<recording::MonitoredColumn> ColumnsOf(const ConvertOptions& options)
 }
 
 recording::Recording ReadTable(const ConvertOptions& options) {
-  recording::CsvTableOptions table{ColumnsOf(options), {}, options.kind, options.names};
+  recording::CsvTableOptions table{
+      ColumnsOf(options), {}, options.kind, options.names, options.shuffled};
   for (const std::string& text : options.where) {
     table.where.push_back(SplitAt("--where", text, "COLUMN=VALUE, for example arm=2"));
   }
@@ -162,6 +164,9 @@ void AddConvert(CLI::App& program, int& exit_code) {
       ->add_option("--where", options->where,
                    "Tables in CSV: COLUMN=VALUE, only rows with this value; may be repeated")
       ->allow_extra_args(false);
+  command->add_flag("--shuffled", options->shuffled,
+                    "Tables in CSV: the rows are in no order of measurement, and none is recorded "
+                    "(an index column is given by --column order=NAME)");
   command->add_option("--kind", options->kind, "Tables in CSV: the kind of the recording (linkage)")
       ->default_val("linkage");
   command

@@ -75,7 +75,7 @@ bool Campaign::EstimatesNoise() const {
 }
 
 bool Campaign::SetExcess(const std::vector<double>& excess, Change change) {
-  constexpr double kMuchMore = 1.5, kLess = 0.95;
+  constexpr double kMuchMore = 4.0 / 3.0, kLess = 0.95;
   bool changed = false;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     PreparedRun& run = runs_[r];

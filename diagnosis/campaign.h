@@ -38,8 +38,8 @@ class Campaign {
   simulation::Origin origin() const;
 
   bool EstimatesNoise() const;
-  // Noise of the runs that estimate it, one excess for each run: up where it is half as much again,
-  // down by a twentieth at least; false where nothing changes.
+  // Noise of the runs that estimate it, one excess for each run: up where it is a third more, down
+  // by a twentieth at least; false where nothing changes.
   enum class Change { kDown, kUp };
   bool SetExcess(const std::vector<double>& excess, Change change);
 

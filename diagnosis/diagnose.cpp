@@ -1,19 +1,39 @@
 #include "diagnosis/diagnose.h"
 
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
 #include "diagnosis/search.h"
 #include "simulation/excess_noise.h"
 
 namespace abbe::diagnosis {
 namespace {
 
+// How many runs share what is left of this one.
+double SharersOf(const Fit& fit, std::size_t run) {
+  const auto& runs = fit.campaign().runs();
+  double sharers = 1.0;
+  for (std::size_t other = 0; other < runs.size(); ++other) {
+    if (other == run || !runs[other].EstimatesNoise()) continue;
+    const simulation::Trace &a = fit.TraceOf(run), &b = fit.TraceOf(other);
+    if (a.mounting != b.mounting) continue;
+    sharers += simulation::SharedLeft(a.linkage->angles, fit.LeftOf(run), b.linkage->angles,
+                                      fit.LeftOf(other));
+  }
+  return sharers;
+}
+
 // How much larger than stated the noise of each run is; 1 where the stated one is believed.
 std::vector<double> ExcessOf(const Fit& fit) {
   std::vector<double> excess;
   const auto& runs = fit.campaign().runs();
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    excess.push_back(runs[r].EstimatesNoise() ? simulation::ExcessOf(fit.result().sources[r],
-                                                                     fit.LeftOf(r), runs[r].excess)
-                                              : 1.0);
+    excess.push_back(1.0);
+    if (!runs[r].EstimatesNoise()) continue;
+    const double alone = simulation::ExcessOf(fit.result().sources[r], fit.LeftOf(r),
+                                              runs[r].trace.time, runs[r].excess);
+    if (alone > 1.0) excess.back() = alone * std::sqrt(SharersOf(fit, r));
   }
   return excess;
 }

@@ -9,6 +9,7 @@
 
 #include "estimation/linearization.h"
 #include "failure/failure.h"
+#include "fusion/contradiction.h"
 #include "fusion/encoder_check.h"
 #include "fusion/mapping.h"
 
@@ -25,7 +26,6 @@ using simulation::LinkageSimulation;
 
 constexpr double kNoGap = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBadFit = 5.0;         // excess-noise factor above which encoders are checked
-constexpr double kContradiction = 6.0;  // prior standard deviations
 constexpr double kOnePlace = 1e-4;      // m
 constexpr double kOneLine = 1e-3;       // second over first extent
 
@@ -55,23 +55,6 @@ void RefusePoorPoses(const std::vector<LinkageRun>& runs, Index free) {
   if (extent[1] < kOneLine * extent[0]) {
     throw InputError(fmt::format("{}: all {} poses stand on one line; move the other axes too",
                                  runs.front().name, poses));
-  }
-}
-
-// Estimates too far from their nominal values, in prior standard deviations.
-void RefuseContradiction(const Result& fit, double excess) {
-  for (const auto& block : fit.blocks) {
-    for (std::size_t i = 0; i < block.entries.size(); ++i) {
-      const auto& entry = block.entries[i];
-      const double pull = (entry.value - entry.nominal) / entry.prior_sd;
-      if (!(std::abs(pull) > kContradiction * excess)) continue;
-      throw InputError(fmt::format(
-          "calibration: {} comes out at {:.4g} {}, {:.1f} standard deviations from its nominal "
-          "{:.4g}: the data contradict the prior; correct the nominal value or the tolerance in "
-          "[linkage]",
-          block.FullName(i), entry.value / block.unit.si, block.unit.name, pull,
-          entry.nominal / block.unit.si));
-    }
   }
 }
 

@@ -33,7 +33,7 @@ const std::vector<KindRule>& KindRules() {
       {"sweep", kProbes},
       {"gap-steps", kProbes},
       {"linkage",
-       {{"time_s"},
+       {{"time_s", "ref_x_mm"},  // poses before an instrument may be in no order
         {"x_mm", "ref_x_mm"},
         {"y_mm", "ref_y_mm"},
         {"z_mm", "ref_z_mm"},

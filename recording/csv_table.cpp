@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string_view>
 
@@ -78,8 +79,18 @@ class TableReader {
     } else {
       columns_ = options.columns;
     }
-    for (const MonitoredColumn& column : columns_) {
+    for (MonitoredColumn& column : columns_) {
+      if (column.name == "order") {
+        column.name = "time_s";
+        counts_ = true;
+      }
       if (column.name == "time_s") has_time_ = true;
+    }
+    counts_ = counts_ || (!has_time_ && !options.shuffled);
+    if (has_time_ && options.shuffled) {
+      throw InputError(path_ +
+                       ": time_s or order says when its rows were measured; leave one of "
+                       "them and --shuffled out");
     }
   }
 
@@ -105,10 +116,24 @@ class TableReader {
           path_, separator_ == '\t' ? "a tab" : fmt::format("\"{}\"", separator_)));
     }
     recording_.header = Header();
+    if (has_time_) SortByTime();
     return std::move(recording_);
   }
 
  private:
+  void SortByTime() {
+    const std::vector<double> time(recording_.At("time_s").begin(), recording_.At("time_s").end());
+    std::vector<std::size_t> rows(time.size());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) {
+      return std::isnan(time[b]) ? !std::isnan(time[a]) : time[a] < time[b];
+    });
+    for (auto& column : recording_.columns) {
+      const std::vector<double> values = column.values;
+      for (std::size_t i = 0; i < rows.size(); ++i) column.values[i] = values[rows[i]];
+    }
+  }
+
   void Choose() {
     if (columns_.empty()) {
       throw InputError(fmt::format(
@@ -122,7 +147,7 @@ class TableReader {
     for (const auto& [column, wanted] : options_.where) {
       asked_.push_back(ParseColumnSum(column, column, names_, path_).terms.front().column);
     }
-    if (!has_time_) recording_.columns.push_back({"time_s", {}});
+    if (!has_time_ && counts_) recording_.columns.push_back({"time_s", {}});
     for (const auto& column : columns_) recording_.columns.push_back({column.name, {}});
     recording_.columns.push_back({"flags", {}});
   }
@@ -158,7 +183,7 @@ class TableReader {
     numbers_.clear();
     for (const std::string& cell : cells) numbers_.push_back(NumberIn(cell, separator_));
     auto column = recording_.columns.begin();
-    if (!has_time_) (column++)->values.push_back(order);
+    if (!has_time_ && counts_) (column++)->values.push_back(order);
     bool good = true;
     for (const ColumnSum& sum : sums_) {
       const double value = sum.Of(numbers_);
@@ -171,7 +196,7 @@ class TableReader {
 
   std::string Header() const {
     std::string header = fmt::format("kind = {}\n", settings::Quoted(options_.kind));
-    if (!has_time_) header += "time = \"order\"\n";
+    if (counts_) header += "time = \"order\"\n";
     header += fmt::format("imported_from = {}\n[sources]\n",
                           settings::Quoted(std::filesystem::path(path_).filename().string()));
     for (const MonitoredColumn& column : columns_) {
@@ -191,6 +216,7 @@ class TableReader {
   std::vector<std::size_t> asked_;
   std::vector<double> numbers_;  // of the current row
   bool has_time_ = false, any_good_ = false;
+  bool counts_ = false;  // time_s is an index
   Recording recording_;
 };
 

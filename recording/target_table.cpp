@@ -112,6 +112,11 @@ double MillimetresPerUnit(const Assignment& unit) {
   if (unit.value() == "mm") return 1.0;
   if (unit.value() == "m") return 1.0 / settings::kMillimetre;
   if (unit.value() == "um") return settings::kMicrometre / settings::kMillimetre;
+  if (unit.value() == "deg" || unit.value() == "rad") {
+    unit.Refuse(fmt::format(
+        "is \"{}\": positions of a rotary axis are no lengths; only X, Y and Z can be measured",
+        unit.value()));
+  }
   unit.Refuse(fmt::format("is \"{}\": give m, mm or um", unit.value()));
 }
 

@@ -13,7 +13,8 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double kLeastAcross = 1e-9;  // m
+constexpr double kLeastAcross = 1e-9;         // m
+constexpr double kStandardGravity = 9.80665;  // m/s^2
 
 // The coordinate direction nearest to perpendicular to `axis`, made perpendicular.
 Vector3d AnyAcross(const Vector3d& axis) {
@@ -104,15 +105,55 @@ void AddEncoders(const LinkageSettings& settings, const std::vector<PivotMotions
   }
 }
 
+// An upright first joint feels no weight.
+bool IsUpright(const LinkageSettings& settings, int joint) {
+  const Vector3d& axis = settings.chain.axes()[static_cast<std::size_t>(joint)].direction;
+  return joint == 0 && axis.cross(settings.DownB()).norm() < kParallel;
+}
+
+// Each joint gives in proportion to the torque of all masses that it carries.
+void AddTorques(const LinkageSettings& settings, const std::vector<PivotMotions>& pivots,
+                ModelBuilder& model) {
+  double weight = 0.0;  // N
+  std::vector<int> hangs;
+  for (const Mass& mass : settings.masses) {
+    weight += kStandardGravity * mass.kg;
+    hangs.push_back(model.motions.Weigh(static_cast<int>(mass.carrier), mass.point));
+  }
+  model.Block("weight", kMicroradiansPerNewtonMetre);
+  for (int i = 0; i < static_cast<int>(pivots.size()); ++i) {
+    if (IsUpright(settings, i)) continue;
+    bool first = true;
+    for (std::size_t k = 0; k < hangs.size(); ++k) {
+      const Mass& mass = settings.masses[k];
+      if (mass.carrier < i) continue;
+      const Effect effect{.motion = pivots[i].turn,
+                          .basis = Basis::kWeight,
+                          .joint = i,
+                          .order = hangs[k],
+                          .factor = kStandardGravity * mass.kg};
+      if (first) {
+        model.Entry(PivotName(i) + "_torque", settings.tolerance.weight / weight, effect);
+      } else {
+        model.Also(effect);
+      }
+      first = false;
+    }
+  }
+}
+
 // Each joint gives by itself under each weight that it carries, for neither the weights nor the
-// compliances are known; an upright one gives to none.
+// compliances are known.
 void AddWeights(const LinkageSettings& settings, const std::vector<PivotMotions>& pivots,
                 ModelBuilder& model) {
   if (settings.tolerance.weight == 0.0) return;
+  if (!settings.masses.empty()) {
+    AddTorques(settings, pivots, model);
+    return;
+  }
   model.Block("weight", kMicroradiansPerMetre);
   for (int i = 0; i < static_cast<int>(pivots.size()); ++i) {
-    const Vector3d& axis = settings.chain.axes()[static_cast<std::size_t>(i)].direction;
-    if (i == 0 && axis.cross(settings.DownB()).norm() < kParallel) continue;
+    if (IsUpright(settings, i)) continue;
     for (const Weight& weight : WeightsBeyond(settings.chain, i)) {
       const int hangs = model.motions.Weigh(static_cast<int>(weight.carrier), weight.point);
       model.Entry(PivotName(i) + "_" + weight.name, settings.tolerance.weight,

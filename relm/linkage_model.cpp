@@ -24,6 +24,11 @@ void LinkageModel::Check(Eigen::Index angles, Eigen::Index parameters) const {
   }
 }
 
+SerialChain LinkageModel::ChainAt(const Eigen::VectorXd& x) const {
+  Check(joints(), x.size());
+  return motions_.Moved(x.data());
+}
+
 Eigen::VectorXd LinkageModel::Values() const {
   std::vector<double> values;
   for (const auto& block : blocks_) {

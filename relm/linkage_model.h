@@ -52,6 +52,8 @@ class LinkageModel {
   const SerialChain& chain() const { return motions_.chain(); }  // without errors
   Eigen::Index joints() const { return chain().joints(); }
   Eigen::Index parameters() const { return motions_.parameters(); }
+  // With the geometry of `x`: its lines and its ball at zero angles, in B.
+  SerialChain ChainAt(const Eigen::VectorXd& x) const;
   Eigen::VectorXd Values() const;          // x of the blocks; nominal at first
   std::vector<std::string> Names() const;  // "block.entry", in the order of x
 

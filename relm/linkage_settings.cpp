@@ -95,7 +95,7 @@ std::vector<Segment> ReadSegments(const Table& linkage) {
   return segments;
 }
 
-SerialChain ReadRows(const Table& linkage) {
+std::vector<DenavitHartenbergRow> ReadRows(const Table& linkage) {
   std::vector<DenavitHartenbergRow> rows;
   for (const Table& table : linkage.Children("joint")) {
     rows.push_back({.theta = table.Quantity("theta_deg", {.fallback = 0.0}),
@@ -105,8 +105,7 @@ SerialChain ReadRows(const Table& linkage) {
                     .fixed = table.Truth("fixed", false)});
     table.RefuseUnknown();
   }
-  const auto ball = linkage.Quantities("ball_mm", 3, std::vector{0.0, 0.0, 0.0});
-  return SerialChain::FromDenavitHartenberg(rows, {}, Triple(ball));
+  return rows;
 }
 
 SerialChain ReadAxes(const Table& linkage) {
@@ -124,6 +123,8 @@ struct Form {
   std::optional<PivotLinkage> pivots;
   std::vector<Segment> segments;
   SerialChain chain;
+  std::vector<DenavitHartenbergRow> rows = {};
+  Vector3d p_nT = Vector3d::Zero();
 };
 
 Form ReadForm(const Table& table) {
@@ -140,13 +141,31 @@ Form ReadForm(const Table& table) {
       const auto segments = ReadSegments(table);
       return {std::nullopt, segments, SerialChain::FromSegments(segments)};
     }
-    return {std::nullopt, {}, form == "axes" ? ReadAxes(table) : ReadRows(table)};
+    if (form == "axes") return {std::nullopt, {}, ReadAxes(table)};
+    const auto rows = ReadRows(table);
+    const Vector3d p_nT = Triple(table.Quantities("ball_mm", 3, std::vector{0.0, 0.0, 0.0}));
+    return {std::nullopt, {}, SerialChain::FromDenavitHartenberg(rows, {}, p_nT), rows, p_nT};
   } catch (const InputError& error) {
     const std::string_view message = error.what();
     constexpr std::string_view kOwn = "linkage: ";  // prefix of the chain, which has no file
     if (!message.starts_with(kOwn)) throw;
     throw table.Error("", message.substr(kOwn.size()));
   }
+}
+
+std::vector<Mass> ReadMasses(const Table& linkage, Eigen::Index joints) {
+  std::vector<Mass> masses;
+  for (const Table& table : linkage.Children("mass")) {
+    const auto after = static_cast<Eigen::Index>(table.Integer("after_pivot", {.at_least = 1.0}));
+    if (after > joints) {
+      throw table.Error("after_pivot", fmt::format("must be 1 to {}: the pivots", joints));
+    }
+    masses.push_back({.kg = table.Number("kg", {.above = 0.0}),
+                      .carrier = after - 1,
+                      .point = Triple(table.Quantities("point_mm", 3))});
+    table.RefuseUnknown();
+  }
+  return masses;
 }
 
 }  // namespace
@@ -156,6 +175,9 @@ LinkageSettings ReadLinkageSettings(const Table& root) {
   Form form = ReadForm(table);
   LinkageSettings linkage{
       .chain = std::move(form.chain),
+      .rows = std::move(form.rows),
+      .p_nT = form.p_nT,
+      .masses = {},
       .pivots = form.pivots,
       .branch = {},
       .segments = std::move(form.segments),
@@ -168,6 +190,7 @@ LinkageSettings ReadLinkageSettings(const Table& root) {
       .graduation_harmonics = ReadOrders(table, "graduation_harmonics", {2, 3}),
       .tolerance = ReadTolerance(table.Child("tolerance")),
       .noise = ReadNoise(table.Child("noise"))};
+  linkage.masses = ReadMasses(table, linkage.chain.joints());
   if (linkage.pivots) {
     linkage.branch.elbow =
         table.Choice("elbow", {"up", "down"}) == "up" ? Elbow::kUp : Elbow::kDown;

@@ -50,16 +50,26 @@ struct LinkageNoise {
   double repeatability;  // m: of the ball when a position is approached again, each direction
 };
 
+// A part of the arm, or its load, whose weight is known.
+struct Mass {
+  double kg;
+  Eigen::Index carrier;   // the last joint that moves it, from 0
+  Eigen::Vector3d point;  // m, in B at zero angles: its centre
+};
+
 struct LinkageSettings {
   SerialChain chain;
-  std::optional<PivotLinkage> pivots;  // form "pivots": the closed form of the same chain
-  Branch branch;                       // of the workspace; form "pivots" only
-  std::vector<Segment> segments;       // forms "pivots" and "segments"
-  geometry::Transform<double> X_MB;    // nominal
-  Eigen::Vector3d down_M;              // the direction of gravity
-  double expansion;                    // 1/K: nominal coefficient of the links
-  double reference_temperature;        // degC
-  std::string temperature;             // column of a recording; empty: none
+  std::vector<DenavitHartenbergRow> rows;  // form "denavit-hartenberg", ball_mm in the last frame
+  Eigen::Vector3d p_nT = {0.0, 0.0, 0.0};  // m: that ball
+  std::vector<Mass> masses;                // empty: weights are not known
+  std::optional<PivotLinkage> pivots;      // form "pivots": the closed form of the same chain
+  Branch branch;                           // of the workspace; form "pivots" only
+  std::vector<Segment> segments;           // forms "pivots" and "segments"
+  geometry::Transform<double> X_MB;        // nominal
+  Eigen::Vector3d down_M;                  // the direction of gravity
+  double expansion;                        // 1/K: nominal coefficient of the links
+  double reference_temperature;            // degC
+  std::string temperature;                 // column of a recording; empty: none
   std::vector<int> bearing_harmonics;
   std::vector<int> graduation_harmonics;
   LinkageTolerance tolerance;

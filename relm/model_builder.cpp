@@ -28,6 +28,11 @@ void ModelBuilder::Entry(const std::string& name, double sd, Effect effect, doub
   motions.Add(effect);
 }
 
+void ModelBuilder::Also(Effect effect) {
+  effect.parameter = static_cast<int>(motions.parameters()) - 1;
+  motions.Add(effect);
+}
+
 void ModelBuilder::HarmonicEntries(const std::string& prefix, double sd, int motion, int joint,
                                    const std::vector<int>& orders) {
   for (const int order : orders) {

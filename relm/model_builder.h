@@ -29,6 +29,8 @@ class ModelBuilder {
   void Entry(const std::string& name, double sd, Effect effect);
   // A parameter with a nominal value, whose effects vanish at `rest`.
   void Entry(const std::string& name, double sd, Effect effect, double nominal, double rest);
+  // The last parameter acts by another effect too.
+  void Also(Effect effect);
   // Sine and cosine amplitudes of harmonics of a joint's angle, "<prefix>_sin_<order>".
   void HarmonicEntries(const std::string& prefix, double sd, int motion, int joint,
                        const std::vector<int>& orders);
@@ -43,6 +45,8 @@ class ModelBuilder {
 
 inline const estimation::PrintUnit kMicroradians{"urad", settings::kMicroradian};
 inline const estimation::PrintUnit kMicroradiansPerMetre{"urad/m", settings::kMicroradian};
+inline const estimation::PrintUnit kMicroradiansPerNewtonMetre{"urad/(N m)",
+                                                               settings::kMicroradian};
 inline const estimation::PrintUnit kMicrometres{"um", settings::kMicrometre};
 inline const estimation::PrintUnit kMillimetres{"mm", settings::kMillimetre};
 inline const estimation::PrintUnit kPartsPerMillionPerKelvin{"ppm/degC", 1e-6};

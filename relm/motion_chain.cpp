@@ -70,6 +70,31 @@ bool MotionChain::FeelsGravity(int joint) const {
          (turned_by_others || axis.cross(down_B_).norm() > 1e-9);
 }
 
+SerialChain MotionChain::Moved(const double* x) const {
+  std::vector<double> amounts(motions_.size(), 0.0);
+  for (const Effect& effect : effects_) {
+    if (effect.basis != Basis::kOne) continue;
+    amounts[At(effect.motion)] +=
+        (x[effect.parameter] - rest_[At(effect.parameter)]) * effect.factor;
+  }
+  std::vector<JointAxis> axes = chain_.axes();
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    const Motion& motion = motions_[k];
+    if (motion.joint >= 0) {
+      axes[At(motion.joint)] = {X * motion.point, X.linear() * motion.direction};
+    }
+    if (motion.kind == MotionKind::kShift) {
+      X.translate(amounts[k] * motion.direction);
+    } else {
+      X.translate(motion.point);
+      X.rotate(Eigen::AngleAxisd(amounts[k], motion.direction));
+      X.translate(-motion.point);
+    }
+  }
+  return {axes, X * chain_.tip()};
+}
+
 void MotionChain::Amounts(const double* angles, double warmth, const double* x,
                           Workspace& w) const {
   const std::size_t harmonics = lean_direction_.size() * At(orders_);

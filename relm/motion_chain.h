@@ -80,6 +80,10 @@ class MotionChain {
   template <typename T>
   Eigen::Vector3<T> Tip(const T* angles, const T& warmth, const T* x) const;
 
+  // The lines of the joints and the tip at zero angles, moved by the effects that are constant: the
+  // geometry alone.
+  SerialChain Moved(const double* x) const;
+
   // Memory for Differentiate, to be kept over many poses.
   struct Workspace {
     std::vector<double> sines, cosines, leans, levers, bases, amounts;

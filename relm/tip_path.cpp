@@ -41,11 +41,15 @@ double Finite(const recording::Recording& recording, Column column, std::size_t 
                                recording.first_row + row + 1, name));
 }
 
+// Rows that are poses of their own: of unknown times, or of an arm that no machine moves along.
+bool ArePoses(const recording::Recording& recording) {
+  return !recording.KnowsTimes() || (recording.Find("ref_x_mm") && !recording.Find("x_mm"));
+}
+
 // An encoder turns by less than half a turn from row to row, or its counter has wrapped or slipped.
-// Not checked where the header states that only the order of the rows is known, not their times.
 void RefuseJump(const recording::Recording& recording, const GoodReadings& good,
                 Eigen::Index pose) {
-  if (pose == 0 || recording.HeaderText("time").value_or("") == "order") return;
+  if (pose == 0 || ArePoses(recording)) return;
   const auto step = good.readings.angles.col(pose) - good.readings.angles.col(pose - 1);
   Eigen::Index joint = 0;
   const double largest = step.cwiseAbs().maxCoeff(&joint);

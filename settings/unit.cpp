@@ -10,10 +10,11 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 // The first match counts, so longer endings come first.
-constexpr std::array<std::pair<std::string_view, Unit>, 26> kEndings{{
+constexpr std::array<std::pair<std::string_view, Unit>, 27> kEndings{{
     {"_ppm_per_c", {"ppm/degC", 1e-6}},
     {"_nm_per_mm2", {"nm/mm^2", 1e-3}},
     {"_urad_per_m", {"urad/m", 1e-6}},
+    {"_urad_per_newton_m", {"urad/(N m)", 1e-6}},
     {"_um_per_c", {"um/degC", 1e-6}},
     {"_per_mm", {"1/mm", 1e3}},
     {"_mm_min", {"mm/min", 1e-3 / 60.0}},

@@ -1,5 +1,6 @@
 #include "simulation/excess_noise.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace abbe::simulation {
@@ -10,16 +11,17 @@ using Eigen::VectorXd;
 
 // The residual without its level and the drift of the time constant that explains most, whatever
 // their sizes.
-VectorXd WithoutDrift(const VectorXd& left) {
-  constexpr double kFirst = 5.0, kStep = 1.5;  // poses
+VectorXd WithoutDrift(const VectorXd& left, const VectorXd& time) {
+  constexpr double kFirst = 5.0, kStep = 1.5;  // poses, at an even pace
   const Index poses = left.size() / 3;
   const auto rows = left.reshaped(3, poses);
-  const VectorXd order = VectorXd::LinSpaced(poses, 0.0, static_cast<double>(poses - 1));
+  const double span = time[poses - 1] - time[0];
+  const double first = kFirst * span / static_cast<double>(poses - 1);
   double most = 0.0;
   const Eigen::Vector3d level = rows.rowwise().mean();
   VectorXd drift = VectorXd::Zero(left.size());
-  for (double tau = kFirst; tau < 4.0 * static_cast<double>(poses); tau *= kStep) {
-    VectorXd fading = (-order / tau).array().exp();
+  for (double tau = first; tau < 4.0 * span; tau *= kStep) {
+    VectorXd fading = ((time[0] - time.array()) / tau).exp();
     fading.array() -= fading.mean();
     const Eigen::Vector3d amplitude = rows * fading / fading.squaredNorm();
     const double gain = amplitude.squaredNorm() * fading.squaredNorm();
@@ -48,14 +50,36 @@ double SharedBy(const VectorXd& left) {
 
 }  // namespace
 
-double ExcessOf(const estimation::SourceResult& run, const VectorXd& left, double used) {
-  constexpr double kFewest = 6.0, kOfDrift = 4.0;  // degrees of freedom: that tell a noise
-  const double redundancy = run.redundancy - kOfDrift;
+double ExcessOf(const estimation::SourceResult& run, const VectorXd& left, const VectorXd& time,
+                double used) {
+  constexpr double kFewest = 6.0;  // degrees of freedom: that tell a noise
+  const bool in_order = time[time.size() - 1] > time[0];
+  const double of_drift = in_order ? 4.0 : 0.0;
+  const double redundancy = run.redundancy - of_drift;
   if (redundancy < kFewest) return used;
-  const VectorXd still = WithoutDrift(left);
+  const VectorXd still = in_order ? WithoutDrift(left, time) : left;
   const double chi_square = run.chi_square * still.squaredNorm() / left.squaredNorm();
   const double excess = used * std::sqrt(chi_square / redundancy);
-  return excess > kNoiseIsKnown ? excess * std::sqrt(SharedBy(still)) : 1.0;
+  if (!(excess > kNoiseIsKnown)) return 1.0;
+  return in_order ? excess * std::sqrt(SharedBy(still)) : excess;
+}
+
+double SharedLeft(const Eigen::MatrixXd& angles, const VectorXd& left,
+                  const Eigen::MatrixXd& other_angles, const VectorXd& other_left) {
+  constexpr double kSameAngle = 1e-4;  // rad
+  constexpr double kByChance = 2.0;    // standard deviations
+  double product = 0.0;
+  for (Index i = 0; i < angles.cols(); ++i) {
+    for (Index j = 0; j < other_angles.cols(); ++j) {
+      const double apart = (angles.col(i) - other_angles.col(j)).cwiseAbs().maxCoeff();
+      if (!(apart < kSameAngle)) continue;
+      product += left.segment<3>(3 * i).dot(other_left.segment<3>(3 * j));
+      break;
+    }
+  }
+  const double shared = product / (left.norm() * other_left.norm());
+  const auto rows = static_cast<double>(std::min(left.size(), other_left.size()));
+  return shared * std::sqrt(rows) < kByChance ? 0.0 : shared;
 }
 
 }  // namespace abbe::simulation

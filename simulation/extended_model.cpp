@@ -33,7 +33,12 @@ std::vector<Object> ObjectsOf(const Cause& cause, const CauseObjects& machine,
   linkage.linkage.emplace().angles.resize(machine.pivots, 1);
   shaft.rim.emplace().sensors = kMostRimSensors;  // a machine file says nothing of shafts
   if (!sensor.empty()) head.sensors = {sensor};
-  return cause.objects({{&head, &linkage, &shaft}, Eigen::Vector3d::Ones()});
+  auto objects = cause.objects({{&head, &linkage, &shaft}, Eigen::Vector3d::Ones()});
+  if (!objects.empty() || machine.pivots == 0) return objects;
+  // Nor does it say whether a machine carries the linkage, and what of an arm was recorded.
+  linkage.linkage->is_arm = true;
+  linkage.linkage->behind.setZero(machine.pivots, 1);
+  return cause.objects({{&linkage}, Eigen::Vector3d::Ones()});
 }
 
 // Causes share an id where what they do differs from object to object.

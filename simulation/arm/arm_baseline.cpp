@@ -43,10 +43,11 @@ VectorXd NormsOf(const LinkageRun& run, const ArmBaseline& baseline) {
   return gaps.reshaped(3, run.poses()).colwise().norm().transpose();
 }
 
-estimation::Result FitOf(const LinkageRun& run, const relm::LinkageSettings& settings) {
-  return SolveLinkage(
-      MakeLinkageProblem(ArmSimulation(settings), {run}, {.loss = estimation::RobustLoss::None()}),
-      1, false, kSettled);
+estimation::Result FitOf(const LinkageRun& run, const relm::LinkageSettings& settings,
+                         const Eigen::Vector3d& ball) {
+  const LinkageSimulation arm = ArmSimulation(settings);
+  return SolveLinkage(ArmProblem({SimulateArm(arm, run, StartAt(arm, ball), 1.0)}), 1, false,
+                      kSettled);
 }
 
 std::vector<Index> Within(const VectorXd& norms, double far) {
@@ -89,9 +90,10 @@ ArmBaseline Fitting(const LinkageRun& run, ArmBaseline baseline) {
   tolerance.weight = std::max(kLenient, tolerance.weight);
   tolerance.graduation = std::max(kLenient, tolerance.graduation);
   baseline.lenient.graduation_harmonics = {2, 3};
+  const Eigen::Vector3d ball = BallSeen(baseline.settings, run);
   std::vector<Index> kept = Within(VectorXd::Zero(run.poses()), 0.0);
   for (int round = 0; round < kRounds; ++round) {
-    const estimation::Result fit = FitOf(Selection(run, kept), baseline.lenient);
+    const estimation::Result fit = FitOf(Selection(run, kept), baseline.lenient, ball);
     baseline.lenient_x = ParametersOf(fit.blocks, run.mounting);
     const VectorXd norms = NormsOf(run, baseline);
     baseline.far = FarFrom(norms, kept);
@@ -100,17 +102,19 @@ ArmBaseline Fitting(const LinkageRun& run, ArmBaseline baseline) {
     kept = std::move(next);
   }
   const LinkageRun rest = Selection(run, kept);
-  const estimation::Result fit = FitOf(rest, baseline.settings);
+  const estimation::Result fit = FitOf(rest, baseline.settings, ball);
   baseline.x = ParametersOf(fit.blocks, run.mounting);
-  baseline.excess =
-      ExcessOf(fit.sources.front(), WhiteGaps(rest, {baseline.settings, baseline.x}), 1.0);
+  baseline.excess = ExcessOf(fit.sources.front(), WhiteGaps(rest, {baseline.settings, baseline.x}),
+                             rest.time, 1.0);
   return baseline;
 }
 
 }  // namespace
 
 ArmBaseline FitArm(const LinkageRun& run, const relm::LinkageSettings& placed) {
-  ArmBaseline nominal{run.mounting, placed, ArmSimulation(placed).Values(), placed, {}};
+  const LinkageSimulation arm = ArmSimulation(placed);
+  ArmBaseline nominal{run.mounting, run.ball, placed, StartAt(arm, BallSeen(placed, run)),
+                      placed,       {}};
   try {
     ArmBaseline fitted = Fitting(run, nominal);
     RefuseOtherArm(run, fitted);

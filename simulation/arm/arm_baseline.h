@@ -27,6 +27,7 @@ inline constexpr double kLenient = 2e-3;  // rad, rad/m
 
 struct ArmBaseline {
   std::string mounting;            // of its base
+  std::string ball;                // LinkageRun::ball
   relm::LinkageSettings settings;  // its base where the instrument saw it
   Eigen::VectorXd x;               // of ArmSimulation(settings): what fits most poses
   relm::LinkageSettings lenient;   // with joints that may err more

@@ -2,7 +2,8 @@
 //
 // Noise of a pose: that of the encoders, of the instrument (ref_u_um or linkage.noise.reference_um)
 // and of how the arm repeats (linkage.noise.repeatability_um). Where the instrument stands is found
-// from the poses; runs with the same mounting.base in their header share it. Poses far off what the
+// from the poses; runs with the same mounting.base in their header share it. Of several balls (header
+// mounting.ball) the first is that of the machine file; the others stand anywhere on the hand. Poses far off what the
 // arm's geometry makes of all others are left out as outliers (arm_baseline.h); the worst are noted
 // with row and size. Failure: that of ReadLinkageRun and of FitArm.
 #include <fmt/format.h>
@@ -10,11 +11,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <utility>
 
 #include "failure/failure.h"
 #include "simulation/arm/arm_baseline.h"
+#include "simulation/arm/arm_correction.h"
 #include "simulation/arm/arm_run.h"
 #include "simulation/kinds.h"
 #include "simulation/linkage/linkage_kinds.h"
@@ -30,9 +33,26 @@ constexpr Index kFewest = 8;       // poses
 constexpr std::size_t kNamed = 5;  // poses by their row
 
 struct ArmFacts : RunFacts {
-  explicit ArmFacts(ArmBaseline of_run) : baseline(std::move(of_run)) {}
+  ArmFacts(ArmBaseline of_run, std::string its_ball)
+      : baseline(std::move(of_run)), ball(std::move(its_ball)) {}
   ArmBaseline baseline;
+  std::string ball;  // header mounting.ball
 };
+
+constexpr const char* kBall = "mounting.ball";
+
+// LinkageRun::ball: the first one is that of the machine file.
+std::string BallIn(const Recording& recording, const FactsByRun& known) {
+  const std::string ball = recording.HeaderText(kBall).value_or("");
+  bool first = true;
+  for (const auto& [name, facts] : known) {
+    const auto* arm = dynamic_cast<const ArmFacts*>(facts.get());
+    if (arm == nullptr) continue;
+    if (name == recording.name || (!ball.empty() && arm->ball == ball)) return arm->baseline.ball;
+    first = false;
+  }
+  return first ? "" : ball;
+}
 
 // The linkage with its base where another run with this one's mounting has it, or this run itself.
 relm::LinkageSettings PlacedFor(const LinkageRun& run, const relm::LinkageSettings& settings,
@@ -97,9 +117,8 @@ class ArmRuns : public RunKind {
   PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel&,
                        const Instruments& on, const FactsByRun& known) const override {
     const relm::LinkageSettings& settings = on.LinkageFor(recording.name);
-    LinkageRun run = AtMost(MeansOfStays(ReadLinkageRun(recording, settings)), kMostDiagnosedPoses);
-    const double again = settings.noise.repeatability;
-    run.reference_sd = (run.reference_sd.array().square() + again * again).sqrt();
+    LinkageRun run = ReadArmRun(recording, settings);
+    run.ball = BallIn(recording, known);
     auto facts = FactsAs<ArmFacts>(known, run.name);
     const bool is_new = facts == nullptr;
     if (is_new && run.poses() < kFewest) {
@@ -107,7 +126,8 @@ class ArmRuns : public RunKind {
                                    run.poses(), kFewest));
     }
     if (is_new) {
-      facts = std::make_shared<const ArmFacts>(FitArm(run, PlacedFor(run, settings, known)));
+      facts = std::make_shared<const ArmFacts>(FitArm(run, PlacedFor(run, settings, known)),
+                                               recording.HeaderText(kBall).value_or(""));
     }
     PreparedRuns prepared;
     prepared.facts = facts;
@@ -117,7 +137,14 @@ class ArmRuns : public RunKind {
     if (is_new) prepared.notes.push_back(NoiseNote(kept, baseline));
     if (is_new && !far.empty()) prepared.notes.push_back(FarNote(run, baseline, far));
     if (!far.empty()) prepared.invalid.push_back(Outliers(run, far));
-    NoteUnknownTimes(recording, prepared.notes);
+    if (recording.Find("time_s")) {
+      NoteUnknownTimes(recording, prepared.notes);
+    } else if (is_new) {
+      prepared.notes.push_back(fmt::format(
+          "{}: knows neither the times nor the order of its poses: a drift cannot be told, and what "
+          "there is of it counts as noise",
+          run.name));
+    }
     const LinkageSimulation arm = ArmSimulation(baseline.settings);
     const auto simulated = [arm, kept, x = baseline.x](double excess) {
       return SimulateArm(arm, kept, x, excess);
@@ -129,7 +156,24 @@ class ArmRuns : public RunKind {
 
   void RefuseStrangers(const std::vector<RunSource>& sources,
                        const Instruments& on) const override {
-    if (on.linkage) RefuseOtherBalls(sources, *on.linkage);
+    if (!on.linkage) return;
+    std::map<std::string, std::vector<RunSource>> balls;
+    for (const RunSource& source : sources) {
+      balls[source.head.HeaderText(kBall).value_or("")].push_back(source);
+    }
+    if (balls.size() > 1 && balls.contains("")) {
+      throw InputError(fmt::format(
+          "{}: header: does not state {}, as {} does; name the ball of each",
+          balls.at("").front().head.name, kBall, balls.rbegin()->second.front().head.name));
+    }
+    for (const auto& [ball, of_ball] : balls) {
+      RefuseOtherBalls(of_ball, *on.linkage, "name the ball of each in its header, mounting.ball");
+    }
+  }
+
+  Correction Correct(const Recording& recording, const std::vector<ModelledCause>& causes,
+                     const Origin& origin, const Instruments& on) const override {
+    return CorrectArm(recording, causes, origin, on.LinkageFor(recording.name));
   }
 
   // Its poses are measured one by one.

@@ -10,6 +10,10 @@
 // z_mm. Its frame M is that of the instrument, whose place the machine file does not know.
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "estimation/problem.h"
 #include "recording/recording.h"
 #include "relm/linkage_settings.h"
 #include "simulation/linkage/linkage_run.h"
@@ -20,6 +24,10 @@ namespace abbe::simulation {
 
 bool IsArm(const recording::Recording& recording);
 
+// Its poses, at most kMostDiagnosedPoses, with the noise of the instrument and of how the arm repeats.
+// Without time_s all are at time 0: their order is not known. Failure: that of ReadLinkageRun.
+LinkageRun ReadArmRun(const recording::Recording& recording, const relm::LinkageSettings& settings);
+
 // The linkage with its base where the nominal arm fits best what the instrument saw, free to stand
 // kAnywhere and kAnyTurn off. Gravity keeps its direction in the frame of the base; weights act by
 // their levers (relm/weights.h), with a turn of kLight a metre until a cause says more, and not by
@@ -27,6 +35,17 @@ bool IsArm(const recording::Recording& recording);
 // Units: m, rad, rad/m. Failure: InputError for poses on one line, about which the turn is open.
 inline constexpr double kAnywhere = 0.5, kAnyTurn = 1.0, kTooNear = 20e-3, kLight = 20e-6;
 relm::LinkageSettings Placed(relm::LinkageSettings settings, const LinkageRun& run);
+
+// Several balls or reflectors on one hand: the machine file states the first, the others have an
+// unknown place (LinkageRun::ball), the same in all their runs. The load hangs where the file has it.
+std::string BallBlock(const std::string& ball);
+
+// Where such a ball is seen, less the one of the file: [along across axial] as the block has them.
+// 0 for the ball of the file.
+Eigen::Vector3d BallSeen(const relm::LinkageSettings& placed, const LinkageRun& run);
+
+// `x` of ArmSimulation(placed) with the ball there, all else nominal.
+Eigen::VectorXd StartAt(const LinkageSimulation& arm, const Eigen::Vector3d& ball);
 
 // A run that stays within kTooNear (rms) of one place tells nothing of the geometry: then all of it
 // is held, but for the position of the base.
@@ -38,5 +57,8 @@ LinkageSimulation ArmSimulation(const relm::LinkageSettings& placed);
 // Its run, to be fitted from `x` on; the noise is `excess` times the stated one. Kind "linkage".
 SimulatedRun SimulateArm(const LinkageSimulation& arm, const LinkageRun& run,
                          const Eigen::VectorXd& x, double excess);
+
+// Runs of one arm as one problem: their blocks are shared by name. InputError for no run.
+estimation::Problem ArmProblem(const std::vector<SimulatedRun>& runs);
 
 }  // namespace abbe::simulation

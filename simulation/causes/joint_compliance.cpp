@@ -1,6 +1,7 @@
 // Gravity: a joint of an arm gives under each weight that it carries, in proportion to the torque of
-// that weight about it in the pose (relm/weights.h). Neither weights nor compliances are known, so
-// there is one number for each weight at each joint.
+// that weight about it in the pose. Where the machine file states masses there is one number for each
+// joint, by the torque of all of them. Else neither weights nor compliances are known, and there is
+// one number for each weight (relm/weights.h) at each joint.
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
@@ -15,12 +16,13 @@ Cause JointCompliance() {
                     "keep the compliance in the model of the controller, or lighten the load"},
       .keys = {{"own_urad_per_m", 1e-6, -50000.0, 50000.0},
                {"wrist_urad_per_m", 1e-6, -50000.0, 50000.0},
-               {"ball_urad_per_m", 1e-6, -50000.0, 50000.0}},
-      .plausible = Eigen::VectorXd::Constant(3, 3e-3),
+               {"ball_urad_per_m", 1e-6, -50000.0, 50000.0},
+               {"torque_urad_per_newton_m", 1e-6, -10000.0, 10000.0}},
+      .plausible = Eigen::Vector4d(3e-3, 3e-3, 3e-3, 100e-6),
       .objects = JointsOfArms,
       .relaxes = [](const Object& object) -> std::vector<std::string> {
         const std::string joint = "weight." + object.name();
-        return {joint + "_own", joint + "_wrist", joint + "_ball"};
+        return {joint + "_own", joint + "_wrist", joint + "_ball", joint + "_torque"};
       },
   };
 }

@@ -21,23 +21,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using recording::Recording;
 
-// By how much causes that widen parameters of the model move them.
-VectorXd ParametersMoved(const relm::LinkageModel& model,
-                         const std::vector<ModelledCause>& causes) {
-  const std::vector<std::string> names = model.Names();
-  VectorXd moved = VectorXd::Zero(model.parameters());
-  for (const ModelledCause& each : causes) {
-    if (!each.cause->relaxes) continue;
-    const VectorXd coefficients = each.cause->RecallFrom(each.values).coefficients;
-    const std::vector<std::string> widened = each.cause->relaxes(each.object);
-    for (std::size_t i = 0; i < widened.size(); ++i) {
-      const auto found = std::find(names.begin(), names.end(), widened[i]);
-      if (found != names.end()) moved[found - names.begin()] += coefficients[static_cast<Index>(i)];
-    }
-  }
-  return moved;
-}
-
 // What one pose changes by.
 struct Steps {
   Eigen::MatrixXd angles;  // pivots x poses
@@ -71,6 +54,22 @@ Steps StepsOf(const LinkageRun& run, const LinkageSimulation& linkage, const Sum
 }
 
 }  // namespace
+
+VectorXd ParametersMoved(const relm::LinkageModel& model,
+                         const std::vector<ModelledCause>& causes) {
+  const std::vector<std::string> names = model.Names();
+  VectorXd moved = VectorXd::Zero(model.parameters());
+  for (const ModelledCause& each : causes) {
+    if (!each.cause->relaxes) continue;
+    const VectorXd coefficients = each.cause->RecallFrom(each.values).coefficients;
+    const std::vector<std::string> widened = each.cause->relaxes(each.object);
+    for (std::size_t i = 0; i < widened.size(); ++i) {
+      const auto found = std::find(names.begin(), names.end(), widened[i]);
+      if (found != names.end()) moved[found - names.begin()] += coefficients[static_cast<Index>(i)];
+    }
+  }
+  return moved;
+}
 
 Correction CorrectLinkage(const Recording& recording, const std::vector<ModelledCause>& causes,
                           const Origin& origin, const Instruments& on) {

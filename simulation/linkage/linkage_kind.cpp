@@ -229,9 +229,10 @@ class LinkageRuns : public RunKind {
 
 }  // namespace
 
-void RefuseOtherBalls(const std::vector<RunSource>& sources, const relm::LinkageSettings& linkage) {
+void RefuseOtherBalls(const std::vector<RunSource>& sources, const relm::LinkageSettings& linkage,
+                      const std::string& advice) {
   constexpr Index kMost = 4096, kSample = 1024;  // poses of a run
-  OneBall ball;
+  OneBall ball(advice);
   for (const RunSource& source : sources) {
     const LinkageParts parts = PartsOf(source.blocks, linkage);
     ball.Add(source.head, SampleOf(parts, kMost, kSample).run);

@@ -182,6 +182,7 @@ LinkageRun Blank(const LinkageRun& run, Index poses) {
   LinkageRun blank;
   blank.name = run.name;
   blank.mounting = run.mounting;
+  blank.ball = run.ball;
   blank.referenced = run.referenced;
   blank.one_by_one = run.one_by_one;
   Resize(blank, run.readings.angles.rows(), poses, run.readings.warmth.size() > 0);

@@ -30,6 +30,7 @@ namespace abbe::simulation {
 struct LinkageRun {
   std::string name;      // of the recording, for messages
   std::string mounting;  // header mounting.base: runs that share it share the pose of the base
+  std::string ball;      // which of several; empty: the one that the machine file states
   std::vector<std::size_t> rows;
   Eigen::VectorXd time;
   Eigen::Matrix3Xd commanded;     // [x y z]

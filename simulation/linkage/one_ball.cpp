@@ -59,10 +59,8 @@ void OneBall::Add(const recording::Recording& recording, const LinkageRun& run) 
   const LinkageRun some = AtMost(run, kCompared);
   for (const auto& [other_ball, known] : known_) {
     if (!ball.empty() && !other_ball.empty() && ball != other_ball) {
-      throw InputError(
-          fmt::format("{}: header: mounting.ball is \"{}\", and \"{}\" in {}; give recordings of "
-                      "one ball at a time",
-                      run.name, ball, other_ball, known.name));
+      throw InputError(fmt::format("{}: header: mounting.ball is \"{}\", and \"{}\" in {}; {}",
+                                   run.name, ball, other_ball, known.name, advice_));
     }
     if (known.mounting != run.mounting ||
         known.readings.angles.rows() != run.readings.angles.rows()) {
@@ -73,8 +71,8 @@ void OneBall::Add(const recording::Recording& recording, const LinkageRun& run) 
     if (differ < std::max(kApart, kBeyondNoise * noise)) continue;
     throw InputError(
         fmt::format("{}: at the angles of {} the ball is elsewhere, distances between poses differ "
-                    "by {:.3g} mm: these are two balls; give recordings of one ball at a time",
-                    run.name, known.name, 1e3 * differ));
+                    "by {:.3g} mm: these are two balls; {}",
+                    run.name, known.name, 1e3 * differ, advice_));
   }
   known_.push_back({ball, run});
 }

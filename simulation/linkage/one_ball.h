@@ -1,7 +1,7 @@
 // Runs of a linkage or an arm under one name of their base are of one ball: refuses those that are
 // not, which a fit would spread over all parameters.
 //
-//   OneBall ball;
+//   OneBall ball("give recordings of one ball at a time");         // what to do otherwise
 //   for (const recording::Recording& each : recordings) {
 //     ball.Add(each, ReadLinkageRun(each, linkage));
 //   }
@@ -18,6 +18,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "simulation/linkage/linkage_run.h"
@@ -30,6 +31,8 @@ class OneBall {
   static constexpr double kApart = 1e-3;      // m: no noise, and no tolerance of a machine
   static constexpr Eigen::Index kFewest = 6;
 
+  explicit OneBall(std::string advice) : advice_(std::move(advice)) {}
+
   // `recording`: for its header.
   void Add(const recording::Recording& recording, const LinkageRun& run);
 
@@ -38,6 +41,7 @@ class OneBall {
     std::string ball;  // empty: not stated
     LinkageRun run;
   };
+  std::string advice_;
   std::vector<Known> known_;
 };
 

@@ -67,6 +67,26 @@ class DiagnoseArm(ProgramCase):
         self.recording = self.path / "arm.csv"
         self.done(self.path / "poses.csv", self.recording, "--where=arm=1", *COLUMNS, command="convert")
 
+    def test_rows_in_any_order_are_the_same_where_an_index_tells_it(self):
+        lines = (self.path / "poses.csv").read_text().splitlines()
+        table = [f"n,{lines[0]}"] + [f"{n},{line}" for n, line in enumerate(lines[1:])]
+        draw = random.Random(1)
+        texts = []
+        for name in ("sorted.csv", "shuffled.csv"):
+            (self.path / "table.csv").write_text("\n".join(table) + "\n")
+            self.done(self.path / "table.csv", self.path / name, "--where=arm=1", "--column=order=n", *COLUMNS,
+                      command="convert")
+            texts.append((self.path / name).read_text())
+            rows = table[1:]
+            draw.shuffle(rows)
+            table = table[:1] + rows
+        self.assertEqual(*texts)
+        self.done(self.path / "table.csv", self.path / "unknown.csv", "--where=arm=1", "--shuffled", *COLUMNS,
+                  command="convert")
+        told = self.done(self.path / "unknown.csv", "--machine", self.path / "arm.toml")
+        self.assertIn("a drift cannot be told", told)
+        self.assertIn("joint-gain", told)
+
     def test_the_gain_of_a_joint_is_found_with_its_size(self):
         result = self.result(self.recording, "--machine", self.path / "arm.toml")
         self.assertEqual(result["verdict"], "explained")
@@ -76,7 +96,7 @@ class DiagnoseArm(ProgramCase):
         self.assertAlmostEqual(gain["value"], 1e6 * GAIN, delta=2 * gain["u95"])
         self.assertGreater(result["heldout_arm"]["rms_before_mm"], 2 * result["heldout_arm"]["rms_after_mm"])
 
-    def test_three_balls_under_one_name_are_refused(self):
+    def test_balls_are_told_apart_by_their_names(self):
         runs = []
         for number, ball in enumerate(((0, 0, 0), (20, -30, 10), (-25, 5, 30)), 1):
             table_file, recording = self.path / f"poses_{number}.csv", self.path / f"ball_{number}.csv"
@@ -84,12 +104,17 @@ class DiagnoseArm(ProgramCase):
             self.done(table_file, recording, "--where=arm=1", *COLUMNS, command="convert")
             runs.append(recording)
         arm = ("--machine", self.path / "arm.toml")
-        self.refuse(*runs, *arm, saying=["ball_2.csv", "ball_1.csv", "two balls", "one ball at a time"])
-        # Stated, they need no angles in common.
-        for number, recording in enumerate(runs, 1):
+        self.refuse(*runs, *arm, saying=["ball_2.csv", "ball_1.csv", "two balls", "mounting.ball"])
+        for number, recording in list(enumerate(runs, 1))[1:]:
             text = recording.read_text()
             recording.write_text(text.replace('kind = "linkage"', f'kind = "linkage"\n# mounting = {{ ball = "{number}" }}', 1))
-        self.refuse(*runs[1:], *arm, saying=["ball_3.csv", 'mounting.ball is "3"', '"2" in', "one ball at a time"])
+        self.refuse(*runs, *arm, saying=["ball_1.csv", "mounting.ball", "name the ball of each"])
+        text = runs[0].read_text()
+        runs[0].write_text(text.replace('kind = "linkage"', 'kind = "linkage"\n# mounting = { ball = "1" }', 1))
+        result = self.result(*runs[:2], *arm)
+        self.assertEqual([(f["cause"], f["object"]) for f in result["findings"]], [("joint-gain", "pivot_1")])
+        gain, = result["findings"][0]["parameters"]
+        self.assertAlmostEqual(gain["value"], 1e6 * GAIN, delta=2 * gain["u95"])
 
     def test_what_does_not_belong_together_is_refused(self):
         (self.path / "three.toml").write_text(machine(ROWS[:3]))

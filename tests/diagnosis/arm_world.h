@@ -10,11 +10,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "diagnosis/campaign.h"
 #include "random/counter_random.h"
 #include "settings/document.h"
+#include "tests/relm/arm_rows.h"
 
 namespace abbe {
 
@@ -38,14 +40,9 @@ class ArmWorld {
   static constexpr int kJoints = 6, kPoses = 160;
 
   static simulation::Instruments SetupOf(int joints = kJoints) {
-    std::string text = "[linkage]\nform = \"denavit-hartenberg\"\nball_mm = [40.0, 0.0, 0.0]\n";
-    for (int i = 0; i < joints; ++i) {
-      const Row& row = kRows[static_cast<std::size_t>(i)];
-      text +=
-          fmt::format("[[linkage.joint]]\ntheta_deg = {}\nd_mm = {}\na_mm = {}\nalpha_deg = {}\n",
-                      row.theta, row.d, row.a, row.alpha);
-    }
-    text += R"(
+    const std::span all(kRows);
+    std::string text = "[linkage]\nball_mm = [40.0, 0.0, 0.0]\n" +
+                       RowsText(all.first(static_cast<std::size_t>(joints))) + R"(
 [linkage.base]
 position_mm = [0.0, 0.0, 0.0]
 [linkage.tolerance]
@@ -133,9 +130,7 @@ reference_um = 5.0
   }
 
  private:
-  struct Row {
-    double theta, d, a, alpha;  // deg, mm
-  };
+  using Row = ArmRow;
   static constexpr std::array<Row, kJoints> kRows{{{0.0, 450.0, 150.0, -90.0},
                                                    {-90.0, 0.0, 600.0, 0.0},
                                                    {0.0, 0.0, 120.0, -90.0},

@@ -63,6 +63,29 @@ TEST_F(CsvTable, ARowWithoutANumberIsFlagged) {
   EXPECT_THAT(ReadText(kTable).At("flags"), testing::ElementsAre(0.0, kDeviceError));
 }
 
+// The same poses are the same recording, whatever the order of their lines, where a column tells it.
+TEST_F(CsvTable, RowsAreSortedByTheirTimeOrIndex) {
+  for (const char* name : {"time_s", "order"}) {
+    const CsvTableOptions options{{{"pivot_1_rad", "q"}, {name, "n"}}, {}, "linkage"};
+    const Recording recording = ReadText("n,q\n7,0.3\n2,0.1\n7,0.4\n5,0.2\n", options);
+    EXPECT_THAT(recording.At("time_s"), testing::ElementsAre(2.0, 5.0, 7.0, 7.0));
+    EXPECT_THAT(recording.At("pivot_1_rad"), testing::ElementsAre(0.1, 0.2, 0.3, 0.4));
+    EXPECT_EQ(recording.KnowsTimes(), std::string_view(name) == "time_s");
+    EXPECT_FALSE(recording.Find("order"));
+  }
+}
+
+TEST_F(CsvTable, ShuffledRowsHaveNoTime) {
+  CsvTableOptions options{{{"pivot_1_rad", "q"}}, {}, "linkage"};
+  options.shuffled = true;
+  const Recording recording = ReadText("n,q\n7,0.3\n2,0.1\n", options);
+  EXPECT_FALSE(recording.Find("time_s"));
+  EXPECT_FALSE(recording.KnowsTimes());
+  EXPECT_FALSE(recording.HeaderText("time"));
+  options.columns.push_back({"order", "n"});
+  EXPECT_THAT(Refusal("n,q\n7,0.3\n", options), testing::HasSubstr("leave one"));
+}
+
 TEST_F(CsvTable, ATimeOfItsOwnIsKept) {
   const Recording recording =
       ReadText("t_s,q\n0.5,1\n", {{{"time_s", "t_s"}, {"pivot_1_rad", "q"}}, {}, "linkage"});

@@ -131,6 +131,7 @@ TEST_F(TargetTable, RefusesABadLineByItsNumber) {
   EXPECT_EQ(Refusal("REF_DATA_FWD[1]=2\n"),
             ".dat:1: REF_DATA_FWD needs two indices, position and cycle");
   EXPECT_EQ(Refusal("\nUNIT=inch\n"), ".dat:2: UNIT is \"inch\": give m, mm or um");
+  EXPECT_NE(Refusal("UNIT=deg\n").find("rotary axis are no lengths"), std::string::npos);
   EXPECT_EQ(Refusal("TGT_DATA[1]=1\nTGT_DATA[1]=1\n"),
             ".dat:2: TGT_DATA is given twice with these indices: keep one");
 }

@@ -120,6 +120,38 @@ TEST(Weights, TurnTheirJointByWhatTheirHeightLoses) {
   }
 }
 
+// Virtual work: the torque of masses about a joint is what their potential energy loses by its turn.
+TEST(Weights, KnownMassesActByTheirTorqueTogether) {
+  constexpr double kStep = 1e-5, kGravity = 9.80665;
+  LinkageSettings settings = SettingsOf(SmallRobot());
+  settings.masses = {{4.0, 1, Vector3d(0.02, 0.01, 0.45)},
+                     {2.5, 3, Vector3d(0.20, -0.03, 0.64)},
+                     {1.5, 5, SmallRobot().tip()}};
+  const LinkageModel model = CompleteErrorModel(settings);
+  const TipDerivatives at = model.Differentiate(AnyAngles(), 0.0, model.Values());
+  for (Index joint = 1; joint < 6; ++joint) {
+    const auto energy = [&](double turn) {
+      VectorXd angles = AnyAngles();
+      angles[joint] += turn;
+      double sum = 0.0;
+      for (const Mass& mass : settings.masses) {
+        if (mass.carrier < joint) continue;
+        std::vector<JointAxis> axes = SmallRobot().axes();
+        axes.resize(static_cast<std::size_t>(mass.carrier) + 1);
+        const SerialChain carrier(axes, mass.point);
+        sum += kGravity * mass.kg * carrier.Tip(VectorXd(angles.head(carrier.joints()))).z();
+      }
+      return sum;
+    };
+    const double torque = (energy(-kStep) - energy(kStep)) / (2.0 * kStep);
+    EXPECT_NEAR(LeverIn(model, at, joint, "torque"), torque, 1e-7) << joint;
+  }
+  for (const std::string& name : model.Names()) {
+    EXPECT_FALSE(name.starts_with("weight.") && !name.ends_with("_torque")) << name;
+    EXPECT_FALSE(name.starts_with("weight.pivot_1")) << name;
+  }
+}
+
 TEST(Weights, AnUprightFirstAxisFeelsNone) {
   for (const std::string& name : CompleteErrorModel(SettingsOf(SmallRobot())).Names()) {
     EXPECT_FALSE(name.starts_with("weight.pivot_1")) << name;

@@ -29,11 +29,13 @@ VectorXd Left(double size, double drift, double tau) {
   return left;
 }
 
-double ExcessIn(const VectorXd& left) {
+const VectorXd kInOrder = VectorXd::LinSpaced(kPoses, 0.0, 2.0 * kPoses);  // s
+
+double ExcessIn(const VectorXd& left, const VectorXd& time = kInOrder) {
   estimation::SourceResult run;
   run.chi_square = left.squaredNorm();
   run.redundancy = static_cast<double>(left.size());
-  return ExcessOf(run, left, 1.0);
+  return ExcessOf(run, left, time, 1.0);
 }
 
 // Of 3000 numbers, whose deviation is known to 1.3 %; twice that, and some correlations by chance.
@@ -59,6 +61,13 @@ TEST(ExcessNoise, CountsWhatNeighboursShareAsOftenAsTheyDo) {
   }
   // The mean of such a run scatters like that of a tenth of the poses.
   EXPECT_NEAR(ExcessIn(left) / (8.0 * std::sqrt(10.0)), 1.0, 0.3);
+}
+
+// Nothing of a run whose order is not known says which poses are neighbours.
+TEST(ExcessNoise, CountsADriftWithoutAnOrderAsNoise) {
+  const VectorXd unknown = VectorXd::Zero(kPoses), drifting = Left(8.0, 20.0, 300.0);
+  EXPECT_DOUBLE_EQ(ExcessIn(drifting, unknown),
+                   drifting.norm() / std::sqrt(static_cast<double>(drifting.size())));
 }
 
 }  // namespace excess_noise_test

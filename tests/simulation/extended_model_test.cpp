@@ -123,6 +123,20 @@ TEST(ExtendedModel, ATableThatIsDeletedIsACauseThatIsGone) {
   EXPECT_EQ(read.causes[0].cause->id, "leadscrew-cyclic");
 }
 
+TEST(ExtendedModel, HoldsTheCausesOfArms) {
+  const ExtendedModel read = Read(
+      "[[cause]]\nid = \"joint-gain\"\nobject = \"pivot_2\"\ngain_ppm = 300\n"
+      "[[cause]]\nid = \"arm-drift\"\nobject = \"arm\"\nx_um = 1\ny_um = 2\nz_um = 3\n"
+      "time_constant_s = 40\n"
+      "[[cause]]\nid = \"late-reading\"\nobject = \"arm\"\nshare = 0.9\n"
+      "[[cause]]\nid = \"joint-compliance\"\nobject = \"pivot_3\"\nown_urad_per_m = 0\n"
+      "wrist_urad_per_m = 0\nball_urad_per_m = 0\ntorque_urad_per_newton_m = 20\n");
+  ASSERT_EQ(read.causes.size(), 4U);
+  EXPECT_DOUBLE_EQ(read.causes[3].values[3], 20e-6);
+  ExpectRefused("[[cause]]\nid = \"joint-gain\"\nobject = \"pivot_9\"\ngain_ppm = 1\n",
+                {"pivot_9", "joint-gain"});
+}
+
 TEST(ExtendedModel, EveryCauseCanBeWrittenDown) {
   ExtendedModel model;
   model.machine = "mill";

@@ -37,7 +37,7 @@ LinkageRun HandOfBall(const char* name, const Vector3d& ball, double first_angle
 
 std::string RefusalOf(const std::vector<LinkageRun>& runs,
                       const std::vector<std::string>& balls = {}) {
-  OneBall ball;
+  OneBall ball("give one");
   try {
     for (std::size_t i = 0; i < runs.size(); ++i) {
       recording::Recording recording{runs[i].name, "kind = \"linkage\"\n", {}, {}};

@@ -11,9 +11,10 @@
 
 #include "fusion/calibrate.h"
 #include "settings/document.h"
+#include "tests/relm/arm_rows.h"
 
 namespace abbe::fusion {
-namespace robot_field_test {
+namespace two_arms_field_test {
 
 using Eigen::Index;
 using Eigen::Matrix3Xd;
@@ -21,38 +22,21 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using simulation::LinkageRun;
 
-// The rows that the data's README gives, the first (the torso) at rest; %SIGN% is + for the right
+// The rows that the data's README gives, the first (the torso) at rest; its angle is + for the right
 // arm. Priors: a casting of a metre, the tool and the tracker anywhere within some decimetres.
+std::vector<ArmRow> RowsOf(double torso_deg) {
+  return {{-90, -263, 0, torso_deg, true},
+          {0, 1415.9, 150, -90},
+          {-90, 0, 614, 180},
+          {0, 0, 200, -90},
+          {0, -640, 0, 90},
+          {-90, 0, 30, 90},
+          {0, 200, 0, 0}};
+}
+
 constexpr char kArm[] = R"(
-[linkage]
-form = "denavit-hartenberg"
 bearing_harmonics = []
 graduation_harmonics = []
-[[linkage.joint]]
-d_mm = -263.0
-alpha_deg = %SIGN%15.0
-theta_deg = -90.0
-fixed = true
-[[linkage.joint]]
-a_mm = 150.0
-d_mm = 1415.9
-alpha_deg = -90.0
-[[linkage.joint]]
-a_mm = 614.0
-alpha_deg = 180.0
-theta_deg = -90.0
-[[linkage.joint]]
-a_mm = 200.0
-alpha_deg = -90.0
-[[linkage.joint]]
-d_mm = -640.0
-alpha_deg = 90.0
-[[linkage.joint]]
-a_mm = 30.0
-alpha_deg = 90.0
-theta_deg = -90.0
-[[linkage.joint]]
-d_mm = 200.0
 [linkage.base]
 position_mm = [0.0, 0.0, 0.0]
 [linkage.tolerance]
@@ -73,9 +57,8 @@ encoder_urad = 20.0
 reference_um = 30.0
 )";
 
-relm::LinkageSettings ArmSettings(const std::string& sign) {
-  std::string text = kArm;
-  text.replace(text.find("%SIGN%"), 6, sign);
+relm::LinkageSettings ArmSettings(double torso_deg) {
+  const std::string text = "[linkage]\n" + RowsText(RowsOf(torso_deg)) + kArm;
   return relm::ReadLinkageSettings(settings::Document::Parse(text, "arm.toml").Root());
 }
 
@@ -108,7 +91,7 @@ ArmPoses ReadArm(const std::filesystem::path& path, int first) {
 
 struct Arm {
   const char* name;
-  const char* sign;
+  double torso_deg;
   int first;  // column of its first joint
 };
 void PrintTo(const Arm& arm, std::ostream* out) { *out << arm.name; }
@@ -129,7 +112,7 @@ TEST_P(RobotArm, GeometryReachesTheFigureOfAnotherProgram) {
                     (std::string("leica_") + arm.name + "_hand_6x6x6_dataset_poses.csv");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: field data not found";
   const ArmPoses poses = ReadArm(path, arm.first);
-  relm::LinkageSettings settings = ArmSettings(arm.sign);
+  relm::LinkageSettings settings = ArmSettings(arm.torso_deg);
   Matrix3Xd nominal(3, poses.positions.cols());
   for (Index pose = 0; pose < nominal.cols(); ++pose) {
     nominal.col(pose) = settings.chain.Tip(VectorXd(poses.angles.col(pose)));
@@ -157,8 +140,8 @@ TEST_P(RobotArm, GeometryReachesTheFigureOfAnotherProgram) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothArms, RobotArm,
-                         ::testing::Values(Arm{"right", "", 7}, Arm{"left", "-", 13}),
+                         ::testing::Values(Arm{"right", 15.0, 7}, Arm{"left", -15.0, 13}),
                          [](const auto& arm) { return std::string(arm.param.name); });
 
-}  // namespace robot_field_test
+}  // namespace two_arms_field_test
 }  // namespace abbe::fusion
