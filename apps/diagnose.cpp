@@ -64,6 +64,7 @@ nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
   }
   for (const auto& recording : recordings) AddProtocol(recording, json);
   json["notes"] = campaign.notes();
+  for (const std::string& note : diagnosis.notes) json["notes"].push_back(note);
   if (!arguments.out.empty()) json["model"] = arguments.out.filename().string();
   return json;
 }
@@ -123,6 +124,7 @@ int Diagnose(const DiagnoseArguments& arguments) {
   if (arguments.quiet) return kDone;
   fmt::print("{}", DiagnosisText(diagnosis, gain));
   for (const std::string& note : campaign.notes()) fmt::print("\nNote: {}\n", note);
+  for (const std::string& note : diagnosis.notes) fmt::print("\nNote: {}\n", note);
   return kDone;
 }
 

@@ -166,6 +166,7 @@ bool IsOfAnInterval(const Leftover& leftover) { return leftover.to > leftover.fr
 
 std::string WhatItDoes(const Leftover& leftover) {
   if (leftover.variable == diagnosis::kScatter) return "scatters beyond its stated noise";
+  if (leftover.variable == diagnosis::kAtRest) return "scatters where nothing moves";
   if (leftover.variable == diagnosis::kMemory) return "is correlated from one reading to the next";
   if (IsOfAnInterval(leftover)) {
     const auto unit = diagnosis::UnitOf(leftover.variable);
@@ -173,6 +174,12 @@ std::string WhatItDoes(const Leftover& leftover) {
                        leftover.from / unit.si, leftover.to / unit.si, unit.name);
   }
   return fmt::format("varies with {}{}", leftover.variable, PeriodText(leftover));
+}
+
+std::string WhatFollows(const Leftover& leftover) {
+  if (leftover.variable != diagnosis::kAtRest) return "no known cause explains it";
+  return "look for a bad contact, a loose mounting or a source of interference, or state its true "
+         "noise in the machine file";
 }
 
 std::string EvidenceText(const Diagnosis& diagnosis) {
@@ -262,10 +269,9 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
       fmt::format("verdict: {}\nchi-square per row {:.3f}, with the causes found {:.3f}\n",
                   Name(diagnosis.verdict), diagnosis.chi_before, diagnosis.chi_after);
   for (const Leftover& leftover : diagnosis.leftovers) {
-    text +=
-        fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); no known cause explains it\n",
-                    leftover.object, WhatItDoes(leftover), leftover.amplitude / leftover.unit.si,
-                    leftover.unit.name, leftover.p_value);
+    text += fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); {}\n", leftover.object,
+                        WhatItDoes(leftover), leftover.amplitude / leftover.unit.si,
+                        leftover.unit.name, leftover.p_value, WhatFollows(leftover));
   }
   text += FindingsText(diagnosis, gain);
   if (gain.rows > 0) {

@@ -9,6 +9,7 @@
 #include "failure/failure.h"
 #include "recording/made_on.h"
 #include "simulation/kinds.h"
+#include "simulation/remembered_noise.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -87,6 +88,13 @@ bool Campaign::SetExcess(const std::vector<double>& excess, Change change) {
     changed = true;
   }
   return changed;
+}
+
+void Campaign::SetMemory(std::size_t run, const estimation::NoiseMemory& noise) {
+  PreparedRun& prepared = runs_[run];
+  prepared.simulated = simulation::WithMemory(prepared.simulated, prepared.trace.time, noise);
+  prepared.excess *= noise.sd();
+  prepared.memory = noise;
 }
 
 std::vector<InvalidReadings> Campaign::invalid_readings() const {

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "estimation/noise_memory.h"
 #include "fusion/machine_prior.h"
 #include "recording/recording.h"
 #include "simulation/causes/cause.h"
@@ -42,6 +43,10 @@ class Campaign {
   // by a twentieth at least; false where nothing changes.
   enum class Change { kDown, kUp };
   bool SetExcess(const std::vector<double>& excess, Change change);
+
+  // Noise with a memory, in units of what the run is whitened with (simulation/remembered_noise.h).
+  // Of a run that tells what disturbances do, and that has none yet.
+  void SetMemory(std::size_t run, const estimation::NoiseMemory& noise);
 
   const simulation::Instruments& instruments() const { return instruments_; }
   const machine::VolumetricModel& model() const { return model_; }

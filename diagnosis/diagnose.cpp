@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "diagnosis/noise_hypothesis.h"
 #include "diagnosis/search.h"
 #include "simulation/excess_noise.h"
 
@@ -60,7 +61,7 @@ std::string_view Name(Verdict verdict) {
 }
 
 Diagnosis Diagnose(const Campaign& campaign) {
-  if (!campaign.EstimatesNoise()) return Search(campaign).Run();
+  if (!campaign.EstimatesNoise()) return BesideMemory(campaign);
   Campaign noisy = campaign;
   // Runs that do not go together leave much more than each does alone.
   noisy.SetExcess(ExcessOf(Fit(noisy)), Campaign::Change::kUp);

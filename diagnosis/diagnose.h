@@ -5,7 +5,9 @@
 //   diagnosis.verdict;                      // Verdict::kExplained
 //   diagnosis.findings[0].score.candidate.Name();          // "backlash:X"
 //
-// How: search.h.
+// How: search.h. Where something is left, noise with a memory is a hypothesis of its own: the runs
+// whose rows go on from one to the next are whitened so, the search is repeated, and what is more
+// probable is told (noise_hypothesis.h).
 // Verdict: clean, nothing found, nothing left; explained, each finding is at least kCertain among
 // its rivals and nothing is left; ambiguous, rivals; unexplained, structure is left.
 // Source: MacKay, Neural Computation 4 (1992), for evidence and Occam factor. Units: SI. Failure:
@@ -65,6 +67,7 @@ struct Diagnosis {
   std::vector<std::string> cannot_show;  // "probe-position:probe_a"
   std::vector<Score> evidence;           // of the first round: best shape of each name
   std::vector<Leftover> leftovers;
+  std::vector<std::string> notes;            // what was found of the noise
   double chi_before = 0.0, chi_after = 0.0;  // chi-square per row of all runs
   double map_change = 0.0;    // m: of the volumetric error at most, by what was found
   estimation::Result fitted;  // with all that was found

@@ -13,6 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
+using simulation::SimulatedRun;
 
 class ExtendedResidual : public estimation::Residual {
  public:
@@ -63,6 +64,17 @@ VectorXd ByShape(const LinearRun& at, const Candidate& cause) {
   more.shape *= std::exp(kStep);
   less.shape *= std::exp(-kStep);
   return (at.Columns(more) - at.Columns(less)) * cause.coefficients / (2.0 * kStep);
+}
+
+// With the noise of exchanged channels where it belongs.
+SimulatedRun WithNoiseOf(const SimulatedRun& run, const std::vector<Candidate>& causes) {
+  if (!run.noise_exchanged) return run;
+  for (const Candidate& cause : causes) {
+    if (cause.cause->id != "channel-swap") continue;
+    return run.noise_exchanged(static_cast<std::size_t>(cause.object.first()),
+                               static_cast<std::size_t>(cause.object.second()));
+  }
+  return run;
 }
 
 // What a cause does to the gaps of `read` is taken out of those of `trace`.
@@ -159,7 +171,7 @@ LinearRun LinearAt(const PreparedRun& run, const VectorXd& x, const VectorXd& le
                    const std::vector<Candidate>& causes) {
   LinearRun at{run.trace, nullptr};
   if (!run.simulated.response) return at;
-  at.response = run.simulated.response->At(x);
+  at.response = WithNoiseOf(run.simulated, causes).response->At(x);
   if (at.trace.head) at.trace.head->tilt = at.response->Tilts();
   if (at.trace.rim) LearnFrom(causes, at.trace);
   if (left.size() == 0) return at;
@@ -177,7 +189,8 @@ LinearRun LinearAt(const PreparedRun& run, const VectorXd& x, const VectorXd& le
 
 simulation::SimulatedRun Extend(const PreparedRun& run, const LinearRun& at,
                                 const std::vector<Candidate>& causes) {
-  simulation::SimulatedRun extended = run.simulated;
+  SimulatedRun extended = WithNoiseOf(run.simulated, causes);
+  const auto known = extended.residual;
   const Index rows = run.simulated.residual->Rows();
   VectorXd always = VectorXd::Zero(rows);
   if (at.trace.rim) always += BesideSlopes(at);
@@ -208,8 +221,8 @@ simulation::SimulatedRun Extend(const PreparedRun& run, const LinearRun& at,
     columns.rightCols<1>() = ByShape(at, cause);
   }
   if (columns.cols() == 0 && always.isZero(0.0)) return extended;
-  extended.residual = std::make_shared<ExtendedResidual>(run.simulated.residual, std::move(always),
-                                                         std::move(columns));
+  extended.residual =
+      std::make_shared<ExtendedResidual>(known, std::move(always), std::move(columns));
   return extended;
 }
 

@@ -92,6 +92,7 @@ std::optional<double> InSpace(const Leftover& leftover, const Campaign& campaign
     }
     return std::nullopt;
   }
+  if (leftover.variable == kAtRest) return 0.0;  // noise, which the runs count as such
   const auto& linkage = campaign.instruments().linkage;
   if (!leftover.object.starts_with("pivot_")) return leftover.amplitude;
   return linkage ? std::optional(leftover.amplitude * ReachBeyond(leftover.object, linkage->chain))

@@ -5,109 +5,151 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recording/good_rows.h"
 #include "simulation/kinds.h"
+#include "simulation/stays.h"
 
 namespace abbe::diagnosis {
 namespace {
 
+using estimation::RestKind;
+using estimation::RestNoise;
 using recording::Recording;
 
-constexpr double kTrembles = 5e-6;          // m
-constexpr double kPauseBetweenStays = 0.5;  // s: rows farther apart belong to two standstills
 constexpr double kBelieved = 0.05, kCertain = 4.0;
 
-// Rows whose axes stand where they stood in the row before, by the column's own rows.
-std::vector<bool> Stands(const Recording& recording, const std::vector<std::size_t>& rows) {
-  const bool knows_axes =
-      recording.Find("x_mm") || recording.Find("y_mm") || recording.Find("z_mm");
-  std::vector<bool> stands(rows.size(), knows_axes);
-  stands.front() = false;
-  for (const char* axis : {"x_mm", "y_mm", "z_mm"}) {
-    if (!recording.Find(axis)) continue;
-    const auto place = recording::ValuesOf(recording, axis, rows);
-    for (std::size_t i = 1; i < rows.size(); ++i) {
-      stands[i] = stands[i] && std::abs(place[i] - place[i - 1]) < kTrembles;
-    }
-  }
-  if (!recording.Find("time_s")) return stands;
-  const auto time = recording::ValuesOf(recording, "time_s", rows);
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    stands[i] = stands[i] && time[i] - time[i - 1] < kPauseBetweenStays;
-  }
-  return stands;
-}
-
-// The median of those that tell anything.
-StillNoise MedianOf(std::vector<StillNoise> channels) {
-  std::erase_if(channels, [](const StillNoise& each) { return each.freedom < 1.0; });
-  if (channels.empty()) return {};
-  const auto middle = channels.begin() + static_cast<std::ptrdiff_t>(channels.size() / 2);
-  std::nth_element(channels.begin(), middle, channels.end(),
-                   [](const StillNoise& a, const StillNoise& b) { return a.sd < b.sd; });
-  return *middle;
-}
-
-struct Kind {
-  std::string name, unit;
-  double scale;
-  std::vector<std::string> columns;
+// A recording and where it stands.
+struct AtRest {
+  const Recording& recording;
+  simulation::Stays stays;
+  bool shows_noise;
 };
 
-void Replace(const std::vector<Recording>& recordings, const Kind& kind, double& stated,
-             std::vector<std::string>& notes) {
-  std::vector<StillNoise> channels;
-  for (const std::string& column : kind.columns) {
-    channels.push_back(NoiseAtRest(recordings, column));
+std::vector<AtRest> StandstillsOf(const std::vector<Recording>& recordings) {
+  std::vector<AtRest> all;
+  for (const Recording& recording : recordings) {
+    all.push_back({recording, simulation::StaysOf(recording),
+                   simulation::KindOf(recording).ShowsNoiseAtRest()});
   }
-  const StillNoise found = MedianOf(std::move(channels));
-  if (found.freedom < 1.0) return;
-  const double doubt = kCertain / std::sqrt(2.0 * found.freedom);
-  if (std::abs(found.sd / stated - 1.0) <= std::max(kBelieved, doubt)) return;
-  notes.push_back(fmt::format(
-      "noise of the {}: {:.3g} {} where nothing moves ({:.0f} degrees of freedom), not {:.3g} {} "
-      "as the machine file states; what was measured counts",
-      kind.name, found.sd / kind.scale, kind.unit, found.freedom, stated / kind.scale, kind.unit));
-  stated = found.sd;
+  return all;
+}
+
+RestNoise NoiseOf(const std::vector<AtRest>& all, const std::string& column, bool shows_noise) {
+  std::vector<estimation::Stay> stays;
+  for (const AtRest& each : all) {
+    if (each.shows_noise != shows_noise || !each.recording.Find(column)) continue;
+    for (auto& stay : simulation::ReadingsIn(each.recording, column, each.stays)) {
+      stays.push_back(std::move(stay));
+    }
+  }
+  return estimation::NoiseAtRest(stays);
+}
+
+bool IsOther(const RestNoise& noise, double stated) {
+  const double doubt = kCertain / std::sqrt(2.0 * noise.freedom);
+  return noise.freedom >= 1.0 && noise.sd > 0.0 &&
+         std::abs(noise.sd / stated - 1.0) > std::max(kBelieved, doubt);
+}
+
+bool IsFarMore(const RestNoise& noise, double stated) {
+  return noise.freedom >= 1.0 && noise.kind != RestKind::kLine &&
+         noise.sd * (1.0 - kCertain / std::sqrt(2.0 * noise.freedom)) > kFarMore * stated;
+}
+
+// Channels of one kind and what the machine file states of each.
+struct Kind {
+  std::string name, unit;
+  double scale, stated;
+  std::vector<std::string> columns, channels;
+};
+
+// What counts of each channel; sd 0: what is stated.
+std::vector<RestNoise> Measured(const std::vector<AtRest>& all, const Kind& kind,
+                                simulation::Instruments& instruments) {
+  std::vector<RestNoise> found;
+  std::string replaced;
+  double least = 1e300;
+  for (std::size_t i = 0; i < kind.columns.size(); ++i) {
+    RestNoise rest = NoiseOf(all, kind.columns[i], true);
+    const RestNoise in_sweeps = NoiseOf(all, kind.columns[i], false);
+    for (const RestNoise& each : {rest, in_sweeps}) {
+      if (!IsFarMore(each, kind.stated)) continue;
+      instruments.noisy.push_back({kind.channels[i], each.sd / kind.stated, each.freedom});
+      break;
+    }
+    if (rest.kind == RestKind::kMemory) {
+      instruments.notes.push_back(fmt::format(
+          "readings of {} go on from one to the next where nothing moves: {:.0f} % of their "
+          "variance fades within {:.2g} s; evidence counts them as so many fewer",
+          kind.channels[i], 100.0 * std::pow(rest.memory.slow / rest.memory.sd(), 2),
+          rest.memory.time));
+    }
+    if (IsOther(rest, kind.stated)) {
+      replaced += fmt::format("{}{} {:.3g} {}", replaced.empty() ? "" : ", ", kind.channels[i],
+                              rest.sd / kind.scale, kind.unit);
+      least = std::min(least, rest.freedom);
+    } else {
+      rest.sd = 0.0;
+    }
+    found.push_back(rest);
+  }
+  if (!replaced.empty()) {
+    instruments.notes.push_back(fmt::format(
+        "noise of the {}: {} where nothing moves ({:.0f} degrees of freedom or more), not {:.3g} "
+        "{} as the machine file states; what was measured counts",
+        kind.name, replaced, least, kind.stated / kind.scale, kind.unit));
+  }
+  return found;
+}
+
+void MeasureProbes(const std::vector<AtRest>& all, simulation::Instruments& on) {
+  Kind probes{"probes", "nm", 1e-9, on.noise.probe, {}, {}};
+  for (const char letter : {'a', 'b', 'c', 'd', 'e'}) {
+    probes.columns.push_back(fmt::format("probe_{}_um", letter));
+    probes.channels.push_back(fmt::format("probe_{}", letter));
+  }
+  const std::vector<RestNoise> found = Measured(all, probes, on);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    on.noise.measured[i] = found[i].sd;
+    if (found[i].kind != RestKind::kMemory) continue;
+    const double all_of_it = found[i].sd > 0.0 ? found[i].sd : on.noise.probe;
+    const double of_one = all_of_it / found[i].memory.sd();
+    constexpr double kLeastShare = 1e-3;  // a covariance needs some white noise
+    on.noise.measured[i] = std::max(of_one * found[i].memory.white, kLeastShare * all_of_it);
+    on.noise.memory[i] = of_one * found[i].memory.slow;
+    on.noise.memory_time[i] = found[i].memory.time;
+  }
+}
+
+void MeasureEncoders(const std::vector<AtRest>& all, simulation::Instruments& on) {
+  relm::LinkageNoise& noise = on.linkage->noise;
+  Kind encoders{"encoders", "urad", 1e-6, noise.encoder, {}, {}};
+  for (int i = 1; i <= on.linkage->chain.joints(); ++i) {
+    encoders.columns.push_back(fmt::format("pivot_{}_rad", i));
+    encoders.channels.push_back(fmt::format("pivot_{}", i));
+  }
+  const std::vector<RestNoise> found = Measured(all, encoders, on);
+  for (const RestNoise& each : found) {
+    noise.measured.push_back(each.sd);
+    if (each.kind != RestKind::kMemory) continue;
+    // The longest counts for all.
+    const double share = std::pow(each.memory.slow / each.memory.sd(), 2);
+    if (share * each.memory.time <= noise.memory_share * noise.memory_time) continue;
+    noise.memory_share = share;
+    noise.memory_time = each.memory.time;
+  }
 }
 
 }  // namespace
 
-StillNoise NoiseAtRest(const std::vector<Recording>& recordings, const std::string& column) {
-  double sum = 0.0, pairs = 0.0;
-  for (const Recording& recording : recordings) {
-    if (!recording.Find(column) || !simulation::KindOf(recording).ShowsNoiseAtRest()) continue;
-    if (!recording::HasGoodRow(recording)) continue;
-    const auto rows = recording::GoodRows(recording);
-    const auto values = recording::ValuesOf(recording, column, rows);
-    const auto stands = Stands(recording, rows);
-    for (std::size_t i = 1; i < rows.size(); ++i) {
-      if (!stands[i]) continue;
-      sum += 0.5 * std::pow(values[i] - values[i - 1], 2);
-      pairs += 1.0;
-    }
-  }
-  if (pairs == 0.0) return {};
-  return {std::sqrt(sum / pairs), 2.0 / 3.0 * pairs};
+RestNoise NoiseAtRest(const std::vector<Recording>& recordings, const std::string& column) {
+  return NoiseOf(StandstillsOf(recordings), column, true);
 }
 
 void UseMeasuredNoise(const std::vector<Recording>& recordings,
                       simulation::Instruments& instruments) {
-  if (instruments.head) {
-    Kind probes{"probes", "nm", 1e-9, {}};
-    for (const char letter : {'a', 'b', 'c', 'd', 'e'}) {
-      probes.columns.push_back(fmt::format("probe_{}_um", letter));
-    }
-    Replace(recordings, probes, instruments.noise.probe, instruments.notes);
-  }
-  if (instruments.linkage) {
-    Kind encoders{"encoders", "urad", 1e-6, {}};
-    for (std::size_t i = 1; i <= static_cast<std::size_t>(instruments.linkage->chain.joints());
-         ++i) {
-      encoders.columns.push_back(fmt::format("pivot_{}_rad", i));
-    }
-    Replace(recordings, encoders, instruments.linkage->noise.encoder, instruments.notes);
-  }
+  const std::vector<AtRest> all = StandstillsOf(recordings);
+  if (instruments.head) MeasureProbes(all, instruments);
+  if (instruments.linkage) MeasureEncoders(all, instruments);
 }
 
 }  // namespace abbe::diagnosis

@@ -4,6 +4,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "diagnosis/measured_noise.h"
 #include "simulation/excess_noise.h"
 
 namespace abbe::diagnosis {
@@ -23,12 +24,19 @@ double Chance(double chi_square, double freedom) {
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), chi_square));
 }
 
-Leftover ScatterOf(const VectorXd& left, double excess) {
-  const double stated = left.squaredNorm() * excess * excess;
+// What was whitened by a memory is held against what is stated, of as many rows as are independent.
+Leftover ScatterOf(const VectorXd& left, const PreparedRun& run) {
   const auto rows = static_cast<double>(left.size());
-  const double beyond = std::sqrt(std::max(0.0, stated / rows - 1.0));
+  const double square = left.squaredNorm() / rows * run.excess * run.excess;
+  double freedom = rows;
+  if (run.memory) {
+    const VectorXd& time = run.trace.time;
+    freedom *= run.memory->Independent((time.maxCoeff() - time.minCoeff()) /
+                                       static_cast<double>(time.size() - 1));
+  }
+  const double beyond = std::sqrt(std::max(0.0, square - 1.0));
   const double p_value =
-      Chance(stated / (simulation::kNoiseIsKnown * simulation::kNoiseIsKnown), rows);
+      Chance(square * freedom / (simulation::kNoiseIsKnown * simulation::kNoiseIsKnown), freedom);
   return {kScatter, {}, beyond, {"times the noise"}, p_value, 0.0};
 }
 
@@ -66,15 +74,27 @@ bool HasNeighbours(const PreparedRun& run, const VectorXd& left) {
          left.squaredNorm() * simulation::kNoiseIsKnown * simulation::kNoiseIsKnown > rows;
 }
 
+// How often the variance of so many readings is larger than the largest that is no fault.
+Leftover AtRest(const simulation::NoisyChannel& noisy) {
+  const double beyond = std::pow(noisy.factor / kFarMore, 2);
+  return {kAtRest,
+          noisy.name,
+          noisy.factor,
+          {"times the noise"},
+          Chance(noisy.freedom * beyond, noisy.freedom),
+          0.0};
+}
+
 }  // namespace
 
 std::vector<Leftover> RunsThatScatter(const Fit& fit) {
   std::vector<Leftover> found;
+  for (const auto& noisy : fit.campaign().instruments().noisy) found.push_back(AtRest(noisy));
   const auto& runs = fit.campaign().runs();
   for (std::size_t run = 0; run < runs.size(); ++run) {
     const VectorXd& left = fit.LeftOf(run);
     if (left.size() == 0) continue;
-    std::vector<Leftover> answers{ScatterOf(left, runs[run].excess)};
+    std::vector<Leftover> answers{ScatterOf(left, runs[run])};
     if (HasNeighbours(runs[run], left)) answers.push_back(MemoryOf(InTime(left, runs[run].trace)));
     for (Leftover& answer : answers) {
       answer.object = runs[run].simulated.name;

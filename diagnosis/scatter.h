@@ -7,6 +7,8 @@
 //   memory    the autocorrelations a_k of n rows in time, n (n + 2) sum a_k^2 / (n - k) over the
 //             first kLags of each channel, against chi-square of as many degrees of freedom, where
 //             the a_k are positive on the whole
+// A channel that scatters far more than stated while nothing moves (measured_noise.h) is told too,
+// whatever noise its runs are whitened with.
 // Source: ISO/IEC Guide 98-3:2008, G.3 (chi-square of residuals); Ljung and Box, Biometrika 65
 // (1978). Units: amplitude in units of the stated noise.
 #pragma once
@@ -18,7 +20,7 @@
 
 namespace abbe::diagnosis {
 
-// The variable is kScatter or kMemory, the object the name of the run.
+// The variable is kScatter or kMemory, the object the name of the run; or kAtRest, the channel.
 std::vector<Leftover> RunsThatScatter(const Fit& fit);
 
 }  // namespace abbe::diagnosis

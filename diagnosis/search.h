@@ -35,6 +35,7 @@ class Search {
   Diagnosis Run();
   // With all that was taken in.
   const Fit& fit() const { return *fit_; }
+  const Fit& base() const { return *base_; }  // without causes
 
  private:
   using FitPointer = std::shared_ptr<const Fit>;

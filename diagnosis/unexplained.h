@@ -24,5 +24,6 @@ struct Leftover {
 inline constexpr double kDoubt = 1e-3;
 inline constexpr const char* kScatter = "scatter";  // of scatter.h
 inline constexpr const char* kMemory = "memory";
+inline constexpr const char* kAtRest = "scatter at rest";  // of measured_noise.h
 
 }  // namespace abbe::diagnosis

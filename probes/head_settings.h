@@ -77,6 +77,13 @@ struct ProbeNoise {
   double probe;       // m: standard deviation of one reading of one probe
   double drift;       // m: standard deviation of its drift
   double drift_time;  // s: its correlation time
+  // Where recordings tell, of each channel: white noise of one reading, m; a part of it that goes
+  // on from one reading to the next, m, and for how long, s. Else 0.
+  PerProbe<> measured = {}, memory = {}, memory_time = {};
+
+  double Of(std::size_t probe_index) const {
+    return measured[probe_index] > 0.0 ? measured[probe_index] : probe;
+  }
 };
 
 HeadSettings ReadHeadSettings(const settings::Table& root);

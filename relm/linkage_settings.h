@@ -48,6 +48,13 @@ struct LinkageNoise {
   double reference;      // m: of a position that a reference instrument gives, each direction
   double machine;        // m: of a commanded position where it is the reference, each direction
   double repeatability;  // m: of the ball when a position is approached again, each direction
+  std::vector<double> measured = {};  // rad: like `encoder`, of each joint where recordings tell; 0
+  // Of the variance of an encoder, what goes on from one reading to the next, and for how long, s.
+  double memory_share = 0.0, memory_time = 0.0;
+
+  double EncoderOf(std::size_t joint) const {
+    return joint < measured.size() && measured[joint] > 0.0 ? measured[joint] : encoder;
+  }
 };
 
 // A part of the arm, or its load, whose weight is known.

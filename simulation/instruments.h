@@ -11,6 +11,12 @@
 
 namespace abbe::simulation {
 
+// A channel that scatters far more than is stated while nothing moves.
+struct NoisyChannel {
+  std::string name;  // "probe_a"
+  double factor = 1.0, freedom = 0.0;
+};
+
 struct Instruments {
   machine::Machine machine;
   std::optional<probes::HeadSettings> head;
@@ -18,6 +24,7 @@ struct Instruments {
   probes::ProbeNoise noise;  // of the head
   std::optional<relm::LinkageSettings> linkage;
   std::vector<std::string> notes = {};  // where recordings contradict the file
+  std::vector<NoisyChannel> noisy = {};
 
   // A machine file may describe an arm or a shaft and no axes.
   bool HasAxes() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace abbe::simulation {
 
@@ -18,8 +19,11 @@ void FlagPlaces(Recording& path) {
   }
 }
 
-double AlternatingSign(std::size_t row, std::size_t channel) {
-  return (row + channel) % 4 < 2 ? 1.0 : -1.0;
+// Bits of a multiplicative hash: Knuth, The Art of Computer Programming 3, 6.4.
+double MixedSign(std::size_t row, std::size_t channel) {
+  std::uint64_t bits = (8 * row + channel + 1) * 0x9E3779B97F4A7C15u;
+  bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
+  return ((bits ^ (bits >> 27)) >> 40) % 2 == 0 ? 1.0 : -1.0;
 }
 
 std::vector<double>& ColumnIn(Recording& recording, const std::string& name) {

@@ -24,8 +24,8 @@ namespace abbe::simulation {
 
 // A row counts when it has a place.
 void FlagPlaces(recording::Recording& path);
-// +1, +1, -1, -1 ...; channels one after the other differ.
-double AlternatingSign(std::size_t row, std::size_t channel);
+// +1 or -1 as if drawn, the same whenever it is asked for: noise in which there is no line.
+double MixedSign(std::size_t row, std::size_t channel);
 // The values of a column, made where it is missing.
 std::vector<double>& ColumnIn(recording::Recording& recording, const std::string& name);
 

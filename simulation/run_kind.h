@@ -21,6 +21,7 @@
 #include <string_view>
 #include <vector>
 
+#include "estimation/noise_memory.h"
 #include "failure/failure.h"
 #include "machine/volumetric_model.h"
 #include "recording/recording.h"
@@ -39,6 +40,8 @@ struct PreparedRun {
   double excess = 1.0;  // noise that `simulated` is whitened with, over the stated one
   // The simulation with another excess; empty: the stated noise is believed.
   std::function<SimulatedRun(double excess)> with_excess = {};
+  // What it is whitened with besides, in units of that (remembered_noise.h).
+  std::optional<estimation::NoiseMemory> memory = {};
 
   bool EstimatesNoise() const { return static_cast<bool>(with_excess); }
 };

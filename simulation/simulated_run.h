@@ -70,6 +70,9 @@ struct SimulatedRun {
   // Empty: none is stated.
   std::function<Eigen::MatrixXd()> form = {};
   double form_stated = 0.0;  // m
+  // The same run, the noise of two channels exchanged: it belongs to what is connected, not to the
+  // name. Empty: all channels have one noise.
+  std::function<SimulatedRun(std::size_t one, std::size_t other)> noise_exchanged = {};
   // m: whitened rows as they are in space, one column for each pose; empty: rows are no places.
   std::function<Eigen::Matrix3Xd(const Eigen::VectorXd& whitened)> in_space = {};
 };

@@ -66,7 +66,7 @@ void SetAngles(const Instruments& on, Recording& path) {
       const double angle = angles(pivot, static_cast<Index>(i));
       before += std::remainder(angle - before, 2.0 * std::numbers::pi);
       column[rows[i]] =
-          before + AlternatingSign(i, static_cast<std::size_t>(pivot)) * linkage.noise.encoder;
+          before + MixedSign(i, static_cast<std::size_t>(pivot)) * linkage.noise.encoder;
     }
   }
 }
@@ -189,10 +189,10 @@ class LinkageRuns : public RunKind {
                        const Instruments& on, const FactsByRun&) const override {
     const relm::LinkageSettings& settings = on.LinkageFor(recording.name);
     const LinkageSimulation nominal = Nominal(on, settings);
-    const LinkageRun run =
-        AtMost(MeansOfStays(ReadLinkageRun(recording, settings)), kMostDiagnosedPoses);
-    return {{{SimulateLinkage(model, on.machine.reference, nominal, run),
-              TraceOf(recording, run, nominal)}}};
+    LinkageRun run = AtMost(MeansOfStays(ReadLinkageRun(recording, settings)), kMostDiagnosedPoses);
+    Trace trace = TraceOf(recording, run, nominal);
+    CountIndependent(settings.noise, trace.duration, run);
+    return {{{SimulateLinkage(model, on.machine.reference, nominal, run), std::move(trace)}}};
   }
 
   void RefuseStrangers(const std::vector<RunSource>& sources,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "failure/failure.h"
@@ -120,6 +121,20 @@ LinkageRun MeansOfStays(LinkageRun run, double window) {
     means.samples[stay] = total;
   }
   return means;
+}
+
+void CountIndependent(const relm::LinkageNoise& noise, const Eigen::VectorXd& duration,
+                      LinkageRun& run) {
+  if (noise.memory_share == 0.0) return;
+  for (Index pose = 0; pose < run.poses(); ++pose) {
+    const double n = run.samples[pose];
+    if (n < 2.0 || !(duration[pose] > 0.0)) continue;
+    const double kept = std::exp(-duration[pose] / (n - 1.0) / noise.memory_time);
+    // The mean of kept^|i - k| over all pairs: a geometric sum.
+    const double pairs = (1.0 + kept) / (1.0 - kept) / n -
+                         2.0 * kept * (1.0 - std::pow(kept, n)) / std::pow(n * (1.0 - kept), 2);
+    run.samples[pose] = 1.0 / ((1.0 - noise.memory_share) / n + noise.memory_share * pairs);
+  }
 }
 
 LinkageRun RunAt(const Eigen::Matrix3Xd& positions, const relm::LinkageSettings& settings) {

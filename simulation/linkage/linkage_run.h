@@ -51,6 +51,11 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
 inline constexpr double kStayWindow = 5e-6;  // m
 LinkageRun MeansOfStays(LinkageRun run, double window = kStayWindow);
 
+// Readings with a memory (linkage.noise) tell less in a mean than as many that have none: `samples`
+// become those of white noise that would tell as much. `duration`: s, of each stay.
+void CountIndependent(const relm::LinkageNoise& noise, const Eigen::VectorXd& duration,
+                      LinkageRun& run);
+
 // A run that stands at the given axis positions [x y z], its reference instrument present, before
 // any encoder has been read.
 LinkageRun RunAt(const Eigen::Matrix3Xd& positions, const relm::LinkageSettings& settings);

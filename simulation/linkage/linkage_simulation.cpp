@@ -138,8 +138,12 @@ Matrix3Xd LinkageSimulation::GapNoise(const LinkageRun& run) const {
   for (Index pose = 0; pose < run.poses(); ++pose) {
     const Matrix3Xd J_tip_q =
         settings_.X_MB.R * model_.chain().JacobianTipAngles(run.readings.angles.col(pose));
-    const double encoder = settings_.noise.encoder * settings_.noise.encoder / run.samples[pose];
-    Matrix3d covariance = encoder * J_tip_q * J_tip_q.transpose();
+    VectorXd variances(J_tip_q.cols());
+    for (Index joint = 0; joint < variances.size(); ++joint) {
+      const double encoder = settings_.noise.EncoderOf(static_cast<std::size_t>(joint));
+      variances[joint] = encoder * encoder / run.samples[pose];
+    }
+    Matrix3d covariance = J_tip_q * variances.asDiagonal() * J_tip_q.transpose();
     covariance.diagonal() += run.reference_sd.col(pose).cwiseAbs2();
     const Eigen::LLT<Matrix3d> factor(covariance);
     if (factor.info() != Eigen::Success) {

@@ -4,14 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
+#include "estimation/readings_at_rest.h"
 #include "recording/good_rows.h"
 #include "settings/toml_text.h"
 #include "settings/unit.h"
 #include "simulation/kinds.h"
 #include "simulation/planned_run.h"
 #include "simulation/repeated_run.h"
+#include "simulation/stays.h"
 #include "simulation/sweep/sweep_correction.h"
 #include "simulation/sweep/sweep_run.h"
 #include "simulation/sweep/sweep_simulation.h"
@@ -25,6 +29,7 @@ using Eigen::Vector3d;
 using recording::Recording;
 
 constexpr const char* kAnew = "planned anew";  // a mounting
+constexpr double kLeastNoise = 1e-12;          // m
 
 // The slope of a Gaussian process: its deviation over its length (fusion/machine_prior.h).
 Eigen::Matrix<double, 6, 3> SlopesOf(const machine::Population& population) {
@@ -52,6 +57,38 @@ std::string MountingLines(const std::string& id, const SweepMounting& mounted) {
                      mounted.target_shift / settings::kMillimetre, mounted.target_reversed);
 }
 
+// Whether exchanged channels would make no difference.
+bool NoiseIsOne(const SweepRun& run) {
+  constexpr double kHardly = 1.1;  // of the variance
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (const Eigen::MatrixXd& covariance : run.covariance) {
+    least = std::min(least, covariance.diagonal().mean());
+    most = std::max(most, covariance.diagonal().mean());
+  }
+  return most < kHardly * least;
+}
+
+// The noise of the readings of a sweep while it stands, and whether a line in time is among them.
+struct InStays {
+  probes::ProbeNoise noise;
+  bool has_line = false;
+};
+
+InStays NoiseInStays(const Recording& recording, const Stays& stays, probes::ProbeNoise noise) {
+  InStays found{noise};
+  for (std::size_t probe = 0; probe < probes::kProbes; ++probe) {
+    const auto rest = estimation::NoiseAtRest(
+        ReadingsIn(recording, fmt::format("probe_{:c}_um", 'a' + probe), stays));
+    found.has_line = found.has_line || rest.kind == estimation::RestKind::kLine;
+    if (rest.freedom > 0.0) found.noise.measured[probe] = rest.sd;
+    if (rest.kind != estimation::RestKind::kMemory) continue;
+    found.noise.measured[probe] = std::max(rest.memory.white, kLeastNoise);
+    found.noise.memory[probe] = rest.memory.slow;
+    found.noise.memory_time[probe] = rest.memory.time;
+  }
+  return found;
+}
+
 // The common part of the kinds.
 class HeadKind : public RunKind {
  public:
@@ -59,12 +96,12 @@ class HeadKind : public RunKind {
 
   PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel& model,
                        const Instruments& on, const FactsByRun&) const override {
-    const probes::HeadSettings& head = on.HeadFor(recording.name);
-    const SweepRun run = Read(recording, on);
-    PreparedRun prepared{SimulateSweep(model, on.machine.reference, {head, on.target}, run),
-                         TraceOf(recording, run)};
-    prepared.trace.head->spots = SpotsOnTarget(on.machine.chain, head, run);
-    return {{std::move(prepared)}};
+    on.HeadFor(recording.name);
+    PreparedRuns prepared;
+    for (const SweepRun& run : Read(recording, on)) {
+      prepared.runs.push_back(PrepareOne(recording, model, on, run));
+    }
+    return prepared;
   }
 
   Recording Plan(Recording path, const Instruments& on) const override {
@@ -74,7 +111,7 @@ class HeadKind : public RunKind {
       const double middle = 0.5 * head.probes[probe].range;
       auto& gap = ColumnIn(path, fmt::format("probe_{:c}_um", 'a' + probe));
       for (std::size_t row = 0; row < gap.size(); ++row) {
-        gap[row] = (middle + AlternatingSign(row, probe) * on.noise.probe) / settings::kMicrometre;
+        gap[row] = (middle + MixedSign(row, probe) * on.noise.probe) / settings::kMicrometre;
       }
     }
     return path;
@@ -82,7 +119,24 @@ class HeadKind : public RunKind {
 
  protected:
   // On a machine with a head.
-  virtual SweepRun Read(const Recording& recording, const Instruments& on) const = 0;
+  virtual std::vector<SweepRun> Read(const Recording& recording, const Instruments& on) const = 0;
+
+ private:
+  static PreparedRun PrepareOne(const Recording& recording, const machine::VolumetricModel& model,
+                                const Instruments& on, const SweepRun& run) {
+    const SweepInstrument instrument{*on.head, on.target};
+    PreparedRun prepared{SimulateSweep(model, on.machine.reference, instrument, run),
+                         TraceOf(recording, run)};
+    prepared.trace.head->spots = SpotsOnTarget(on.machine.chain, *on.head, run);
+    if (NoiseIsOne(run)) return prepared;
+    prepared.simulated.noise_exchanged = [=, reference = on.machine.reference](std::size_t one,
+                                                                               std::size_t other) {
+      SweepRun exchanged = run;
+      std::swap(exchanged.covariance[one], exchanged.covariance[other]);
+      return SimulateSweep(model, reference, instrument, exchanged);
+    };
+    return prepared;
+  }
 };
 
 // The runs that could follow the first sweep of an axis.
@@ -204,8 +258,13 @@ class SweepRuns : public HeadKind {
   }
 
  protected:
-  SweepRun Read(const Recording& recording, const Instruments& on) const override {
-    return ReadSweepDwells(recording, *on.head, on.noise);
+  // With a line in time in what the stays hold, their readings too.
+  std::vector<SweepRun> Read(const Recording& recording, const Instruments& on) const override {
+    std::vector<SweepRun> runs{ReadSweepDwells(recording, *on.head, on.noise)};
+    const Stays stays = StaysOf(recording);
+    const InStays found = NoiseInStays(recording, stays, on.noise);
+    if (found.has_line) runs.push_back(ReadReadingsInStays(recording, stays, found.noise));
+    return runs;
   }
 };
 
@@ -214,8 +273,8 @@ class DwellRuns : public HeadKind {
   std::string_view name() const override { return "dwell"; }
 
  protected:
-  SweepRun Read(const Recording& recording, const Instruments& on) const override {
-    return ReadStillReadings(recording, on.noise);
+  std::vector<SweepRun> Read(const Recording& recording, const Instruments& on) const override {
+    return {ReadStillReadings(recording, on.noise)};
   }
 };
 
@@ -224,8 +283,8 @@ class GapStepsRuns : public HeadKind {
   std::string_view name() const override { return "gap-steps"; }
 
  protected:
-  SweepRun Read(const Recording& recording, const Instruments& on) const override {
-    return ReadGapSteps(recording, on.noise, SlopesOf(on.machine.population));
+  std::vector<SweepRun> Read(const Recording& recording, const Instruments& on) const override {
+    return {ReadGapSteps(recording, on.noise, SlopesOf(on.machine.population))};
   }
 };
 

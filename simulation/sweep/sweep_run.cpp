@@ -116,7 +116,13 @@ SweepRun Standing(const recording::Recording& recording, const std::vector<std::
     const std::string column = fmt::format("probe_{}_um", static_cast<char>('a' + i));
     run.gap.row(static_cast<Index>(i)) = means(ColumnOf(recording, column, rows).transpose());
     run.covariance[i] = DriftCovariance(run.time, noise);
-    run.covariance[i].diagonal().array() += noise.probe * noise.probe / readings.array();
+    if (noise.memory[i] > 0.0) {
+      probes::ProbeNoise memory = noise;
+      memory.drift = noise.memory[i];
+      memory.drift_time = noise.memory_time[i];
+      run.covariance[i] += DriftCovariance(run.time, memory);
+    }
+    run.covariance[i].diagonal().array() += noise.Of(i) * noise.Of(i) / readings.array();
   }
   return run;
 }
@@ -205,6 +211,40 @@ SweepRun ReadStillReadings(const recording::Recording& recording, const probes::
   SweepRun run = Standing(recording, rows, each, noise);
   run.direction.assign(each.size(), 0);
   run.steps.resize(3, 0);
+  return run;
+}
+
+SweepRun ReadReadingsInStays(const recording::Recording& recording,
+                             const std::vector<std::vector<std::size_t>>& stays,
+                             const probes::ProbeNoise& noise) {
+  constexpr double kUnknown = 10e-6;  // m: where a stay is
+  constexpr std::size_t kMost = 2 * kStillReadings;
+  std::vector<std::size_t> rows;
+  std::vector<Standstill> each;
+  std::vector<Index> starts;
+  for (const auto& stay : stays) {
+    if (rows.size() + stay.size() > kMost && !rows.empty()) break;
+    starts.push_back(static_cast<Index>(rows.size()));
+    for (std::size_t i = 0; i < std::min(stay.size(), kMost); ++i) {
+      each.push_back({rows.size(), rows.size() + 1});
+      rows.push_back(stay[i]);
+    }
+  }
+  SweepRun run = Standing(recording, rows, each, noise);
+  starts.push_back(run.rows());
+  for (Eigen::MatrixXd& covariance : run.covariance) {
+    for (std::size_t stay = 0; stay + 1 < starts.size(); ++stay) {
+      const Index first = starts[stay], count = starts[stay + 1] - first;
+      covariance.block(first, first, count, count).array() += kUnknown * kUnknown;
+    }
+  }
+  run.steps.resize(3, 0);
+  const auto pass = recording::ValuesOf(recording, "pass", rows);
+  const auto direction = recording::ValuesOf(recording, "direction", rows);
+  run.pass.assign(pass.begin(), pass.end());
+  run.direction.assign(direction.begin(), direction.end());
+  if (run.mounting.empty()) run.mounting = run.name;
+  run.name += " (readings in stays)";
   return run;
 }
 

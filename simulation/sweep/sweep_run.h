@@ -68,6 +68,11 @@ SweepRun ReadSweepRun(const recording::Recording& recording, const recording::Bl
 // A recording that holds still (kind dwell): one row is one reading, its first kStillReadings.
 inline constexpr std::size_t kStillReadings = 120;
 SweepRun ReadStillReadings(const recording::Recording& recording, const probes::ProbeNoise& noise);
+// Single readings of a sweep while it stands (stays.h), the first ones, each stay about a mean that
+// nobody knows: what they say of mains and vibration beyond the means of ReadSweepDwells.
+SweepRun ReadReadingsInStays(const recording::Recording& recording,
+                             const std::vector<std::vector<std::size_t>>& stays,
+                             const probes::ProbeNoise& noise);
 SweepRun ReadSweepDwells(const recording::Recording& recording, const probes::HeadSettings& head,
                          const probes::ProbeNoise& noise);
 // Gap steps (kind gap-steps): one row is one standstill, whichever axis stepped to it. `slopes`:

@@ -49,6 +49,14 @@ class HiddenWorlds {
     return worlds;
   }
 
+  // The same, without white noise of probes and encoders, for a test that adds its own.
+  HiddenWorlds Quiet() const {
+    HiddenWorlds worlds = WithoutCounts();
+    worlds.machine_.rig.white = 0.0;
+    worlds.machine_.linkage->encoder_noise = 0.0;
+    return worlds;
+  }
+
   rig::Campaign Record(std::uint64_t seed, const std::vector<std::string>& hidden) const {
     rig::HiddenEffects effects;
     for (const std::string& text : hidden) {
