@@ -111,7 +111,7 @@ int Diagnose(const DiagnoseArguments& arguments) {
     if (diagnosis::IsModelled(finding)) causes.push_back(finding.score.candidate);
   }
   const diagnosis::HeldOutGain gain = GainOf(campaign, recordings, causes);
-  diagnosis::AddDoubts(campaign.scene(), gain, diagnosis);
+  diagnosis::AddDoubtsOfHeldOut(gain, diagnosis);
   if (!arguments.out.empty()) {
     WriteModel(diagnosis::FoundModel(diagnosis, campaign, gain), arguments);
   }

@@ -52,6 +52,11 @@ bool IsStandingPair(const simulation::Scene& scene, const simulation::Object& ob
          !std::ranges::all_of(axes, [&](int axis) { return Moves(scene, axis); });
 }
 
+bool IsAmong(const std::vector<Candidate>& candidates, const Candidate& candidate) {
+  return std::ranges::any_of(
+      candidates, [&](const Candidate& other) { return other.Name() == candidate.Name(); });
+}
+
 double CoarsenessOf(const machine::Population& population) {
   constexpr double kFine = 2e-6;  // m
   return std::max(1.0, population.positioning / kFine);

@@ -29,6 +29,9 @@ struct Candidate {
   }
 };
 
+// Whether one of the candidates has the name, in whatever shape.
+bool IsAmong(const std::vector<Candidate>& candidates, const Candidate& candidate);
+
 // Scale of the prior sizes of length-like causes (backlash, cyclic error, drift). The registry
 // assumes a machine that positions to 2 um (the population of its file); a coarser one gets them in
 // proportion.

@@ -80,52 +80,56 @@ bool AreOutliersOfSeveral(const Finding& finding, const std::vector<Finding>& fi
   return are(finding) && std::ranges::count_if(findings, are) > 1;
 }
 
-std::vector<std::string> DoubtsOf(const Finding& finding, const simulation::Scene& scene) {
-  std::vector<std::string> doubts;
-  if (IsWithinItsUncertainty(finding)) {
-    doubts.push_back("its U95 exceeds its size");
-  }
-  if (const auto* key = BeyondBounds(finding)) {
-    doubts.push_back(fmt::format("{} lies beyond what is physically possible ({:g} to {:g})",
-                                 key->name, key->least, key->most));
-  }
-  if (const double period = PeriodOf(finding); period > 0.0) {
-    const double step = StepOf(scene, finding.score.candidate.object.first());
-    if (period < 2.0 * step) {
-      doubts.push_back(fmt::format(
-          "its period is shorter than two steps of {:.3g} mm along the axis: other periods fit as "
-          "well; measure at steps of less than {:.3g} mm",
-          1e3 * step, 0.5e3 * period));
-    }
-  }
-  return doubts;
+void Doubt(Finding& finding, std::string why, Diagnosis& diagnosis) {
+  finding.doubts.push_back(std::move(why));
+  finding.probability = std::min(finding.probability, kDoubtful);
+  if (diagnosis.verdict == Verdict::kExplained) diagnosis.verdict = Verdict::kAmbiguous;
 }
 
 }  // namespace
 
-void AddDoubts(const simulation::Scene& scene, const HeldOutGain& gain, Diagnosis& diagnosis) {
-  std::size_t modelled = 0;
+void AddDoubts(const simulation::Scene& scene, Diagnosis& diagnosis) {
   for (Finding& finding : diagnosis.findings) {
     if (AreOutliersOfSeveral(finding, diagnosis.findings)) {
-      finding.doubts.push_back(
-          "readings stand out in several channels: their noise has heavy tails, or something shook "
-          "them all");
+      Doubt(finding,
+            "readings stand out in several channels: their noise has heavy tails, or something "
+            "shook them all",
+            diagnosis);
     }
-    if (IsModelled(finding)) {
-      for (std::string& doubt : DoubtsOf(finding, scene))
-        finding.doubts.push_back(std::move(doubt));
-      const std::size_t place = modelled++;
-      if (place < gain.without.size() && !finding.score.candidate.cause->one_event &&
-          gain.without[place].held < gain.after) {
-        finding.doubts.push_back(fmt::format(
-            "rows that were held out come out worse with it: rms {:.3f} instead of {:.3f} of the "
-            "stated noise",
-            gain.after, gain.without[place].held));
-      }
+    if (!IsModelled(finding)) continue;
+    if (IsWithinItsUncertainty(finding)) Doubt(finding, "its U95 exceeds its size", diagnosis);
+    if (const auto* key = BeyondBounds(finding)) {
+      Doubt(finding,
+            fmt::format("{} lies beyond what is physically possible ({:g} to {:g})", key->name,
+                        key->least, key->most),
+            diagnosis);
     }
-    if (finding.doubts.empty()) continue;
-    finding.probability = std::min(finding.probability, kDoubtful);
-    if (diagnosis.verdict == Verdict::kExplained) diagnosis.verdict = Verdict::kAmbiguous;
+    const double period = PeriodOf(finding);
+    if (period <= 0.0) continue;
+    const double step = StepOf(scene, finding.score.candidate.object.first());
+    if (period < 2.0 * step) {
+      Doubt(finding,
+            fmt::format("its period is shorter than two steps of {:.3g} mm along the axis: other "
+                        "periods fit as well; measure at steps of less than {:.3g} mm",
+                        1e3 * step, 0.5e3 * period),
+            diagnosis);
+    }
+  }
+}
+
+void AddDoubtsOfHeldOut(const HeldOutGain& gain, Diagnosis& diagnosis) {
+  std::size_t modelled = 0;
+  for (Finding& finding : diagnosis.findings) {
+    if (!IsModelled(finding)) continue;
+    const std::size_t place = modelled++;
+    if (place >= gain.without.size() || finding.score.candidate.cause->one_event) continue;
+    if (gain.without[place].held < gain.after) {
+      Doubt(finding,
+            fmt::format("rows that were held out come out worse with it: rms {:.3f} instead of "
+                        "{:.3f} of the stated noise",
+                        gain.after, gain.without[place].held),
+            diagnosis);
+    }
   }
 }
 

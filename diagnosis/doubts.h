@@ -1,6 +1,7 @@
 // What keeps a finding from being certain, however large its evidence.
 //
-//   AddDoubts(campaign.scene(), gain, diagnosis);        // after Diagnose and HoldOut
+//   const HeldOutGain gain = HoldOut(campaign, recordings, causes);
+//   AddDoubtsOfHeldOut(gain, diagnosis);        // all others Diagnose() has added
 //
 // Evidence is as good as the simulation is complete. A finding is doubtful whose U95 exceeds its
 // size, whose size lies beyond what the cause can physically be, whose period is shorter than two
@@ -17,6 +18,9 @@ namespace abbe::diagnosis {
 
 inline constexpr double kDoubtful = 0.5;
 
-void AddDoubts(const simulation::Scene& scene, const HeldOutGain& gain, Diagnosis& diagnosis);
+// What the findings themselves give cause for.
+void AddDoubts(const simulation::Scene& scene, Diagnosis& diagnosis);
+// What the rows that were held out give cause for; `gain`: of the findings that are modelled.
+void AddDoubtsOfHeldOut(const HeldOutGain& gain, Diagnosis& diagnosis);
 
 }  // namespace abbe::diagnosis

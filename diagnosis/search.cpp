@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "diagnosis/scatter.h"
-#include "diagnosis/shape_posterior.h"
 #include "diagnosis/standing_pairs.h"
 #include "failure/failure.h"
 #include "simulation/causes/registry.h"
@@ -19,21 +18,12 @@ namespace {
 constexpr std::size_t kMostCauses = 6;
 constexpr std::size_t kMostElse = 4;
 constexpr std::size_t kMostRefused = 24;  // between two that are taken in
-constexpr double kNegligible = 0.01;      // probability of a rival that is not worth a word
 constexpr double kClose = 6.0;      // in log evidence: candidates that the first order may confuse
 constexpr double kWorthFits = 8.0;  // log evidence of the best below which nothing is taken in
 constexpr std::size_t kMostFits = 4;
 
-bool Known(const std::vector<Candidate>& taken, const Candidate& candidate) {
-  return std::any_of(taken.begin(), taken.end(),
-                     [&](const Candidate& other) { return other.Name() == candidate.Name(); });
-}
-
 // Log odds that a cause is there, before any data.
 double LogPrior(std::size_t names) { return std::log(kPresent / static_cast<double>(names)); }
-
-// Of log odds.
-double ProbabilityOf(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
 std::vector<double> ProbabilitiesOf(std::vector<double> logs) {
   const double all = LogSumOfExponentials(logs);
@@ -47,15 +37,6 @@ bool InReadings(const Candidate& candidate) {
   const simulation::Object& object = candidate.object;
   return object.kind() == Kind::kProbe || object.kind() == Kind::kProbePair ||
          object == "target_top" || object == "target_side";
-}
-
-Verdict VerdictOf(const Diagnosis& diagnosis) {
-  if (!diagnosis.leftovers.empty()) return Verdict::kUnexplained;
-  if (diagnosis.findings.empty()) return Verdict::kClean;
-  const bool certain =
-      std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
-                  [](const Finding& finding) { return finding.probability >= kCertain; });
-  return certain ? Verdict::kExplained : Verdict::kAmbiguous;
 }
 
 }  // namespace
@@ -86,7 +67,7 @@ bool Search::TakeBest() {
   if (rim_sensors_ > 0) NoteShown(names);
   const std::vector<Candidate> taken = Taken();
   std::erase_if(names, [&](const Named& named) {
-    return Known(taken, named.best.candidate) || Known(refused_, named.best.candidate);
+    return IsAmong(taken, named.best.candidate) || IsAmong(refused_, named.best.candidate);
   });
   // What no model of an arm reaches is in its noise, and a cause has to predict there.
   if (structures_.empty() && !(fit_->left_out() > 0.0)) {
@@ -103,7 +84,7 @@ bool Search::TakeBest() {
   return TakeCause(names, std::move(decided));
 }
 
-// Of nothing more, of each name.
+// That nothing more is there (0), then of each name.
 std::vector<double> Search::LogOdds(const std::vector<Named>& names) const {
   std::vector<double> logs{0.0};
   for (const Named& named : names) logs.push_back(named.log_evidence + LogPrior(names.size()));
@@ -272,45 +253,6 @@ std::size_t Search::CausesTaken() const {
       std::ranges::count_if(members_, [](const Member& member) { return !member.other; }));
 }
 
-// Whether, all others at their best, so much of it is left that no fit without it is needed.
-bool Search::IsBeyondDoubt(std::size_t i) const {
-  constexpr double kBeyond = 400.0;  // squares of standard deviations
-  const simulation::Cause& cause = *members_[i].finding.score.candidate.cause;
-  if (cause.relaxes || cause.IsBinary()) return false;
-  const Score score = fit_->ScoreOf(i);
-  const Eigen::Index count = score.coefficients.size();
-  const Eigen::MatrixXd covariance = score.covariance.topLeftCorner(count, count);
-  return score.coefficients.dot(covariance.ldlt().solve(score.coefficients)) > kBeyond;
-}
-
-// Log odds of a member that is left out, beside all others. What is there or not is too large for
-// the first order.
-double Search::LogPosteriorBeside(const Fit& without, std::size_t i) const {
-  const Member& member = members_[i];
-  const Candidate& candidate = member.finding.score.candidate;
-  const double log_evidence =
-      member.other                  ? Asked(without, member.other->structure).drawn.log_evidence
-      : candidate.cause->IsBinary() ? fit_->log_likelihood() - without.log_likelihood()
-                                    : ScoreAll(without, {candidate}).front().log_evidence;
-  return log_evidence + member.log_prior;
-}
-
-// A member that the later ones explain as well is taken out again.
-void Search::DropSuperfluous() {
-  for (std::size_t i = 0; members_.size() > 1 && i < members_.size();) {
-    const FitPointer without = IsBeyondDoubt(i) ? nullptr : FitWith(Others(i));
-    const double log_odds = without ? LogPosteriorBeside(*without, i) : 0.0;
-    if (!without || log_odds > 0.0) {
-      if (without) members_[i].beside = ProbabilityOf(log_odds);
-      ++i;
-      continue;
-    }
-    members_.erase(members_.begin() + static_cast<std::ptrdiff_t>(i));
-    structures_.clear();
-    fit_ = without;
-  }
-}
-
 void Search::DescribeFirstRound(const std::vector<Named>& names) {
   for (const Named& named : names) {
     diagnosis_.evidence.push_back(named.best);
@@ -332,92 +274,6 @@ void Search::NoteShown(const std::vector<Named>& names) {
       return named.best.visible >= kShowable && named.best.candidate.Name() == hidden;
     });
   });
-}
-
-// Two sensors of unequal gain were rivals for who goes first; both are there.
-void Search::ForgiveRivalsFound() {
-  const std::vector<Candidate> taken = Taken();
-  for (Member& member : members_) {
-    Finding& finding = member.finding;
-    std::erase_if(finding.rivals, [&](const Rival& rival) {
-      const bool found =
-          rival.candidate.cause == finding.score.candidate.cause && Known(taken, rival.candidate);
-      if (found) finding.probability = std::min(1.0, finding.probability + rival.probability);
-      return found;
-    });
-  }
-}
-
-Score Search::ScoreOf(std::size_t i) const {
-  Score score = fit_->ScoreOf(i);
-  if (!IsHardlyKnown(score)) return score;
-  const auto without = FitWith(Others(i));
-  return without ? OverAllShapes(*without, std::move(score)) : score;
-}
-
-// Found row by row, so certain.
-void Search::AddBadData() {
-  for (const InvalidReadings& bad : fit_->campaign().invalid_readings()) {
-    const simulation::Cause& cause = simulation::CauseNamed(bad.cause);
-    Finding finding{{{&cause, bad.object, {}}, {}, {}}, 1.0, {}};
-    finding.score.coefficients = cause.coefficients() == 1
-                                     ? Eigen::VectorXd::Constant(1, static_cast<double>(bad.count))
-                                     : Eigen::VectorXd(Eigen::Vector2d(bad.from, bad.to));
-    finding.score.covariance = Eigen::MatrixXd::Zero(cause.coefficients(), cause.coefficients());
-    diagnosis_.findings.push_back(std::move(finding));
-  }
-}
-
-// Probability that something else does what a cause does, all other causes known by now.
-double Search::SomethingElseInstead(std::size_t i) const {
-  const FitPointer without = FitWith(Others(i));
-  if (!without) return members_[i].finding.something_else;
-  const std::vector<Found> structures = FindStructures(*without);
-  const auto other = MostProbable(*without, structures);
-  if (!other) return 0.0;
-  const double cause = fit_->log_likelihood() - without->log_likelihood() + members_[i].log_prior;
-  return ProbabilityOf(LogPosterior(*other, structures.size()) -
-                       LogSumOfExponentials({0.0, cause}));
-}
-
-void Search::Describe() {
-  for (std::size_t i = 0; i < members_.size(); ++i) {
-    Member& member = members_[i];
-    if (member.other) {
-      diagnosis_.leftovers.push_back(member.unexplained);
-      continue;
-    }
-    Score& score = member.finding.score;
-    const double visible = score.visible, log_evidence = score.log_evidence;
-    score = ScoreOf(i);
-    score.visible = visible;
-    score.log_evidence = log_evidence;
-    member.finding.curve = CurveOf(*base_, *fit_, i);
-    // Where something else is there, the cause was judged beside it; else against it.
-    double& something_else = member.finding.something_else;
-    if (CausesTaken() < members_.size()) something_else = 0.0;
-    if (something_else > kNegligible) something_else = SomethingElseInstead(i);
-    if (something_else < kNegligible) something_else = 0.0;
-    member.finding.probability *= member.beside * (1.0 - something_else);
-    // What was found was shown after all.
-    std::erase(diagnosis_.cannot_show, score.candidate.Name());
-    diagnosis_.findings.push_back(member.finding);
-  }
-  diagnosis_.map_change = MapChange(*base_, *fit_);
-  AddBadData();
-  for (Leftover& left :
-       LeftoversOf(*fit_, structures_.empty() ? FindStructures(*fit_) : structures_)) {
-    diagnosis_.leftovers.push_back(std::move(left));
-  }
-  for (Leftover& run : RunsThatScatter(*fit_)) diagnosis_.leftovers.push_back(std::move(run));
-  if (!diagnosis_.leftovers.empty()) {
-    for (Finding& finding : diagnosis_.findings) {
-      finding.probability = std::min(finding.probability, kBesideUnexplained);
-    }
-  }
-  diagnosis_.chi_after = fit_->chi_square() / static_cast<double>(fit_->rows());
-  diagnosis_.verdict = VerdictOf(diagnosis_);
-  diagnosis_.fitted = fit_->result();
 }
 
 }  // namespace abbe::diagnosis

@@ -25,6 +25,9 @@
 
 namespace abbe::diagnosis {
 
+// Probability of a rival that is not worth a word.
+inline constexpr double kNegligible = 0.01;
+
 class Search {
  public:
   explicit Search(const Campaign& campaign);
@@ -44,6 +47,7 @@ class Search {
     double beside = 1.0;     // probability that it is there beside all others
   };
 
+  // search.cpp: what is taken in.
   bool TakeBest();
   bool TakeCause(const std::vector<Named>& names, FitPointer decided);
   bool TakeSomethingElse(const Found& found);
@@ -59,14 +63,16 @@ class Search {
   std::vector<Candidate> Taken() const;
   std::vector<Candidate> Others(std::size_t than) const;
   std::size_t CausesTaken() const;
-  bool IsBeyondDoubt(std::size_t i) const;
-  double SomethingElseInstead(std::size_t i) const;
-  double LogPosteriorBeside(const Fit& without, std::size_t i) const;
-  void DropSuperfluous();
 
   void DescribeFirstRound(const std::vector<Named>& names);
   void NoteShown(const std::vector<Named>& names);
+
+  // judgement.cpp: what is said of it in the end.
+  bool IsBeyondDoubt(std::size_t i) const;
+  double LogPosteriorBeside(const Fit& without, std::size_t i) const;
+  void DropSuperfluous();
   void ForgiveRivalsFound();
+  double SomethingElseInstead(std::size_t i) const;
   Score ScoreOf(std::size_t i) const;
   void AddBadData();
   void Describe();

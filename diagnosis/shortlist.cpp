@@ -114,4 +114,6 @@ double EvidenceOfAPart(const Score& score) {
   return along > 0.0 && information > 0.0 ? 0.5 * along * along / information : 0.0;
 }
 
+double ProbabilityOf(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
+
 }  // namespace abbe::diagnosis

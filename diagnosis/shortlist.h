@@ -33,5 +33,7 @@ double EvidenceOfAPart(const Score& score);
 
 // Logarithm of the sum of the exponentials.
 double LogSumOfExponentials(const std::vector<double>& logs);
+// The probability that has these log odds.
+double ProbabilityOf(double log_odds);
 
 }  // namespace abbe::diagnosis

@@ -77,7 +77,7 @@ struct Structure {
   Range second = {};  // of the other variable of a product
 
   Eigen::Index columns() const;
-  // Of the terms, by which their coefficients are multiplied.
+  // What the coefficient of each term is multiplied by.
   Eigen::VectorXd Weights() const;
   // Whether an axis or a pivot depends on its own motion.
   bool IsOfItself() const;

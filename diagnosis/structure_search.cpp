@@ -182,7 +182,7 @@ Found Sharpened(const Fit& fit, Found found) {
   return found;
 }
 
-// Of a smooth function, with as many terms as the data ask for.
+// A smooth function with as many terms as the data ask for.
 Found Finest(const Fit& fit, Found found) {
   std::vector<Structure> finer(6, found.structure);
   for (std::size_t i = 0; i < finer.size(); ++i) {

@@ -15,7 +15,7 @@ namespace {
 
 const std::string kDirectionOf = "direction of ", kReversalOf = "reversal of ";
 
-// Of a variable that names it behind its kind.
+// "x" of "direction of x".
 std::string BehindKind(const std::string& variable) {
   return variable.substr(variable.rfind(' ') + 1);
 }

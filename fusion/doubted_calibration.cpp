@@ -29,7 +29,7 @@ Eigen::VectorXd FreeValues(const Calibration& calibration) {
   return values;
 }
 
-// Of the ball, m^2: mean over all poses and coordinates.
+// Variance of the ball, m^2: mean over all poses and coordinates.
 double MeanVariance(const Calibration& calibration, const std::vector<simulation::LinkageRun>& runs,
                     const relm::LinkageSettings& settings) {
   const CalibratedLinkage linkage(settings, calibration);

@@ -23,7 +23,8 @@
 
 namespace abbe::fusion {
 
-// Of each error function, of the squarenesses and of the slopes of the positioning errors.
+// Size and correlation length of each error function; sizes of the squarenesses and of the slopes
+// of the positioning errors. One standard deviation each.
 struct ErrorPopulation {
   using OfFunctions = Eigen::Array<double, machine::kAxes, machine::kMotions>;
   OfFunctions deviation;  // m or rad

@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::array kCommonLengths{0.25, 0.35, 0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0};
-// Of the target, over what the file states.
+// Form of the target, times what the file states.
 constexpr std::array kForms{kHardlyMoreForm, 1.41, 2.0, 2.83, 4.0, 5.66};
 constexpr double kFormSize = 0.7;  // standard deviation of its logarithm
 constexpr double kLongestStep = 0.7;
@@ -64,10 +64,10 @@ class Estimate {
   }
 
  private:
-  // Of the draws that make k times the form.
+  // Prior precision of the draws that, beside the form stated, make k times the form.
   static double FormPrecision(double k) { return 1.0 / (k * k - 1.0); }
 
-  // Of all parameters, without the prior of the functions and squarenesses. These and the form
+  // Over all parameters, without the prior of the functions and squarenesses. These and the form
   // count from 0, all others from x.
   Quadratic All() const {
     Quadratic all{runs_.prior.information, -runs_.prior.gradient};

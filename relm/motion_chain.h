@@ -105,7 +105,7 @@ class MotionChain {
   };
   template <typename T>
   Pose<T> PoseAt(const T* angles) const;
-  // Of weight k about joint i at i * weights_.size() + k.
+  // The lever of weight k about joint i stands at i * weights_.size() + k.
   template <typename T>
   void Levers(const T* angles, T* levers) const;
   std::size_t LeverOf(const Effect& effect) const {

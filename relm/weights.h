@@ -8,7 +8,7 @@
 //          the joint's own
 //   wrist  where the last axis comes nearest to the one before it
 //   ball   the load
-// Of axes that are parallel (within kParallel) the point is the one nearest to what follows. A
+// Where axes are parallel (within kParallel) the point is the one nearest to what follows. A
 // weight that keeps on the line of the joint is left out.
 // Frames: B, the base, at zero angles. Units: m. Failure: none. Validity: a mass between two of the
 // points acts as shares of it in both; one beside them by as much of its lever as it is beside.

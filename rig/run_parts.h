@@ -68,7 +68,7 @@ OfState Lag(int axis, double delay);  // -delay * speed
 OfState Wave(double frequency, double amplitude, double phase);
 OfState WarmUp(double amplitude, double time_constant);
 
-// Of a pair of axes: the one that is not in it.
+// The axis that is not in a pair of axes.
 int ThirdAxis(const HiddenEffect& effect);
 // "x_mm"
 std::string PositionColumn(int axis);

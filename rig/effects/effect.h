@@ -67,7 +67,7 @@ struct Effect {
   void (*in_world)(const HiddenEffect&, WorldParts&) = nullptr;
   void (*in_linkage)(const HiddenEffect&, LinkageParts&) = nullptr;
   void (*in_run)(const HiddenEffect&, RunParts&) = nullptr;
-  // Of an effect that `abbe diagnose` does not know: the column, or the sum of columns, that it
+  // For an effect that `abbe diagnose` does not know: the column, or the sum of columns, that it
   // depends on.
   std::string (*variable)(const HiddenEffect&) = nullptr;
   std::string_view instants = {};  // the key that counts the instants of HiddenEffect

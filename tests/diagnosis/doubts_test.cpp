@@ -27,7 +27,8 @@ Diagnosis With(Finding finding) {
 
 Diagnosis Doubted(Finding finding, const HeldOutGain& gain = {}, simulation::Scene scene = {}) {
   Diagnosis diagnosis = With(std::move(finding));
-  AddDoubts(scene, gain, diagnosis);
+  AddDoubts(scene, diagnosis);
+  AddDoubtsOfHeldOut(gain, diagnosis);
   return diagnosis;
 }
 
@@ -64,13 +65,13 @@ TEST(Doubts, TakeCertaintyFromASizeBeyondItsBounds) {
 TEST(Doubts, TakeCertaintyFromOutliersOfSeveralChannels) {
   const Eigen::VectorXd count = Eigen::VectorXd::Constant(1, 7.0);
   Diagnosis diagnosis = With(FindingOf("outliers", "probe_a", count, 0.0));
-  AddDoubts({}, {}, diagnosis);
+  AddDoubts({}, diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
   diagnosis.findings.push_back(FindingOf("outliers", "pivot_1", count, 0.0));
-  AddDoubts({}, {}, diagnosis);
+  AddDoubts({}, diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
   diagnosis.findings.push_back(FindingOf("outliers", "probe_d", count, 0.0));
-  AddDoubts({}, {}, diagnosis);
+  AddDoubts({}, diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
 }
 

@@ -1,0 +1,163 @@
+// What a search says of its members in the end: which the others have made superfluous, how
+// probable each is beside all others, what is left, and the verdict.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "diagnosis/doubts.h"
+#include "diagnosis/scatter.h"
+#include "diagnosis/search.h"
+#include "diagnosis/shape_posterior.h"
+#include "simulation/causes/registry.h"
+
+namespace abbe::diagnosis {
+namespace {
+
+Verdict VerdictOf(const Diagnosis& diagnosis) {
+  if (!diagnosis.leftovers.empty()) return Verdict::kUnexplained;
+  if (diagnosis.findings.empty()) return Verdict::kClean;
+  const bool certain =
+      std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
+                  [](const Finding& finding) { return finding.probability >= kCertain; });
+  return certain ? Verdict::kExplained : Verdict::kAmbiguous;
+}
+
+}  // namespace
+
+// Whether, all others at their best, so much of it is left that no fit without it is needed.
+bool Search::IsBeyondDoubt(std::size_t i) const {
+  constexpr double kBeyond = 400.0;  // squares of standard deviations
+  const simulation::Cause& cause = *members_[i].finding.score.candidate.cause;
+  if (cause.relaxes || cause.IsBinary()) return false;
+  const Score score = fit_->ScoreOf(i);
+  const Eigen::Index count = score.coefficients.size();
+  const Eigen::MatrixXd covariance = score.covariance.topLeftCorner(count, count);
+  return score.coefficients.dot(covariance.ldlt().solve(score.coefficients)) > kBeyond;
+}
+
+// Log odds of a member that is left out, beside all others. What is there or not is too large for
+// the first order.
+double Search::LogPosteriorBeside(const Fit& without, std::size_t i) const {
+  const Member& member = members_[i];
+  const Candidate& candidate = member.finding.score.candidate;
+  const double log_evidence =
+      member.other                  ? Asked(without, member.other->structure).drawn.log_evidence
+      : candidate.cause->IsBinary() ? fit_->log_likelihood() - without.log_likelihood()
+                                    : ScoreAll(without, {candidate}).front().log_evidence;
+  return log_evidence + member.log_prior;
+}
+
+// Leaves out what the others explain as well, the least probable first: each that goes may be what
+// made another one superfluous.
+void Search::DropSuperfluous() {
+  for (;;) {
+    for (Member& member : members_) member.beside = 1.0;
+    if (members_.size() < 2) return;
+    std::size_t least = 0;
+    double least_odds = 0.0;
+    FitPointer without_least;
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      FitPointer without = IsBeyondDoubt(i) ? nullptr : FitWith(Others(i));
+      if (!without) continue;
+      const double log_odds = LogPosteriorBeside(*without, i);
+      members_[i].beside = ProbabilityOf(log_odds);
+      if (log_odds > least_odds) continue;
+      least = i;
+      least_odds = log_odds;
+      without_least = std::move(without);
+    }
+    if (!without_least) return;
+    members_.erase(members_.begin() + static_cast<std::ptrdiff_t>(least));
+    structures_.clear();
+    fit_ = std::move(without_least);
+  }
+}
+
+// Two sensors of unequal gain were rivals for who goes first; both are there.
+void Search::ForgiveRivalsFound() {
+  const std::vector<Candidate> taken = Taken();
+  for (Member& member : members_) {
+    Finding& finding = member.finding;
+    std::erase_if(finding.rivals, [&](const Rival& rival) {
+      const bool found =
+          rival.candidate.cause == finding.score.candidate.cause && IsAmong(taken, rival.candidate);
+      if (found) finding.probability = std::min(1.0, finding.probability + rival.probability);
+      return found;
+    });
+  }
+}
+
+Score Search::ScoreOf(std::size_t i) const {
+  Score score = fit_->ScoreOf(i);
+  if (!IsHardlyKnown(score)) return score;
+  const auto without = FitWith(Others(i));
+  return without ? OverAllShapes(*without, std::move(score)) : score;
+}
+
+// Found row by row, so certain.
+void Search::AddBadData() {
+  for (const InvalidReadings& bad : fit_->campaign().invalid_readings()) {
+    const simulation::Cause& cause = simulation::CauseNamed(bad.cause);
+    Finding finding{{{&cause, bad.object, {}}, {}, {}}, 1.0, {}};
+    finding.score.coefficients = cause.coefficients() == 1
+                                     ? Eigen::VectorXd::Constant(1, static_cast<double>(bad.count))
+                                     : Eigen::VectorXd(Eigen::Vector2d(bad.from, bad.to));
+    finding.score.covariance = Eigen::MatrixXd::Zero(cause.coefficients(), cause.coefficients());
+    diagnosis_.findings.push_back(std::move(finding));
+  }
+}
+
+// Probability that something else does what a cause does, all other causes known by now.
+double Search::SomethingElseInstead(std::size_t i) const {
+  const FitPointer without = FitWith(Others(i));
+  if (!without) return members_[i].finding.something_else;
+  const std::vector<Found> structures = FindStructures(*without);
+  const auto other = MostProbable(*without, structures);
+  if (!other) return 0.0;
+  const double cause = fit_->log_likelihood() - without->log_likelihood() + members_[i].log_prior;
+  return ProbabilityOf(LogPosterior(*other, structures.size()) -
+                       LogSumOfExponentials({0.0, cause}));
+}
+
+void Search::Describe() {
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    Member& member = members_[i];
+    if (member.other) {
+      diagnosis_.leftovers.push_back(member.unexplained);
+      continue;
+    }
+    Score& score = member.finding.score;
+    const double visible = score.visible, log_evidence = score.log_evidence;
+    score = ScoreOf(i);
+    score.visible = visible;
+    score.log_evidence = log_evidence;
+    member.finding.curve = CurveOf(*base_, *fit_, i);
+    // Where something else is there, the cause was judged beside it; else against it.
+    double& something_else = member.finding.something_else;
+    if (CausesTaken() < members_.size()) something_else = 0.0;
+    if (something_else > kNegligible) something_else = SomethingElseInstead(i);
+    if (something_else < kNegligible) something_else = 0.0;
+    member.finding.probability *= member.beside * (1.0 - something_else);
+    // What was found was shown after all.
+    std::erase(diagnosis_.cannot_show, score.candidate.Name());
+    diagnosis_.findings.push_back(member.finding);
+  }
+  diagnosis_.map_change = MapChange(*base_, *fit_);
+  AddBadData();
+  for (Leftover& left :
+       LeftoversOf(*fit_, structures_.empty() ? FindStructures(*fit_) : structures_)) {
+    diagnosis_.leftovers.push_back(std::move(left));
+  }
+  for (Leftover& run : RunsThatScatter(*fit_)) diagnosis_.leftovers.push_back(std::move(run));
+  if (!diagnosis_.leftovers.empty()) {
+    for (Finding& finding : diagnosis_.findings) {
+      finding.probability = std::min(finding.probability, kBesideUnexplained);
+    }
+  }
+  diagnosis_.chi_after = fit_->chi_square() / static_cast<double>(fit_->rows());
+  diagnosis_.verdict = VerdictOf(diagnosis_);
+  AddDoubts(fit_->campaign().scene(), diagnosis_);
+  diagnosis_.fitted = fit_->result();
+}
+
+}  // namespace abbe::diagnosis
