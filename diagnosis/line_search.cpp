@@ -21,6 +21,7 @@ constexpr std::size_t kMostPieces = 6;   // looked through by themselves, the st
 constexpr std::size_t kMostPeaks = 64;   // looked at in all runs
 constexpr std::size_t kMostScored = 16;  // to find the strongest
 constexpr double kFineStep = 0.2;        // of a wave over all runs
+constexpr double kStands = 1e-3;         // of the longest motion
 constexpr int kBins = 8;                 // of a piece, in which phases hardly turn about a peak
 
 // Rows of a run; `readings`, of which each is the mean.
@@ -42,6 +43,8 @@ double LowestOf(const simulation::Wave& wave) {
   return std::min(wave.WavesOf(wave.least), wave.WavesOf(wave.most));
 }
 
+// Those that do not stand at one place, where a wave is a constant.
+// Those that do not stand at one place, where a wave is a constant.
 std::vector<RunOfWave> RunsOf(const Fit& fit, const Candidate& candidate) {
   const simulation::Wave& wave = *candidate.cause->wave;
   std::vector<RunOfWave> runs;
@@ -57,6 +60,9 @@ std::vector<RunOfWave> RunsOf(const Fit& fit, const Candidate& candidate) {
          {at.array(), of_run.scores.transpose().array(), of_run.weights.transpose().array()},
          means ? ArrayXd(trace.samples.array().max(1.0)) : ArrayXd::Ones(at.size())});
   }
+  double longest = 0.0;
+  for (const RunOfWave& run : runs) longest = std::max(longest, run.rows.length());
+  std::erase_if(runs, [&](const RunOfWave& run) { return run.rows.length() <= kStands * longest; });
   return runs;
 }
 
@@ -225,6 +231,13 @@ std::vector<Candidate> LinesThatStandOut(const Fit& fit, const Candidate& candid
     if (std::ranges::none_of(found, same)) found.push_back(std::move(line));
   }
   return found;
+}
+
+double ResolvedBy(const Fit& fit, const Candidate& candidate) {
+  if (!candidate.cause->wave) return 0.0;
+  const auto runs = RunsOf(fit, candidate);
+  const double length = runs.empty() ? 0.0 : ExtentOf(runs).length();
+  return 1.0 / std::min(std::max(length, 1e-300), kMostWaves / HighestOf(*candidate.cause->wave));
 }
 
 Line StrongestLine(const Fit& fit, const Candidate& candidate) {

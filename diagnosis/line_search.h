@@ -29,6 +29,9 @@ struct Line {
 std::vector<Candidate> LinesThatStandOut(const Fit& fit, const Candidate& candidate,
                                          std::size_t at_most);
 
+// In waves per unit: what a single piece of the runs tells apart; 0 without a wave.
+double ResolvedBy(const Fit& fit, const Candidate& candidate);
+
 // The shape of `candidate` is tried beside them.
 Line StrongestLine(const Fit& fit, const Candidate& candidate);
 
