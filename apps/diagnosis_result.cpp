@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 #include "diagnosis/found_model.h"
@@ -67,6 +68,15 @@ std::string OneOfText(const Finding& finding) {
   std::vector<std::string> told;
   for (const NamedValue& each : values) told.push_back(fmt::format("{:.6g}", each.value));
   return fmt::format("  {:<28}one of these: {}\n", values.front().name, fmt::join(told, ", "));
+}
+
+// Of what is there or not: its channels are all that there is to say.
+std::vector<std::string> ChannelsOf(const Candidate& candidate) {
+  if (!candidate.cause->IsBinary()) return {};
+  std::vector<std::string> channels;
+  std::istringstream name(candidate.object.name());
+  for (std::string channel; std::getline(name, channel, '+');) channels.push_back(channel);
+  return channels;
 }
 
 // Beside what no known cause explains nobody should mend a machine for a finding.
@@ -132,6 +142,9 @@ ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const He
   }
   if (const std::string sensor = object.sensor(); !sensor.empty()) {
     json["parameters"].push_back({{"name", "sensor"}, {"value", sensor}});
+  }
+  for (const std::string& channel : ChannelsOf(finding.score.candidate)) {
+    json["parameters"].push_back({{"name", "channel"}, {"value", channel}});
   }
   return json;
 }
