@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 #include "diagnosis/found_model.h"
@@ -44,6 +45,40 @@ std::vector<NamedValue> ParametersOf(const Score& score) {
   return values;
 }
 
+// The frequency, period or order of a wave, in the unit of its key.
+NamedValue ShapeOf(const Score& score) {
+  const auto& keys = score.candidate.cause->keys;
+  const auto shape = std::ranges::find_if(keys, [](const auto& key) {
+    return key.name == "frequency_hz" || key.name == "pitch_mm" || key.name == "order";
+  });
+  return {shape->name, score.candidate.shape[0] / shape->unit, 0.0};
+}
+
+// All waves that the runs show alike, by rising values.
+std::vector<NamedValue> OneOf(const Finding& finding) {
+  std::vector<NamedValue> values;
+  for (const Score& score : finding.score.one_of) values.push_back(ShapeOf(score));
+  std::ranges::sort(values, {}, &NamedValue::value);
+  return values;
+}
+
+std::string OneOfText(const Finding& finding) {
+  const std::vector<NamedValue> values = OneOf(finding);
+  if (values.empty()) return "";
+  std::vector<std::string> told;
+  for (const NamedValue& each : values) told.push_back(fmt::format("{:.6g}", each.value));
+  return fmt::format("  {:<28}one of these: {}\n", values.front().name, fmt::join(told, ", "));
+}
+
+// Of what is there or not: its channels are all that there is to say.
+std::vector<std::string> ChannelsOf(const Candidate& candidate) {
+  if (!candidate.cause->IsBinary()) return {};
+  std::vector<std::string> channels;
+  std::istringstream name(candidate.object.name());
+  for (std::string channel; std::getline(name, channel, '+');) channels.push_back(channel);
+  return channels;
+}
+
 // Beside what no known cause explains nobody should mend a machine for a finding.
 bool GivesAdvice(const Diagnosis& diagnosis) {
   return diagnosis.verdict != diagnosis::Verdict::kUnexplained;
@@ -72,6 +107,9 @@ ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const He
     ordered_json parameter = KeyJson(each.name);
     parameter.update({{"value", each.value}, {"u95", each.u95}});
     json["parameters"].push_back(parameter);
+  }
+  for (const NamedValue& each : OneOf(finding)) {
+    json["one_of"].push_back({{"name", each.name}, {"value", each.value}});
   }
   const auto& words = finding.score.candidate.cause->words;
   json["words"] = {{"what", words.what}, {"shows", words.shows}};
@@ -105,6 +143,9 @@ ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const He
   if (const std::string sensor = object.sensor(); !sensor.empty()) {
     json["parameters"].push_back({{"name", "sensor"}, {"value", sensor}});
   }
+  for (const std::string& channel : ChannelsOf(finding.score.candidate)) {
+    json["parameters"].push_back({{"name", "channel"}, {"value", channel}});
+  }
   return json;
 }
 
@@ -115,6 +156,7 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
   for (const NamedValue& each : ParametersOf(finding.score)) {
     text += fmt::format("  {:<28}{:>12.4g} +- {:.2g}\n", each.name, each.value, each.u95);
   }
+  text += OneOfText(finding);
   const auto& words = finding.score.candidate.cause->words;
   text += fmt::format("  what it is   {}\n  how it shows {}\n", words.what, words.shows);
   if (GivesAdvice(diagnosis)) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "diagnosis/extended_run.h"
 #include "diagnosis/invalid_readings.h"
 #include "failure/failure.h"
 #include "recording/made_on.h"
@@ -63,6 +64,7 @@ void Campaign::Add(recording::Recording recording) {
   }
   const simulation::Origin start = origin();
   for (PreparedRun& run : runs_) {
+    FreeForCauses(scene(), run.simulated.blocks);
     if (run.trace.rows() > 0) simulation::CountFrom(start, run.trace);
   }
 }
@@ -85,6 +87,7 @@ bool Campaign::SetExcess(const std::vector<double>& excess, Change change) {
     if (change == Change::kUp ? ratio < kMuchMore : ratio > kLess) continue;
     run.excess = excess[r];
     run.simulated = run.with_excess(excess[r]);
+    FreeForCauses(scene(), run.simulated.blocks);
     changed = true;
   }
   return changed;

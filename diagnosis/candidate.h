@@ -51,6 +51,9 @@ struct Score {
   // Standard deviations by which a cause of plausible size stands out of everything else that the
   // simulation could be.
   double visible = 0.0;
+  // Itself and others of its cause that fit nearly as well with another shape, most probable first
+  // but for itself; empty: none does (alias_group.h).
+  std::vector<Score> one_of = {};
 };
 
 // The keys of a score, SI, with their standard uncertainties to first order.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -80,6 +81,27 @@ bool AreOutliersOfSeveral(const Finding& finding, const std::vector<Finding>& fi
   return are(finding) && std::ranges::count_if(findings, are) > 1;
 }
 
+// What would tell waves apart that the sampling shows alike.
+std::string OneOfThese(const Score& score) {
+  const simulation::Cause& cause = *score.candidate.cause;
+  const auto slower = [](const Score& a, const Score& b) {
+    return a.candidate.shape[0] < b.candidate.shape[0];
+  };
+  const double least = std::ranges::min(score.one_of, slower).candidate.shape[0],
+               most = std::ranges::max(score.one_of, slower).candidate.shape[0];
+  constexpr double kReadings = 4.0;  // of the fastest wave
+  std::string tell =
+      fmt::format("a standstill with a reading every {:.2g} ms", 1e3 / (kReadings * most));
+  if (cause.wave && cause.wave->shape == simulation::Wave::Shape::kPeriod) {
+    tell = fmt::format("a run with a reading every {:.2g} mm", 1e3 * least / kReadings);
+  } else if (cause.wave && cause.wave->shape == simulation::Wave::Shape::kOrder) {
+    tell = fmt::format("a slow turn with a reading every {:.2g} mrad",
+                       1e3 * 2.0 * std::numbers::pi / (kReadings * most));
+  }
+  return fmt::format("the sampling of the runs shows {} of its kind alike; {} tells which it is",
+                     score.one_of.size(), tell);
+}
+
 void Doubt(Finding& finding, std::string why, Diagnosis& diagnosis) {
   finding.doubts.push_back(std::move(why));
   finding.probability = std::min(finding.probability, kDoubtful);
@@ -104,6 +126,7 @@ void AddDoubts(const simulation::Scene& scene, Diagnosis& diagnosis) {
                         key->least, key->most),
             diagnosis);
     }
+    if (!finding.score.one_of.empty()) Doubt(finding, OneOfThese(finding.score), diagnosis);
     const double period = PeriodOf(finding);
     if (period <= 0.0) continue;
     const double step = StepOf(scene, finding.score.candidate.object.first());

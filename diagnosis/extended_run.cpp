@@ -6,6 +6,8 @@
 #include <memory>
 #include <utility>
 
+#include "simulation/causes/registry.h"
+
 namespace abbe::diagnosis {
 namespace {
 
@@ -151,6 +153,27 @@ VectorXd OffsetsOf(const PreparedRun& run, const VectorXd& x) {
 }
 
 }  // namespace
+
+void FreeForCauses(const simulation::Scene& scene,
+                   std::vector<estimation::ParameterBlock>& blocks) {
+  constexpr double kHardly = 0.01;
+  for (const simulation::Cause& cause : simulation::Causes()) {
+    if (!cause.relaxes) continue;
+    for (const simulation::Object& object : cause.objects(scene)) {
+      const std::vector<std::string> patterns = cause.relaxes(object);
+      for (auto& block : blocks) {
+        for (std::size_t i = 0; i < block.entries.size(); ++i) {
+          auto& entry = block.entries[i];
+          for (std::size_t p = 0; entry.held && p < patterns.size(); ++p) {
+            if (!Matches(block.FullName(i), patterns[p])) continue;
+            entry.held = false;
+            entry.prior_sd = kHardly * cause.plausible[static_cast<Index>(p)];
+          }
+        }
+      }
+    }
+  }
+}
 
 std::string BlockOf(const Candidate& cause) { return fmt::format("cause {}", cause.Name()); }
 

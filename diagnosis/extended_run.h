@@ -40,6 +40,10 @@ simulation::SimulatedRun Extend(const PreparedRun& run, const LinearRun& at,
 inline constexpr const char* kShapeEntry = "log_shape";  // beside where it was taken
 inline constexpr double kShapeFree = 1.0;                // e-fold, its deviation: no bound
 
+// A tolerance of zero holds a parameter, and the causes that widen it could never be found: it is
+// free by a hundredth of what is usual of them instead.
+void FreeForCauses(const simulation::Scene& scene, std::vector<estimation::ParameterBlock>& blocks);
+
 // The name of the block of a cause.
 std::string BlockOf(const Candidate& cause);
 

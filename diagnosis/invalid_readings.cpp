@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/neighbour_prediction.h"
 #include "recording/good_rows.h"
 
 namespace abbe::diagnosis {
@@ -17,7 +18,8 @@ using Numbers = std::vector<double>;
 
 constexpr double kStays = 5e-3;      // mm: nearer rows are of one stay
 constexpr double kNeighbours = 0.5;  // s: rows farther apart are no neighbours
-constexpr std::size_t kStay = 5;     // rows that have a median worth the name
+constexpr std::size_t kStay = 3;     // rows that say where it stands
+constexpr std::size_t kMedian = 5;   // rows that have a median worth the name
 constexpr std::size_t kAside = 7;    // rows of a stay to either side that say where it stands
 constexpr double kPeace = 4.0;       // times the usual scatter: noise alone
 constexpr double kFlag = 4.0;        // device error
@@ -90,35 +92,6 @@ Table TableOf(const recording::Recording& recording) {
   }
   return table;
 }
-
-// A reading less what the polynomial through others says in its place.
-class Prediction {
- public:
-  Prediction(const Numbers& time, std::size_t row, std::vector<std::size_t> others)
-      : row_(row), others_(std::move(others)), weights_(others_.size(), 1.0) {
-    for (std::size_t k = 0; k < others_.size(); ++k) {
-      for (const std::size_t other : others_) {
-        if (other == others_[k]) continue;
-        weights_[k] *= (time[row] - time[other]) / (time[others_[k]] - time[other]);
-      }
-    }
-  }
-
-  double Off(const Numbers& values) const {
-    double off = values[row_];
-    for (std::size_t k = 0; k < others_.size(); ++k) off -= weights_[k] * values[others_[k]];
-    return off;
-  }
-  // The scatter of Off(), in standard deviations of one reading.
-  double Deviation() const {
-    return std::sqrt(std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 1.0));
-  }
-
- private:
-  std::size_t row_;
-  std::vector<std::size_t> others_;
-  Numbers weights_;
-};
 
 // How far each reading of a channel stands from what its neighbours say, in units that scatter
 // alike for all; NaN where they say nothing, and for what is an outlier already.
@@ -199,9 +172,23 @@ class Neighbours {
     return std::nullopt;
   }
 
+  // Those of its stay, by their mean.
+  double OffTheOthers(std::size_t row) const {
+    double sum = 0.0, count = 0.0;
+    const std::size_t end = table_.stay_end[row];
+    for (std::size_t other = end - table_.stay[row]; other < end; ++other) {
+      if (other == row || out_[other]) continue;
+      sum += values_[other];
+      ++count;
+    }
+    if (count == 0.0) return std::numeric_limits<double>::quiet_NaN();
+    return (values_[row] - sum / count) / std::sqrt(1.0 + 1.0 / count);
+  }
+
   double OffOf(std::size_t row) const {
     if (out_[row]) return std::numeric_limits<double>::quiet_NaN();
-    if (table_.stay[row] >= kStay) return values_[row] - middle_[row];
+    if (table_.stay[row] >= kMedian) return values_[row] - middle_[row];
+    if (table_.stay[row] >= kStay) return OffTheOthers(row);
     const std::optional<Prediction> cubic = ByCubic(row);
     if (!cubic) return std::numeric_limits<double>::quiet_NaN();
     // Where the way bends the cubic says nothing of the instruments either.

@@ -5,7 +5,7 @@
 // Stuck: a channel with one value, to the last bit, in at least kLeastStuck rows in which another
 // channel of the instrument changes mostly. Outlier: a reading that is farther than kFar times the
 // scatter from its prediction: the median of the neighbouring rows of its stay where the axes
-// stand, the cubic through the next four valid readings of the motion, two on either side if
+// stand (the mean of the others in stays of three and four), the cubic through the next four valid readings of the motion, two on either side if
 // possible, where they move. The scatter is 1.4826 times the median absolute deviation.
 // Channels: probe_*_um, pivot_*_rad. Units: s since the recording began. Rows with a flag are
 // skipped; a recording without time_s is not examined.

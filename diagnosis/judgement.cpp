@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "diagnosis/alias_group.h"
 #include "diagnosis/doubts.h"
 #include "diagnosis/scatter.h"
 #include "diagnosis/search.h"
@@ -89,9 +90,12 @@ void Search::ForgiveRivalsFound() {
 
 Score Search::ScoreOf(std::size_t i) const {
   Score score = fit_->ScoreOf(i);
-  if (!IsHardlyKnown(score)) return score;
+  const bool hardly_known = IsHardlyKnown(score), aliases = MayHaveAliases(score);
+  if (!hardly_known && !aliases) return score;
   const auto without = FitWith(Others(i));
-  return without ? OverAllShapes(*without, std::move(score)) : score;
+  if (!without) return score;
+  if (aliases) score = AmongAliases(*without, std::move(score));
+  return hardly_known ? OverAllShapes(*without, std::move(score)) : score;
 }
 
 // Found row by row, so certain.

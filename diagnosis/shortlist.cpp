@@ -42,15 +42,19 @@ std::vector<Named> ByName(const std::vector<Score>& scores) {
   return names;
 }
 
-// The strongest line of a cause that is one.
+// The strongest wave of a cause that is one: half of the prior is that of the shapes tried one by
+// one, half that of all others.
 void FindLine(const Fit& fit, Named& named) {
-  if (!named.best.candidate.cause->line_in) return;
-  const double visible = named.best.visible;
+  if (!named.best.candidate.cause->wave) return;
   const Line line = StrongestLine(fit, named.best.candidate);
+  named.log_evidence =
+      LogSumOfExponentials({named.log_evidence, line.score.log_evidence - std::log(line.among)}) -
+      std::log(2.0);
+  if (line.score.candidate.shape == named.best.candidate.shape) return;
+  const double visible = named.best.visible;
   named.best = line.score;
   named.best.visible = std::max(visible, line.score.visible);
-  named.log_evidence = line.score.log_evidence - std::log(line.among);
-  named.step = 1.0 + line.step / line.score.candidate.shape[0];
+  named.step = line.step;
 }
 
 const Score& Better(const Score& one, const Score& other) {

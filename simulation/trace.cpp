@@ -17,7 +17,10 @@ RowVectorXd Trace::BacklashLag(int which, double width) const {
 }
 
 RowVectorXd Trace::PivotBacklashLag(int pivot, double width) const {
-  if (width <= 0.0) return -0.5 * linkage->heading.row(pivot);
+  if (width == 0.0) return -0.5 * linkage->heading.row(pivot);
+  if (width < 0.0) {
+    return LaggingPlayOf(linkage->angles.row(pivot), linkage->heading.row(pivot), *this, -width);
+  }
   const MatrixXd& aside = linkage->angle_bulge;
   return ShownPlayOf(
       linkage->angles.row(pivot), *this, width,

@@ -62,7 +62,8 @@ struct Trace {
   bool HasSpots() const { return head && head->spots.size() > 0; }
 
   // Output minus input of a backlash element that an axis or a pivot drives, in units of its width:
-  // -1/2 while it moves to +, 1/2 to -. Width 0: backlash that is taken up at once.
+  // -1/2 while it moves to +, 1/2 to -. Width 0: backlash that is taken up at once. Of a pivot
+  // whose encoder is the output, and lags, the width is below 0.
   Eigen::RowVectorXd BacklashLag(int which, double width) const;
   Eigen::RowVectorXd PivotBacklashLag(int pivot, double width) const;
   // The way of the axes with all that follows from it; after time, pass and direction.

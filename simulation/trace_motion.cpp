@@ -1,6 +1,7 @@
 #include "simulation/trace_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -205,6 +206,65 @@ RowVectorXd Follow(Play play, const RowVectorXd& position, const Trace& trace,
 
 RowVectorXd PlayOf(const RowVectorXd& position, const Trace& trace, double width) {
   return Follow(Play(width, false, position[0]), position, trace, {}) / width;
+}
+
+namespace {
+
+// The cubic through four in their times.
+double CubicAt(double time, const std::array<double, 4>& times,
+               const std::array<double, 4>& values) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    double weight = 1.0;
+    for (std::size_t other = 0; other < 4; ++other) {
+      if (other != k) weight *= (time - times[other]) / (times[k] - times[other]);
+    }
+    sum += weight * values[k];
+  }
+  return sum;
+}
+
+}  // namespace
+
+RowVectorXd LaggingPlayOf(const RowVectorXd& shown, const RowVectorXd& heading, const Trace& trace,
+                          double width) {
+  constexpr double kStands = 0.05;  // of the width: less is no motion of the output
+  RowVectorXd behind = -0.5 * heading;
+  const Index rows = shown.size();
+  for (Index turned = 1; turned < rows; ++turned) {
+    const double sense = heading[turned - 1];
+    if (heading[turned] == sense || sense == 0.0) continue;
+    // From the extreme on back and forth as long as it stands there.
+    Index extreme = turned;
+    while (extreme > 0 && heading[extreme - 1] == sense && !Begins(trace, extreme) &&
+           sense * (shown[extreme - 1] - shown[turned]) > 0.0 &&
+           sense * (shown[extreme - 1] - shown[extreme]) >= 0.0) {
+      --extreme;
+    }
+    const auto stands = [&](Index row) {
+      return std::abs(shown[row] - shown[extreme]) < kStands * width;
+    };
+    Index first = extreme, last = extreme;
+    while (first > 0 && !Begins(trace, first) && stands(first - 1)) --first;
+    while (last + 1 < rows && !Begins(trace, last + 1) && stands(last + 1)) ++last;
+    if (first < 2 || last + 2 >= rows || Begins(trace, first) || Begins(trace, first - 1) ||
+        Begins(trace, last + 1) || Begins(trace, last + 2)) {
+      continue;
+    }
+    const std::array<Index, 4> beside{first - 2, first - 1, last + 1, last + 2};
+    std::array<double, 4> times{}, inputs{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      times[k] = trace.time[beside[k]];
+      inputs[k] = shown[beside[k]] + (k < 2 ? 0.5 : -0.5) * sense * width;
+    }
+    for (Index row = first; row <= last; ++row) {
+      const double input = CubicAt(trace.time[row], times, inputs);
+      behind[row] = std::clamp((shown[row] - input) / width, -0.5, 0.5);
+    }
+    // Rows that had come back before the turn was noticed.
+    for (Index row = last + 1; row < turned; ++row) behind[row] = 0.5 * sense;
+  }
+  return behind;
 }
 
 RowVectorXd ShownPlayOf(const RowVectorXd& shown, const Trace& trace, double width,

@@ -33,4 +33,9 @@ Eigen::RowVectorXd PlayOf(const Eigen::RowVectorXd& position, const Trace& trace
 Eigen::RowVectorXd ShownPlayOf(const Eigen::RowVectorXd& shown, const Trace& trace, double width,
                                const Eigen::MatrixXd& aside);
 
+// The same for an encoder that is the output and shows it: the input is known by the way before and
+// after, between which the output stands. `heading`: which way it last turned.
+Eigen::RowVectorXd LaggingPlayOf(const Eigen::RowVectorXd& shown, const Eigen::RowVectorXd& heading,
+                                 const Trace& trace, double width);
+
 }  // namespace abbe::simulation

@@ -87,11 +87,20 @@ function findingWorth({curve, rms_before: before, rms_after: after, ...heldOut},
       .join('. ');
 }
 
+// "One of these: 4.27 Hz, 27.99 Hz": waves that the sampling of the runs shows alike.
+function oneOfThese({one_of: waves, parameters}) {
+  if (!waves?.length) return null;
+  const unit = unitText((parameters ?? []).find(({name}) => name === waves[0].name)?.unit);
+  return `One of these: ${waves.map(({value}) => `${plain(value)}\u00a0${unit}`.trim()).join(', ')}`;
+}
+
 function findingWords(finding, held) {
-  const {probability, words = {}, parameters} = finding;
+  const {probability, words = {}, parameters, doubts = []} = finding;
   const sensor = (parameters ?? []).find(({name}) => name === 'sensor')?.value;
   return factList([
-    ['Probability', percent(probability)], ['Follows the sensor', sensor],
+    ['Probability', percent(probability)],
+    ['Not certain', doubts.length ? capital(doubts.join('; ')) : null, true],
+    ['Which one', oneOfThese(finding), true], ['Follows the sensor', sensor],
     ['Gain', findingWorth(finding, held), true],
     ['What it is', words.what && capital(words.what), true],
     ['How it shows', words.shows && capital(words.shows), true],

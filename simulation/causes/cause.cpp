@@ -42,6 +42,30 @@ std::vector<std::string> Scene::Sensors() const {
   return sensors;
 }
 
+double Wave::WavesOf(double of_shape) const {
+  switch (shape) {
+    case Shape::kPeriod:
+      return 1.0 / of_shape;
+    case Shape::kOrder:
+      return of_shape / (2.0 * std::numbers::pi);
+    case Shape::kFrequency:
+      break;
+  }
+  return of_shape;
+}
+
+double Wave::ShapeOf(double waves) const {
+  switch (shape) {
+    case Shape::kPeriod:
+      return 1.0 / waves;
+    case Shape::kOrder:
+      return std::round(2.0 * std::numbers::pi * waves);
+    case Shape::kFrequency:
+      break;
+  }
+  return waves;
+}
+
 VectorXd Cause::ValuesOf(const VectorXd& found, const VectorXd& shape) const {
   if (tell) return tell(found, shape);
   if (FollowsItsSize()) return found;

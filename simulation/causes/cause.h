@@ -22,6 +22,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,22 @@ enum class Amount : unsigned char {
   kRandomField,
 };
 
+// A cause that is a wave over one variable of a trace. Its shape is its frequency (Hz), its period
+// (m) or its order (waves per turn, whole); all between `least` and `most` are looked for.
+struct Wave {
+  enum class Shape : unsigned char { kFrequency, kPeriod, kOrder };
+  using Over = std::function<Eigen::VectorXd(const Trace&, const Object&)>;
+
+  Shape shape;
+  double least, most;
+  std::function<Eigen::Index(const Object&)> stage;
+  Over over;  // s, m or rad, of each row; empty: does not act on this run
+
+  // Waves per unit of the variable, and back.
+  double WavesOf(double of_shape) const;
+  double ShapeOf(double waves) const;
+};
+
 struct Cause {
   using Objects = std::function<std::vector<Object>(const Scene&)>;
   using Columns = std::function<std::vector<Disturbance>(const Trace&, const Object& object,
@@ -94,7 +111,6 @@ struct Cause {
   using Tell = std::function<Eigen::VectorXd(const Eigen::VectorXd& coefficients,
                                              const Eigen::VectorXd& shape)>;
   using Recall = std::function<Recalled(const Eigen::VectorXd& values)>;
-  using LineIn = std::function<Eigen::Index(const Object& object)>;
 
   std::string id;
   CauseWords words;
@@ -115,9 +131,8 @@ struct Cause {
   bool phase_follows_encoder_zero = false;
   bool in_map = false;  // one of the 21 errors, a function of position
   Follows follows = Follows::kPath;
-  // The stage in which it is a line in time: its shape is a frequency, looked for among all that
-  // the runs resolve; `shapes` only tells whether it would be seen.
-  LineIn line_in = {};
+  // Looked for beyond `shapes`, among all that the runs resolve.
+  std::optional<Wave> wave = {};
 
   Eigen::Index coefficients() const { return plausible.size(); }
   bool FollowsItsSize() const { return amount == Amount::kFollowsItsSize; }

@@ -2,19 +2,51 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "settings/unit.h"
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
 namespace {
 
+// The key that is the shape; npos: none.
+std::size_t KeyOfShape(const Cause& cause) {
+  constexpr double kMark = 42.0;
+  if (!cause.shapes || cause.FollowsItsSize() || cause.IsRandomField()) return std::string::npos;
+  const Eigen::VectorXd values = cause.ValuesOf(Eigen::VectorXd::Zero(cause.coefficients()),
+                                                Eigen::VectorXd::Constant(1, kMark));
+  const auto at = std::find(values.begin(), values.end(), kMark);
+  return at == values.end() ? std::string::npos : static_cast<std::size_t>(at - values.begin());
+}
+
+// With two digits.
+std::string Rounded(double value) {
+  return fmt::format("{:g}", std::stod(fmt::format("{:.2g}", value)));
+}
+
+// Between which values it is looked for, in its unit: "0.2 to 30"; empty: all that the runs have.
+std::string RangeText(const Cause& cause, double unit) {
+  if (cause.wave)
+    return fmt::format("{:g} to {:g}", cause.wave->least / unit, cause.wave->most / unit);
+  const auto shapes = cause.shapes(Scene{});
+  if (shapes.empty()) return "";
+  const bool few = cause.fixed_shapes && shapes.size() == 2;
+  return fmt::format("{} {} {}", Rounded(shapes.front()[0] / unit), few ? "or" : "to",
+                     Rounded(shapes.back()[0] / unit));
+}
+
 std::string KeysText(const Cause& cause) {
   std::string text;
-  for (const CauseKey& key : cause.keys) {
+  const std::size_t shape = KeyOfShape(cause);
+  for (std::size_t i = 0; i < cause.keys.size(); ++i) {
+    const CauseKey& key = cause.keys[i];
     if (!text.empty()) text += ", ";
     text += fmt::format("`{}`", key.name);
-    const std::string unit(settings::UnitOf(key.name).name);
-    if (!unit.empty()) text += fmt::format(" ({})", unit);
+    std::string told(settings::UnitOf(key.name).name);
+    const std::string range = i == shape ? RangeText(cause, key.unit) : "";
+    if (!range.empty()) told = told.empty() ? range : fmt::format("{} {}", range, told);
+    if (!told.empty()) text += fmt::format(" ({})", told);
   }
   return text;
 }

@@ -36,6 +36,14 @@ Cause EncoderSubdivision() {
         return {values.tail(2), values.head(1)};
       },
       .phase_follows_encoder_zero = true,
+      .wave = Wave{.shape = Wave::Shape::kOrder,
+                   .least = 8.0,
+                   .most = 20000.0,  // lines of a fine disc
+                   .stage = [](const Object& object) { return kEncoderStage + object.first(); },
+                   .over = [](const Trace& trace, const Object& object) -> Eigen::VectorXd {
+                     if (trace.pivots() <= object.first()) return {};
+                     return trace.linkage->angles.row(object.first());
+                   }},
   };
 }
 

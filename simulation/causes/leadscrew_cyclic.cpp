@@ -5,7 +5,7 @@ namespace abbe::simulation {
 
 namespace {
 
-constexpr double kShortest = 1.5e-3, kLongest = 30e-3;  // m
+constexpr double kShortest = 1.5e-3, kLongest = 30e-3;  // m: usual ones, tried one by one
 constexpr double kOfAWave = 0.4;  // of a wave over the travel from one pitch tried to the next
 
 std::vector<Eigen::VectorXd> PitchesTried(const Scene& scene) {
@@ -49,6 +49,14 @@ Cause LeadscrewCyclic() {
         return {SineAndCosine(values[1], values[2]), values.head(1)};
       },
       .in_map = true,
+      .wave = Wave{.shape = Wave::Shape::kPeriod,
+                   .least = 0.2e-3,  // gratings and micrometer screws
+                   .most = kLongest,
+                   .stage = [](const Object& object) { return Positioning(object.first()); },
+                   .over = [](const Trace& trace, const Object& object) -> Eigen::VectorXd {
+                     if (trace.axes.cols() != trace.rows()) return {};
+                     return trace.axes.row(object.first());
+                   }},
   };
 }
 

@@ -35,7 +35,14 @@ Cause Vibration() {
         return {SineAndCosine(values[1], values[2]), values.head(1)};
       },
       .follows = Follows::kTime,
-      .line_in = [](const Object& object) { return Positioning(object.first()); },
+      .wave = Wave{.shape = Wave::Shape::kFrequency,
+                   .least = 1.0,  // slower is a drift, faster is mains
+                   .most = 60.0,
+                   .stage = [](const Object& object) { return Positioning(object.first()); },
+                   .over = [](const Trace& trace, const Object&) -> Eigen::VectorXd {
+                     if (!trace.averages_known) return {};
+                     return trace.clock;
+                   }},
   };
 }
 

@@ -93,5 +93,21 @@ TEST(Doubts, TakeCertaintyFromAPeriodBelowTwoTargets) {
   EXPECT_EQ(with_pitch(25e-3).verdict, Verdict::kExplained);
 }
 
+// 11.76 readings a second show a vibration of 4.27 Hz like one of 54.55 Hz.
+TEST(Doubts, TakeCertaintyFromAWaveThatIsOneOfSeveral) {
+  const Eigen::VectorXd wave = Eigen::Vector2d(1e-6, 0.0);
+  const auto at = [&](double frequency) {
+    return FindingOf("vibration", "X", wave, 1e-8, Eigen::VectorXd::Constant(1, frequency));
+  };
+  EXPECT_EQ(Doubted(at(4.27)).verdict, Verdict::kExplained);
+  Finding finding = at(4.27);
+  finding.score.one_of = {at(4.27).score, at(54.55).score};
+  const Diagnosis diagnosis = Doubted(finding);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
+  EXPECT_LE(diagnosis.findings.front().probability, kDoubtful);
+  // Four readings in each wave of the faster one.
+  EXPECT_NE(diagnosis.findings.front().doubts.front().find("every 4.6 ms"), std::string::npos);
+}
+
 }  // namespace doubts_test
 }  // namespace abbe::diagnosis

@@ -83,6 +83,34 @@ TEST(DataIntegrity, FindsReadingsThatJump) {
   }
 }
 
+// 40 stays of three readings, a way of 4 mm and half a second from one to the next.
+Recording ShortStays() {
+  const random::CounterRandom random(3, 2);
+  Recording run;
+  run.name = "run";
+  run.header = "kind = \"sweep\"\n";
+  run.columns = {{"time_s", {}}, {"x_mm", {}}, {"probe_a_um", {}}};
+  for (int row = 0; row < 120; ++row) {
+    const int stay = row / 3;
+    run.columns[0].values.push_back(0.7 * stay + 0.05 * row);
+    run.columns[1].values.push_back(4.0 * stay);
+    run.columns[2].values.push_back(80.0 + 0.3 * std::sin(0.4 * stay) +
+                                    0.01 * random.Normal(static_cast<std::uint64_t>(row)));
+  }
+  return run;
+}
+
+TEST(DataIntegrity, FindsReadingsThatJumpInStaysOfThree) {
+  Recording good = ShortStays();
+  EXPECT_TRUE(FlagInvalidReadings(good).empty());
+  for (const std::size_t row : {30U, 31U, 32U}) {
+    Recording run = ShortStays();
+    run.columns[2].values[row] += 0.3;
+    EXPECT_EQ(FlagInvalidReadings(run).size(), 1u);
+    EXPECT_THAT(Flagged(run), ElementsAreArray({row}));
+  }
+}
+
 // A channel that slips stays where it is then: each reading is one.
 TEST(DataIntegrity, LeavesAStepAlone) {
   for (const std::size_t from : {50U, 51U, 140U, 200U}) {
