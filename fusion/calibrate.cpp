@@ -25,9 +25,9 @@ using simulation::LinkageRun;
 using simulation::LinkageSimulation;
 
 constexpr double kNoGap = std::numeric_limits<double>::quiet_NaN();
-constexpr double kBadFit = 5.0;         // excess-noise factor above which encoders are checked
-constexpr double kOnePlace = 1e-4;      // m
-constexpr double kOneLine = 1e-3;       // second over first extent
+constexpr double kBadFit = 5.0;     // excess-noise factor above which encoders are checked
+constexpr double kOnePlace = 1e-4;  // m
+constexpr double kOneLine = 1e-3;   // second over first extent
 
 // Too few poses, or poses that span no volume.
 void RefusePoorPoses(const std::vector<LinkageRun>& runs, Index free) {

@@ -33,7 +33,8 @@ double Near(double angle, double nominal) {
 }
 
 bool IsTilt(const DenavitHartenbergRow& row) {
-  return row.fixed && row.d == 0.0 && row.a == 0.0 && std::abs(row.theta - kQuarterTurn) < kRoundedAngle;
+  return row.fixed && row.d == 0.0 && row.a == 0.0 &&
+         std::abs(row.theta - kQuarterTurn) < kRoundedAngle;
 }
 
 DenavitHartenbergRow TiltBy(double angle) {

@@ -96,9 +96,10 @@ std::string GeometryText(const WrittenChain& written, const VectorXd& u95) {
         next({"theta_deg", "d_mm", "a_mm", "alpha_deg"}));
   }
   for (const JointAxis& axis : written.axes) {
-    text += fmt::format(
-        "  {{ point_mm = {}, direction = {} }},{}\n", InBrackets(axis.point, settings::kMillimetre, 6),
-        InBrackets(axis.direction, 1.0, 12), next({"x_mm", "y_mm", "z_mm", "direction x", "y", "z"}));
+    text += fmt::format("  {{ point_mm = {}, direction = {} }},{}\n",
+                        InBrackets(axis.point, settings::kMillimetre, 6),
+                        InBrackets(axis.direction, 1.0, 12),
+                        next({"x_mm", "y_mm", "z_mm", "direction x", "y", "z"}));
   }
   return text + "]\nball_mm = " + InBrackets(written.ball, settings::kMillimetre, 6) +
          next({"x_mm", "y_mm", "z_mm"}) + "\n";
@@ -109,7 +110,8 @@ void RefuseOther(const std::string& text, const WrittenChain& written, const std
   const SerialChain read = ReadLinkageSettings(document.Root()).chain, chain = written.Chain();
   for (double angle : {0.0, 0.7, -1.9}) {
     const VectorXd q = VectorXd::Constant(chain.joints(), angle);
-    if (read.joints() == chain.joints() && (read.Tip(q) - chain.Tip(q)).norm() < kRoundedText) continue;
+    if (read.joints() == chain.joints() && (read.Tip(q) - chain.Tip(q)).norm() < kRoundedText)
+      continue;
     throw InputError(
         name +
         ": the corrected geometry cannot be written into this file; write its rows as "
