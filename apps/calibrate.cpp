@@ -111,7 +111,7 @@ class Calibration {
   void FromRecordings() {
     std::vector<simulation::LinkageRun> runs, certain;
     simulation::OneBall ball("give recordings of one ball at a time");
-    nlohmann::ordered_json whose;
+    nlohmann::ordered_json whose = nlohmann::ordered_json::object();
     for (const fs::path& path : arguments_.recordings) {
       const recording::Recording recording = ReadWithWarnings(path);
       const auto means = [&](const recording::Recording& corrected) {

@@ -36,6 +36,10 @@ Eigen::Matrix3Xd ReadPathTable(const std::filesystem::path& file) {
           1e-3 * map::NumberOf(words[static_cast<std::size_t>(at - names.begin())], lines.Where()));
     }
   }
+  if (values.empty()) {
+    throw InputError(
+        fmt::format("{}: has no rows under x_mm, y_mm, z_mm; it may be cut off", file.string()));
+  }
   return Eigen::Map<const Eigen::Matrix3Xd>(values.data(), 3,
                                             static_cast<Eigen::Index>(values.size() / 3));
 }

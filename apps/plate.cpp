@@ -51,7 +51,7 @@ map::ErrorMap WithNetworks(const map::ErrorMap& map,
 
 int Plate(const PlateArguments& arguments) {
   const machine::Machine machine = ReadMachineOf(arguments.machine);
-  nlohmann::ordered_json whose;
+  nlohmann::ordered_json whose = nlohmann::ordered_json::object();
   const auto setups = ReadSetups(arguments, machine, whose);
   const auto runs_on = [&](const machine::VolumetricModel& model) {
     std::vector<simulation::SimulatedRun> runs;

@@ -37,7 +37,8 @@ double Worth(const Search& search) {
   for (const PreparedRun& run : search.fit().campaign().runs()) {
     if (!run.memory) continue;
     const auto& times = run.trace.time;
-    const auto channels = static_cast<double>(run.simulated.residual->Rows() / times.size());
+    const auto values = static_cast<double>(run.simulated.residual->Rows());
+    const double channels = values / static_cast<double>(times.size());
     const estimation::MemoryFilter filter(times, *run.memory);
     worth += kPriorOfMemory - 0.5 * channels * filter.log_determinant();
   }

@@ -50,6 +50,9 @@ double NumberOf(std::string_view word, std::string_view where) {
   if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(number)) {
     throw InputError(fmt::format("{}: \"{}\" is not a number; correct it", where, word));
   }
+  if (std::abs(number) > kLargest) {
+    throw InputError(fmt::format("{}: {} is beyond anything measured; correct it", where, word));
+  }
   return number;
 }
 

@@ -17,7 +17,8 @@ std::string_view Trimmed(std::string_view text);
 std::vector<std::string_view> WordsOf(std::string_view text);
 std::vector<std::string_view> PartsOf(std::string_view text, char separator);
 
-// Finite numbers only, with a decimal point.
+// Numbers up to kLargest only, with a decimal point.
+inline constexpr double kLargest = 1e15;
 double NumberOf(std::string_view word, std::string_view where);
 std::vector<double> NumbersOf(std::string_view text, std::string_view where);
 

@@ -261,7 +261,7 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
   recording::RefuseOtherMachine(recording, setup.machine.name);
   const SweepDwells sweep = FindDwells(recording, DwellRuleOf(recording), setup.head.Ranges());
   RefuseSlips(recording.name, sweep, setup.machine, setup.head);
-  StationMeans means = FitStations(recording.name, sweep, setup.noise);
+  StationMeans means = FitStations(recording.name, sweep, setup.noise, ExcessNoise::kFitted);
   if (!Checked(means)) {
     for (auto& covariance : means.covariance) {
       covariance *= std::pow(UncheckedTimes(kKnownTo), 2);

@@ -219,9 +219,9 @@ bool Scattered(double chi2, double dof) {
 }
 
 // Tests the noise model against the scatter between the passes. Where that is significantly larger,
-// takes the noise from it; what that does not explain scales the covariances up.
+// takes the noise from it if asked to; what that does not explain scales the covariances up.
 void CheckAgainstPasses(const DwellFit& fit, const ProbeNoise& noise, double chi2,
-                        StationMeans& means) {
+                        ExcessNoise excess, StationMeans& means) {
   const double dof = fit.dof();
   means.noise.chi2 = chi2;
   means.noise.dof = dof;
@@ -233,6 +233,15 @@ void CheckAgainstPasses(const DwellFit& fit, const ProbeNoise& noise, double chi
   if (!Scattered(chi2, dof)) return;
   means.noise.scale = std::sqrt(chi2 / dof);
   means.noise.u_dof = dof;
+  if (excess == ExcessNoise::kScaled) {
+    for (Eigen::MatrixXd& covariance : means.covariance) covariance *= chi2 / dof;
+    means.notes.push_back(
+        fmt::format("the passes scatter {:.2f} times more than the noise model predicts: the noise "
+                    "part of u is scaled up by it; look for drift, vibration or a loose mounting, "
+                    "or correct [noise]",
+                    means.noise.scale));
+    return;
+  }
   const Factors found = MostProbableNoise(fit, noise, means);
   means.white *= std::exp(2.0 * found[0]);
   const double left = fit.Run(means.white, Times(noise, found), means).chi2;
@@ -274,14 +283,14 @@ void FillResidualsAndFigures(const SweepDwells& sweep, const DwellFit& fit, Stat
 
 }  // namespace
 
-StationMeans FitStations(const std::string& name, const SweepDwells& sweep,
-                         const ProbeNoise& noise) {
+StationMeans FitStations(const std::string& name, const SweepDwells& sweep, const ProbeNoise& noise,
+                         ExcessNoise excess) {
   StationMeans means;
   KeepCompleteStations(name, sweep, means);
   const DwellFit fit(means);
   means.white = ChooseWhite(sweep, noise, fit, means);
   const double chi2 = fit.Run(means.white, noise, means).chi2;
-  CheckAgainstPasses(fit, noise, chi2, means);
+  CheckAgainstPasses(fit, noise, chi2, excess, means);
   FillResidualsAndFigures(sweep, fit, means);
   return means;
 }

@@ -62,8 +62,13 @@ struct StationMeans {
   Eigen::Index groups() const { return position.size(); }
 };
 
+// Where the passes scatter significantly more than the noise says: the noise that makes them most
+// probable, or all covariances scaled up alike. The second takes no cause of the scatter for a
+// drift: what shows in one probe, or at a few stations, keeps standing out for a diagnosis.
+enum class ExcessNoise : unsigned char { kFitted, kScaled };
+
 // `name` is the recording in messages.
-StationMeans FitStations(const std::string& name, const SweepDwells& sweep,
-                         const ProbeNoise& noise);
+StationMeans FitStations(const std::string& name, const SweepDwells& sweep, const ProbeNoise& noise,
+                         ExcessNoise excess);
 
 }  // namespace abbe::probes

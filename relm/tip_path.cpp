@@ -41,9 +41,11 @@ double Finite(const recording::Recording& recording, Column column, std::size_t 
                                recording.first_row + row + 1, name));
 }
 
-// Rows that are poses of their own: of unknown times, or of an arm that no machine moves along.
+// Rows that are poses of their own: of stated order but unknown times, or of an arm that no machine
+// moves along.
 bool ArePoses(const recording::Recording& recording) {
-  return !recording.KnowsTimes() || (recording.Find("ref_x_mm") && !recording.Find("x_mm"));
+  return recording.HeaderText("time").value_or("") == "order" ||
+         (recording.Find("ref_x_mm") && !recording.Find("x_mm"));
 }
 
 // An encoder turns by less than half a turn from row to row, or its counter has wrapped or slipped.

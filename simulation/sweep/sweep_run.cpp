@@ -31,7 +31,7 @@ Sweep ReadMeans(const recording::Recording& recording, const recording::Blocks& 
                 const probes::HeadSettings& head, const probes::ProbeNoise& noise) {
   const auto dwells =
       probes::FindDwells(recording, blocks, probes::DwellRuleOf(recording), head.Ranges());
-  Sweep sweep{{}, probes::FitStations(recording.name, dwells, noise)};
+  Sweep sweep{{}, probes::FitStations(recording.name, dwells, noise, probes::ExcessNoise::kScaled)};
   sweep.run.name = recording.name;
   sweep.run.mounting = MountingOf(recording);
   sweep.run.mounted = MountedOf(recording);

@@ -90,7 +90,10 @@ std::map<std::string, settings::RequestedKey> KeysOfAllReaders() {
   std::map<std::string, settings::RequestedKey> keys;
   AddKeysOf(Demo(), keys);
   AddKeysOf(DemoWithForm("segments", "segment = [{ length_mm = 9, encoder = \"theta\" }]"), keys);
-  AddKeysOf(DemoWithForm("denavit-hartenberg", "joint = [{ a_mm = 9 }]"), keys);
+  AddKeysOf(DemoWithForm("denavit-hartenberg",
+                         "joint = [{ a_mm = 9 }]\n"
+                         "mass = [{ after_pivot = 1, kg = 9, point_mm = [9, 0, 0] }]"),
+            keys);
   AddKeysOf(DemoWithForm("axes",
                          "ball_mm = [9, 0, 0]\n"
                          "axis = [{ point_mm = [0, 0, 0], direction = [0, 0, 1] }]"),

@@ -215,9 +215,8 @@ TEST_F(RealRobot, IsTheSameHoweverItsChainIsWritten) {
 TEST_F(RealRobot, IsOneArmUnderTwoReflectors) {
   const Found one = Diagnosed(WithReflector(1), kRows), two = Diagnosed(WithReflector(2), kRows);
   const Found both = Diagnosed(std::vector{WithReflector(1), WithReflector(2)}, kRows);
-  constexpr double kTenth = 1.1;
-  EXPECT_LE(both.gain.arm_after,
-            kTenth * std::hypot(one.gain.arm_after, two.gain.arm_after) / std::sqrt(2.0));
+  // Better by half than geometry alone, which an independent fit to reflector 1 brings to 0.246 mm.
+  EXPECT_LE(both.gain.arm_after, 0.5 * 0.246e-3);
   for (const char* name :
        {"joint-compliance:pivot_2", "joint-compliance:pivot_3", "joint-compliance:pivot_4",
         "joint-compliance:pivot_5", "arm-drift:arm"}) {

@@ -130,7 +130,7 @@ void CheckAgainstMonteCarlo(char axis, MovingBody moving) {
   PerProbe<> ranges;
   ranges.fill(200e-6);
   const SweepDwells sweep = FindDwells(recording, DwellRuleOf(recording), ranges);
-  const StationMeans means = FitStations("", sweep, setup.noise);
+  const StationMeans means = FitStations("", sweep, setup.noise, ExcessNoise::kFitted);
   const SweepDraws draws(setup, sweep, means);
   const SweepGauge gauge(Eigen::Map<const Eigen::VectorXd>(means.stations.data(), 5), 2);
 
