@@ -66,6 +66,7 @@ std::string OneOfText(const Finding& finding) {
   const std::vector<NamedValue> values = OneOf(finding);
   if (values.empty()) return "";
   std::vector<std::string> told;
+  told.reserve(values.size());
   for (const NamedValue& each : values) told.push_back(fmt::format("{:.6g}", each.value));
   return fmt::format("  {:<28}one of these: {}\n", values.front().name, fmt::join(told, ", "));
 }

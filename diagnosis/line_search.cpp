@@ -108,6 +108,7 @@ std::vector<WaveRows> PiecesOf(const std::vector<RunOfWave>& runs, double first,
     return Eigen::Map<const ArrayXd>(values.data(), static_cast<Index>(values.size()));
   };
   std::vector<WaveRows> found;
+  found.reserve(strongest.size());
   for (const Rows* rows : strongest) {
     found.push_back({array(rows->at), array(rows->scores), array(rows->weights)});
   }

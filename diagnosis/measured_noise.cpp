@@ -26,6 +26,7 @@ struct AtRest {
 
 std::vector<AtRest> StandstillsOf(const std::vector<Recording>& recordings) {
   std::vector<AtRest> all;
+  all.reserve(recordings.size());
   for (const Recording& recording : recordings) {
     all.push_back({recording, simulation::StaysOf(recording),
                    simulation::KindOf(recording).ShowsNoiseAtRest()});
