@@ -10,6 +10,7 @@
 #include "apps/map_option.h"
 #include "apps/result_file.h"
 #include "map/exporter.h"
+#include "map/map_grid.h"
 
 namespace abbe::apps {
 namespace {
@@ -67,8 +68,13 @@ int RunExport(const ExportCommand& options) {
     out.replace_extension(format.extension);
     if (out == options.map.path) out.replace_extension("again" + std::string(format.extension));
   }
-  const map::Export done =
-      map::ExportMap(map, format, {PointsOf(options.points), options.map.Tool(map)}, out);
+  const map::ExportOptions at{PointsOf(options.points), options.map.Tool(map)};
+  if (!map::SampleGrid(map, at.tool, at.counts).error().allFinite()) {
+    throw InputError(fmt::format(
+        "{}: gives no finite error in its volume; it may be damaged: export or fuse it again",
+        options.map.path.string()));
+  }
+  const map::Export done = map::ExportMap(map, format, at, out);
   if (!options.quiet) Print(format, done);
   if (!options.json.empty()) WriteResult(ResultOf(options, map, done), options.json);
   return kDone;

@@ -1,7 +1,7 @@
 // What the readings of a channel do while nothing moves: white noise, a memory, or a line in time.
 //
 //   const RestNoise noise = NoiseAtRest(stays);
-//   if (noise.kind == RestKind::kLine) ...;               // mains, vibration
+//   const bool hums = noise.kind == RestKind::kLine;      // mains, vibration
 //
 // Half of the mean square of the differences of readings k apart is the variance of white noise for
 // every k, which a drift hardly enters. Where it is not the same for k of 1 to kLags within 4
