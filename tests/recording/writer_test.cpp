@@ -100,22 +100,29 @@ TEST_P(EachForm, OverwritesAtOnceOrNotAtAll) {
 }
 
 // Two recorders and a reader at the same time, as in a program with several devices.
-TEST_P(EachForm, WorksFromManyThreads) {
-  std::vector<std::jthread> threads;
-  threads.reserve(4);
-  for (int t = 0; t < 4; ++t) {
-    threads.emplace_back([&, t] {
-      const auto path = scratch_ / (std::to_string(t) + GetParam());
-      const auto writer = Writer::Create(path, kHeader, kColumns);
-      for (int i = 0; i < 5000; ++i) {
-        writer->Append(std::array{1.0 * i, 1.0 * t});
-        if (i % 500 == 0) writer->Flush();
-      }
-      writer->Close();
-      const Recording recording = Read(path);
-      ASSERT_EQ(recording.rows(), 5000u);
-      EXPECT_EQ(recording.columns[1].values[4999], t);
-    });
+// The threads only write: reading makes a process (see Hdf5Child), and the sanitizer's own locks do
+// not survive a fork among threads that allocate.
+TEST_P(EachForm, WritesFromManyThreads) {
+  constexpr int kThreads = 4;
+  const auto path = [&](int t) { return scratch_ / (std::to_string(t) + GetParam()); };
+  {
+    std::vector<std::jthread> threads;
+    threads.reserve(kThreads);
+    for (int t = 0; t < kThreads; ++t) {
+      threads.emplace_back([&, t] {
+        const auto writer = Writer::Create(path(t), kHeader, kColumns);
+        for (int i = 0; i < 5000; ++i) {
+          writer->Append(std::array{1.0 * i, 1.0 * t});
+          if (i % 500 == 0) writer->Flush();
+        }
+        writer->Close();
+      });
+    }
+  }
+  for (int t = 0; t < kThreads; ++t) {
+    const Recording recording = Read(path(t));
+    ASSERT_EQ(recording.rows(), 5000u);
+    EXPECT_EQ(recording.columns[1].values[4999], t);
   }
 }
 
