@@ -45,7 +45,7 @@ class Campaign {
   bool SetExcess(const std::vector<double>& excess, Change change);
 
   // Noise with a memory, in units of what the run is whitened with (simulation/remembered_noise.h).
-  // Of a run that tells what disturbances do, and that has none yet.
+  // The run must say what disturbances do (SimulatedRun::response) and have no memory yet.
   void SetMemory(std::size_t run, const estimation::NoiseMemory& noise);
 
   const simulation::Instruments& instruments() const { return instruments_; }

@@ -29,7 +29,7 @@ struct Candidate {
   }
 };
 
-// Whether one of the candidates has the name, in whatever shape.
+// Whether one of the candidates has the name; shapes do not count.
 bool IsAmong(const std::vector<Candidate>& candidates, const Candidate& candidate);
 
 // Scale of the prior sizes of length-like causes (backlash, cyclic error, drift). The registry

@@ -44,7 +44,6 @@ double LowestOf(const simulation::Wave& wave) {
 }
 
 // Those that do not stand at one place, where a wave is a constant.
-// Those that do not stand at one place, where a wave is a constant.
 std::vector<RunOfWave> RunsOf(const Fit& fit, const Candidate& candidate) {
   const simulation::Wave& wave = *candidate.cause->wave;
   std::vector<RunOfWave> runs;

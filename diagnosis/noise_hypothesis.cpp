@@ -31,7 +31,7 @@ std::optional<estimation::NoiseMemory> MemoryOf(const Fit& fit, std::size_t r) {
   return found.noise;
 }
 
-// Of the data and of what was taken in, up to a constant.
+// Logarithm of the marginal likelihood with the prior of what was taken in, up to a constant.
 double Worth(const Search& search) {
   double worth = search.fit().log_likelihood();
   for (const PreparedRun& run : search.fit().campaign().runs()) {

@@ -22,7 +22,7 @@ double MedianStep(const std::vector<Stay>& stays) {
   return *middle;
 }
 
-// Of noise with a deviation of one in all, of which `share` of the variance has a memory.
+// Noise of deviation one; `share` of its variance has a memory.
 NoiseMemory Shared(double share, double time) {
   return {std::sqrt(1.0 - share), std::sqrt(share), time};
 }

@@ -42,7 +42,7 @@ bool IsWhite(const std::vector<Stay>& stays, const Differences& next) {
   for (Index lag = 2; lag <= kLags; ++lag) {
     const Differences apart = DifferencesAt(stays, lag);
     if (apart.pairs < kEnough) continue;
-    // Of two correlations of white noise.
+    // The difference of two correlations that white noise makes by chance.
     const double doubt = kCertain * std::sqrt(2.0 / apart.pairs);
     if (std::abs(apart.variance / next.variance - 1.0) >
         doubt * std::max(1.0, apart.variance / next.variance))

@@ -27,7 +27,7 @@ struct RestNoise {
   RestKind kind = RestKind::kWhite;
   double sd = 0.0;         // of one reading: of its white noise, with the memory; without a line
   double freedom = 0.0;    // degrees of freedom of `sd`
-  double scatter = 0.0;    // of the readings about the means of their stays, whatever it is
+  double scatter = 0.0;    // of the readings about the means of their stays, a line included
   NoiseMemory memory;      // kMemory
   double frequency = 0.0;  // Hz, kLine: one of those that the readings do not tell apart
 };
