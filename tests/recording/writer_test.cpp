@@ -99,9 +99,9 @@ TEST_P(EachForm, OverwritesAtOnceOrNotAtAll) {
   EXPECT_EQ(Read(path_).rows(), 3u);
 }
 
-// Two recorders and a reader at the same time, as in a program with several devices.
-// The threads only write: reading makes a process (see Hdf5Child), and the sanitizer's own locks do
-// not survive a fork among threads that allocate.
+// Several recorders at the same time, as in a program with several devices. The threads only write:
+// reading makes a process (see Hdf5Child), and the sanitizer's own locks do not survive a fork among
+// threads that allocate.
 TEST_P(EachForm, WritesFromManyThreads) {
   constexpr int kThreads = 4;
   const auto path = [&](int t) { return scratch_ / (std::to_string(t) + GetParam()); };
