@@ -72,7 +72,7 @@ VectorXd ByShape(const LinearRun& at, const Candidate& cause) {
 SimulatedRun WithNoiseOf(const SimulatedRun& run, const std::vector<Candidate>& causes) {
   if (!run.noise_exchanged) return run;
   for (const Candidate& cause : causes) {
-    if (cause.cause->id != "channel-swap") continue;
+    if (!cause.cause->exchanges_channels) continue;
     return run.noise_exchanged(static_cast<std::size_t>(cause.object.first()),
                                static_cast<std::size_t>(cause.object.second()));
   }

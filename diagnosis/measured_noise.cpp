@@ -28,8 +28,8 @@ std::vector<AtRest> StandstillsOf(const std::vector<Recording>& recordings) {
   std::vector<AtRest> all;
   all.reserve(recordings.size());
   for (const Recording& recording : recordings) {
-    all.push_back({recording, simulation::StaysOf(recording),
-                   simulation::KindOf(recording).ShowsNoiseAtRest()});
+    const simulation::RunKind& kind = simulation::KindOf(recording);
+    all.push_back({recording, kind.StaysIn(recording), kind.ShowsNoiseAtRest()});
   }
   return all;
 }

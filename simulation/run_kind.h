@@ -30,6 +30,7 @@
 #include "simulation/planned_paths.h"
 #include "simulation/run_source.h"
 #include "simulation/simulated_run.h"
+#include "simulation/stays.h"
 #include "simulation/trace.h"
 
 namespace abbe::simulation {
@@ -110,7 +111,9 @@ class RunKind {
                                const Instruments& instruments, const FactsByRun& known) const = 0;
   // Whether neighbouring rows say that a reading is invalid.
   virtual bool RowsFollowEachOther() const { return true; }
-  // Whether readings at a standstill show the noise of a channel.
+  // Where nothing moves, and has settled.
+  virtual Stays StaysIn(const recording::Recording& recording) const { return StaysOf(recording); }
+  // Whether readings there show the noise of a channel.
   virtual bool ShowsNoiseAtRest() const { return true; }
   // Refuses runs of this kind that do not belong together.
   virtual void RefuseStrangers(const std::vector<RunSource>& sources,

@@ -37,16 +37,8 @@ std::vector<bool> Stands(const Recording& recording, const std::vector<std::size
   return stands;
 }
 
-// Of a sweep.
-void DropWhatIsNoStay(const Recording& recording, Stays& stays) {
-  const auto pass = recording.Find("pass"), time = recording.Find("time_s");
-  const double settle = recording.HeaderNumber("sweep.settle_s", 0.0).value_or(0.1);
-  for (auto& stay : stays) {
-    if (pass && (*pass)[stay.front()] == 0.0) stay.clear();
-    if (stay.empty() || !time) continue;
-    const double from = (*time)[stay.front()] + settle;
-    std::erase_if(stay, [&](std::size_t row) { return (*time)[row] < from; });
-  }
+void KeepSeveral(Stays& stays) {
+  std::erase_if(stays, [](const auto& stay) { return stay.size() < 2; });
 }
 
 }  // namespace
@@ -60,8 +52,20 @@ Stays StaysOf(const Recording& recording) {
     if (!stands[i]) stays.emplace_back();
     stays.back().push_back(rows[i]);
   }
-  if (recording.Kind() == "sweep") DropWhatIsNoStay(recording, stays);
-  std::erase_if(stays, [](const auto& stay) { return stay.size() < 2; });
+  KeepSeveral(stays);
+  return stays;
+}
+
+Stays SettledStays(const Recording& recording, double settle) {
+  Stays stays = StaysOf(recording);
+  const auto pass = recording.Find("pass"), time = recording.Find("time_s");
+  for (auto& stay : stays) {
+    if (pass && (*pass)[stay.front()] == 0.0) stay.clear();
+    if (stay.empty() || !time) continue;
+    const double from = (*time)[stay.front()] + settle;
+    std::erase_if(stay, [&](std::size_t row) { return (*time)[row] < from; });
+  }
+  KeepSeveral(stays);
   return stays;
 }
 

@@ -4,8 +4,8 @@
 //   const auto noise = estimation::NoiseAtRest(ReadingsIn(recording, "probe_a_um", stays));
 //
 // A stay is a sequence of good rows of two at least in which no axis goes on by more than a scale
-// trembles from one to the next, without a pause. Of a sweep the readings while an axis settles
-// (sweep.settle_s) and those outside its passes are left out. Units: SI. Failure: InputError for a
+// trembles from one to the next, without a pause. What of them counts, the kind of the run says
+// (RunKind::StaysIn). Units: SI. Failure: InputError for a
 // value that is not finite. Empty for a recording without axes or good rows.
 #pragma once
 
@@ -21,6 +21,8 @@ namespace abbe::simulation {
 using Stays = std::vector<std::vector<std::size_t>>;  // rows of each
 
 Stays StaysOf(const recording::Recording& recording);
+// Without the first `settle` seconds of each, in which an axis settles, and those outside passes.
+Stays SettledStays(const recording::Recording& recording, double settle);
 // Without time_s rows are a second apart.
 std::vector<estimation::Stay> ReadingsIn(const recording::Recording& recording,
                                          const std::string& column, const Stays& stays);

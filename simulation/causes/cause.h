@@ -123,9 +123,10 @@ struct Cause {
   Relaxes relaxes = {};  // the parameters whose priors it relaxes; none: columns
   Tell tell = {};        // none: the coefficients are the keys, then the shape
   Amount amount = Amount::kLinear;
-  bool fixed_shapes = false;  // nothing between those tried
-  bool one_event = false;     // cannot be held against other passes
-  Recall recall = {};         // of the values that `tell` gives; none: as without `tell`
+  bool fixed_shapes = false;        // nothing between those tried
+  bool one_event = false;           // cannot be held against other passes
+  bool exchanges_channels = false;  // of a pair: the noise of a channel goes with it
+  Recall recall = {};               // of the values that `tell` gives; none: as without `tell`
   // Sine and cosine of shape[0] times the angle of a pivot: their phase is known no better than the
   // zero of its encoder.
   bool phase_follows_encoder_zero = false;

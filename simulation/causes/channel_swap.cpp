@@ -39,6 +39,7 @@ Cause ChannelSwap() {
       },
       .tell = [](const Eigen::VectorXd&, const Eigen::VectorXd&) -> Eigen::VectorXd { return {}; },
       .amount = Amount::kBinary,
+      .exchanges_channels = true,
   };
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "estimation/readings_at_rest.h"
+#include "probes/sweep_dwells.h"
 #include "recording/good_rows.h"
 #include "settings/toml_text.h"
 #include "settings/unit.h"
@@ -233,6 +234,9 @@ class SweepRuns : public HeadKind {
                           ReadSweepRun(source.head, source.blocks, head, on.noise))};
   }
 
+  Stays StaysIn(const Recording& recording) const override {
+    return SettledStays(recording, probes::DwellRuleOf(recording).settle);
+  }
   // The means of its stations have their scatter from the sweep itself.
   bool ShowsNoiseAtRest() const override { return false; }
 
@@ -261,7 +265,7 @@ class SweepRuns : public HeadKind {
   // With a line in time in what the stays hold, their readings too.
   std::vector<SweepRun> Read(const Recording& recording, const Instruments& on) const override {
     std::vector<SweepRun> runs{ReadSweepDwells(recording, *on.head, on.noise)};
-    const Stays stays = StaysOf(recording);
+    const Stays stays = StaysIn(recording);
     const InStays found = NoiseInStays(recording, stays, on.noise);
     if (found.has_line) runs.push_back(ReadReadingsInStays(recording, stays, found.noise));
     return runs;
