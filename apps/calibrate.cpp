@@ -204,8 +204,8 @@ class Calibration {
   fusion::Travel Travel() const {
     fusion::Travel travel;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      travel.first[static_cast<Index>(axis)] = file_.sweep_setup.machine.travels[axis].first;
-      travel.last[static_cast<Index>(axis)] = file_.sweep_setup.machine.travels[axis].last;
+      travel.first[axis] = file_.sweep_setup.machine.travels[axis].first;
+      travel.last[axis] = file_.sweep_setup.machine.travels[axis].last;
     }
     return travel;
   }

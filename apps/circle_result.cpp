@@ -64,7 +64,7 @@ ordered_json Profile(const CircleRun& run, int sense, const standards::Circle& c
   ordered_json profile;
   for (std::size_t bin = 0; bin < kProfilePoints; ++bin) {
     if (count[bin] == 0.0) continue;
-    profile["angle"].push_back((static_cast<double>(bin) + 0.5) * kTurn / kProfilePoints);
+    profile["angle"].push_back((bin + 0.5) * kTurn / kProfilePoints);
     profile["radial"].push_back(radial[bin] / count[bin]);
     if (residuals != nullptr) profile["explained"].push_back(explained[bin] / count[bin]);
     if (run.third_seen) profile["axial"].push_back(axial[bin] / count[bin]);

@@ -95,12 +95,12 @@ class ProgramLines {
 
   bool Next(std::string_view& line) {
     errno = 0;
-    in_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    in_.getline(buffer_.data(), buffer_.size());
     if (in_.bad()) {
       throw InputError(fmt::format("{}: cannot be read beyond line {}: {}; nothing was written",
                                    name_, lines_, std::strerror(errno == 0 ? EIO : errno)));
     }
-    const auto taken = static_cast<std::size_t>(in_.gcount());
+    const std::size_t taken = in_.gcount();
     if (in_.fail() && taken > 0) {
       throw InputError(fmt::format("{}: line {}: longer than {} characters; is it an NC program?",
                                    name_, lines_ + 1, kLongestLine - 2));

@@ -39,8 +39,7 @@ std::vector<NamedValue> ParametersOf(const Score& score) {
   std::vector<NamedValue> values;
   for (std::size_t i = 0; i < found.cause->keys.size(); ++i) {
     const auto& key = found.cause->keys[i];
-    const auto at = static_cast<Index>(i);
-    values.push_back({key.name, found.values[at] / key.unit, found.u95[at] / key.unit});
+    values.push_back({key.name, found.values[i] / key.unit, found.u95[i] / key.unit});
   }
   return values;
 }
@@ -89,11 +88,11 @@ bool GivesAdvice(const Diagnosis& diagnosis) {
 std::optional<HeldOutGain::Without> WorthOf(std::size_t finding, const Diagnosis& diagnosis,
                                             const HeldOutGain& gain) {
   const auto is_modelled = [](const Finding& each) { return diagnosis::IsModelled(each); };
-  const auto at = diagnosis.findings.begin() + static_cast<std::ptrdiff_t>(finding);
+  const auto at = diagnosis.findings.begin() + finding;
   if (!is_modelled(*at)) return std::nullopt;
   const auto place = std::count_if(diagnosis.findings.begin(), at, is_modelled);
-  if (place >= static_cast<std::ptrdiff_t>(gain.without.size())) return std::nullopt;
-  const auto& without = gain.without[static_cast<std::size_t>(place)];
+  if (place >= std::ssize(gain.without)) return std::nullopt;
+  const auto& without = gain.without[place];
   return std::isfinite(without.held) ? std::optional(without) : std::nullopt;
 }
 

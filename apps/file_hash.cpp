@@ -18,7 +18,7 @@ std::string Sha256Of(const std::filesystem::path& path) {
   EVP_DigestInit_ex(hash.get(), EVP_sha256(), nullptr);
   std::array<char, 1 << 16> block;
   while (file.read(block.data(), block.size()) || file.gcount() > 0) {
-    EVP_DigestUpdate(hash.get(), block.data(), static_cast<std::size_t>(file.gcount()));
+    EVP_DigestUpdate(hash.get(), block.data(), file.gcount());
   }
   if (!file.eof()) {
     throw InputError(fmt::format("{}: cannot be read; check the path", path.string()));

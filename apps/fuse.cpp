@@ -76,7 +76,7 @@ MapChange ChangeOf(const map::ErrorMap& before, const map::ErrorMap& after) {
       (map::SampleGrid(after, tool, points).error() - map::SampleGrid(before, tool, points).error())
           .colwise()
           .norm();
-  return {std::sqrt(change.squaredNorm() / static_cast<double>(change.size())), change.maxCoeff()};
+  return {std::sqrt(change.squaredNorm() / change.size()), change.maxCoeff()};
 }
 
 // Recordings as they were read, causes and all, may fit no map.
@@ -110,8 +110,7 @@ std::string NotInMap(const std::vector<simulation::ModelledCause>& causes) {
     text += fmt::format("not in the map: {}", cause.Name());
     for (std::size_t i = 0; i < cause.cause->keys.size(); ++i) {
       const auto& key = cause.cause->keys[i];
-      text += fmt::format(", {} = {:.4g}", key.name,
-                          cause.values[static_cast<Eigen::Index>(i)] / key.unit);
+      text += fmt::format(", {} = {:.4g}", key.name, cause.values[i] / key.unit);
     }
     text += '\n';
   }

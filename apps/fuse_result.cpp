@@ -112,7 +112,7 @@ std::string RunTable(const fusion::FuseReport& report) {
               "file are those of the recording");
   }
   if (report.contradicting >= 0) {
-    const auto& run = report.runs[static_cast<std::size_t>(report.contradicting)];
+    const auto& run = report.runs[report.contradicting];
     text += fmt::format(
         "\nCONTRADICTION: {} disagrees with all other runs (chi-square {:.1f} of {}); {}\n",
         run.name, run.statistic, run.directions, WordsOf(report.suspect));
@@ -192,8 +192,7 @@ ordered_json FuseJson(const fusion::FuseReport& report) {
   json["misfits"] = Misfits(report);
   json["contradictions"] = ordered_json::array();
   if (report.contradicting >= 0) {
-    json["contradictions"].push_back(
-        report.runs[static_cast<std::size_t>(report.contradicting)].name);
+    json["contradictions"].push_back(report.runs[report.contradicting].name);
   }
   json["parameters"] = ParametersJson(report.fit);
   json["map"] = MapJson(report.map);

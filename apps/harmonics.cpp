@@ -117,7 +117,7 @@ std::string ChannelTable(const ordered_json& channel) {
 
 int Harmonics(const HarmonicsArguments& arguments) {
   const recording::Recording recording = ReadWithWarnings(arguments.recording);
-  std::vector<int> orders(static_cast<std::size_t>(arguments.orders));
+  std::vector<int> orders(arguments.orders);
   std::iota(orders.begin(), orders.end(), 1);
   ordered_json result{{"kind", "harmonics"},
                       {"recording", recording.name},

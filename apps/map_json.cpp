@@ -29,10 +29,9 @@ ordered_json GridJson(const map::ErrorMap& map) {
     for (Index i = 0; i < axis.count; ++i) {
       json[std::string(1, "xyz"[k])].push_back(Short(axis.At(i)));
     }
-    const auto row = static_cast<Index>(k);
-    for (const double error : grid.error().row(row)) json["error"][k].push_back(Short(error));
+    for (const double error : grid.error().row(k)) json["error"][k].push_back(Short(error));
     if (!map.StatesUncertainty()) continue;
-    for (const double u95 : grid.u95().row(row)) {
+    for (const double u95 : grid.u95().row(k)) {
       json["u"][k].push_back(Short(u95 / standards::kCoverage));
     }
   }
@@ -45,7 +44,7 @@ ordered_json ErrorJson(const map::ErrorMap& map, int error) {
   const bool is_curve = error < kAllMotions;
   Eigen::VectorXd positions = Eigen::VectorXd::Zero(1);
   if (is_curve) {
-    const auto& travel = map.model().travels()[static_cast<std::size_t>(error / machine::kMotions)];
+    const auto& travel = map.model().travels()[error / machine::kMotions];
     positions = Eigen::VectorXd::LinSpaced(kFunctionPoints, travel.first, travel.last);
   }
   const auto [value, u] = map.CurveOf(error, positions);
@@ -65,7 +64,7 @@ ordered_json ErrorsJson(const map::ErrorMap& map) {
   ordered_json json;
   for (int error = 0; error < map::kErrors; ++error) {
     ordered_json& one = json[map::ErrorName(error)] = ErrorJson(map, error);
-    const auto source = map.origin().sources[static_cast<std::size_t>(error)];
+    const auto source = map.origin().sources[error];
     one["from"] = map::kSourceNames[static_cast<std::size_t>(source)];
   }
   return json;

@@ -49,7 +49,7 @@ std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given) {
     if (each < 2) {
       throw InputError(fmt::format("--points {}: an axis needs at least 2 points", each));
     }
-    product *= static_cast<double>(each);
+    product *= each;
   }
   if (product <= kMost) return points;
   throw InputError(fmt::format(

@@ -61,7 +61,7 @@ Eigen::Matrix3Xd Poses(const paths::MeasuredPath& path) {
   std::map<int, std::vector<Eigen::Index>> passes;
   for (Eigen::Index i = 0; i < path.poses(); ++i) passes[path.pass[i]].push_back(i);
   if (passes.size() < 2) return path.measured;
-  Eigen::Matrix3Xd poses(3, static_cast<Eigen::Index>(passes.size()));
+  Eigen::Matrix3Xd poses(3, passes.size());
   Eigen::Index pose = 0;
   for (const auto& [pass, rows] : passes) {
     poses.col(pose++) = paths::Selection(path, rows).measured.rowwise().mean();

@@ -32,16 +32,14 @@ Eigen::Matrix3Xd ReadPathTable(const std::filesystem::path& file) {
         throw InputError(fmt::format("{}: there is no column {}", lines.Where(), column));
       }
       if (words == names) continue;
-      values.push_back(
-          1e-3 * map::NumberOf(words[static_cast<std::size_t>(at - names.begin())], lines.Where()));
+      values.push_back(1e-3 * map::NumberOf(words[at - names.begin()], lines.Where()));
     }
   }
   if (values.empty()) {
     throw InputError(
         fmt::format("{}: has no rows under x_mm, y_mm, z_mm; it may be cut off", file.string()));
   }
-  return Eigen::Map<const Eigen::Matrix3Xd>(values.data(), 3,
-                                            static_cast<Eigen::Index>(values.size() / 3));
+  return Eigen::Map<const Eigen::Matrix3Xd>(values.data(), 3, values.size() / 3);
 }
 
 }  // namespace abbe::apps

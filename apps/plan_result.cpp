@@ -31,8 +31,8 @@ std::vector<Size> SizesOf(const PlannedCause& planned) {
   const auto [plausible, seen] = planned.sizes();
   for (Index i = 0; i < plausible.size(); ++i) {
     const auto& key = planned.candidate.cause->keys;
-    if (i >= static_cast<Index>(key.size()) || std::isnan(plausible[i])) continue;
-    const auto& [name, unit, least, most] = key[static_cast<std::size_t>(i)];
+    if (i >= std::ssize(key) || std::isnan(plausible[i])) continue;
+    const auto& [name, unit, least, most] = key[i];
     sizes.push_back({name, std::abs(plausible[i] / unit), std::abs(seen[i] / unit)});
   }
   return sizes;

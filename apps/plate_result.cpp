@@ -21,7 +21,7 @@ constexpr int kMotionErrors = machine::kAxes * machine::kMotions;
 
 VectorXd StationsOf(const PlateResult& result, int error) {
   if (error >= kMotionErrors) return VectorXd::Zero(1);
-  const auto axis = static_cast<std::size_t>(error / machine::kMotions);
+  const std::size_t axis = error / machine::kMotions;
   const auto& travel = result.fused.map.model().travels()[axis];
   return VectorXd::LinSpaced(kStations, travel.first, travel.last);
 }
@@ -30,7 +30,7 @@ std::string ErrorTable(const PlateResult& result) {
   std::string text =
       fmt::format("{:<7}{:>10}{:>10}  {:<6}{}\n", "error", "largest", "u", "unit", "determined by");
   for (int error = 0; error < kMotionErrors; ++error) {
-    const auto& seen = result.fused.functions[static_cast<std::size_t>(error)];
+    const auto& seen = result.fused.functions[error];
     const VectorXd value = result.fused.map.CurveOf(error, StationsOf(result, error)).value;
     Eigen::Index at = 0;
     value.cwiseAbs().maxCoeff(&at);
@@ -47,11 +47,11 @@ std::string SquarenessTable(const PlateResult& result) {
   for (std::size_t k = 0; k < result.diagonals.size(); ++k) {
     const auto& seen = result.fused.functions[kMotionErrors + k];
     const auto& by = result.diagonals[k];
-    text += fmt::format(
-        "{:<11}{:>+10.3f}{:>10.3f}  {:<6}{:>15}{:>10}  {:<16}{}\n", seen.name,
-        result.fused.map.model().squareness()[static_cast<Eigen::Index>(k)] / kMicro,
-        seen.u / kMicro, "urad", by.setups == 0 ? "-" : fmt::format("{:+.3f}", by.value / kMicro),
-        by.setups == 0 ? "-" : fmt::format("{:.3f}", by.u / kMicro), by.setups, DeterminedBy(seen));
+    text += fmt::format("{:<11}{:>+10.3f}{:>10.3f}  {:<6}{:>15}{:>10}  {:<16}{}\n", seen.name,
+                        result.fused.map.model().squareness()[k] / kMicro, seen.u / kMicro, "urad",
+                        by.setups == 0 ? "-" : fmt::format("{:+.3f}", by.value / kMicro),
+                        by.setups == 0 ? "-" : fmt::format("{:.3f}", by.u / kMicro), by.setups,
+                        DeterminedBy(seen));
   }
   return text;
 }

@@ -29,7 +29,7 @@ Progress::~Progress() {
 void Progress::Show(std::size_t done, std::size_t total, const std::string& note) {
   if (quiet_ || total == 0) return;
   const Clock::time_point now = Clock::now();
-  const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
+  const double share = std::min(1.0, done / static_cast<double>(total));
   if (!terminal_) {
     const int tenth = static_cast<int>(share * 10.0);
     if (tenth == last_tenth_) return;

@@ -92,8 +92,7 @@ void AddComponent(const ComponentResult& c, ordered_json& data) {
 
 void AddDwells(const SweepResult& result, ordered_json& data) {
   for (std::size_t probe = 0; probe < probes::kProbes; ++probe) {
-    data["residuals"][ProbeName(probe)] =
-        NumbersOf(result.residual.row(static_cast<Eigen::Index>(probe)).transpose());
+    data["residuals"][ProbeName(probe)] = NumbersOf(result.residual.row(probe).transpose());
   }
   ordered_json& dwells = data["dwells"];
   for (const probes::Dwell& dwell : result.dwells) {

@@ -40,10 +40,9 @@ std::vector<int> PointsOf(const CourseRequest& request, const std::vector<int>& 
 Vector3d CentreOf(const CourseRequest& request, const rig::RigSettings& machine) {
   Vector3d centre;
   for (int axis = 0; axis < rig::kAxes; ++axis) {
-    const auto [first, last] = machine.travels[static_cast<std::size_t>(axis)];
-    centre[axis] = request.centre_mm.empty()
-                       ? std::midpoint(first, last)
-                       : request.centre_mm[static_cast<std::size_t>(axis)] * settings::kMillimetre;
+    const auto [first, last] = machine.travels[axis];
+    centre[axis] = request.centre_mm.empty() ? std::midpoint(first, last)
+                                             : request.centre_mm[axis] * settings::kMillimetre;
   }
   return centre;
 }
@@ -109,7 +108,7 @@ void RefuseBeyondTravels(const rig::Course& course, const rig::RigSettings& mach
   constexpr double kRounding = 1e-9;  // m
   const auto check = [&](const Vector3d& point) {
     for (int axis = 0; axis < rig::kAxes; ++axis) {
-      const auto [first, last] = machine.travels[static_cast<std::size_t>(axis)];
+      const auto [first, last] = machine.travels[axis];
       if (point[axis] >= first - kRounding && point[axis] <= last + kRounding) continue;
       throw InputError(fmt::format(
           "--course {}: reaches {} {:g} mm, beyond the travel of {:g} to {:g} mm in {}; choose "

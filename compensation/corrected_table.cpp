@@ -25,7 +25,7 @@ std::array<std::size_t, 3> ColumnsOf(const std::vector<std::string_view>& names,
                       "and z_mm",
                       where, kAxes[k]));
     }
-    columns[k] = static_cast<std::size_t>(found - names.begin());
+    columns[k] = found - names.begin();
   }
   return columns;
 }
@@ -57,7 +57,7 @@ CorrectedTable CorrectTable(std::string_view text, const std::string& file,
     }
     Eigen::Vector3d read;
     for (std::size_t k = 0; k < 3; ++k) {
-      read[static_cast<Eigen::Index>(k)] = 1e-3 * map::NumberOf(words[columns[k]], lines.Where());
+      read[k] = 1e-3 * map::NumberOf(words[columns[k]], lines.Where());
     }
     Eigen::Vector3d made;
     try {
@@ -65,7 +65,7 @@ CorrectedTable CorrectTable(std::string_view text, const std::string& file,
     } catch (const InputError& failure) {
       throw InputError(fmt::format("{}: {}", lines.Where(), failure.what()));
     }
-    if (beside.size() > 0) made += beside.col(static_cast<Eigen::Index>(table.rows));
+    if (beside.size() > 0) made += beside.col(table.rows);
     table.largest = std::max(table.largest, (made - read).norm());
     ++table.rows;
     for (std::size_t i = 0; i < width; ++i) {

@@ -36,8 +36,8 @@ void Corrector::KeepZero(const Vector3d& zero) {
 Vector3d Corrector::InTravels(const Vector3d& position) const {
   Vector3d inside;
   for (int axis = 0; axis < 3; ++axis) {
-    const machine::Travel& travel = travels_[static_cast<std::size_t>(axis)];
-    const machine::Travel& limit = limits_[static_cast<std::size_t>(axis)];
+    const machine::Travel& travel = travels_[axis];
+    const machine::Travel& limit = limits_[axis];
     if (!(position[axis] >= limit.first && position[axis] <= limit.last)) {
       throw InputError(fmt::format(
           "{0} = {1:.9g} mm is beyond the soft limits, {2:.9g} to {3:.9g} mm; keep away from the "
@@ -52,7 +52,7 @@ Vector3d Corrector::InTravels(const Vector3d& position) const {
 
 Vector3d Corrector::Command(const Vector3d& wanted) const {
   for (int axis = 0; axis < 3; ++axis) {
-    machine::InTravel(travels_[static_cast<std::size_t>(axis)], axis, wanted[axis]);
+    machine::InTravel(travels_[axis], axis, wanted[axis]);
   }
   Vector3d command = wanted - Offset(wanted);
   for (int step = 0; step < kMostSteps; ++step) {
@@ -74,7 +74,7 @@ double LineLength(const Corrector& corrector, const machine::VolumetricModel& mo
   constexpr int kStations = 60;
   Vector3d first, size;
   for (int k = 0; k < 3; ++k) {
-    const machine::Travel& travel = model.travels()[static_cast<std::size_t>(k)];
+    const machine::Travel& travel = model.travels()[k];
     first[k] = travel.first;
     size[k] = travel.last - travel.first;
   }

@@ -62,7 +62,7 @@ void ReadBlock(std::string_view line, std::size_t line_number, std::vector<NcWor
       RefuseLine(line_number,
                  fmt::format("\"{}\" is not a letter with a number", line.substr(at, 10)));
     }
-    const auto stop = static_cast<std::size_t>(end - line.data());
+    const std::size_t stop = end - line.data();
     words.push_back({letter, value, line.substr(at, stop - at)});
     at = stop;
   }

@@ -75,7 +75,7 @@ void AppendFixed(std::int64_t units, int decimals, std::string& out) {
   std::array<char, 32> text;
   char* const end = text.data() + text.size();
   char* begin = end;
-  auto digits = static_cast<std::uint64_t>(units < 0 ? -units : units);
+  std::uint64_t digits = units < 0 ? -units : units;
   const auto take_digit = [&] {
     const char digit = static_cast<char>('0' + digits % 10);
     digits /= 10;
@@ -228,10 +228,9 @@ Vector3d NcCorrection::Target(const Block& block) {
   const double unit = is_inch_ ? kInch : settings::kMillimetre;
   Vector3d target = place_;
   for (int k = 0; k < 3; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    if (!block.axes[at]) continue;
-    target[k] = unit * *block.axes[at] + (is_relative_ ? place_[k] : 0.0);
-    if (!is_relative_) is_known_[at] = true;
+    if (!block.axes[k]) continue;
+    target[k] = unit * *block.axes[k] + (is_relative_ ? place_[k] : 0.0);
+    if (!is_relative_) is_known_[k] = true;
   }
   return target;
 }
@@ -240,11 +239,10 @@ Arc NcCorrection::ArcOf(const Block& block) const {
   const double unit = is_inch_ ? kInch : settings::kMillimetre;
   Arc arc{plane_, motion_ == 2, place_, {}};
   const auto [u, v, w] = AxesOfPlane(plane_);
-  if (block.centre[static_cast<std::size_t>(w)]) {
+  if (block.centre[w]) {
     RefuseLine(counts_.lines, fmt::format("{} does not belong to an arc in G{}", "IJK"[w], plane_));
   }
-  const bool has_centre =
-      block.centre[static_cast<std::size_t>(u)] || block.centre[static_cast<std::size_t>(v)];
+  const bool has_centre = block.centre[u] || block.centre[v];
   if (has_centre == block.radius.has_value()) {
     RefuseLine(counts_.lines, "an arc takes either I, J, K or R");
   }
@@ -253,7 +251,7 @@ Arc NcCorrection::ArcOf(const Block& block) const {
     return arc;
   }
   for (const int k : {u, v}) {
-    const auto& given = block.centre[static_cast<std::size_t>(k)];
+    const auto& given = block.centre[k];
     if (centre_is_absolute_ && !given) {
       RefuseLine(counts_.lines, "an arc in G90.1 takes both coordinates of its centre");
     }
@@ -301,7 +299,7 @@ void NcCorrection::WritePoint(const Vector3d& wanted, std::string& out) {
   for (int k = 0; k < 3; ++k) {
     const double to = command[k] - options_.work_offset[k];
     const std::int64_t units = std::llround((is_relative_ ? to - out_[k] : to) / unit);
-    const double written = static_cast<double>(units) * unit;
+    const double written = units * unit;
     out_[k] = is_relative_ ? out_[k] + written : written;
     AppendBlank(out);
     out += "XYZ"[k];

@@ -52,7 +52,7 @@ PerformanceTest MakeTest(std::string_view name, const map::ErrorMap& map, const 
   constexpr double kUsed = 0.98;
   Volume volume;
   for (int k = 0; k < 3; ++k) {
-    const machine::Travel& travel = map.model().travels()[static_cast<std::size_t>(k)];
+    const machine::Travel& travel = map.model().travels()[k];
     volume.middle[k] = (travel.first + travel.last) / 2;
     volume.half[k] = kUsed * (travel.last - travel.first) / 2;
   }
@@ -90,10 +90,10 @@ std::vector<Figure> AfterCorrection(const map::ErrorMap& map, const Vector3d& p_
   std::vector<Figure> figures;
   std::vector<std::vector<double>> sizes;
   for (int draw = 0; draw < draws; ++draw) {
-    const random::CounterRandom random(seed, static_cast<std::uint64_t>(draw));
+    const random::CounterRandom random(seed, draw);
     Eigen::VectorXd normals(parameters.size());
     for (Index i = 0; i < normals.size(); ++i) {
-      normals[i] = random.Normal(static_cast<std::uint64_t>(i));
+      normals[i] = random.Normal(i);
     }
     drawn.SetParameters(parameters + root * normals);
     figures = test.evaluate(MadeBy(drawn, p_TQ, commands));

@@ -52,9 +52,9 @@ constexpr Index kStations = 41;
 
 // kStations points along each span, one span after the other.
 Matrix3Xd Along(const std::vector<Span>& spans) {
-  Matrix3Xd points(3, kStations * static_cast<Index>(spans.size()));
+  Matrix3Xd points(3, kStations * spans.size());
   for (Index i = 0; i < points.cols(); ++i) {
-    const Span& span = spans[static_cast<std::size_t>(i / kStations)];
+    const Span& span = spans[i / kStations];
     const double part = static_cast<double>(i % kStations) / (kStations - 1);
     points.col(i) = span.from + part * (span.to - span.from);
   }
@@ -75,7 +75,7 @@ double RadiusOf(const Volume& volume, const TestSize& size) {
 std::vector<double> Coordinates(const Matrix3Xd& made, Index first, Index count, int k,
                                 double origin) {
   std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(count));
+  values.reserve(count);
   for (Index i = first; i < first + count; ++i) values.push_back(made(k, i) - origin);
   return values;
 }
@@ -92,11 +92,10 @@ PerformanceTest Lengths(const Volume& volume, const TestSize& /*size*/) {
   return {Along(spans), [spans](const Matrix3Xd& made) {
             std::vector<Figure> figures;
             for (std::size_t s = 0; s < spans.size(); ++s) {
-              const Index first = kStations * static_cast<Index>(s);
+              const Index first = kStations * s;
               const double step = (spans[s].to - spans[s].from).norm() / (kStations - 1);
               const auto error = [&](Index i, Index j) {
-                return (made.col(first + j) - made.col(first + i)).norm() -
-                       step * static_cast<double>(j - i);
+                return (made.col(first + j) - made.col(first + i)).norm() - step * (j - i);
               };
               double largest = 0.0;
               for (Index i = 0; i < kStations; ++i) {
@@ -117,8 +116,8 @@ PerformanceTest Circles(const Volume& volume, const TestSize& size) {
   const Vector3d middle = volume.middle;
   Matrix3Xd wanted(3, 3 * kPoints);
   for (Index i = 0; i < wanted.cols(); ++i) {
-    const Plane& plane = kPlanes[static_cast<std::size_t>(i / kPoints)];
-    const double t = 2 * std::numbers::pi * static_cast<double>(i % kPoints) / kPoints;
+    const Plane& plane = kPlanes[i / kPoints];
+    const double t = 2 * std::numbers::pi * (i % kPoints) / kPoints;
     wanted.col(i) = middle;
     wanted(plane.u, i) += radius * std::cos(t);
     wanted(plane.v, i) += radius * std::sin(t);
@@ -126,7 +125,7 @@ PerformanceTest Circles(const Volume& volume, const TestSize& size) {
   return {wanted, [radius, middle](const Matrix3Xd& made) {
             std::vector<Figure> figures;
             for (Index p = 0; p < 3; ++p) {
-              const auto& [name, u, v] = kPlanes[static_cast<std::size_t>(p)];
+              const auto& [name, u, v] = kPlanes[p];
               standards::CircularPaths paths;
               paths.radius = radius;
               paths.ccw.x = Coordinates(made, p * kPoints, kPoints, u, middle[u]);
@@ -155,7 +154,7 @@ PerformanceTest Squares(const Volume& volume, const TestSize& size) {
   return {Along(spans), [](const Matrix3Xd& made) {
             std::vector<Figure> figures;
             for (Index p = 0; p < 3; ++p) {
-              const auto& [name, u, v] = kPlanes[static_cast<std::size_t>(p)];
+              const auto& [name, u, v] = kPlanes[p];
               std::array<double, 4> slopes;
               double straightness = 0.0;
               for (Index side = 0; side < 4; ++side) {
@@ -166,7 +165,7 @@ PerformanceTest Squares(const Volume& volume, const TestSize& size) {
                     Coordinates(made, first, kStations, along, 0.0),
                     Coordinates(made, first, kStations, across, 0.0));
                 straightness = std::max(straightness, line.error);
-                slopes[static_cast<std::size_t>(side)] = line.line.slope;
+                slopes[side] = line.line.slope;
               }
               double squareness = 0.0;  // 90 deg minus the angle of the sides at a corner
               for (const double a : {slopes[0], slopes[1]}) {
@@ -186,9 +185,9 @@ PerformanceTest Cylinder(const Volume& volume, const TestSize& size) {
   const double radius = RadiusOf(volume, size);
   Matrix3Xd wanted(3, kAngles * kHeights);
   for (Index i = 0; i < wanted.cols(); ++i) {
-    const double t = 2 * std::numbers::pi * static_cast<double>(i % kAngles) / kAngles;
+    const double t = 2 * std::numbers::pi * (i % kAngles) / kAngles;
     const Index level = i / kAngles;
-    const double height = 2.0 * static_cast<double>(level) / (kHeights - 1) - 1.0;
+    const double height = 2.0 * level / (kHeights - 1) - 1.0;
     wanted.col(i) = volume.middle +
                     Vector3d(radius * std::cos(t), radius * std::sin(t), height * volume.half.z());
   }
@@ -206,10 +205,8 @@ PerformanceTest Freeform(const Volume& /*volume*/, const TestSize& size) {
   const Matrix3Xd wanted = size.path;
   return {wanted, [wanted](const Matrix3Xd& made) -> std::vector<Figure> {
             const Eigen::VectorXd distances = (made - wanted).colwise().norm();
-            return {
-                {"largest", distances.maxCoeff(), kMicrometre},
-                {"rms", std::sqrt(distances.squaredNorm() / static_cast<double>(distances.size())),
-                 kMicrometre}};
+            return {{"largest", distances.maxCoeff(), kMicrometre},
+                    {"rms", std::sqrt(distances.squaredNorm() / distances.size()), kMicrometre}};
           }};
 }
 
@@ -220,11 +217,11 @@ PerformanceTest Diagonals(const Volume& volume, const TestSize& /*size*/) {
             std::vector<standards::DiagonalRuns> runs(spans.size());
             for (std::size_t s = 0; s < spans.size(); ++s) {
               const Vector3d direction = (spans[s].to - spans[s].from).normalized();
-              const Index first = kStations * static_cast<Index>(s);
+              const Index first = kStations * s;
               const double step = (spans[s].to - spans[s].from).norm() / (kStations - 1);
               for (Index i = 0; i < kStations; ++i) {
                 runs[s].forward.push_back(direction.dot(made.col(first + i) - made.col(first)) -
-                                          step * static_cast<double>(i));
+                                          step * i);
               }
               runs[s].backward = runs[s].forward;
               figures.push_back(

@@ -127,7 +127,7 @@ simulation::Scene Campaign::scene() const {
     if (run.trace.rows() > 0) scene.traces.push_back(&run.trace);
   }
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const auto& travel = instruments_.machine.travels[static_cast<std::size_t>(axis)];
+    const auto& travel = instruments_.machine.travels[axis];
     scene.travel[axis] = travel.last - travel.first;
   }
   if (instruments_.head) {

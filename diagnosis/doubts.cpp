@@ -29,7 +29,7 @@ bool IsWithinItsUncertainty(const Finding& finding) {
   if (covariance.isZero(0.0)) return false;
   const double square =
       finding.score.coefficients.dot(covariance.ldlt().solve(finding.score.coefficients));
-  return square < standards::kCoverage * standards::kCoverage * static_cast<double>(count);
+  return square < standards::kCoverage * standards::kCoverage * count;
 }
 
 // The key that lies beyond its bounds; null: none.
@@ -37,7 +37,7 @@ const simulation::CauseKey* BeyondBounds(const Finding& finding) {
   const auto& keys = finding.score.candidate.cause->keys;
   const Eigen::VectorXd values = KeysOf(finding.score).values;
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    const double value = values[static_cast<Index>(k)] / keys[k].unit;
+    const double value = values[k] / keys[k].unit;
     if (value < keys[k].least || value > keys[k].most) return &keys[k];
   }
   return nullptr;
@@ -56,7 +56,7 @@ double StepOf(const simulation::Scene& scene, int axis) {
       if (places[i] - places[i - 1] > kSamePlace) steps.push_back(places[i] - places[i - 1]);
     }
     if (steps.size() < 2) continue;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    const auto middle = steps.begin() + (steps.size() / 2);
     std::nth_element(steps.begin(), middle, steps.end());
     least = std::min(least, *middle);
   }

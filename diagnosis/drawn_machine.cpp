@@ -38,7 +38,7 @@ VectorXd Drawn(const estimation::ParameterBlock& block, const Normal& normal) {
   for (std::size_t i = 0; i < block.entries.size(); ++i) {
     const auto& entry = block.entries[i];
     if (entry.held || !std::isfinite(entry.prior_sd)) continue;
-    values[static_cast<Index>(i)] = entry.nominal + std::min(entry.prior_sd, most) * normal();
+    values[i] = entry.nominal + std::min(entry.prior_sd, most) * normal();
   }
   return values;
 }

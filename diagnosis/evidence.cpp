@@ -56,8 +56,7 @@ void ScoreTogether(const Fit& fit, std::span<const Candidate> candidates,
     for (const Candidate& each : candidates) {
       auto own = each.cause->columns(trace, each.object, each.shape);
       if (own.empty()) {
-        own.assign(static_cast<std::size_t>(each.cause->coefficients()),
-                   simulation::NoDisturbance(trace));
+        own.assign(each.cause->coefficients(), simulation::NoDisturbance(trace));
       }
       for (auto& column : own) all.push_back(std::move(column));
     }

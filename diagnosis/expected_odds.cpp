@@ -45,12 +45,11 @@ struct Outlook {
 Outlook OutlookOf(const MatrixXd& S, const std::vector<RivalWorld>& rivals, std::size_t truth) {
   const Index first_true = FirstOf(rivals, truth);
   const VectorXd& a = rivals[truth].coefficients;
-  const auto worlds = static_cast<Index>(rivals.size());
+  const Index worlds = rivals.size();
   Outlook outlook{VectorXd(worlds), MatrixXd::Zero(S.rows(), worlds)};
   for (Index x = 0; x < worlds; ++x) {
-    const auto rival = static_cast<std::size_t>(x);
-    const Candidate& candidate = rivals[rival].candidate;
-    const Index first = FirstOf(rivals, rival), count = candidate.cause->coefficients();
+    const Candidate& candidate = rivals[x].candidate;
+    const Index first = FirstOf(rivals, x), count = candidate.cause->coefficients();
     const Expected expected = ExpectedOf(candidate, S.block(first, first, count, count),
                                          S.block(first, first_true, count, a.size()) * a);
     outlook.evidence[x] = expected.evidence;
@@ -80,21 +79,20 @@ VectorXd ExpectedEvidence(const MatrixXd& S, const std::vector<RivalWorld>& riva
 
 double ExpectedProbability(const MatrixXd& before, const MatrixXd& after,
                            const std::vector<RivalWorld>& rivals) {
-  VectorXd now(static_cast<Index>(rivals.size()));
+  VectorXd now(rivals.size());
   for (std::size_t i = 0; i < rivals.size(); ++i) {
-    now[static_cast<Index>(i)] = rivals[i].probability;
+    now[i] = rivals[i].probability;
   }
   now /= now.sum();
   double expected = 0.0;
   for (std::size_t truth = 0; truth < rivals.size(); ++truth) {
-    const auto t = static_cast<Index>(truth);
     const Outlook then = OutlookOf(after, rivals, truth);
     const VectorXd logs =
         now.array().log().matrix() + then.evidence - ExpectedEvidence(before, rivals, truth);
-    const MatrixXd apart = then.by_score.colwise() - then.by_score.col(t).eval();
+    const MatrixXd apart = then.by_score.colwise() - then.by_score.col(truth).eval();
     const MatrixXd scatter = apart.transpose() * (after - before) * apart;
-    expected += now[t] * MeanProbability(logs.array() - logs[t],
-                                         scatter.diagonal().cwiseMax(0.0).cwiseSqrt());
+    expected += now[truth] * MeanProbability(logs.array() - logs[truth],
+                                             scatter.diagonal().cwiseMax(0.0).cwiseSqrt());
   }
   return expected;
 }

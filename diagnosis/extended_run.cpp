@@ -53,7 +53,7 @@ void RelaxPriors(const Candidate& cause, std::vector<estimation::ParameterBlock>
       for (std::size_t p = 0; p < patterns.size(); ++p) {
         if (!Matches(block.FullName(i), patterns[p])) continue;
         auto& entry = block.entries[i];
-        entry.prior_sd = std::hypot(entry.prior_sd, cause.cause->plausible[static_cast<Index>(p)]);
+        entry.prior_sd = std::hypot(entry.prior_sd, cause.cause->plausible[p]);
       }
     }
   }
@@ -73,8 +73,7 @@ SimulatedRun WithNoiseOf(const SimulatedRun& run, const std::vector<Candidate>& 
   if (!run.noise_exchanged) return run;
   for (const Candidate& cause : causes) {
     if (!cause.cause->exchanges_channels) continue;
-    return run.noise_exchanged(static_cast<std::size_t>(cause.object.first()),
-                               static_cast<std::size_t>(cause.object.second()));
+    return run.noise_exchanged(cause.object.first(), cause.object.second());
   }
   return run;
 }
@@ -101,7 +100,7 @@ RowVectorXd AddedTo(const simulation::Trace& trace, const std::vector<Candidate>
       for (const auto& [stage, values] : columns[i].stages()) {
         const auto sensor = static_cast<int>(stage - simulation::kReadingStage);
         if (sensor < 0) continue;
-        added += cause.coefficients[static_cast<Index>(i)] * trace.rim->Of(sensor, values);
+        added += cause.coefficients[i] * trace.rim->Of(sensor, values);
       }
     }
   }
@@ -143,7 +142,7 @@ VectorXd BesideSlopes(const LinearRun& at) {
 VectorXd OffsetsOf(const PreparedRun& run, const VectorXd& x) {
   Index first = 0;
   for (const auto& block : run.simulated.blocks) {
-    const auto count = static_cast<Index>(block.entries.size());
+    const Index count = block.entries.size();
     if (block.name == "encoder_offset" && count == run.trace.pivots()) {
       return x.segment(first, count);
     }
@@ -167,7 +166,7 @@ void FreeForCauses(const simulation::Scene& scene,
           for (std::size_t p = 0; entry.held && p < patterns.size(); ++p) {
             if (!Matches(block.FullName(i), patterns[p])) continue;
             entry.held = false;
-            entry.prior_sd = kHardly * cause.plausible[static_cast<Index>(p)];
+            entry.prior_sd = kHardly * cause.plausible[p];
           }
         }
       }

@@ -299,12 +299,12 @@ Score Fit::ScoreOf(std::size_t taken_in) const {
     return score;
   }
   const std::vector<std::string> patterns = cause.cause->relaxes(cause.object);
-  const auto count = static_cast<Index>(patterns.size());
+  const Index count = patterns.size();
   score.coefficients = VectorXd::Zero(count);
   score.covariance = MatrixXd::Zero(count, count);
   for (Index i = 0; i < count; ++i) {
-    for (const int column : ColumnsNamed(patterns[static_cast<std::size_t>(i)])) {
-      const std::string& name = names_[static_cast<std::size_t>(column)];
+    for (const int column : ColumnsNamed(patterns[i])) {
+      const std::string& name = names_[column];
       const std::size_t dot = name.rfind('.');
       const auto& entry = result_.Block(name.substr(0, dot))[name.substr(dot + 1)];
       score.coefficients[i] = entry.value - entry.nominal;

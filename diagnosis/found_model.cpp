@@ -28,7 +28,7 @@ VectorXd NominalValues(const PreparedRun& run) {
   for (const auto& block : run.simulated.blocks) {
     for (const auto& entry : block.entries) values.push_back(entry.value);
   }
-  return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
+  return Eigen::Map<const VectorXd>(values.data(), values.size());
 }
 
 // Standard deviation of one row of a run, m: where the run sees a metre in a stage, its whitened
@@ -37,7 +37,7 @@ std::optional<double> NoiseInSpace(const PreparedRun& run) {
   if (run.simulated.in_space) {
     const Index rows = run.simulated.residual->Rows();
     const Eigen::Matrix3Xd noise = run.simulated.in_space(VectorXd::Ones(rows));
-    return std::sqrt(noise.squaredNorm() / static_cast<double>(noise.cols()));
+    return std::sqrt(noise.squaredNorm() / noise.cols());
   }
   if (!run.simulated.response) return std::nullopt;
   const auto response = run.simulated.response->At(NominalValues(run));
@@ -53,7 +53,7 @@ std::optional<double> NoiseInSpace(const PreparedRun& run) {
     const Index rows = run.trace.rows();
     const auto metre = simulation::InStage(run.trace, stage, Eigen::RowVectorXd::Ones(rows));
     const double seen = response->Columns({metre}).norm();
-    if (seen > 0.0) noise = std::max(noise, std::sqrt(static_cast<double>(rows)) / seen);
+    if (seen > 0.0) noise = std::max(noise, std::sqrt(rows) / seen);
   }
   return noise > 0.0 ? std::optional(noise) : std::nullopt;
 }

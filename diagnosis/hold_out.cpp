@@ -73,18 +73,16 @@ Left LeftOf(const Campaign& held, const Fit& fit) {
     in_space += run.simulated.in_space(residual).squaredNorm();
     left.poses += residual.size() / 3;
   }
-  left.rms = std::sqrt(sum / static_cast<double>(left.rows));
-  if (left.poses > 0) left.in_space = std::sqrt(in_space / static_cast<double>(left.poses));
+  left.rms = std::sqrt(sum / left.rows);
+  if (left.poses > 0) left.in_space = std::sqrt(in_space / left.poses);
   return left;
 }
 
-double SeenBy(const Fit& fit) {
-  return std::sqrt(fit.chi_square() / static_cast<double>(fit.rows()));
-}
+double SeenBy(const Fit& fit) { return std::sqrt(fit.chi_square() / fit.rows()); }
 
 HeldOutGain::Without Without(std::size_t cause, std::vector<Candidate> causes, const Fit& baseline,
                              const Campaign& held) {
-  causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(cause));
+  causes.erase(causes.begin() + cause);
   try {
     const Fit fit(baseline, causes);
     return {SeenBy(fit), LeftOf(held, fit).rms};

@@ -40,7 +40,7 @@ struct Table {
 };
 
 double MedianOf(Numbers values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  const auto middle = values.begin() + (values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
@@ -73,10 +73,8 @@ Table TableOf(const recording::Recording& recording) {
            std::all_of(table.axes.begin(), table.axes.end(), together)) {
       ++last;
     }
-    std::fill(table.stay_end.begin() + static_cast<std::ptrdiff_t>(first),
-              table.stay_end.begin() + static_cast<std::ptrdiff_t>(last), last);
-    std::fill(table.stay.begin() + static_cast<std::ptrdiff_t>(first),
-              table.stay.begin() + static_cast<std::ptrdiff_t>(last), last - first);
+    std::fill(table.stay_end.begin() + first, table.stay_end.begin() + last, last);
+    std::fill(table.stay.begin() + first, table.stay.begin() + last, last - first);
     first = last;
   }
   table.motion.resize(table.rows.size());
@@ -105,8 +103,8 @@ class Neighbours {
         off_(values.size()) {
     for (std::size_t row = 0; row < off_.size(); ++row) {
       const std::size_t end = table.stay_end[row], begin = end - table.stay[row];
-      const auto first = static_cast<std::ptrdiff_t>(std::max(begin + kAside, row) - kAside);
-      const auto last = static_cast<std::ptrdiff_t>(std::min(end, row + kAside + 1));
+      const std::ptrdiff_t first = std::max(begin + kAside, row) - kAside;
+      const std::ptrdiff_t last = std::min(end, row + kAside + 1);
       middle_[row] = MedianOf({values.begin() + first, values.begin() + last});
       off_[row] = OffOf(row);
     }
@@ -150,11 +148,10 @@ class Neighbours {
   // The next rows of the same motion that are no outliers.
   std::vector<std::size_t> Beside(std::size_t row, std::ptrdiff_t step) const {
     std::vector<std::size_t> beside;
-    const auto count = static_cast<std::ptrdiff_t>(values_.size());
+    const std::ptrdiff_t count = values_.size();
     for (auto at = static_cast<std::ptrdiff_t>(row) + step; at >= 0 && at < count; at += step) {
-      const auto other = static_cast<std::size_t>(at);
-      if (table_.motion[other] != table_.motion[row] || beside.size() == 4) break;
-      if (!out_[other]) beside.push_back(other);
+      if (table_.motion[at] != table_.motion[row] || beside.size() == 4) break;
+      if (!out_[at]) beside.push_back(at);
     }
     return beside;
   }
@@ -165,8 +162,7 @@ class Neighbours {
     for (const std::size_t first : {2U, 1U, 3U, 0U, 4U}) {
       if (before.size() < first || after.size() < 4 - first) continue;
       before.resize(first);
-      before.insert(before.end(), after.begin(),
-                    after.begin() + static_cast<std::ptrdiff_t>(4 - first));
+      before.insert(before.end(), after.begin(), after.begin() + (4 - first));
       return Prediction(table_.time, row, std::move(before));
     }
     return std::nullopt;

@@ -68,7 +68,7 @@ void Search::DropSuperfluous() {
       without_least = std::move(without);
     }
     if (!without_least) return;
-    members_.erase(members_.begin() + static_cast<std::ptrdiff_t>(least));
+    members_.erase(members_.begin() + least);
     structures_.clear();
     fit_ = std::move(without_least);
   }
@@ -104,7 +104,7 @@ void Search::AddBadData() {
     const simulation::Cause& cause = simulation::CauseNamed(bad.cause);
     Finding finding{{{&cause, bad.object, {}}, {}, {}}, 1.0, {}};
     finding.score.coefficients = cause.coefficients() == 1
-                                     ? Eigen::VectorXd::Constant(1, static_cast<double>(bad.count))
+                                     ? Eigen::VectorXd::Constant(1, bad.count)
                                      : Eigen::VectorXd(Eigen::Vector2d(bad.from, bad.to));
     finding.score.covariance = Eigen::MatrixXd::Zero(cause.coefficients(), cause.coefficients());
     diagnosis_.findings.push_back(std::move(finding));
@@ -158,7 +158,7 @@ void Search::Describe() {
       finding.probability = std::min(finding.probability, kBesideUnexplained);
     }
   }
-  diagnosis_.chi_after = fit_->chi_square() / static_cast<double>(fit_->rows());
+  diagnosis_.chi_after = fit_->chi_square() / fit_->rows();
   diagnosis_.verdict = VerdictOf(diagnosis_);
   AddDoubts(fit_->campaign().scene(), diagnosis_);
   diagnosis_.fitted = fit_->result();

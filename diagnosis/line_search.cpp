@@ -104,7 +104,7 @@ std::vector<WaveRows> PiecesOf(const std::vector<RunOfWave>& runs, double first,
   std::ranges::sort(strongest, std::greater(), &Rows::kept);
   strongest.resize(std::min(strongest.size(), kMostPieces));
   const auto array = [](const std::vector<double>& values) -> ArrayXd {
-    return Eigen::Map<const ArrayXd>(values.data(), static_cast<Index>(values.size()));
+    return Eigen::Map<const ArrayXd>(values.data(), values.size());
   };
   std::vector<WaveRows> found;
   found.reserve(strongest.size());
@@ -117,8 +117,8 @@ std::vector<WaveRows> PiecesOf(const std::vector<RunOfWave>& runs, double first,
 // What so many powers of two degrees of freedom each hardly exceed by chance: Laurent and Massart,
 // Ann. Statist. 28 (2000).
 double ByChance(std::size_t pieces, Index among) {
-  const double freedom = 2.0 * static_cast<double>(pieces);
-  const double rare = std::log(static_cast<double>(among));
+  const double freedom = 2.0 * pieces;
+  const double rare = std::log(among);
   return freedom + 2.0 * std::sqrt(freedom * rare) + 2.0 * rare;
 }
 
@@ -153,7 +153,7 @@ Demodulated About(const std::vector<RunOfWave>& runs, Candidate candidate, doubl
       const long own = std::lround(std::floor(kBins * at / length));
       if (found.at.empty() || own != bin) {
         bin = own;
-        found.at.push_back((static_cast<double>(own) + 0.5) * length / kBins);
+        found.at.push_back((own + 0.5) * length / kBins);
         found.sums.emplace_back(0.0, 0.0);
       }
       found.sums.back() += run.rows.scores[row] * kept[row] * std::complex(cosine[row], -sine[row]);
@@ -171,7 +171,7 @@ double Top(double before, double here, double after) {
 
 // In all runs together, near one number of waves.
 std::vector<Peak> FinePeaks(const Demodulated& about, double waves, double reach, double step) {
-  const auto bins = static_cast<Index>(about.at.size());
+  const Index bins = about.at.size();
   const ArrayXd at = Eigen::Map<const ArrayXd>(about.at.data(), bins);
   const double turn = -2.0 * std::numbers::pi;
   const auto phasor = [&](double off) -> ArrayXcd {
@@ -187,7 +187,7 @@ std::vector<Peak> FinePeaks(const Demodulated& about, double waves, double reach
   std::vector<Peak> peaks;
   for (const Index i : PeaksOf(power, 0.0)) {
     const double off = i > 0 && i + 1 < count ? Top(power[i - 1], power[i], power[i + 1]) : 0.0;
-    peaks.push_back({waves - reach + (static_cast<double>(i) + off) * step, power[i]});
+    peaks.push_back({waves - reach + (i + off) * step, power[i]});
   }
   return peaks;
 }

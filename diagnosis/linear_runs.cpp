@@ -28,7 +28,7 @@ Problem ProblemAt(const Campaign& campaign, const std::vector<PreparedRun>& runs
     if (std::none_of(problem.blocks().begin(), problem.blocks().end(), known)) continue;
     auto& entries = problem.Block(problem.Find(name)).entries;
     for (std::size_t i = 0; i < entries.size(); ++i) {
-      entries[i].value = values[static_cast<Index>(i)];
+      entries[i].value = values[i];
     }
   }
   return problem;
@@ -37,7 +37,7 @@ Problem ProblemAt(const Campaign& campaign, const std::vector<PreparedRun>& runs
 void AddTo(MatrixXd& sum, const std::vector<int>& columns, const MatrixXd& part) {
   for (std::size_t a = 0; a < columns.size(); ++a) {
     for (std::size_t b = 0; b < columns.size(); ++b) {
-      sum(columns[a], columns[b]) += part(static_cast<Index>(a), static_cast<Index>(b));
+      sum(columns[a], columns[b]) += part(a, b);
     }
   }
 }
@@ -47,7 +47,7 @@ MatrixXd PriorInformation(const Problem& problem, const estimation::Layout& layo
   MatrixXd information = layout.prior_sd.cwiseAbs2().cwiseInverse().asDiagonal();
   estimation::RowEvaluator evaluator(problem, layout);
   for (const estimation::Term& term : problem.terms()) {
-    const auto source = static_cast<std::size_t>(term.source.index);
+    const std::size_t source = term.source.index;
     if (!problem.sources()[source].options.is_prior) continue;
     const auto* rows = evaluator.Evaluate(term, layout.start, true);
     if (rows == nullptr) throw NumericalError(evaluator.trouble());
@@ -62,10 +62,10 @@ MatrixXd ParameterColumns(const LinearizedRun& run, const std::vector<std::strin
   const std::vector<std::string> patterns = candidate.cause->relaxes(candidate.object);
   MatrixXd columns = MatrixXd::Zero(run.J.rows(), candidate.cause->coefficients());
   for (std::size_t c = 0; c < run.columns.size(); ++c) {
-    const std::string& name = names[static_cast<std::size_t>(run.columns[c])];
+    const std::string& name = names[run.columns[c]];
     for (std::size_t p = 0; p < patterns.size(); ++p) {
       if (Matches(name, patterns[p])) {
-        columns.col(static_cast<Index>(p)) -= run.J.col(static_cast<Index>(c));
+        columns.col(p) -= run.J.col(c);
       }
     }
   }
@@ -84,7 +84,7 @@ MatrixXd ColumnsOf(const LinearizedRun& run, const std::vector<std::string>& nam
     } else if (run.at.response) {
       auto own = candidate.cause->columns(run.at.trace, candidate.object, candidate.shape);
       for (std::size_t i = 0; i < own.size(); ++i) {
-        places.push_back(count + static_cast<Index>(i));
+        places.push_back(count + i);
         disturbances.push_back(std::move(own[i]));
       }
     }
@@ -94,7 +94,7 @@ MatrixXd ColumnsOf(const LinearizedRun& run, const std::vector<std::string>& nam
   if (!disturbances.empty()) {
     const MatrixXd made = run.at.response->Columns(disturbances);
     for (std::size_t i = 0; i < places.size(); ++i) {
-      C.col(places[i]) = made.col(static_cast<Index>(i));
+      C.col(places[i]) = made.col(i);
     }
   }
   for (const auto& [first, candidate] : widening) {
@@ -130,9 +130,9 @@ LinearizedRun LinearRuns::At(std::size_t run) const {
   estimation::RowEvaluator evaluator(problem_, layout_);
   const auto* rows = evaluator.Evaluate(term, layout_.start, true);
   if (rows == nullptr) throw NumericalError(evaluator.trouble());
-  VectorXd x(static_cast<Index>(term.entries.size()));
+  VectorXd x(term.entries.size());
   for (Index i = 0; i < x.size(); ++i) {
-    x[i] = layout_.start[term.entries[static_cast<std::size_t>(i)]];
+    x[i] = layout_.start[term.entries[i]];
   }
   LinearizedRun linear{LinearAt(runs_[run], x, rows->r), rows->columns, rows->jacobian, {}};
   simulation::Trace& trace = linear.at.trace;
@@ -155,7 +155,7 @@ MatrixXd LinearRuns::Information(const std::vector<const RunSums*>& runs) const 
   for (const RunSums* run : runs) {
     AddTo(H, run->columns, run->J_J);
     for (std::size_t c = 0; c < run->columns.size(); ++c) {
-      C_J.col(run->columns[c]) += run->C_J.col(static_cast<Index>(c));
+      C_J.col(run->columns[c]) += run->C_J.col(c);
     }
     C_C += run->C_C;
   }

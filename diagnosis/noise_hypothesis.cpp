@@ -21,7 +21,7 @@ const double kPriorOfMemory = std::log(kElse), kPriorOfMember = std::log(kPresen
 std::optional<estimation::NoiseMemory> MemoryOf(const Fit& fit, std::size_t r) {
   const PreparedRun& run = fit.campaign().runs()[r];
   const auto& left = fit.LeftOf(r);
-  const auto rows = static_cast<double>(run.trace.rows());
+  const double rows = run.trace.rows();
   if (run.trace.head || run.trace.rim || run.memory || !run.simulated.response ||
       rows < kFewestRows || left.size() % run.trace.rows() != 0) {
     return {};
@@ -37,12 +37,12 @@ double Worth(const Search& search) {
   for (const PreparedRun& run : search.fit().campaign().runs()) {
     if (!run.memory) continue;
     const auto& times = run.trace.time;
-    const auto values = static_cast<double>(run.simulated.residual->Rows());
-    const double channels = values / static_cast<double>(times.size());
+    const double values = run.simulated.residual->Rows();
+    const double channels = values / times.size();
     const estimation::MemoryFilter filter(times, *run.memory);
     worth += kPriorOfMemory - 0.5 * channels * filter.log_determinant();
   }
-  return worth + kPriorOfMember * static_cast<double>(search.fit().taken_in().size());
+  return worth + kPriorOfMember * search.fit().taken_in().size();
 }
 
 std::string NoteOf(const PreparedRun& run, const estimation::NoiseMemory& noise) {

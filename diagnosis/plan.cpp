@@ -56,9 +56,8 @@ std::vector<PlannedCause> BestOf(const PlannedRuns& runs,
                                  const std::vector<Candidate>& candidates) {
   std::vector<PlannedCause> best;
   for (std::size_t first = 0; first < candidates.size(); first += kAtOnce) {
-    const auto begin = candidates.begin() + static_cast<std::ptrdiff_t>(first);
-    const std::vector<Candidate> some(
-        begin, begin + static_cast<std::ptrdiff_t>(std::min(kAtOnce, candidates.size() - first)));
+    const auto begin = candidates.begin() + first;
+    const std::vector<Candidate> some(begin, begin + std::min(kAtOnce, candidates.size() - first));
     const VectorXd information = runs.Information(some).diagonal();
     Index at = 0;
     for (const Candidate& each : some) {
@@ -147,7 +146,7 @@ double Likeness(const MatrixXd& S, Index count) {
   const Index directions = std::min(a.cols(), b.cols());
   if (directions == 0) return 0.0;
   const MatrixXd cross = a.transpose() * S.topRightCorner(count, other) * b;
-  return cross.norm() / std::sqrt(static_cast<double>(directions));
+  return cross.norm() / std::sqrt(directions);
 }
 
 Plan PlanOf(const Campaign& campaign, const std::function<double()>& normal) {

@@ -19,14 +19,13 @@ namespace {
 void AddBlocks(const MatrixXd& C, const std::vector<Index>& which,
                const std::vector<std::size_t>& group_of, std::vector<MatrixXd>& C_C) {
   for (Index first = 0; first < C.cols();) {
-    const std::size_t group =
-        group_of[static_cast<std::size_t>(which[static_cast<std::size_t>(first)])];
+    const std::size_t group = group_of[which[first]];
     const auto begin = std::find(group_of.begin(), group_of.end(), group) - group_of.begin();
     std::vector<Index> own;
     Index last = first;
     for (; last < C.cols(); ++last) {
-      const Index column = which[static_cast<std::size_t>(last)];
-      if (group_of[static_cast<std::size_t>(column)] != group) break;
+      const Index column = which[last];
+      if (group_of[column] != group) break;
       own.push_back(column - begin);
     }
     const auto acting = C.middleCols(first, last - first);
@@ -57,15 +56,15 @@ std::vector<Fit::Projection> Fit::Finish(const std::vector<MatrixXd>& C_C, const
   for (Index begin = 0, end = 0; const MatrixXd& own : C_C) {
     const Index count = own.cols();
     Projection left{MatrixXd::Zero(count, count), VectorXd::Zero(count)};
-    for (begin = end; end < B.cols() && acting[static_cast<std::size_t>(end)] < first + count;) {
+    for (begin = end; end < B.cols() && acting[end] < first + count;) {
       ++end;
     }
     const MatrixXd taken =
         B.middleCols(begin, end - begin).transpose() * solved.middleCols(begin, end - begin);
     for (Index i = begin; i < end; ++i) {
-      const Index c = acting[static_cast<std::size_t>(i)] - first;
+      const Index c = acting[i] - first;
       for (Index j = begin; j < end; ++j) {
-        const Index d = acting[static_cast<std::size_t>(j)] - first;
+        const Index d = acting[j] - first;
         left.information(c, d) = own(c, d) - taken(i - begin, j - begin);
       }
       left.score[c] = score[i];
@@ -93,17 +92,15 @@ MatrixXd Fit::Against(const RunRows& run, const std::vector<Disturbance>& distur
   std::map<Index, std::vector<Index>> acting;
   for (std::size_t d = 0; d < disturbances.size(); ++d) {
     for (const auto& [stage, values] : disturbances[d].stages()) {
-      acting[stage].push_back(static_cast<Index>(d));
+      acting[stage].push_back(d);
     }
   }
-  MatrixXd against = MatrixXd::Zero(static_cast<Index>(disturbances.size()), run.back.cols());
+  MatrixXd against = MatrixXd::Zero(disturbances.size(), run.back.cols());
   for (const auto& [stage, who] : acting) {
     const MatrixXd of_stage = run.at.response->BackToStage(stage, run.back);
-    MatrixXd values(static_cast<Index>(who.size()), of_stage.rows());
+    MatrixXd values(who.size(), of_stage.rows());
     for (Index i = 0; i < values.rows(); ++i) {
-      values.row(i) =
-          disturbances[static_cast<std::size_t>(who[static_cast<std::size_t>(i)])].stages().at(
-              stage);
+      values.row(i) = disturbances[who[i]].stages().at(stage);
     }
     against(who, Eigen::all) += values * of_stage;
   }
@@ -117,17 +114,17 @@ std::vector<Fit::Projection> Fit::Project(const Disturber& disturber,
   C_C.reserve(groups.size());
   std::vector<std::size_t> group_of;
   for (const Index count : groups) {
-    group_of.insert(group_of.end(), static_cast<std::size_t>(count), C_C.size());
+    group_of.insert(group_of.end(), count, C_C.size());
     C_C.push_back(MatrixXd::Zero(count, count));
   }
-  MatrixXd C_J = MatrixXd::Zero(columns, static_cast<Index>(names_.size()));
+  MatrixXd C_J = MatrixXd::Zero(columns, names_.size());
   VectorXd C_r = VectorXd::Zero(columns);
   for (const RunRows& run : runs_) {
     if (!run.at.response) continue;
     std::vector<Disturbance> acting = disturber(run.at.trace);
     std::vector<Index> which;
     for (std::size_t c = 0; c < acting.size(); ++c) {
-      if (!acting[c].stages().empty()) which.push_back(static_cast<Index>(c));
+      if (!acting[c].stages().empty()) which.push_back(c);
     }
     if (which.empty()) continue;
     std::erase_if(acting, [](const Disturbance& each) { return each.stages().empty(); });
@@ -149,10 +146,10 @@ std::vector<int> Fit::ColumnsNamed(const std::string& pattern) const {
 
 Fit::Projection Fit::ProjectParameters(const Candidate& candidate) const {
   const std::vector<std::string> patterns = candidate.cause->relaxes(candidate.object);
-  const auto count = static_cast<Index>(patterns.size());
-  MatrixXd select = MatrixXd::Zero(count, static_cast<Index>(names_.size()));
+  const Index count = patterns.size();
+  MatrixXd select = MatrixXd::Zero(count, names_.size());
   for (Index i = 0; i < count; ++i) {
-    for (const int column : ColumnsNamed(patterns[static_cast<std::size_t>(i)])) {
+    for (const int column : ColumnsNamed(patterns[i])) {
       select(i, column) = -1.0;
     }
   }

@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 std::vector<double> StrongestWaves(const Scan& scan, double step) {
-  const auto channels = static_cast<std::size_t>(scan.scores.rows());
+  const std::size_t channels = scan.scores.rows();
   std::vector<double> found(channels, 0.0), strongest(channels, 0.0);
   // From line to line by the angle of a step.
   const ArrayXd first_cosine = (step * scan.values.array()).cos().transpose(),
@@ -26,9 +26,9 @@ std::vector<double> StrongestWaves(const Scan& scan, double step) {
                           (scan.scores * cosine).array().square() /
                               (scan.weights * cosine.cwiseAbs2()).array().max(1e-300);
     for (std::size_t c = 0; c < channels; ++c) {
-      if (power[static_cast<Index>(c)] <= strongest[c]) continue;
-      strongest[c] = power[static_cast<Index>(c)];
-      found[c] = step * static_cast<double>(line);
+      if (power[c] <= strongest[c]) continue;
+      strongest[c] = power[c];
+      found[c] = step * line;
     }
   }
   return found;
@@ -36,7 +36,7 @@ std::vector<double> StrongestWaves(const Scan& scan, double step) {
 
 std::vector<Interval> StrongestIntervals(const Scan& scan) {
   const Index channels = scan.scores.rows();
-  std::vector<Interval> found(static_cast<std::size_t>(channels));
+  std::vector<Interval> found(channels);
   if (scan.values.size() == 0) return found;
   const double first = scan.values.minCoeff(), last = scan.values.maxCoeff();
   const double length = last - first;
@@ -55,7 +55,7 @@ std::vector<Interval> StrongestIntervals(const Scan& scan) {
   }
   const auto place = [&](Index border) {
     if (border == kLines) return std::nextafter(last, 2.0 * last - first);
-    return first + length * static_cast<double>(border) / static_cast<double>(kLines);
+    return first + length * border / kLines;
   };
   for (Index c = 0; c < channels; ++c) {
     double strongest = 0.0;
@@ -67,7 +67,7 @@ std::vector<Interval> StrongestIntervals(const Scan& scan) {
                                .maxCoeff(&cells);
       if (power <= strongest) continue;
       strongest = power;
-      found[static_cast<std::size_t>(c)] = {place(from), place(from + cells + 1)};
+      found[c] = {place(from), place(from + cells + 1)};
     }
   }
   return found;

@@ -26,13 +26,12 @@ double Chance(double chi_square, double freedom) {
 
 // What was whitened by a memory is held against what is stated, of as many rows as are independent.
 Leftover ScatterOf(const VectorXd& left, const PreparedRun& run) {
-  const auto rows = static_cast<double>(left.size());
+  const double rows = left.size();
   const double square = left.squaredNorm() / rows * run.excess * run.excess;
   double freedom = rows;
   if (run.memory) {
     const VectorXd& time = run.trace.time;
-    freedom *= run.memory->Independent((time.maxCoeff() - time.minCoeff()) /
-                                       static_cast<double>(time.size() - 1));
+    freedom *= run.memory->Independent((time.maxCoeff() - time.minCoeff()) / (time.size() - 1));
   }
   const double beyond = std::sqrt(std::max(0.0, square - 1.0));
   const double p_value =
@@ -49,26 +48,26 @@ MatrixXd InTime(const VectorXd& left, const simulation::Trace& trace) {
 
 Leftover MemoryOf(const MatrixXd& left) {
   const Index n = left.cols();
-  const auto rows = static_cast<double>(n);
+  const double rows = n;
   double sum = 0.0, most = 0.0, all = 0.0;
   for (Index k = 1; k <= kLags; ++k) {
     for (Index channel = 0; channel < left.rows(); ++channel) {
       const double a = left.row(channel).head(n - k).dot(left.row(channel).tail(n - k)) /
                        left.row(channel).squaredNorm();
-      sum += rows * (rows + 2.0) * a * a / static_cast<double>(n - k);
+      sum += rows * (rows + 2.0) * a * a / (n - k);
       most = std::max(most, a);
       all += a;
     }
   }
   // A drift that is stated and not there leaves rows that alternate.
-  const double p_value = all > 0.0 ? Chance(sum, static_cast<double>(kLags * left.rows())) : 1.0;
+  const double p_value = all > 0.0 ? Chance(sum, kLags * left.rows()) : 1.0;
   return {kMemory, {}, std::sqrt(most), {"times the noise"}, p_value, 0.0};
 }
 
 // A run that scatters less than is stated is whitened with too much noise, and what is left of its
 // drift goes on.
 bool HasNeighbours(const PreparedRun& run, const VectorXd& left) {
-  const auto rows = static_cast<double>(left.size());
+  const double rows = left.size();
   return run.trace.continuous && run.trace.rows() >= kFewRows &&
          left.size() % run.trace.rows() == 0 &&
          left.squaredNorm() * simulation::kNoiseIsKnown * simulation::kNoiseIsKnown > rows;
@@ -98,7 +97,7 @@ std::vector<Leftover> RunsThatScatter(const Fit& fit) {
     if (HasNeighbours(runs[run], left)) answers.push_back(MemoryOf(InTime(left, runs[run].trace)));
     for (Leftover& answer : answers) {
       answer.object = runs[run].simulated.name;
-      answer.p_value *= static_cast<double>(2 * runs.size());
+      answer.p_value *= 2 * runs.size();
       const double doubt = answer.variable == kMemory ? kDoubtOfMemory : kDoubt;
       if (answer.p_value < doubt) found.push_back(std::move(answer));
     }

@@ -23,7 +23,7 @@ constexpr double kWorthFits = 8.0;  // log evidence of the best below which noth
 constexpr std::size_t kMostFits = 4;
 
 // Log odds that a cause is there, before any data.
-double LogPrior(std::size_t names) { return std::log(kPresent / static_cast<double>(names)); }
+double LogPrior(std::size_t names) { return std::log(kPresent / names); }
 
 std::vector<double> ProbabilitiesOf(std::vector<double> logs) {
   const double all = LogSumOfExponentials(logs);
@@ -49,7 +49,7 @@ Search::Search(const Campaign& campaign)
       fit_(base_) {}
 
 Diagnosis Search::Run() {
-  diagnosis_.chi_before = fit_->chi_square() / static_cast<double>(fit_->rows());
+  diagnosis_.chi_before = fit_->chi_square() / fit_->rows();
   // Each sensor at a shaft may have a gain and a characteristic of its own.
   while (CausesTaken() < kMostCauses + 2 * rim_sensors_ && TakeBest()) {
   }
@@ -122,7 +122,7 @@ bool Search::TakeSomethingElse(const Found& found) {
   Member member{.finding = {{others_.CandidateOf(found), {}, {}}, 1.0, {}},
                 .other = found,
                 .unexplained = LeftoverOf(*fit_, found, questions),
-                .log_prior = std::log(kElse / static_cast<double>(questions))};
+                .log_prior = std::log(kElse / questions)};
   std::vector<Candidate> more = Taken();
   more.push_back(member.finding.score.candidate);
   constexpr int kRounds = 2;  // the next fits go on from there
@@ -176,7 +176,7 @@ bool Search::Outweighs(std::vector<Named>& names, FitPointer& fitted) const {
 // step at an instant of its own, which fits any drift, has to explain all that is left.
 bool Search::Predicts(const Fit& fit) const {
   constexpr double kBetter = 0.9, kAll = 1.5;  // of chi-square
-  const auto rows = static_cast<double>(fit.rows());
+  const double rows = fit.rows();
   if (!(fit_->left_out() > 0.0) ||
       fit_->chi_square() < simulation::kNoiseIsKnown * simulation::kNoiseIsKnown * rows)
     return true;
@@ -244,13 +244,12 @@ std::vector<Candidate> Search::Taken() const {
 
 std::vector<Candidate> Search::Others(std::size_t than) const {
   std::vector<Candidate> others = Taken();
-  others.erase(others.begin() + static_cast<std::ptrdiff_t>(than));
+  others.erase(others.begin() + than);
   return others;
 }
 
 std::size_t Search::CausesTaken() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(members_, [](const Member& member) { return !member.other; }));
+  return std::ranges::count_if(members_, [](const Member& member) { return !member.other; });
 }
 
 void Search::DescribeFirstRound(const std::vector<Named>& names) {

@@ -31,8 +31,7 @@ std::vector<Candidate> AllShapes(const Score& score, const simulation::Scene& sc
   std::vector<Candidate> candidates(kShapesTried, score.candidate);
   for (Candidate& candidate : candidates) candidate.coarseness *= kAnySize;
   for (int i = 0; i < kShapesTried; ++i) {
-    candidates[static_cast<std::size_t>(i)].shape[0] =
-        std::exp(first + (last - first) * i / (kShapesTried - 1));
+    candidates[i].shape[0] = std::exp(first + (last - first) * i / (kShapesTried - 1));
   }
   return candidates;
 }
@@ -46,7 +45,7 @@ double LogLikelihood(const Score& score) {
 
 // Below which 95 % of the weights lie.
 double Quantile(const VectorXd& values, const VectorXd& weights) {
-  std::vector<Index> order(static_cast<std::size_t>(values.size()));
+  std::vector<Index> order(values.size());
   std::iota(order.begin(), order.end(), Index{0});
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] < values[b]; });
   double below = 0.0;
@@ -66,11 +65,11 @@ bool IsHardlyKnown(const Score& score) {
 
 Score OverAllShapes(const Fit& without, Score score) {
   const auto all = ScoreAll(without, AllShapes(score, without.campaign().scene()));
-  const Index count = score.coefficients.size(), shapes = static_cast<Index>(all.size());
+  const Index count = score.coefficients.size(), shapes = all.size();
   VectorXd logs(shapes);
   MatrixXd off(count + 1, shapes), around(count + 1, shapes);  // of each shape, and its variances
   for (Index i = 0; i < shapes; ++i) {
-    const Score& each = all[static_cast<std::size_t>(i)];
+    const Score& each = all[i];
     logs[i] = LogLikelihood(each);
     off.col(i) << each.coefficients - score.coefficients,
         std::log(each.candidate.shape[0] / score.candidate.shape[0]);

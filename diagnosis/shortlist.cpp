@@ -31,7 +31,7 @@ std::vector<Named> ByName(const std::vector<Score>& scores) {
       logs.push_back(scores[last].log_evidence);
       if (logs.back() > scores[best].log_evidence) best = last;
     }
-    const double mean = LogSumOfExponentials(logs) - std::log(static_cast<double>(logs.size()));
+    const double mean = LogSumOfExponentials(logs) - std::log(logs.size());
     double visible = 0.0;
     for (std::size_t i = first; i < last; ++i) visible = std::max(visible, scores[i].visible);
     Named named{scores[best], mean, last - first > 1 ? StepOf(scores, first, last, best) : 1.0};

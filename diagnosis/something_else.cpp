@@ -49,7 +49,7 @@ std::optional<Found> MostProbable(const Fit& fit, const std::vector<Found>& foun
 }
 
 double LogPosterior(const Found& found, std::size_t questions) {
-  return found.drawn.log_evidence + std::log(kElse / static_cast<double>(questions));
+  return found.drawn.log_evidence + std::log(kElse / questions);
 }
 
 }  // namespace abbe::diagnosis

@@ -80,8 +80,7 @@ Index Structure::columns() const {
 
 Eigen::VectorXd Structure::Weights() const {
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(columns());
-  if (is_rough)
-    weights.array() /= Eigen::ArrayXd::LinSpaced(columns(), 1.0, static_cast<double>(columns()));
+  if (is_rough) weights.array() /= Eigen::ArrayXd::LinSpaced(columns(), 1.0, columns());
   return weights;
 }
 
@@ -92,16 +91,14 @@ bool Structure::IsOfItself() const {
 }
 
 double Structure::among() const {
-  return form == Form::kLine       ? static_cast<double>(kLines)
-         : form == Form::kInterval ? kIntervals
-                                   : 1.0;
+  return form == Form::kLine ? kLines : form == Form::kInterval ? kIntervals : 1.0;
 }
 
 std::vector<Disturbance> Structure::ColumnsOf(const Trace& trace) const {
   if (form == Form::kProduct) return ProductsOf(trace);
   const RowVectorXd values = ValuesOf(variable, trace);
   if (!channel.Feels(trace) || values.size() == 0) {
-    return std::vector(static_cast<std::size_t>(columns()), simulation::NoDisturbance(trace));
+    return std::vector(columns(), simulation::NoDisturbance(trace));
   }
   if (form == Form::kLine) {
     return simulation::WaveInStage(trace, channel.stage, wave * values);
@@ -115,7 +112,7 @@ std::vector<Disturbance> Structure::ColumnsOf(const Trace& trace) const {
   const Eigen::VectorXd weights = Weights();
   std::vector<Disturbance> columns;
   for (Index k = first; k < first + terms; ++k) {
-    const double turn = std::numbers::pi * static_cast<double>(k) / range.Length();
+    const double turn = std::numbers::pi * k / range.Length();
     RowVectorXd term = (turn * (values.array() - range.first)).cos();
     if (factor.size() > 0) term = term.cwiseProduct(factor);
     columns.push_back(simulation::InStage(trace, channel.stage, weights[k - first] * term));

@@ -83,7 +83,7 @@ std::vector<Found> Ask(const Fit& fit, const std::vector<Structure>& structures)
 
 Scan ScanOf(const Fit& fit, const std::string& variable,
             const std::vector<StageChannel>& channels) {
-  const auto count = static_cast<Index>(channels.size());
+  const Index count = channels.size();
   Scan scan{{}, MatrixXd(count, 0), MatrixXd(count, 0)};
   for (std::size_t run = 0; run < fit.runs(); ++run) {
     const Trace& trace = fit.TraceOf(run);
@@ -96,7 +96,7 @@ Scan ScanOf(const Fit& fit, const std::string& variable,
     scan.values.conservativeResize(scan.values.size() + own.size());
     scan.values.tail(own.size()) = own;
     for (Index c = 0; c < count; ++c) {
-      const auto of_run = fit.ScoresOf(run, channels[static_cast<std::size_t>(c)].stage);
+      const auto of_run = fit.ScoresOf(run, channels[c].stage);
       scan.scores.row(c).tail(own.size()) = of_run.scores;
       scan.weights.row(c).tail(own.size()) = of_run.weights;
     }
@@ -151,7 +151,7 @@ void AddStrongest(const Fit& fit, const simulation::Scene& scene, const std::str
 // moves the borders as long as more is explained.
 Found Sharpened(const Fit& fit, Found found) {
   const Range range = found.structure.range;
-  const double cell = range.Length() / static_cast<double>(kLines);
+  const double cell = range.Length() / kLines;
   const double end = std::nextafter(range.last, std::numeric_limits<double>::infinity());
   for (bool better = true; better;) {
     const auto [from, to] = found.structure.interval;
@@ -164,7 +164,7 @@ Found Sharpened(const Fit& fit, Found found) {
       others.back().interval = interval;
     };
     for (Index cells = 1; cells < kLines; cells *= 2) {
-      const double step = cell * static_cast<double>(cells);
+      const double step = cell * cells;
       add({from - step, to});
       add({from + step, to});
       add({from, to - step});
@@ -259,7 +259,7 @@ Leftover LeftoverOf(const Fit& fit, const Found& found, std::size_t questions) {
           structure.channel.object,
           amplitude,
           structure.channel.unit,
-          std::min(1.0, std::exp(found.log_probability) * static_cast<double>(questions)),
+          std::min(1.0, std::exp(found.log_probability) * questions),
           structure.wave > 0.0 ? 2.0 * std::numbers::pi / structure.wave : 0.0,
           structure.interval.from,
           structure.interval.to};

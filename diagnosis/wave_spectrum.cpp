@@ -13,17 +13,17 @@ using Eigen::Index;
 WaveGrid::WaveGrid(double length, double highest)
     : points_(64), waves_(0), step_(0.5 / length), spacing_(0.0) {
   constexpr double kPointsPerWave = 4.0;  // the shortest
-  while (static_cast<double>(points_) < kPointsPerWave * highest / step_) points_ *= 2;
-  spacing_ = 1.0 / (step_ * static_cast<double>(points_));
+  while (points_ < kPointsPerWave * highest / step_) points_ *= 2;
+  spacing_ = 1.0 / (step_ * points_);
   waves_ = static_cast<Index>(highest / step_) + 1;
 }
 
 ArrayXd WaveGrid::PowerOf(const WaveRows& piece) const {
-  std::vector<double> on_grid(static_cast<std::size_t>(points_), 0.0);
+  std::vector<double> on_grid(points_, 0.0);
   const double first = piece.at.minCoeff();
   for (Index row = 0; row < piece.at.size(); ++row) {
-    const auto point = static_cast<Index>(std::lround((piece.at[row] - first) / spacing_));
-    on_grid[static_cast<std::size_t>(point % points_)] += piece.scores[row];
+    const auto point = std::lround((piece.at[row] - first) / spacing_);
+    on_grid[point % points_] += piece.scores[row];
   }
   Eigen::FFT<double> transform;
   transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
@@ -32,7 +32,7 @@ ArrayXd WaveGrid::PowerOf(const WaveRows& piece) const {
   const double information = 0.5 * piece.weights.sum();
   ArrayXd power(waves_);
   for (Index wave = 0; wave < waves_; ++wave) {
-    power[wave] = std::norm(spectrum[static_cast<std::size_t>(wave)]) / information;
+    power[wave] = std::norm(spectrum[wave]) / information;
   }
   return power;
 }

@@ -27,7 +27,7 @@ class WaveGrid {
 
   Eigen::Index waves() const { return waves_; }
   // In steps of half a wave over the length.
-  double WaveAt(Eigen::Index index) const { return static_cast<double>(index) * step_; }
+  double WaveAt(Eigen::Index index) const { return index * step_; }
   double step() const { return step_; }
   // Chi-square of a wave of each number with a phase of its own, at least.
   Eigen::ArrayXd PowerOf(const WaveRows& piece) const;

@@ -34,7 +34,7 @@ std::map<Index, RowVectorXd> EffectOf(const Score& score, const Trace& trace) {
   const auto columns = cause.cause->columns(trace, cause.object, cause.shape);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     for (const auto& [stage, values] : columns[c].stages()) {
-      const RowVectorXd own = score.coefficients[static_cast<Index>(c)] * values;
+      const RowVectorXd own = score.coefficients[c] * values;
       const auto [known, added] = effect.try_emplace(stage, own);
       if (!added) known->second += own;
     }
@@ -131,7 +131,7 @@ Parted PartedBy(const std::string& variable, const Fit& found, const std::vector
       const double share = (values[r][row] - first) / (last - first);
       const int place = std::min(kParts - 1, static_cast<int>(share * kParts));
       const int heading = static_cast<int>(rows[r].heading[row]);
-      Part& part = parted.parts[static_cast<std::size_t>(3 * place + heading + 1)];
+      Part& part = parted.parts[3 * place + heading + 1];
       const double weight = rows[r].weights[row];
       part.weight += weight;
       part.at += weight * values[r][row];
@@ -171,10 +171,10 @@ Curve CurveOf(const Fit& base, const Fit& found, std::size_t taken_in) {
   curve.unit = UnitAt(score, found.TraceOf(rows.front().run));
   std::sort(best.parts.begin(), best.parts.end(),
             [](const Part& a, const Part& b) { return a.at / a.weight < b.at / b.weight; });
-  const auto count = static_cast<Index>(best.parts.size());
+  const Index count = best.parts.size();
   for (VectorXd* values : {&curve.at, &curve.before, &curve.after}) values->resize(count);
   for (Index i = 0; i < count; ++i) {
-    const Part& part = best.parts[static_cast<std::size_t>(i)];
+    const Part& part = best.parts[i];
     curve.at[i] = part.at / part.weight;
     curve.before[i] = part.before / part.weight;
     curve.after[i] = part.after / part.weight;
@@ -194,7 +194,7 @@ double MapChange(const Fit& base, const Fit& found) {
   for (int place = 0; place < kPlaces * kPlaces * kPlaces; ++place) {
     Eigen::Vector3d axes;
     for (int axis = 0, rest = place; axis < 3; ++axis, rest /= kPlaces) {
-      const auto& travel = mill.travels[static_cast<std::size_t>(axis)];
+      const auto& travel = mill.travels[axis];
       axes[axis] = travel.first + (travel.last - travel.first) * (rest % kPlaces) / (kPlaces - 1);
     }
     std::array<Eigen::Vector3d, 2> errors;

@@ -45,16 +45,16 @@ class AutoDiffResidual : public Residual {
       model_(x.data(), values.data());
       return;
     }
-    std::vector<Jet> inputs(static_cast<std::size_t>(x.size()));
-    std::vector<Jet> outputs(static_cast<std::size_t>(rows_));
-    for (Eigen::Index i = 0; i < x.size(); ++i) inputs[static_cast<std::size_t>(i)] = Jet(x[i]);
+    std::vector<Jet> inputs(x.size());
+    std::vector<Jet> outputs(rows_);
+    for (Eigen::Index i = 0; i < x.size(); ++i) inputs[i] = Jet(x[i]);
     for (Eigen::Index first = 0; first < x.size(); first += kAtOnce) {
       const Eigen::Index count = std::min<Eigen::Index>(kAtOnce, x.size() - first);
       Seed(inputs, first, count, 1.0);
       model_(inputs.data(), outputs.data());
       Seed(inputs, first, count, 0.0);
       for (Eigen::Index row = 0; row < rows_; ++row) {
-        const Jet& output = outputs[static_cast<std::size_t>(row)];
+        const Jet& output = outputs[row];
         values[row] = output.a;
         jacobian->row(row).segment(first, count) = output.v.head(count).transpose();
       }
@@ -66,7 +66,7 @@ class AutoDiffResidual : public Residual {
 
   static void Seed(std::vector<Jet>& inputs, Eigen::Index first, Eigen::Index count, double slope) {
     for (Eigen::Index i = 0; i < count; ++i) {
-      inputs[static_cast<std::size_t>(first + i)].v[i] = slope;
+      inputs[first + i].v[i] = slope;
     }
   }
 
@@ -77,8 +77,7 @@ class AutoDiffResidual : public Residual {
 // `rows`: how many values the model writes.
 template <int kAtOnce, class Model>
 std::shared_ptr<const Residual> MakeAutoDiffResidual(Model model, std::size_t rows) {
-  return std::make_shared<AutoDiffResidual<Model, kAtOnce>>(std::move(model),
-                                                            static_cast<Eigen::Index>(rows));
+  return std::make_shared<AutoDiffResidual<Model, kAtOnce>>(std::move(model), rows);
 }
 
 }  // namespace abbe::estimation

@@ -20,7 +20,7 @@ class ChosenRows : public Residual {
   ChosenRows(std::shared_ptr<const Residual> all, std::vector<Eigen::Index> rows)
       : all_(std::move(all)), rows_(std::move(rows)) {}
 
-  Eigen::Index Rows() const override { return static_cast<Eigen::Index>(rows_.size()); }
+  Eigen::Index Rows() const override { return rows_.size(); }
 
   void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& values,
                 RowMatrix* jacobian) const override {

@@ -59,10 +59,10 @@ class Accumulator {
     square_.selfadjointView<Eigen::Lower>().rankUpdate(j.transpose());
     slope_.noalias() = j.transpose() * r_;
     for (Index b = 0; b < n; ++b) {
-      const int column_b = columns[static_cast<std::size_t>(b)];
+      const int column_b = columns[b];
       sums_.gradient[column_b] += slope_[b];
       for (Index a = b; a < n; ++a) {
-        const int column_a = columns[static_cast<std::size_t>(a)];
+        const int column_a = columns[a];
         sums_.information(column_a, column_b) += square_(a, b);
         if (a > b) sums_.information(column_b, column_a) += square_(a, b);
       }
@@ -77,7 +77,7 @@ class Accumulator {
 
 std::string NameOfEntry(const Problem& problem, int entry) {
   for (const ParameterBlock& block : problem.blocks()) {
-    if (entry < block.size()) return block.FullName(static_cast<std::size_t>(entry));
+    if (entry < block.size()) return block.FullName(entry);
     entry -= static_cast<int>(block.size());
   }
   return "?";
@@ -93,7 +93,7 @@ struct Piece {
 std::vector<std::vector<const Term*>> TermsOfSources(const Problem& problem) {
   std::vector<std::vector<const Term*>> terms(problem.sources().size());
   for (const Term& term : problem.terms()) {
-    terms[static_cast<std::size_t>(term.source.index)].push_back(&term);
+    terms[term.source.index].push_back(&term);
   }
   return terms;
 }
@@ -116,7 +116,7 @@ void Sum(const Problem& problem, const Layout& layout, const VectorXd& x, Piece&
       piece.trouble = evaluator.trouble();
       return;
     }
-    const Source& source = problem.sources()[static_cast<std::size_t>(term->source.index)];
+    const Source& source = problem.sources()[term->source.index];
     accumulator.Add(*rows, source.options.loss);
   }
 }
@@ -127,8 +127,7 @@ SourceSums PriorSums(const Layout& layout, const VectorXd& x) {
   for (Index c = 0; c < layout.columns(); ++c) {
     if (!std::isfinite(layout.prior_sd[c])) continue;
     const double sd = layout.prior_sd[c];
-    const double off =
-        (x[layout.entry_of_column[static_cast<std::size_t>(c)]] - layout.nominal[c]) / sd;
+    const double off = (x[layout.entry_of_column[c]] - layout.nominal[c]) / sd;
     sums.information(c, c) = 1.0 / (sd * sd);
     sums.gradient[c] = off / sd;
     sums.chi_square += off * off;
@@ -155,7 +154,7 @@ Layout::Layout(const Problem& problem) {
     }
   }
   const auto vector = [](const std::vector<double>& v) {
-    return VectorXd(Eigen::Map<const VectorXd>(v.data(), static_cast<Index>(v.size())));
+    return VectorXd(Eigen::Map<const VectorXd>(v.data(), v.size()));
   };
   start = vector(values);
   nominal = vector(nominals);
@@ -165,16 +164,16 @@ Layout::Layout(const Problem& problem) {
 
 const WhitenedRows* RowEvaluator::Evaluate(const Term& term, const VectorXd& x,
                                            bool with_jacobian) {
-  const auto n = static_cast<Index>(term.entries.size());
+  const Index n = term.entries.size();
   inputs_.resize(n);
-  for (Index i = 0; i < n; ++i) inputs_[i] = x[term.entries[static_cast<std::size_t>(i)]];
+  for (Index i = 0; i < n; ++i) inputs_[i] = x[term.entries[i]];
   rows_.term = &term;
   rows_.r.resize(term.residual->Rows());
   if (with_jacobian) full_.resize(term.residual->Rows(), n);
   try {
     term.residual->Evaluate(inputs_, rows_.r, with_jacobian ? &full_ : nullptr);
   } catch (const NumericalError& error) {
-    const Source& source = problem_.sources()[static_cast<std::size_t>(term.source.index)];
+    const Source& source = problem_.sources()[term.source.index];
     trouble_ = fmt::format("source '{}', rows {} to {}: {}", source.name, term.first_row,
                            term.first_row + term.residual->Rows() - 1, error.what());
     return nullptr;
@@ -183,17 +182,17 @@ const WhitenedRows* RowEvaluator::Evaluate(const Term& term, const VectorXd& x,
 }
 
 bool RowEvaluator::Whiten(const Term& term, bool with_jacobian) {
-  const std::string& source = problem_.sources()[static_cast<std::size_t>(term.source.index)].name;
+  const std::string& source = problem_.sources()[term.source.index].name;
   const VectorXd& sd = term.standard_deviation;
   rows_.columns.clear();
-  std::vector<int> used;
-  for (std::size_t i = 0; with_jacobian && i < term.entries.size(); ++i) {
-    const int column = layout_.column_of_entry[static_cast<std::size_t>(term.entries[i])];
+  std::vector<Index> used;
+  for (Index i = 0; with_jacobian && i < std::ssize(term.entries); ++i) {
+    const int column = layout_.column_of_entry[term.entries[i]];
     if (column < 0) continue;
     rows_.columns.push_back(column);
-    used.push_back(static_cast<int>(i));
+    used.push_back(i);
   }
-  const Index n = static_cast<Index>(used.size());
+  const Index n = used.size();
   rows_.jacobian.resize(rows_.r.size(), n);
   for (Index row = 0; row < rows_.r.size(); ++row) {
     const double whiten = 1.0 / sd[sd.size() == 1 ? 0 : row];
@@ -204,11 +203,11 @@ bool RowEvaluator::Whiten(const Term& term, bool with_jacobian) {
       return false;
     }
     for (Index c = 0; c < n; ++c) {
-      const int input = used[static_cast<std::size_t>(c)];
+      const Index input = used[c];
       const double slope = full_(row, input) * whiten;
       rows_.jacobian(row, c) = slope;
       if (!std::isfinite(slope)) {
-        const int entry = term.entries[static_cast<std::size_t>(input)];
+        const int entry = term.entries[input];
         trouble_ = fmt::format("source '{}', row {}: the derivative by {} is not finite", source,
                                term.first_row + row, NameOfEntry(problem_, entry));
         return false;

@@ -35,7 +35,7 @@ struct Layout {
   std::vector<int> entry_of_column;
   std::vector<std::string> names;                // one per column
   Eigen::VectorXd nominal, prior_sd, tolerance;  // one per column
-  Eigen::Index columns() const { return static_cast<Eigen::Index>(names.size()); }
+  Eigen::Index columns() const { return names.size(); }
 };
 
 // The whitened rows of one residual, r = value / sigma, before the weights of a robust loss.

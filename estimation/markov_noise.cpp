@@ -26,9 +26,8 @@ struct Readings {
 };
 
 void CheckLengths(const Readings& readings) {
-  const std::size_t k = readings.times.size();
-  if (readings.groups.size() != k || readings.white.size() != k ||
-      static_cast<std::size_t>(readings.size()) != k) {
+  const Eigen::Index k = std::ssize(readings.times);
+  if (std::ssize(readings.groups) != k || std::ssize(readings.white) != k || readings.size() != k) {
     throw InputError(
         fmt::format("drift fit: {} times, {} groups, {} rows of values, {} variances; give one of "
                     "each per reading",
@@ -51,17 +50,17 @@ void CheckReading(const Readings& readings, std::size_t k) {
     throw InputError(fmt::format("drift fit: white variance {} of reading {} must be above 0",
                                  readings.white[k], k));
   }
-  if (!readings.values.row(static_cast<Eigen::Index>(k)).allFinite()) {
+  if (!readings.values.row(k).allFinite()) {
     throw InputError(fmt::format("drift fit: reading {} is not finite; leave bad readings out", k));
   }
 }
 
 void Check(const Readings& readings, double drift_sd, double drift_time) {
   CheckLengths(readings);
-  std::vector<bool> seen(static_cast<std::size_t>(std::max(readings.group_count, 0)));
+  std::vector<bool> seen(std::max(readings.group_count, 0));
   for (std::size_t k = 0; k < readings.times.size(); ++k) {
     CheckReading(readings, k);
-    seen[static_cast<std::size_t>(readings.groups[k])] = true;
+    seen[readings.groups[k]] = true;
   }
   const auto missing = std::find(seen.begin(), seen.end(), false);
   if (missing != seen.end() || seen.empty()) {
@@ -96,7 +95,7 @@ class DriftCovariance {
     }
     const Eigen::Index n = y.rows();
     for (Eigen::Index k = 0; k < n; ++k) {
-      y.row(k) /= white_[static_cast<std::size_t>(k)];
+      y.row(k) /= white_[k];
       if (k > 0) y.row(k) -= lower_[k] * y.row(k - 1);
     }
     y.row(n - 1) /= pivot_[n - 1];
@@ -111,25 +110,24 @@ class DriftCovariance {
     Smooth(smooth);
     RowMatrix result = y - smooth;
     for (Eigen::Index k = 0; k < y.rows(); ++k) {
-      result.row(k) /= white_[static_cast<std::size_t>(k)];
+      result.row(k) /= white_[k];
     }
     return result;
   }
 
  private:
   void Factorise(std::span<const double> times, double variance, double time) {
-    const auto n = static_cast<Eigen::Index>(times.size());
+    const Eigen::Index n = times.size();
     Eigen::VectorXd diagonal(n);
     lower_.setZero(n);
     pivot_.resize(n);
     log_determinant_ += std::log(variance);
     diagonal[0] = 1.0 / white_[0] + 1.0 / variance;
     for (Eigen::Index k = 1; k < n; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      const double lag = (times[at] - times[at - 1]) / time;
+      const double lag = (times[k] - times[k - 1]) / time;
       const double rho = std::exp(-lag);
       const double step = -variance * std::expm1(-2.0 * lag);  // s^2 (1 - rho^2)
-      diagonal[k] = 1.0 / white_[at] + 1.0 / step;
+      diagonal[k] = 1.0 / white_[k] + 1.0 / step;
       diagonal[k - 1] += rho * rho / step;
       lower_[k] = -rho / step;
       log_determinant_ += std::log(step);
@@ -155,7 +153,7 @@ class DriftCovariance {
 Eigen::MatrixXd SumByGroup(const Readings& readings, const RowMatrix& x) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(readings.group_count, x.cols());
   for (Eigen::Index k = 0; k < x.rows(); ++k) {
-    sum.row(readings.groups[static_cast<std::size_t>(k)]) += x.row(k);
+    sum.row(readings.groups[k]) += x.row(k);
   }
   return sum;
 }
@@ -163,7 +161,7 @@ Eigen::MatrixXd SumByGroup(const Readings& readings, const RowMatrix& x) {
 RowMatrix SpreadToReadings(const Readings& readings, const Eigen::MatrixXd& of_groups) {
   RowMatrix x(readings.size(), of_groups.cols());
   for (Eigen::Index k = 0; k < x.rows(); ++k) {
-    x.row(k) = of_groups.row(readings.groups[static_cast<std::size_t>(k)]);
+    x.row(k) = of_groups.row(readings.groups[k]);
   }
   return x;
 }
@@ -210,7 +208,7 @@ MarkovNoiseFit FitGroupsUnderDrift(std::span<const double> times, std::span<cons
   fit.chi_square = off.cwiseProduct(covariance.Solve(off)).colwise().sum().transpose();
   const double log_information =
       2.0 * information.matrixLLT().diagonal().array().log().sum();  // of |A' V^-1 A|
-  const double constant = static_cast<double>(fit.freedom) * std::log(2.0 * std::numbers::pi) +
+  const double constant = fit.freedom * std::log(2.0 * std::numbers::pi) +
                           covariance.log_determinant() + log_information;
   fit.log_restricted_likelihood = -0.5 * (fit.chi_square.array() + constant);
   return fit;

@@ -104,7 +104,7 @@ MonteCarloResult Run(std::size_t output_count, const MonteCarloModel& model,
     draws.Append(result.draws, block);
     result.stabilised = true;
     for (std::size_t i = 0; i < output_count; ++i) {
-      const auto from = draws.column(i).begin() + static_cast<std::ptrdiff_t>(result.draws);
+      const auto from = draws.column(i).begin() + result.draws;
       scratch.assign(from, draws.column(i).end());
       statistics[i].Add(FiguresOf(SummariseDraws(scratch, options.probability)));
       const double tolerance =
@@ -129,7 +129,7 @@ MonteCarloOutput SummariseDraws(std::span<double> draws, double probability) {
     throw NumericalError(
         fmt::format("Monte Carlo: {} draws have no uncertainty; take at least 2", draws.size()));
   }
-  const auto n = static_cast<double>(draws.size());
+  const double n = draws.size();
   MonteCarloOutput output;
   double sum = 0.0;
   for (const double draw : draws) sum += draw - draws[0];
@@ -140,8 +140,7 @@ MonteCarloOutput SummariseDraws(std::span<double> draws, double probability) {
   // 7.7.2: q of the M draws lie inside, half of the rest below. Ranks count from 1 there.
   const double inside = std::floor(probability * n + 0.5);
   const auto low = static_cast<std::ptrdiff_t>(std::max(1.0, std::floor((n - inside + 1.0) / 2.0)));
-  const auto high = std::min(low + static_cast<std::ptrdiff_t>(inside),
-                             static_cast<std::ptrdiff_t>(draws.size()));
+  const auto high = std::min(low + static_cast<std::ptrdiff_t>(inside), std::ssize(draws));
   const auto low_at = draws.begin() + (low - 1);
   const auto high_at = draws.begin() + (high - 1);
   std::nth_element(draws.begin(), low_at, draws.end());

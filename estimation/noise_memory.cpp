@@ -17,7 +17,7 @@ double MedianStep(const std::vector<Stay>& stays) {
     for (Index k = 1; k < stay.time.size(); ++k) steps.push_back(stay.time[k] - stay.time[k - 1]);
   }
   if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  const auto middle = steps.begin() + (steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   return *middle;
 }
@@ -46,7 +46,7 @@ Likelihood LikelihoodOf(const std::vector<Stay>& stays, const NoiseMemory& unit)
     squares +=
         columns.col(0).squaredNorm() - std::pow(columns.col(0).dot(columns.col(1)), 2) / of_mean;
     determinants += filter.log_determinant() + std::log(of_mean);
-    freedom += static_cast<double>(n - 1);
+    freedom += n - 1;
   }
   if (freedom < 1.0 || !(squares > 0.0)) return {};
   const double variance = squares / freedom;

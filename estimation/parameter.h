@@ -60,7 +60,7 @@ struct ParameterBlock {
   PrintUnit unit;
   std::vector<Parameter> entries;
 
-  Eigen::Index size() const { return static_cast<Eigen::Index>(entries.size()); }
+  Eigen::Index size() const { return entries.size(); }
 
   Parameter& operator[](std::string_view entry) { return entries[Find(entry)]; }
   const Parameter& operator[](std::string_view entry) const { return entries[Find(entry)]; }
@@ -74,8 +74,7 @@ struct ParameterBlock {
 
   Eigen::VectorXd Values() const {
     Eigen::VectorXd values(size());
-    for (Eigen::Index i = 0; i < size(); ++i)
-      values[i] = entries[static_cast<std::size_t>(i)].value;
+    for (Eigen::Index i = 0; i < size(); ++i) values[i] = entries[i].value;
     return values;
   }
 

@@ -111,7 +111,7 @@ std::string PullsMost(const Problem& problem, const Linearization& at, const Vec
 
 VectorXd AddStep(const Layout& layout, VectorXd x, const VectorXd& step) {
   for (Index c = 0; c < step.size(); ++c) {
-    x[layout.entry_of_column[static_cast<std::size_t>(c)]] += step[c];
+    x[layout.entry_of_column[c]] += step[c];
   }
   return x;
 }
@@ -119,7 +119,7 @@ VectorXd AddStep(const Layout& layout, VectorXd x, const VectorXd& step) {
 // Ratio of the scatter of a source to its stated noise, at least 1. A robust loss lowers it.
 double Excess(const Source& source, const SourceSums& sums) {
   if (source.options.is_prior || source.rows == 0) return 1.0;
-  return std::max(1.0, std::sqrt(sums.chi_square / static_cast<double>(source.rows)));
+  return std::max(1.0, std::sqrt(sums.chi_square / source.rows));
 }
 
 // The largest step that counts as converged. Where the rows scatter beyond their stated noise, the
@@ -130,7 +130,7 @@ double ConvergedLength(const Problem& problem, const Linearization& at, double s
   for (std::size_t s = 0; s < at.sources.size(); ++s) {
     if (problem.sources()[s].options.is_prior) continue;
     chi_square += at.sources[s].chi_square;
-    rows += static_cast<double>(problem.sources()[s].rows);
+    rows += problem.sources()[s].rows;
   }
   const double excess = rows > 0.0 ? std::sqrt(chi_square / rows) : 1.0;
   return settled * std::clamp(excess, 1.0, kMostExcess);
@@ -161,7 +161,7 @@ std::string Advice(const Problem& problem, const Linearization& at) {
   throw NumericalError(fmt::format(
       "the fit did not converge in {} passes: the next step is {:.2g} standard uncertainties long, "
       "parameter {} moves most, source '{}' pulls most{}; {}",
-      passes, equations.Length(), layout.names[static_cast<std::size_t>(equations.MovesMost())],
+      passes, equations.Length(), layout.names[equations.MovesMost()],
       PullsMost(problem, at, equations.Step(0.0)),
       trouble.empty() ? "" : " (a step was refused: " + trouble + ")", Advice(problem, at)));
 }

@@ -76,14 +76,14 @@ SourceId Problem::AddSource(std::string name, const SourceOptions& options) {
 std::vector<int> Problem::EntriesOf(const std::vector<Input>& inputs) const {
   std::vector<int> entries;
   for (const Input& input : inputs) {
-    const ParameterBlock& block = blocks_.at(static_cast<std::size_t>(input.block.index));
+    const ParameterBlock& block = blocks_.at(input.block.index);
     const int size = static_cast<int>(block.size());
     const int count = input.count < 0 ? size - input.first : input.count;
     if (input.first < 0 || count < 1 || input.first + count > size) {
       throw InputError(fmt::format("residual: entries {} to {} of block '{}', which has {}",
                                    input.first, input.first + count - 1, block.name, size));
     }
-    const int start = first_entry_[static_cast<std::size_t>(input.block.index)] + input.first;
+    const int start = first_entry_[input.block.index] + input.first;
     for (int i = 0; i < count; ++i) entries.push_back(start + i);
   }
   std::vector<int> sorted = entries;
@@ -101,7 +101,7 @@ void Problem::Add(SourceId source, std::shared_ptr<const Residual> residual,
 
 void Problem::Add(SourceId source, std::shared_ptr<const Residual> residual,
                   const std::vector<Input>& inputs, Eigen::VectorXd standard_deviations) {
-  Source& group = sources_.at(static_cast<std::size_t>(source.index));
+  Source& group = sources_.at(source.index);
   const Eigen::Index rows = residual->Rows();
   if (rows < 1 || (standard_deviations.size() != rows && standard_deviations.size() != 1)) {
     throw InputError(

@@ -113,7 +113,7 @@ class Problem {
 
   // For holding, freeing and starting parameters between solves. Entries must not be added or
   // removed.
-  ParameterBlock& Block(BlockId id) { return blocks_[static_cast<std::size_t>(id.index)]; }
+  ParameterBlock& Block(BlockId id) { return blocks_[id.index]; }
   BlockId Find(const std::string& block) const;  // InputError when there is none
 
   const std::vector<ParameterBlock>& blocks() const { return blocks_; }

@@ -25,7 +25,7 @@ Differences DifferencesAt(const std::vector<Stay>& stays, Index lag) {
     }
   }
   if (sizes.empty()) return {};
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  const auto middle = sizes.begin() + (sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
   const double most = kStandsOut * *middle / kNormal;
   double sum = 0.0, pairs = 0.0;
@@ -55,7 +55,7 @@ double ScatterOf(const std::vector<Stay>& stays) {
   double squares = 0.0, freedom = 0.0;
   for (const Stay& stay : stays) {
     squares += (stay.value.array() - stay.value.mean()).square().sum();
-    freedom += static_cast<double>(stay.value.size() - 1);
+    freedom += stay.value.size() - 1;
   }
   return freedom > 0.0 ? std::sqrt(squares / freedom) : 0.0;
 }
@@ -103,7 +103,7 @@ Sine StrongestSine(const std::vector<Stay>& stays, double step) {
   const double highest = 0.5 / step;
   const double span = time.maxCoeff() - time.minCoeff();
   const double apart = std::max(kOfAWave / span, highest / kMost);
-  const double freedom = static_cast<double>(count) - static_cast<double>(stays.size());
+  const double freedom = count - static_cast<double>(stays.size());
   const double squares = value.squaredNorm();
   Sine best;
   double most = 0.0, tried = 0.0;
@@ -146,7 +146,7 @@ RestNoise NoiseAtRest(const std::vector<Stay>& stays) {
   const Sine sine = StrongestSine(first, memory.step);
   if (std::max(sine.gain, memory.gain) < kShown || sine.sd < kNoNoise * noise.scatter) return noise;
   if (sine.gain > memory.gain) {
-    noise.freedom = std::min(noise.freedom, static_cast<double>(kFewForLines));
+    noise.freedom = std::min<double>(noise.freedom, kFewForLines);
     noise.kind = RestKind::kLine;
     noise.frequency = sine.frequency;
     noise.sd = sine.sd;
@@ -156,8 +156,8 @@ RestNoise NoiseAtRest(const std::vector<Stay>& stays) {
     noise.memory = memory.noise;
     noise.sd = memory.noise.sd();
     // A memory of so many readings leaves fewer that are independent.
-    noise.freedom = std::min(noise.freedom, static_cast<double>(kManyForMemory)) *
-                    memory.noise.Independent(memory.step);
+    noise.freedom =
+        std::min<double>(noise.freedom, kManyForMemory) * memory.noise.Independent(memory.step);
   }
   return noise;
 }

@@ -100,8 +100,7 @@ void ReportParameters(const Result& result, std::size_t most, std::string& text)
     const Parameter& p = Get(place);
     const PrintUnit& unit = place.block->unit;
     const double u = p.uncertainty / unit.si;
-    const SeenBy seen =
-        place.column < 0 ? SeenBy::kHeld : result.seen_by[static_cast<std::size_t>(place.column)];
+    const SeenBy seen = place.column < 0 ? SeenBy::kHeld : result.seen_by[place.column];
     fmt::format_to(out, "  {:<{}}  {:>14}  {:>10.2g}  {:<6}  {}\n",
                    place.block->FullName(place.entry), width, WithDigitsOf(p.value / unit.si, u), u,
                    unit.name, Name(seen));
@@ -184,7 +183,7 @@ double Result::Uncertainty(std::string_view full_name) const {
 
 SeenBy Result::Seen(std::string_view full_name) const {
   const Index column = Find(blocks, full_name).column;
-  return column < 0 ? SeenBy::kHeld : seen_by[static_cast<std::size_t>(column)];
+  return column < 0 ? SeenBy::kHeld : seen_by[column];
 }
 
 const SourceResult& Result::Source(std::string_view source) const {
@@ -197,11 +196,11 @@ const SourceResult& Result::Source(std::string_view source) const {
 MatrixXd Result::Covariance(std::string_view block_a, std::string_view block_b) const {
   const std::vector<Index> down = ColumnsOf(blocks, Block(block_a));
   const std::vector<Index> across = ColumnsOf(blocks, Block(block_b));
-  MatrixXd out = MatrixXd::Zero(static_cast<Index>(down.size()), static_cast<Index>(across.size()));
+  MatrixXd out = MatrixXd::Zero(down.size(), across.size());
   for (std::size_t i = 0; i < down.size(); ++i) {
     for (std::size_t j = 0; j < across.size(); ++j) {
       if (down[i] < 0 || across[j] < 0) continue;
-      out(static_cast<Index>(i), static_cast<Index>(j)) = covariance(down[i], across[j]);
+      out(i, j) = covariance(down[i], across[j]);
     }
   }
   return out;

@@ -51,7 +51,7 @@ void Check(const Sample& sample) {
 }
 
 double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  const auto middle = values.begin() + (values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   if (values.size() % 2 == 1) return *middle;
   const double below = *std::max_element(values.begin(), middle);
@@ -79,7 +79,7 @@ double WeightedMedian(const Sample& sample) {
 double SmallSampleFactor(std::size_t n) {
   constexpr std::array<double, 10> kFactor = {1.0,   1.0,   1.196, 1.495, 1.363,
                                               1.206, 1.200, 1.140, 1.129, 1.107};
-  return n < kFactor.size() ? kFactor[n] : static_cast<double>(n) / (static_cast<double>(n) - 0.8);
+  return n < kFactor.size() ? kFactor[n] : n / (n - 0.8);
 }
 
 // The scale of absolute deviations from a centre: their median, or the lowest higher quantile that
@@ -95,7 +95,7 @@ double ScaleOf(std::vector<double> sizes) {
   if (median > 0.0) return factor * median / kLevels[0].normal;
   std::sort(sizes.begin(), sizes.end());
   for (const Level& level : kLevels) {
-    const auto at = static_cast<std::size_t>(level.share * static_cast<double>(sizes.size() - 1));
+    const auto at = static_cast<std::size_t>(level.share * (sizes.size() - 1));
     if (sizes[at] > 0.0) return factor * sizes[at] / level.normal;
   }
   return 0.0;
@@ -168,7 +168,7 @@ double StandardError(const Sample& sample, const RobustMean& result, double tuni
     slope += std::abs(t) <= tuning ? 1.0 / (sigma * sigma) : 0.0;
   }
   if (slope <= 0.0) return result.scale / std::sqrt(WeightSum(sample));
-  const double n = static_cast<double>(sample.size());
+  const double n = sample.size();
   return result.scale * std::sqrt(square * n / (n - 1.0)) / slope;
 }
 
@@ -181,7 +181,7 @@ RobustMean PlainMean(const Sample& sample) {
     const double t = (sample.values[i] - result.mean) / sample.deviation(i);
     square += t * t;
   }
-  const double freedom = static_cast<double>(sample.size()) - 1.0;
+  const double freedom = sample.size() - 1.0;
   result.scale =
       freedom > 0.0 ? std::sqrt(square / freedom) : std::numeric_limits<double>::infinity();
   result.standard_error = result.scale / std::sqrt(WeightSum(sample));

@@ -57,7 +57,7 @@ class Scheme {
     for (std::uint64_t n = 0; n < draws; ++n) {
       draw_(n, x);
       Run(n, x, y);
-      for (std::size_t o = 0; o < outputs_; ++o) centre_[o] += y[o] / static_cast<double>(draws);
+      for (std::size_t o = 0; o < outputs_; ++o) centre_[o] += y[o] / draws;
     }
   }
 
@@ -136,7 +136,7 @@ SobolResult SobolIndices(std::size_t input_count, std::size_t output_count, cons
   BlockSums all(input_count);
   for (const BlockSums& block : blocks) all.Add(block);
   if (!(all.d > 0)) throw NumericalError("Sobol indices: no output of the model varies");
-  SobolResult result{all.d / static_cast<double>(options.draws), {}};
+  SobolResult result{all.d / options.draws, {}};
   for (std::size_t i = 0; i < input_count; ++i) {
     result.inputs.push_back({all.first[i].n / all.d, Uncertainty(all.first[i], all),
                              all.total[i].n / all.d, Uncertainty(all.total[i], all)});

@@ -40,7 +40,7 @@ void FillParameters(const Problem& problem, const Layout& layout, const VectorXd
   Index entry = 0;
   for (ParameterBlock& block : result.blocks) {
     for (Parameter& parameter : block.entries) {
-      const int column = layout.column_of_entry[static_cast<std::size_t>(entry)];
+      const int column = layout.column_of_entry[entry];
       parameter.value = x[entry];
       parameter.uncertainty = column < 0 ? 0.0 : std::sqrt(result.covariance(column, column));
       ++entry;
@@ -58,7 +58,7 @@ SeenBy DeterminedBy(const Layout& layout, const Information& information, Index 
 }
 
 double Redundancy(Index rows, const MatrixXd& covariance, const MatrixXd& information) {
-  return static_cast<double>(rows) - covariance.cwiseProduct(information).sum();
+  return rows - covariance.cwiseProduct(information).sum();
 }
 
 void FillSources(const Problem& problem, const Linearization& at, const MatrixXd& covariance,
@@ -81,7 +81,7 @@ void FillSources(const Problem& problem, const Linearization& at, const MatrixXd
     out.rows = priors;
     out.chi_square = at.prior.chi_square;
     out.redundancy = Redundancy(priors, covariance, at.prior.information);
-    out.rms = std::sqrt(out.chi_square / static_cast<double>(priors));
+    out.rms = std::sqrt(out.chi_square / priors);
   }
   for (const SourceResult& source : result.sources) {
     result.rows += source.rows;
@@ -105,14 +105,14 @@ void KeepWorst(std::vector<Outlier>& outliers) {
 
 void FillOutliers(const Problem& problem, const Layout& layout, const VectorXd& x, Result& result) {
   VisitRows(problem, layout, x, false, [&](const WhitenedRows& rows) {
-    SourceResult& source = result.sources[static_cast<std::size_t>(rows.term->source.index)];
+    SourceResult& source = result.sources[rows.term->source.index];
     for (Index i = 0; i < rows.r.size(); ++i) Note(source, rows.term->first_row + i, rows.r[i]);
     if (source.outliers.size() > 2 * kMostOutliers) KeepWorst(source.outliers);
   });
   for (std::size_t s = 0; s < problem.sources().size(); ++s) {
     SourceResult& source = result.sources[s];
     KeepWorst(source.outliers);
-    if (source.rows > 0) source.rms = std::sqrt(source.rms / static_cast<double>(source.rows));
+    if (source.rows > 0) source.rms = std::sqrt(source.rms / source.rows);
   }
 }
 

@@ -51,16 +51,14 @@ class TermCost : public ceres::CostFunction {
  public:
   TermCost(const Problem& problem, const Term& term, const std::vector<ArgumentPlace>& places,
            std::exception_ptr& thrown)
-      : term_(term),
-        loss_(problem.sources()[static_cast<std::size_t>(term.source.index)].options.loss),
-        thrown_(thrown) {
+      : term_(term), loss_(problem.sources()[term.source.index].options.loss), thrown_(thrown) {
     std::map<int, int> order;
     for (const int entry : term.entries) {
-      const ArgumentPlace place = places[static_cast<std::size_t>(entry)];
+      const ArgumentPlace place = places[entry];
       const auto [at, is_new] = order.try_emplace(place.block, static_cast<int>(blocks_.size()));
       if (is_new) {
         blocks_.push_back(place.block);
-        const ParameterBlock& block = problem.blocks()[static_cast<std::size_t>(place.block)];
+        const ParameterBlock& block = problem.blocks()[place.block];
         mutable_parameter_block_sizes()->push_back(static_cast<int>(block.size()));
       }
       inputs_.push_back({at->second, place.entry});
@@ -72,9 +70,9 @@ class TermCost : public ceres::CostFunction {
 
   bool Evaluate(const double* const* parameters, double* residuals,
                 double** jacobians) const override {
-    VectorXd x(static_cast<Index>(inputs_.size()));
+    VectorXd x(inputs_.size());
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
-      x[static_cast<Index>(i)] = parameters[inputs_[i].block][inputs_[i].entry];
+      x[i] = parameters[inputs_[i].block][inputs_[i].entry];
     }
     VectorXd values(num_residuals());
     RowMatrix jacobian;
@@ -108,8 +106,7 @@ class TermCost : public ceres::CostFunction {
         const ArgumentPlace at = inputs_[i];
         double* of_block = jacobians[at.block];
         if (of_block == nullptr) continue;
-        of_block[row * sizes[static_cast<std::size_t>(at.block)] + at.entry] =
-            jacobian(row, static_cast<Index>(i)) * whiten * slope;
+        of_block[row * sizes[at.block] + at.entry] = jacobian(row, i) * whiten * slope;
       }
     }
   }
@@ -165,7 +162,7 @@ class CeresProblem {
       auto cost = std::make_unique<TermCost>(problem, term, places, thrown_);
       std::vector<double*> arguments;
       for (const int block : cost->blocks()) {
-        arguments.push_back(pointers_[static_cast<std::size_t>(block)]);
+        arguments.push_back(pointers_[block]);
       }
       ceres_.AddResidualBlock(cost.release(), nullptr, arguments);
     }
@@ -180,9 +177,9 @@ class CeresProblem {
     ceres_.AddParameterBlock(at, size);
     std::vector<int> held;
     for (int i = 0; i < size; ++i) {
-      if (block.entries[static_cast<std::size_t>(i)].held) held.push_back(i);
+      if (block.entries[i].held) held.push_back(i);
     }
-    if (static_cast<int>(held.size()) == size) {
+    if (std::ssize(held) == size) {
       ceres_.SetParameterBlockConstant(at);
     } else if (!held.empty()) {
       ceres_.SetManifold(at, new ceres::SubsetManifold(size, held));
@@ -198,8 +195,8 @@ class CeresProblem {
 
 ceres::LinearSolverType ChooseSolver(const Problem& problem, const Layout& layout) {
   double rows = 0.0;
-  for (const Source& source : problem.sources()) rows += static_cast<double>(source.rows);
-  const auto n = static_cast<double>(layout.columns());
+  for (const Source& source : problem.sources()) rows += source.rows;
+  const double n = layout.columns();
   if (rows * n * n < kDenseQr) return ceres::DENSE_QR;
   const double filled = static_cast<double>(JacobianBytes(problem, layout)) / sizeof(double);
   return filled < 0.3 * rows * n ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_NORMAL_CHOLESKY;
@@ -211,18 +208,18 @@ std::size_t JacobianBytes(const Problem& problem, const Layout& layout) {
   const std::vector<ArgumentPlace> places = ArgumentPlaces(problem);
   std::vector<std::size_t> free_in_block(problem.blocks().size());
   for (const int entry : layout.entry_of_column) {
-    ++free_in_block[static_cast<std::size_t>(places[static_cast<std::size_t>(entry)].block)];
+    ++free_in_block[places[entry].block];
   }
   std::size_t numbers = 0;
   for (const Term& term : problem.terms()) {
     std::size_t width = 0;
     int last = -1;
     for (const int entry : term.entries) {
-      const int block = places[static_cast<std::size_t>(entry)].block;
-      if (block != last) width += free_in_block[static_cast<std::size_t>(block)];
+      const int block = places[entry].block;
+      if (block != last) width += free_in_block[block];
       last = block;
     }
-    numbers += width * static_cast<std::size_t>(term.residual->Rows());
+    numbers += width * term.residual->Rows();
   }
   return numbers * sizeof(double);
 }

@@ -121,7 +121,7 @@ class ScaledInverse {
 }  // namespace
 
 std::string InWords(const VectorXd& coefficients, const std::vector<std::string>& names) {
-  std::vector<Index> order(static_cast<std::size_t>(coefficients.size()));
+  std::vector<Index> order(coefficients.size());
   std::iota(order.begin(), order.end(), Index{0});
   // Compared by the two printed digits: equal ones stay in the order of the parameters.
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
@@ -135,10 +135,10 @@ std::string InWords(const VectorXd& coefficients, const std::vector<std::string>
     if (shown == kMostTerms || size < kShownCoefficient) break;
     const bool minus = coefficients[i] < 0.0;
     words += shown == 0 ? (minus ? "-" : "") : (minus ? " - " : " + ");
-    words += fmt::format("{:.2f} {}", size, names[static_cast<std::size_t>(i)]);
+    words += fmt::format("{:.2f} {}", size, names[i]);
     ++shown;
   }
-  const auto left = std::count_if(order.begin() + static_cast<std::ptrdiff_t>(shown), order.end(),
+  const auto left = std::count_if(order.begin() + shown, order.end(),
                                   [&](Index i) { return std::abs(coefficients[i]) >= 0.01; });
   if (left > 0) words += fmt::format(" and {} smaller", left);
   return words;
@@ -161,9 +161,9 @@ std::vector<WeakDirection> FindWeakDirections(const MatrixXd& data, const Matrix
   directions = directions * turn;
   const VectorXd variance = (1.0 + spectrum.lambda.head(spectrum.weak).array()).inverse();
 
-  std::vector<WeakDirection> weak(static_cast<std::size_t>(spectrum.weak));
+  std::vector<WeakDirection> weak(spectrum.weak);
   for (Index k = 0; k < spectrum.weak; ++k) {
-    WeakDirection& direction = weak[static_cast<std::size_t>(k)];
+    WeakDirection& direction = weak[k];
     direction.coefficients = coefficients.col(k).normalized();
     MakeFirstLargePositive(direction.coefficients);
     const double left = turn.col(k).cwiseAbs2().dot(variance);

@@ -96,7 +96,7 @@ class ArmJob {
     const auto far = FarOff(run.corrected, baseline);
     const LinkageRun kept = WithoutPoses(run.corrected, far);
     fitted_.push_back(
-        {kept, WithoutPoses(run.recorded, far), baseline, static_cast<Index>(far.size()),
+        {kept, WithoutPoses(run.recorded, far), baseline, std::ssize(far),
          SimulateArm(simulation::ArmSimulation(placed), kept, baseline.x, baseline.excess)});
   }
 
@@ -151,7 +151,7 @@ class ArmJob {
   void RefusePoor() const {
     Index poses = 0;
     for (const FittedRun& run : fitted_) poses += run.kept.poses();
-    const auto free = static_cast<Index>(fit_.names.size());
+    const Index free = fit_.names.size();
     if (3 * poses >= free) return;
     throw InputError(fmt::format(
         "{}: {} poses give {} numbers for {} parameters; record at least {} poses, well spread",
@@ -213,7 +213,7 @@ class ArmJob {
         simulation::ColumnsOf(fitted_.front().simulated.blocks, run.mounting, fit_.names);
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(numbers.size(), fit_.covariance.cols());
     for (Index i = LinkageSimulation::kBase; i < x.size(); ++i) {
-      const int column = columns[static_cast<std::size_t>(i)];
+      const int column = columns[i];
       if (column < 0) continue;
       const auto at = [&](double step) {
         VectorXd moved = x;
@@ -237,10 +237,10 @@ class ArmJob {
           simulation::ColumnsOf(run.simulated.blocks, run.kept.mounting, fit_.names);
       Eigen::MatrixXd J = Eigen::MatrixXd::Zero(J_x.rows(), fit_.covariance.cols());
       for (std::size_t i = 0; i < columns.size(); ++i) {
-        if (columns[i] >= 0) J.col(columns[i]) = J_x.col(static_cast<Index>(i));
+        if (columns[i] >= 0) J.col(columns[i]) = J_x.col(i);
       }
       squares += (J * fit_.covariance).cwiseProduct(J).sum();
-      count += static_cast<double>(J.rows());
+      count += J.rows();
     }
     return std::sqrt(squares / count);
   }
@@ -272,7 +272,7 @@ class ArmJob {
     for (Index pose = 0; pose < after.cols(); ++pose) {
       if (!std::binary_search(far.begin(), far.end(), pose)) kept.push_back(pose);
     }
-    return {run.recorded.name, run.recorded.poses(), static_cast<Index>(far.size()),
+    return {run.recorded.name, run.recorded.poses(), std::ssize(far),
             DistancesOf(before(Eigen::all, kept)), DistancesOf(after(Eigen::all, kept))};
   }
 

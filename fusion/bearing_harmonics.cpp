@@ -21,11 +21,11 @@ std::string NameOf(const char* wave, int order) { return fmt::format("shaft_{}_{
 
 // [1 sin cos sin cos ...]
 Eigen::RowVectorXd Row(double angle, const std::vector<int>& orders) {
-  Eigen::RowVectorXd row(1 + 2 * static_cast<Index>(orders.size()));
+  Eigen::RowVectorXd row(1 + 2 * orders.size());
   row[0] = 1.0;
   for (std::size_t k = 0; k < orders.size(); ++k) {
-    row[1 + 2 * static_cast<Index>(k)] = std::sin(orders[k] * angle);
-    row[2 + 2 * static_cast<Index>(k)] = std::cos(orders[k] * angle);
+    row[1 + 2 * k] = std::sin(orders[k] * angle);
+    row[2 + 2 * k] = std::cos(orders[k] * angle);
   }
   return row;
 }
@@ -83,9 +83,9 @@ double BearingHarmonics::Amplitude(int order) const {
 BearingHarmonics FitBearing(std::span<const double> angles, std::span<const double> values,
                             const std::vector<int>& orders) {
   Check(angles, values, orders);
-  const auto n = static_cast<Index>(values.size());
-  Eigen::MatrixXd A(n, 1 + 2 * static_cast<Index>(orders.size()));
-  for (Index i = 0; i < n; ++i) A.row(i) = Row(angles[static_cast<std::size_t>(i)], orders);
+  const Index n = values.size();
+  Eigen::MatrixXd A(n, 1 + 2 * orders.size());
+  for (Index i = 0; i < n; ++i) A.row(i) = Row(angles[i], orders);
   const Eigen::Map<const Eigen::VectorXd> b(values.data(), n);
   BearingHarmonics fit{orders, Solve(A, b, orders, kLeastProbeNoise)};
   fit.rms = RmsAbout(fit, angles, values);
@@ -100,7 +100,7 @@ double RmsAbout(const BearingHarmonics& fit, std::span<const double> angles,
   for (std::size_t i = 0; i < values.size(); ++i) {
     squares += std::pow(values[i] - fit.At(angles[i]), 2);
   }
-  return std::sqrt(squares / static_cast<double>(values.size()));
+  return std::sqrt(squares / values.size());
 }
 
 }  // namespace abbe::fusion

@@ -45,7 +45,7 @@ void RefusePoorPoses(const std::vector<LinkageRun>& runs, Index free) {
     at += run.poses();
   }
   const Matrix3Xd off = all.colwise() - all.rowwise().mean();
-  const Vector3d extent = off.jacobiSvd().singularValues() / std::sqrt(static_cast<double>(poses));
+  const Vector3d extent = off.jacobiSvd().singularValues() / std::sqrt(poses);
   if (extent[0] < kOnePlace) {
     throw InputError(fmt::format(
         "{}: all {} poses stand within {:.3g} mm of one place; spread them over the volume to be "
@@ -210,8 +210,8 @@ class CalibrationJob {
       for (Index pose = 0; pose < runs_[r].poses(); ++pose) {
         const Eigen::Matrix3d factor = noise.middleCols<3>(3 * pose);
         const Vector3d white = factor.triangularView<Eigen::Lower>().solve(gaps[r].col(pose));
-        report.residuals.push_back({r, pose, runs_[r].rows[static_cast<std::size_t>(pose)],
-                                    before[r].col(pose), gaps[r].col(pose), held_out[r].col(pose),
+        report.residuals.push_back({r, pose, runs_[r].rows[pose], before[r].col(pose),
+                                    gaps[r].col(pose), held_out[r].col(pose),
                                     white.cwiseAbs().maxCoeff()});
       }
     }

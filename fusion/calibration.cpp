@@ -47,7 +47,7 @@ CalibratedLinkage::CalibratedLinkage(const relm::LinkageSettings& settings, Cali
 std::size_t CalibratedLinkage::IndexOf(const std::string& mounting, bool strict) const {
   const auto& names = calibration_.mountings;
   const auto at = std::find(names.begin(), names.end(), mounting);
-  if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
+  if (at != names.end()) return at - names.begin();
   if (!strict) return 0;
   throw InputError(fmt::format(
       "calibration: knows no mounting \"{}\" of the base, only \"{}\"; calibrate with a recording "
@@ -84,7 +84,7 @@ MatrixXd CalibratedLinkage::JacobianByFree(const relm::LinkageReadings& readings
   simulation::JacobianInMachine(nominal_X_MB_, x, p_BT, J_tip_x, J);
   MatrixXd J_free = MatrixXd::Zero(J.rows(), calibration_.covariance.cols());
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i] >= 0) J_free.col(columns[i]) = J.col(static_cast<Index>(i));
+    if (columns[i] >= 0) J_free.col(columns[i]) = J.col(i);
   }
   return J_free;
 }
@@ -110,7 +110,7 @@ std::vector<std::vector<Matrix3Xd>> CalibratedLinkage::IndependentErrors(
   for (std::size_t set = 0; set < readings.size(); ++set) {
     moved.emplace_back(JacobianByFree(*readings[set], mountings[set], /*strict=*/false) * L);
     squares += moved.back().transpose() * moved.back();
-    poses += static_cast<double>(readings[set]->poses());
+    poses += readings[set]->poses();
   }
   const Eigen::SelfAdjointEigenSolver<MatrixXd> turned(squares);
   std::vector<std::vector<Matrix3Xd>> errors;

@@ -34,7 +34,7 @@ constexpr std::array kAxes{"x_mm", "y_mm", "z_mm"};
 template <typename Values>
 std::string Floats(const Values& values, double si) {
   std::vector<std::string> texts;
-  texts.reserve(static_cast<std::size_t>(values.size()));
+  texts.reserve(values.size());
   for (const double value : values) texts.push_back(Float(value / si));
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }
@@ -90,7 +90,7 @@ void ReadParameter(const Table& table, ParameterBlock& block, std::size_t i) {
 
 void ReadCovariance(const Table& table, Calibration& calibration) {
   calibration.names = table.Texts("names", 0);
-  const auto n = static_cast<Index>(calibration.names.size());
+  const Index n = calibration.names.size();
   const auto rows = table.Quantities("rows", calibration.names.size() * calibration.names.size());
   calibration.covariance = Eigen::Map<const Eigen::MatrixXd>(rows.data(), n, n);
   table.RefuseUnknown();
@@ -104,7 +104,7 @@ MappedParameters ReadMapped(const Table& table, Index parameters) {
     cells *= mapped.centres[axis].size();
   }
   for (const Table& cell : table.Children("cell")) {
-    const auto values = cell.Quantities("values", static_cast<std::size_t>(parameters));
+    const auto values = cell.Quantities("values", parameters);
     mapped.values.emplace_back(Eigen::Map<const Eigen::VectorXd>(values.data(), parameters));
     cell.RefuseUnknown();
   }

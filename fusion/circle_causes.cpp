@@ -71,13 +71,12 @@ struct Equations {
 
 // cos, sin of each order, the same in both senses and at any feed.
 Eigen::MatrixXd Waves(const CircleRun& run, std::size_t orders) {
-  Eigen::MatrixXd waves(static_cast<Eigen::Index>(run.points.size()),
-                        static_cast<Eigen::Index>(2 * orders));
+  Eigen::MatrixXd waves(run.points.size(), 2 * orders);
   for (Eigen::Index i = 0; i < waves.rows(); ++i) {
-    const double t = run.points[static_cast<std::size_t>(i)].angle;
+    const double t = run.points[i].angle;
     for (Eigen::Index k = 0; k < waves.cols(); k += 2) {
       const Eigen::Index order = kFirstHarmonic + k / 2;
-      const double phase = static_cast<double>(order) * t;
+      const double phase = order * t;
       waves(i, k) = std::cos(phase);
       waves(i, k + 1) = std::sin(phase);
     }
@@ -87,15 +86,13 @@ Eigen::MatrixXd Waves(const CircleRun& run, std::size_t orders) {
 
 Equations EquationsOf(const CircleRun& run, const CauseOptions& options) {
   const std::vector<Signature> table = SignaturesOf(run, options);
-  const auto n = static_cast<Eigen::Index>(run.points.size());
+  const Eigen::Index n = run.points.size();
   const auto centres = std::ranges::count_if(table, IsCentre);
-  Equations equations{Eigen::MatrixXd(n, centres),
-                      Eigen::MatrixXd(n, static_cast<Eigen::Index>(table.size()) - centres),
-                      Waves(run, options.smooth.size()),
-                      Eigen::MatrixXd(n, static_cast<Eigen::Index>(options.shifted.size())),
+  Equations equations{Eigen::MatrixXd(n, centres), Eigen::MatrixXd(n, table.size() - centres),
+                      Waves(run, options.smooth.size()), Eigen::MatrixXd(n, options.shifted.size()),
                       Eigen::VectorXd(n)};
   for (Eigen::Index i = 0; i < n; ++i) {
-    const CirclePoint& point = run.points[static_cast<std::size_t>(i)];
+    const CirclePoint& point = run.points[i];
     const standards::CirclePoint at{point.angle, static_cast<double>(point.sense), run.radius,
                                     run.feed};
     Eigen::Index centre = 0, cause = 0;
@@ -129,8 +126,7 @@ Equations CentredEquations(const std::vector<const CircleRun*>& runs, std::size_
   for (std::size_t k = 0; k < options.shifted.size(); ++k) {
     const CircleRun shifted = About(middle, *options.shifted[k][at]);
     for (Eigen::Index i = 0; i < equations.radial.size(); ++i) {
-      equations.instrument(i, static_cast<Eigen::Index>(k)) =
-          Radial(shifted.points[static_cast<std::size_t>(i)], shifted.radius) - equations.radial[i];
+      equations.instrument(i, k) = Radial(shifted.points[i], shifted.radius) - equations.radial[i];
     }
   }
   return equations;
@@ -206,7 +202,7 @@ double Rms(const std::vector<Eigen::VectorXd>& residuals) {
   double squares = 0.0, n = 0.0;
   for (const Eigen::VectorXd& one : residuals) {
     squares += one.squaredNorm();
-    n += static_cast<double>(one.size());
+    n += one.size();
   }
   return std::sqrt(squares / n);
 }
@@ -223,7 +219,7 @@ double Correlated(const std::vector<const CircleRun*>& runs,
       const std::size_t sector =
           std::min(kSectors - 1, static_cast<std::size_t>(std::max(0.0, part) * kSectors));
       const std::size_t sense = point.sense > 0 ? 1 : 0;
-      sums[sense][sector] += residuals[r][static_cast<Eigen::Index>(i)];
+      sums[sense][sector] += residuals[r][i];
       counts[sense][sector] += 1.0;
     }
     for (std::size_t sense = 0; sense < 2; ++sense) {
@@ -251,7 +247,7 @@ bool SeenByData(const estimation::Result& result, const std::string& name) {
 bool IsOfCauses(const estimation::Result& result, const estimation::WeakDirection& weak) {
   Eigen::Index most = 0;
   weak.coefficients.cwiseAbs().maxCoeff(&most);
-  return result.names[static_cast<std::size_t>(most)].starts_with("cause.");
+  return result.names[most].starts_with("cause.");
 }
 
 }  // namespace
@@ -283,8 +279,7 @@ CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs,
                            fit.result.Uncertainty(name)};
     for (const Equations& one : equations) {
       estimate.effect = std::max(
-          estimate.effect, std::abs(estimate.value) *
-                               one.causes.col(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff());
+          estimate.effect, std::abs(estimate.value) * one.causes.col(i).cwiseAbs().maxCoeff());
     }
     estimate.seen = SeenByData(fit.result, name);
     found.causes.push_back(std::move(estimate));

@@ -17,13 +17,13 @@ void ForFree(Blocks& blocks, const std::vector<std::string>& names, const Use& u
   for (auto& block : blocks) {
     for (std::size_t i = 0; i < block.entries.size(); ++i) {
       const auto at = std::find(names.begin(), names.end(), block.FullName(i));
-      if (at != names.end()) use(block.entries[i], static_cast<Index>(at - names.begin()));
+      if (at != names.end()) use(block.entries[i], at - names.begin());
     }
   }
 }
 
 Eigen::VectorXd FreeValues(const Calibration& calibration) {
-  Eigen::VectorXd values(static_cast<Index>(calibration.names.size()));
+  Eigen::VectorXd values(calibration.names.size());
   ForFree(calibration.blocks, calibration.names,
           [&](const auto& entry, Index at) { values[at] = entry.value; });
   return values;
@@ -37,7 +37,7 @@ double MeanVariance(const Calibration& calibration, const std::vector<simulation
   for (const simulation::LinkageRun& run : runs) {
     const auto u = linkage.StandardUncertainties(run.readings, run.mounting);
     squares += u.squaredNorm();
-    count += static_cast<double>(u.size());
+    count += u.size();
   }
   return squares / count;
 }

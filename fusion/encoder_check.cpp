@@ -90,7 +90,7 @@ std::optional<Assumption> FitAssuming(const LinkageSimulation& simulation, const
   auto blocks = simulation::BaseBlocks(simulation.settings());
   blocks.push_back(PerEncoder("offset", n, kAnyAngle));
   blocks.push_back(PerEncoder("gain", n, kAnyAngle));
-  blocks.back().entries[static_cast<std::size_t>(started)].value = start_gain;
+  blocks.back().entries[started].value = start_gain;
   if (!with_gains) blocks.back().Hold();
   estimation::Problem problem;
   std::vector<estimation::Input> inputs;

@@ -195,11 +195,10 @@ class FuseJob {
     if (!options_.runs_on) return false;
     bool finer = false;
     for (int axis = 0; axis < machine::kAxes; ++axis) {
-      const auto i = static_cast<std::size_t>(axis);
       const double length = population_.length.row(axis).minCoeff();
       const double least = kFinest * machine_.population.smoothness;
-      if (!(kCoarse * length < knots_[i]) || knots_[i] <= least) continue;
-      knots_[i] = std::max(least, kFine * length);
+      if (!(kCoarse * length < knots_[axis]) || knots_[axis] <= least) continue;
+      knots_[axis] = std::max(least, kFine * length);
       finer = true;
     }
     if (!finer) return false;
@@ -228,7 +227,7 @@ class FuseJob {
     report.runs = CheckRuns(now.problem, now.at);
     report.contradicting = Contradicting(report.runs);
     if (report.contradicting >= 0) {
-      report.suspect = SuspectOf(static_cast<std::size_t>(report.contradicting), now.fit);
+      report.suspect = SuspectOf(report.contradicting, now.fit);
     }
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       report.follows.push_back(Follows(now, r));

@@ -63,9 +63,8 @@ std::vector<HeldOut> HoldOut(int n, const std::vector<SimulatedRun>& runs,
     out.name = problem.sources()[r].name;
     out.rows = problem.sources()[r].rows;
     out.chi_square = at.sources[r].chi_square;
-    out.expected = static_cast<double>(out.rows) +
-                   fit.covariance.cwiseProduct(at.sources[r].information).sum();
-    out.rms = out.rows == 0 ? 0.0 : std::sqrt(out.chi_square / static_cast<double>(out.rows));
+    out.expected = out.rows + fit.covariance.cwiseProduct(at.sources[r].information).sum();
+    out.rms = out.rows == 0 ? 0.0 : std::sqrt(out.chi_square / out.rows);
   }
   return result;
 }

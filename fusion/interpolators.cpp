@@ -44,8 +44,7 @@ class NetworkResidual : public estimation::Residual {
     function.SetCoefficients(x);
     for (Index i = 0; i < values_.size(); ++i) {
       double* const gradient = jacobian == nullptr ? nullptr : jacobian->row(i).data();
-      values[i] =
-          function.Evaluate(stations_[static_cast<std::size_t>(i)], nullptr, gradient) - values_[i];
+      values[i] = function.Evaluate(stations_[i], nullptr, gradient) - values_[i];
     }
   }
 
@@ -106,7 +105,7 @@ class Teacher {
   double InMetres(double rms) const { return rms * kLearned / accepted_; }
 
  private:
-  static std::size_t At(int axis) { return static_cast<std::size_t>(axis); }
+  static std::size_t At(int axis) { return axis; }
 
   std::optional<Lesson> Learn(int neurons, const std::vector<double>& stations,
                               const VectorXd& values) const {
@@ -153,8 +152,8 @@ class Folds {
     std::vector<Index> rows;
     for (std::size_t i = 0; i < setup.holes.size(); ++i) {
       if ((fold_.at({setup.plate, setup.holes[i]}) == fold) != left_out) continue;
-      rows.push_back(static_cast<Index>(2 * i));
-      rows.push_back(static_cast<Index>(2 * i + 1));
+      rows.push_back(2 * i);
+      rows.push_back(2 * i + 1);
     }
     return rows;
   }
@@ -166,7 +165,7 @@ class Folds {
 // The parameters of a run: those of the machine from `model`, the others from `fit`.
 VectorXd InputsOf(const SimulatedRun& run, const machine::VolumetricModel& model,
                   const estimation::Result& fit) {
-  const auto own = run.blocks.begin() + static_cast<std::ptrdiff_t>(model.Blocks().size());
+  const auto own = run.blocks.begin() + model.Blocks().size();
   const VectorXd others = ValuesFound(fit, {own, run.blocks.end()});
   VectorXd x(model.ParameterCount() + others.size());
   x << model.Parameters(), others;
@@ -183,7 +182,7 @@ double HeldOutRms(const machine::Machine& machine, const machine::VolumetricMode
     run.residual->Evaluate(InputsOf(run, model, fit), values, nullptr);
     const std::vector<Index> rows = folds.Rows(setup, fold, true);
     for (const Index row : rows) squares += std::pow(setup.u_probing * values[row], 2);
-    holes += static_cast<double>(rows.size()) / 2.0;
+    holes += rows.size() / 2.0;
   }
   return std::sqrt(squares / holes);
 }
@@ -214,11 +213,11 @@ machine::VolumetricModel AsNetworks(const machine::VolumetricModel& model,
   machine::VolumetricModel networks(model.chain(), model.travels());
   networks.SetSquareness(model.squareness());
   for (int axis = 0; axis < machine::kAxes; ++axis) {
-    const auto& at = stations[static_cast<std::size_t>(axis)];
+    const auto& at = stations[axis];
     for (int motion = 0; motion < machine::kMotions; ++motion) {
-      VectorXd values(static_cast<Index>(at.size()));
+      VectorXd values(at.size());
       for (Index i = 0; i < values.size(); ++i) {
-        values[i] = model.Function(axis, motion).Evaluate(at[static_cast<std::size_t>(i)]);
+        values[i] = model.Function(axis, motion).Evaluate(at[i]);
       }
       if (values.size() == 0 || values.cwiseAbs().maxCoeff() < kNothing) continue;
       const Teacher teacher(model, axis, motion, bias);
@@ -247,7 +246,7 @@ std::array<std::vector<double>, machine::kAxes> StationsOf(const std::vector<Pla
     const std::size_t step = places.size() / kMostStations + 1;
     std::size_t i = 0;
     for (const auto& [key, at] : places) {
-      if (i++ % step == 0) stations[static_cast<std::size_t>(axis)].push_back(at);
+      if (i++ % step == 0) stations[axis].push_back(at);
     }
   }
   return stations;

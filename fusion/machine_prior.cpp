@@ -52,10 +52,9 @@ machine::VolumetricModel UnknownMachine(const machine::Machine& machine,
                                         const std::array<double, machine::kAxes>& knots) {
   machine::VolumetricModel model(machine.chain, machine.travels);
   for (int axis = 0; axis < machine::kAxes; ++axis) {
-    const auto i = static_cast<std::size_t>(axis);
-    const machine::Travel& travel = machine.travels[i];
+    const machine::Travel& travel = machine.travels[axis];
     if (!(travel.last > travel.first)) continue;  // the machine has no such axis
-    const double spans = std::ceil((travel.last - travel.first) / knots[i]);
+    const double spans = std::ceil((travel.last - travel.first) / knots[axis]);
     const auto form = machine::MakeBSplineForm(BSplineBasis::Uniform(
         kDegree, travel.first, travel.last, static_cast<int>(std::max(1.0, spans)) + kDegree));
     for (int motion = 0; motion < machine::kMotions; ++motion) model.SetForm(axis, motion, form);
@@ -73,11 +72,10 @@ MachinePrior::MachinePrior(const machine::Machine& machine, const machine::Volum
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     const int size = model.Function(axis, 0).size();
     if (size == 0) continue;
-    const auto i = static_cast<std::size_t>(axis);
-    const machine::Travel& travel = machine.travels[i];
+    const machine::Travel& travel = machine.travels[axis];
     const auto basis = BSplineBasis::Uniform(kDegree, travel.first, travel.last, size);
     const Index points = Index{kPointsPerCoefficient} * size;
-    Projected& on = axes_[i];
+    Projected& on = axes_[axis];
     on.x = VectorXd::LinSpaced(points, travel.first, travel.last);
     MatrixXd B(points, size);
     for (Index row = 0; row < points; ++row) B.row(row) = basis.Row(on.x[row]);
@@ -91,7 +89,7 @@ MachinePrior::MachinePrior(const machine::Machine& machine, const machine::Volum
     : MachinePrior(machine, model, WithLength(PopulationOf(machine), smoothness)) {}
 
 MachinePrior::Unit MachinePrior::UnitCovariance(int axis, int motion) const {
-  const Projected& on = axes_[static_cast<std::size_t>(axis)];
+  const Projected& on = axes_[axis];
   const Index points = on.x.size();
   const double length = population_.length(axis, motion);
   MatrixXd K(points, points), by_length(points, points);
@@ -104,7 +102,7 @@ MachinePrior::Unit MachinePrior::UnitCovariance(int axis, int motion) const {
 }
 
 MatrixXd MachinePrior::UnitSlope(int axis) const {
-  const VectorXd& line = axes_[static_cast<std::size_t>(axis)].line;
+  const VectorXd& line = axes_[axis].line;
   return line * line.transpose();
 }
 

@@ -83,7 +83,7 @@ Eigen::VectorXd ValuesFound(const estimation::Result& fit,
   for (const ParameterBlock& block : blocks) {
     for (const auto& entry : fit.Block(block.name).entries) values.push_back(entry.value);
   }
-  return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return Eigen::Map<Eigen::VectorXd>(values.data(), values.size());
 }
 
 }  // namespace abbe::fusion

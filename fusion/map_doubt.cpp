@@ -24,7 +24,7 @@ VectorXd ParametersOn(const machine::VolumetricModel& model,
     const auto& function = model.Function(axis, motion);
     const Index size = function.size();
     if (size == 0) continue;
-    const auto& travel = model.travels()[static_cast<std::size_t>(axis)];
+    const auto& travel = model.travels()[axis];
     const VectorXd x = VectorXd::LinSpaced(kStations * size, travel.first, travel.last);
     Eigen::MatrixXd rows(x.size(), size);
     VectorXd values(x.size()), gradient(size);

@@ -48,8 +48,7 @@ PoseGrid GridOf(const Matrix3Xd& p_MT, const std::string& name) {
   for (int axis = 0; axis < 3; ++axis) grid.levels[axis] = LevelsOf(p_MT.row(axis));
   const auto& levels = grid.levels;
   if (std::min({levels[0].size(), levels[1].size(), levels[2].size()}) < 3 ||
-      levels[0].size() * levels[1].size() * levels[2].size() >
-          4 * static_cast<std::size_t>(p_MT.cols())) {
+      std::ssize(levels[0]) * std::ssize(levels[1]) * std::ssize(levels[2]) > 4 * p_MT.cols()) {
     throw InputError(fmt::format(
         "{}: {} poses at {} x {} x {} positions form no grid; mapping needs a full grid of at "
         "least 3 x 3 x 3 axis positions",
@@ -100,7 +99,7 @@ VectorXd CellParameters(const LinkageSimulation& simulation, const LinkageRun& c
 std::pair<std::size_t, double> Between(const std::vector<double>& centres, double position) {
   if (centres.size() == 1 || position <= centres.front()) return {0, 0.0};
   if (position >= centres.back()) return {centres.size() - 2, 1.0};
-  const auto low = static_cast<std::size_t>(LevelAt(centres, position));
+  const std::size_t low = LevelAt(centres, position);
   return {low, (position - centres[low]) / (centres[low + 1] - centres[low])};
 }
 
@@ -135,7 +134,7 @@ Matrix3Xd CellShifts(const LinkageSimulation& simulation, const LinkageRun& run,
   const Matrix3Xd balls = simulation.Ball(run);
   const auto& [xs, ys, zs] = mapped.centres;
   const auto X_MB = simulation::BaseAt(simulation.settings().X_MB, x.head<6>());
-  Matrix3Xd shifts(3, static_cast<Index>(mapped.values.size()));
+  Matrix3Xd shifts(3, mapped.values.size());
   Index cell = 0;
   for (const double at_x : xs) {
     for (const double at_y : ys) {
@@ -146,8 +145,8 @@ Matrix3Xd CellShifts(const LinkageSimulation& simulation, const LinkageRun& run,
         const auto tip = [&](const VectorXd& values) {
           return simulation.model().Tip(run.readings.angles.col(pose), warmth, values);
         };
-        shifts.col(cell) = X_MB.R * (tip(mapped.values[static_cast<std::size_t>(cell)]) -
-                                     tip(x.tail(simulation.model().parameters())));
+        shifts.col(cell) =
+            X_MB.R * (tip(mapped.values[cell]) - tip(x.tail(simulation.model().parameters())));
         ++cell;
       }
     }

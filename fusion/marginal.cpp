@@ -10,16 +10,16 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 MatrixXd MarginalFactor(const MatrixXd& information, const std::vector<int>& columns) {
-  std::vector<bool> asked(static_cast<std::size_t>(information.rows()), false);
-  for (const int column : columns) asked[static_cast<std::size_t>(column)] = true;
+  std::vector<bool> asked(information.rows(), false);
+  for (const int column : columns) asked[column] = true;
   std::vector<int> order;
-  for (int i = 0; i < static_cast<int>(information.rows()); ++i) {
-    if (!asked[static_cast<std::size_t>(i)] && information(i, i) > 0.0) order.push_back(i);
+  for (int i = 0; i < information.rows(); ++i) {
+    if (!asked[i] && information(i, i) > 0.0) order.push_back(i);
   }
   order.insert(order.end(), columns.begin(), columns.end());
   const Eigen::LLT<MatrixXd> whole{MatrixXd(information(order, order))};
   if (columns.empty() || whole.info() != Eigen::Success) return {};
-  const auto n = static_cast<Index>(columns.size());
+  const Index n = columns.size();
   return whole.matrixLLT().bottomRightCorner(n, n).triangularView<Eigen::Lower>();
 }
 

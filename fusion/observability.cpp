@@ -46,7 +46,7 @@ Observability Observe(const estimation::Problem& problem, const estimation::Resu
     seen.singular_values = eigen.eigenvalues().reverse().cwiseMax(0.0).cwiseSqrt();
   }
   seen.unseen = result.weak_directions;
-  seen.rank = seen.parameters - static_cast<Index>(seen.unseen.size());
+  seen.rank = seen.parameters - seen.unseen.size();
   seen.condition = result.condition;
   const Index known = (seen.singular_values.array() >= 1.0).count();
   if (known > 0) {

@@ -23,7 +23,7 @@ constexpr double kAlong = 0.99;  // cosine: 8 degrees
 
 // The place of a hole in the plate: its certificate and the estimated form.
 Vector2d PlaceInPlate(const PlateSetup& setup, Index point, const Result& fit) {
-  const int hole = setup.holes[static_cast<std::size_t>(point)];
+  const int hole = setup.holes[point];
   Vector2d place = setup.certificate.col(point);
   if (setup.u_form.maxCoeff() > 0.0) {
     place += fit.Block(simulation::HoleBlock(setup, hole)).Values();
@@ -93,7 +93,7 @@ std::optional<OfSetup> SquarenessOf(const machine::VolumetricModel& square,
 VectorXd ByParameters(const simulation::SimulatedRun& run, const VectorXd& b, const Result& fit) {
   std::map<std::string_view, Index> columns;
   for (std::size_t c = 0; c < fit.names.size(); ++c) {
-    columns.emplace(fit.names[c], static_cast<Index>(c));
+    columns.emplace(fit.names[c], c);
   }
   const VectorXd x = ValuesFound(fit, run.blocks);
   VectorXd values(b.size());
@@ -128,7 +128,7 @@ std::array<DiagonalSquareness, 3> SquarenessByDiagonals(const FuseReport& fused,
     const PlateSetup& setup = setups[i];
     const auto here = SquarenessOf(square, reference, setup, fit);
     if (!here) continue;
-    const auto k = static_cast<std::size_t>(here->normal);
+    const std::size_t k = here->normal;
     found[k].value += here->value;
     ++found[k].setups;
     bb[k] += std::pow(fused.noise[i], 2) * here->b.squaredNorm();

@@ -54,7 +54,7 @@ class Estimate {
     const MatrixXd C = (local_.fisher + evidence_.precision()).inverse();
     seen.by_theta = evidence_.MovedByTheta(of_machine_, theta_, C);
     for (Index i = 0; i < theta_.size(); ++i) {
-      const auto [line, axis, motion] = evidence_.knobs()[static_cast<std::size_t>(i)];
+      const auto [line, axis, motion] = evidence_.knobs()[i];
       if (axis < 0 || line == kSmoothness) continue;
       // The share of the variance of a size of nu degrees of freedom: 1 / (2 nu) by the data.
       const double by_data = local_.fisher(i, i) * C(i, i) * C(i, i);
@@ -85,7 +85,7 @@ class Estimate {
       all.vector[column] += of_sums * x[column];
     }
     for (int k = 0; k < 3; ++k) {  // the prior of the fit; theta has its own
-      const int column = runs_.machine[static_cast<std::size_t>(evidence_.squareness() + k)];
+      const int column = runs_.machine[evidence_.squareness() + k];
       const double precision = std::pow(runs_.squareness, -2);
       all.information(column, column) -= precision;
       all.vector[column] += precision * runs_.values[evidence_.squareness() + k];
@@ -97,12 +97,11 @@ class Estimate {
 
   Quadratic OfMachine() const {
     const Quadratic all = All();
-    std::vector<bool> is_machine(static_cast<std::size_t>(all.vector.size()), false);
-    for (const int column : runs_.machine) is_machine[static_cast<std::size_t>(column)] = true;
+    std::vector<bool> is_machine(all.vector.size(), false);
+    for (const int column : runs_.machine) is_machine[column] = true;
     std::vector<int> others;
-    for (int i = 0; i < static_cast<int>(all.vector.size()); ++i) {
-      if (!is_machine[static_cast<std::size_t>(i)] && all.information(i, i) > 0.0)
-        others.push_back(i);
+    for (int i = 0; i < all.vector.size(); ++i) {
+      if (!is_machine[i] && all.information(i, i) > 0.0) others.push_back(i);
     }
     const VectorXd scale = all.information.diagonal()(others).cwiseSqrt().cwiseInverse();
     MatrixXd inner = scale.asDiagonal() * all.information(others, others) * scale.asDiagonal();
@@ -114,8 +113,7 @@ class Estimate {
     const VectorXd left = factor.matrixL().solve(right);
     const double log =
         0.5 * left.squaredNorm() - factor.matrixLLT().diagonal().array().log().sum() +
-        scale.array().log().sum() +
-        0.5 * static_cast<double>(runs_.form.size()) * std::log(FormPrecision(form_));
+        scale.array().log().sum() + 0.5 * runs_.form.size() * std::log(FormPrecision(form_));
     return {all.information(runs_.machine, runs_.machine) - half.transpose() * half,
             all.vector(runs_.machine) - half.transpose() * left, log};
   }
@@ -128,8 +126,7 @@ class Estimate {
     for (const double factor : kCommonLengths) {
       VectorXd theta = theta_;
       for (std::size_t i = 0; i < evidence_.knobs().size(); ++i) {
-        if (evidence_.knobs()[i].line == kSmoothness)
-          theta[static_cast<Index>(i)] = std::log(factor);
+        if (evidence_.knobs()[i].line == kSmoothness) theta[i] = std::log(factor);
       }
       const double log = evidence_.At(of_machine_, theta).log;
       if (log > best) {
@@ -208,8 +205,7 @@ class Estimate {
       const auto& run = runs_.runs[r];
       const MatrixXd seen = root.transpose() * run.information * root;
       const double before = std::pow(noise_[r] / runs_.noise[r], 2);  // over that of the sums
-      const double redundancy =
-          static_cast<double>(runs_.rows[r]) - factor.solve(seen).trace() / before;
+      const double redundancy = runs_.rows[r] - factor.solve(seen).trace() / before;
       const double chi_square =
           run.chi_square + 2.0 * run.gradient.dot(off) + off.dot(run.information * off);
       const double square = std::pow(runs_.noise[r], 2) * (chi_square + kRowsOfPrior) /
@@ -238,15 +234,15 @@ class Estimate {
     add("population.squareness_urad", kMicro, p.squareness);
     add("population.scale_ppm", kMicro, p.scale);
     add(kSmoothnessKey, settings::kMillimetre, p.smoothness);
-    MatrixXd X = MatrixXd::Zero(static_cast<Index>(evidence_.knobs().size()), kLines);
+    MatrixXd X = MatrixXd::Zero(evidence_.knobs().size(), kLines);
     for (std::size_t i = 0; i < evidence_.knobs().size(); ++i)
-      X(static_cast<Index>(i), evidence_.knobs()[i].line) = 1.0;
+      X(i, evidence_.knobs()[i].line) = 1.0;
     MatrixXd information = X.transpose() * local_.fisher * X;
     information.diagonal().array() += 1e-9;
     const MatrixXd C = information.inverse();
     const VectorXd logs = C * X.transpose() * ((local_.fisher + evidence_.precision()) * theta_);
     for (Index line = 0; line < kLines; ++line) {
-      Statement& each = statements[static_cast<std::size_t>(line)];
+      Statement& each = statements[line];
       each.u_log = std::sqrt(C(line, line));
       each.seen = each.stated * std::exp(logs[line]);
     }

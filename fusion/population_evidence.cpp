@@ -55,7 +55,7 @@ ErrorPopulation PopulationEvidence::PopulationAt(const VectorXd& theta) const {
   ErrorPopulation population = PopulationOf(machine_);
   for (std::size_t i = 0; i < knobs_.size(); ++i) {
     const auto [line, axis, motion] = knobs_[i];
-    const double factor = std::exp(theta[static_cast<Index>(i)]);
+    const double factor = std::exp(theta[i]);
     if (line == kSquareness)
       population.squareness *= factor;
     else if (line == kScale)
@@ -114,7 +114,7 @@ std::vector<PopulationEvidence::Part> PopulationEvidence::Parts(const VectorXd& 
   const MachinePrior prior(machine_, model_, population);
   std::vector<Part> parts;
   for (Index i = 0; i < count(); i += 2) {
-    const auto [line, axis, motion] = knobs_[static_cast<std::size_t>(i)];
+    const auto [line, axis, motion] = knobs_[i];
     if (axis < 0) break;
     const Index at = first_[axis][motion];
     const auto unit = prior.UnitCovariance(axis, motion);

@@ -48,10 +48,8 @@ class PopulationEvidence {
   PopulationEvidence(const machine::Machine& machine, const machine::VolumetricModel& model);
 
   const std::vector<Knob>& knobs() const { return knobs_; }
-  Eigen::Index count() const { return static_cast<Eigen::Index>(knobs_.size()); }
-  bool IsLength(Eigen::Index knob) const {
-    return knobs_[static_cast<std::size_t>(knob)].line == kSmoothness;
-  }
+  Eigen::Index count() const { return knobs_.size(); }
+  bool IsLength(Eigen::Index knob) const { return knobs_[knob].line == kSmoothness; }
   Eigen::Index squareness() const { return squareness_; }   // where the squarenesses begin
   const Eigen::MatrixXd& precision() const { return pi_; }  // Pi: of the prior of theta
 

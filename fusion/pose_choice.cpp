@@ -45,7 +45,7 @@ std::pair<Index, double> Best(const PoseInformation& candidates, const Factor& f
   const MatrixXd W = factor.matrixL().solve(candidates.white.transpose());
   std::pair<Index, double> best{-1, -1.0};
   for (Index pose = 0; pose < candidates.poses(); ++pose) {
-    if (chosen[static_cast<std::size_t>(pose)]) continue;
+    if (chosen[pose]) continue;
     const auto w = W.middleCols<3>(3 * pose);
     const Matrix3d m = Matrix3d::Identity() + w.transpose() * w;
     const double gain = std::log(m.determinant());
@@ -61,7 +61,7 @@ std::vector<Index> Without(std::vector<Index> poses, Index pose) {
 
 double TipRms(const PoseInformation& candidates, const Factor& factor) {
   const MatrixXd W = factor.matrixL().solve(candidates.tip.transpose());
-  return std::sqrt(W.squaredNorm() / static_cast<double>(candidates.poses()));
+  return std::sqrt(W.squaredNorm() / candidates.poses());
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ PoseInformation::PoseInformation(const simulation::LinkageSimulation& simulation
       ++at;
     }
   }
-  const auto columns = static_cast<Index>(scale.size());
+  const Index columns = scale.size();
   tip = J(Eigen::all, free) * Eigen::Map<const VectorXd>(scale.data(), columns).asDiagonal();
   white = tip;
   const Matrix3Xd noise = simulation.GapNoise(run);
@@ -93,7 +93,7 @@ PoseInformation::PoseInformation(const simulation::LinkageSimulation& simulation
     factor.triangularView<Eigen::Lower>().solveInPlace(white.middleRows<3>(3 * pose));
     variance += factor.squaredNorm() - run.reference_sd.col(pose).squaredNorm();
   }
-  reading_noise = std::sqrt(std::max(0.0, variance / static_cast<double>(run.poses())));
+  reading_noise = std::sqrt(std::max(0.0, variance / run.poses()));
 }
 
 double TipUncertainty(const PoseInformation& candidates, const std::vector<Index>& poses) {
@@ -106,8 +106,8 @@ PoseChoice ChoosePoses(const PoseInformation& candidates, Index count) {
                                  count, candidates.poses(), candidates.poses()));
   }
   PoseChoice choice{};
-  std::vector<bool> chosen(static_cast<std::size_t>(candidates.poses()), false);
-  const auto mark = [&](Index pose, bool in) { chosen[static_cast<std::size_t>(pose)] = in; };
+  std::vector<bool> chosen(candidates.poses(), false);
+  const auto mark = [&](Index pose, bool in) { chosen[pose] = in; };
   MatrixXd information = Information(candidates, {});
   for (Index i = 0; i < count; ++i) {
     const Index pose = Best(candidates, Factor(information), chosen).first;

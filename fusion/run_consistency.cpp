@@ -39,14 +39,14 @@ RunConsistency Check(const std::string& name, const estimation::SourceSums& run,
                      const MatrixXd& all) {
   const MatrixXd rest = all - run.information;
   std::vector<int> others, own;
-  for (Index i = 0; i < all.rows(); ++i) {
-    (rest(i, i) > kLeastShare * all(i, i) ? others : own).push_back(static_cast<int>(i));
+  for (int i = 0; i < all.rows(); ++i) {
+    (rest(i, i) > kLeastShare * all(i, i) ? others : own).push_back(i);
   }
   const Quadratic seen = Eliminate({run.information, run.gradient}, others, own);
   RunConsistency check{.name = name};
   std::vector<int> touched;
-  for (int i = 0; i < static_cast<int>(others.size()); ++i) {
-    if (run.information.diagonal()[others[static_cast<std::size_t>(i)]] > 0.0) touched.push_back(i);
+  for (int i = 0; i < std::ssize(others); ++i) {
+    if (run.information.diagonal()[others[i]] > 0.0) touched.push_back(i);
   }
   const MatrixXd factor = MarginalFactor(rest(others, others), touched);
   if (factor.size() == 0) return check;
@@ -92,7 +92,7 @@ int Contradicting(const std::vector<RunConsistency>& runs) {
     return a.probability < b.probability;
   });
   if (worst == runs.end()) return -1;
-  if (worst->probability * static_cast<double>(runs.size()) > kSignificance) return -1;
+  if (worst->probability * runs.size() > kSignificance) return -1;
   return static_cast<int>(worst - runs.begin());
 }
 

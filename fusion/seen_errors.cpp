@@ -31,7 +31,7 @@ MatrixXd ValuesOf(const machine::Machine& machine, const machine::VolumetricMode
     first += model.Function(e / machine::kMotions, e % machine::kMotions).size();
   }
   const auto& function = model.Function(axis, motion);
-  const auto& travel = machine.travels[static_cast<std::size_t>(axis)];
+  const auto& travel = machine.travels[axis];
   const VectorXd stations = VectorXd::LinSpaced(kTravelStations, travel.first, travel.last);
   MatrixXd rows = MatrixXd::Zero(kTravelStations, n);
   VectorXd gradient(function.size());
@@ -48,7 +48,7 @@ Eigen::RowVectorXd ScaleRow(const machine::Machine& machine,
   Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(model.ParameterCount());
   int axes = 0;
   for (int axis = 0; axis < machine::kAxes; ++axis) {
-    const auto& travel = machine.travels[static_cast<std::size_t>(axis)];
+    const auto& travel = machine.travels[axis];
     if (!(travel.last > travel.first)) continue;
     const VectorXd x = VectorXd::LinSpaced(kTravelStations, travel.first, travel.last);
     const VectorXd centred = x.array() - x.mean();
@@ -61,7 +61,7 @@ Eigen::RowVectorXd ScaleRow(const machine::Machine& machine,
 
 // Mean variance of the rows of E.
 double Variance(const MatrixXd& E, const MatrixXd& C) {
-  return (E * C).cwiseProduct(E).sum() / static_cast<double>(E.rows());
+  return (E * C).cwiseProduct(E).sum() / E.rows();
 }
 
 }  // namespace

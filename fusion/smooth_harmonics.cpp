@@ -16,7 +16,7 @@ constexpr Index kPlaces = 180;        // around the circle: no aliasing of these
 constexpr double kNegligible = 1e-9;  // m
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-double AngleOf(Index place) { return kTurn * static_cast<double>(place) / kPlaces; }
+double AngleOf(Index place) { return kTurn * place / kPlaces; }
 
 double DeviationOf(const machine::Population& population, int axis, int motion) {
   if (motion < 3) return motion == axis ? population.positioning : population.straightness;

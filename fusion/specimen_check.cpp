@@ -22,9 +22,8 @@ std::vector<SpecimenLength> CheckSpecimen(const map::ErrorMap& map,
   for (const simulation::Length& each : lengths) {
     const Vector3d apart = after.col(each.to) - after.col(each.from);
     const Eigen::RowVectorXd J_length =
-        apart.normalized().transpose() *
-        (J[static_cast<std::size_t>(each.to)] - J[static_cast<std::size_t>(each.from)]);
-    checked.push_back({read.rows[static_cast<std::size_t>(each.to)], each.length,
+        apart.normalized().transpose() * (J[each.to] - J[each.from]);
+    checked.push_back({read.rows[each.to], each.length,
                        (before.col(each.to) - before.col(each.from)).norm(), apart.norm(),
                        std::sqrt(J_length * map.cov_pp() * J_length.transpose())});
   }

@@ -28,14 +28,14 @@ MatrixXd UnknownDisplacement(const machine::VolumetricModel& model, const Eigen:
     Eigen::Vector3d at;
     Index place = point;
     for (Index axis = 0; axis < 3; ++axis, place /= kPoints) {
-      const auto& travel = model.travels()[static_cast<std::size_t>(axis)];
+      const auto& travel = model.travels()[axis];
       const auto part = static_cast<double>(place % kPoints) / (kPoints - 1);
       at[axis] = travel.first + part * (travel.last - travel.first);
     }
     const Eigen::Matrix3Xd J = model.Linearize(at, p_TQ).J_error_parameters;
     squares += (J * variance.asDiagonal()).cwiseProduct(J).sum() / 3.0;
   }
-  const double mean = squares / static_cast<double>(kPoints * kPoints * kPoints);
+  const double mean = squares / (kPoints * kPoints * kPoints);
   return (displacement * displacement / mean) * MatrixXd(variance.asDiagonal());
 }
 

@@ -25,7 +25,7 @@ simulation::LinkageRun Planned(const simulation::LinkageSimulation& simulation,
 
 double RmsAt(const PoseInformation& where, const MatrixXd& covariance) {
   const MatrixXd JC = where.tip * covariance;
-  return std::sqrt(JC.cwiseProduct(where.tip).sum() / static_cast<double>(where.poses()));
+  return std::sqrt(JC.cwiseProduct(where.tip).sum() / where.poses());
 }
 
 }  // namespace

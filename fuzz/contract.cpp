@@ -78,7 +78,7 @@ class MemoryBound {
 std::size_t MostHeld() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+  return usage.ru_maxrss * 1024;
 }
 
 class MemoryBound {

@@ -9,7 +9,7 @@ void Read(Bytes bytes) {
   Eigen::Vector3d middle;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto& travel = map.model().travels()[axis];
-    middle[static_cast<Eigen::Index>(axis)] = travel.first / 2 + travel.last / 2;
+    middle[axis] = travel.first / 2 + travel.last / 2;
   }
   map.Error(middle, map.origin().tool);
   if (map.StatesUncertainty()) map.Covariance(middle, map.origin().tool);

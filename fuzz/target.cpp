@@ -16,7 +16,7 @@ InputFile::InputFile(Bytes bytes) : file_(memfd_create("input", 0)) {
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t size = write(file_, bytes.data() + done, bytes.size() - done);
     Require(size > 0, "a file in memory can be written");
-    done += static_cast<std::size_t>(size);
+    done += size;
   }
   path_ = "/proc/self/fd/" + std::to_string(file_);
 }

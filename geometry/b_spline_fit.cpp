@@ -175,7 +175,7 @@ BSplineFit FitBSpline(const BSplineBasis& basis, const Eigen::VectorXd& x, const
   const Eigen::Vector2d removed = line * solution.coefficients;
 
   const Eigen::VectorXd residuals = y - B * solution.coefficients;
-  const double points = static_cast<double>(x.size());
+  const double points = x.size();
   const double effective_parameters = solution.seen.squaredNorm();
   const double redundancy = points - effective_parameters;
   const bool weighted = options.weights.size() != 0;

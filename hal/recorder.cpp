@@ -60,7 +60,7 @@ RecordOutcome Record(SampleSource& source, Clock& clock, recording::Writer& writ
   writer.Close();
   outcome.flagged = samples.flagged();
   outcome.worst_skew_s = samples.worst_skew_s();
-  outcome.mean_skew_s = outcome.rows == 0 ? 0.0 : skews_s / static_cast<double>(outcome.rows);
+  outcome.mean_skew_s = outcome.rows == 0 ? 0.0 : skews_s / outcome.rows;
   outcome.seconds = clock.Now() - start_s;
   outcome.fault = source.Fault();
   outcome.worst_channel = samples.WorstChannel();

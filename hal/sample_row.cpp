@@ -31,9 +31,8 @@ std::string SampleRow::WorstChannel() const {
   const auto worst = std::max_element(bad_.begin(), bad_.end(),
                                       [](const Bad& a, const Bad& b) { return a.rows < b.rows; });
   if (worst == bad_.end() || worst->rows == 0) return {};
-  return fmt::format("{} was bad in {} rows, last: {}",
-                     channels_[static_cast<std::size_t>(worst - bad_.begin())].name, worst->rows,
-                     NameOf(worst->last));
+  return fmt::format("{} was bad in {} rows, last: {}", channels_[worst - bad_.begin()].name,
+                     worst->rows, NameOf(worst->last));
 }
 
 }  // namespace abbe::hal

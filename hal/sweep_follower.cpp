@@ -81,7 +81,7 @@ void SweepFollower::CountVisit(double time_s, bool good) {
 std::size_t SweepFollower::VisitIndex() const {
   const std::size_t count = plan_.stations.size();
   const std::size_t in_run = state_.direction > 0 ? *state_.station : count - 1 - *state_.station;
-  const auto run = static_cast<std::size_t>(2 * (state_.pass - 1) + (state_.direction > 0 ? 0 : 1));
+  const std::size_t run = 2 * (state_.pass - 1) + (state_.direction > 0 ? 0 : 1);
   return run * count + in_run;
 }
 

@@ -36,7 +36,7 @@ std::vector<double> SteppedStations(const settings::Table& table) {
   const auto count = static_cast<std::size_t>(whole);
   std::vector<double> stations;
   for (std::size_t i = 0; i <= count; ++i) {
-    stations.push_back(first + (last - first) * static_cast<double>(i) / whole);
+    stations.push_back(first + (last - first) * i / whole);
   }
   return stations;
 }
@@ -90,7 +90,7 @@ SweepPlan ReadSweepPlan(const settings::Table& sweep, char axis) {
                       i + 1, least / settings::kMillimetre));
     }
   }
-  if (2.0 * plan.passes * static_cast<double>(plan.stations.size()) > kMostVisits) {
+  if (2.0 * plan.passes * plan.stations.size() > kMostVisits) {
     throw sweep.Error("passes",
                       fmt::format("{} over {} stations are more than a sweep takes ({:g} visits); "
                                   "give fewer",

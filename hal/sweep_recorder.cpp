@@ -29,12 +29,12 @@ std::vector<std::size_t> ColumnsOf(const std::vector<Channel>& channels) {
     // The controller's own pass, direction and feed are replaced by the follower's (Write()).
     const auto own = std::ranges::find(kOwn, channel.name);
     if (own != kOwn.end()) {
-      columns.push_back(kPass + static_cast<std::size_t>(own - kOwn.begin()));
+      columns.push_back(kPass + (own - kOwn.begin()));
       continue;
     }
     const char axis = channel.name[0];
     const bool position = channel.name.substr(1) == "_mm" && axis >= 'x' && axis <= 'z';
-    columns.push_back(position ? kX + static_cast<std::size_t>(axis - 'x') : column++);
+    columns.push_back(position ? kX + (axis - 'x') : column++);
   }
   return columns;
 }
@@ -54,7 +54,7 @@ class SweepRecorder {
         row_(SweepColumns(source.channels()).size()),
         samples_(source.channels(), ColumnsOf(source.channels())) {
     for (std::size_t i = 0; i < 3; ++i) row_[kX + i] = options.rest[i] / kMillimetre;
-    swept_ = kX + static_cast<std::size_t>(plan.axis - 'X');
+    swept_ = kX + (plan.axis - 'X');
     const auto columns = ColumnsOf(source.channels());
     has_position_ = std::find(columns.begin(), columns.end(), swept_) != columns.end();
   }
@@ -148,8 +148,7 @@ class SweepRecorder {
     for (std::size_t i = 0; i < visits_.size(); ++i) {
       const bool goes_on = Arrived(visits_[i]) && Dwell(visits_[i]);
       if (!goes_on) {
-        outcome_.lacking.insert(outcome_.lacking.end(), visits_.begin() + static_cast<long>(i),
-                                visits_.end());
+        outcome_.lacking.insert(outcome_.lacking.end(), visits_.begin() + i, visits_.end());
         return source_.Ended() ? SweepEnd::kSourceEnded : SweepEnd::kStopped;
       }
       Report(i + 1);

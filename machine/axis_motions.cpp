@@ -28,7 +28,7 @@ int PieceDegree(const FunctionForm& form) {
 Eigen::VectorXd Nodes(int degree) {
   Eigen::VectorXd nodes = Eigen::VectorXd::Zero(degree + 1);
   for (Index i = 1; i <= degree; ++i) {
-    nodes[i] = (1 - std::cos(std::numbers::pi * static_cast<double>(i) / degree)) / 2;
+    nodes[i] = (1 - std::cos(std::numbers::pi * i / degree)) / 2;
   }
   return nodes;
 }
@@ -52,7 +52,7 @@ AxisMotions::AxisMotions(int axis, const std::array<ErrorFunction, kMotions>& fu
       ends_{travel_.first, travel_.last} {
   std::vector<std::pair<int, const ErrorFunction*>> polynomials;
   for (int motion = 0; motion < kMotions; ++motion) {
-    const ErrorFunction& function = functions[static_cast<std::size_t>(motion)];
+    const ErrorFunction& function = functions[motion];
     if (function.form() == nullptr) continue;
     const int degree = PieceDegree(*function.form());
     if (degree < 1 || degree > kMostDegree) {
@@ -84,11 +84,11 @@ AxisMotions::AxisMotions(int axis, const std::array<ErrorFunction, kMotions>& fu
   }
 
   const std::size_t cells = 2 * per_width_.size();
-  cells_per_m_ = static_cast<double>(cells) / (travel_.last - travel_.first);
+  cells_per_m_ = cells / (travel_.last - travel_.first);
   for (std::size_t cell = 0; cell < cells; ++cell) {
-    const double begin = travel_.first + static_cast<double>(cell) / cells_per_m_;
+    const double begin = travel_.first + cell / cells_per_m_;
     const auto after = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, begin);
-    first_piece_.push_back(static_cast<std::size_t>(after - ends_.begin()) - 1);
+    first_piece_.push_back((after - ends_.begin()) - 1);
   }
 }
 
@@ -103,7 +103,7 @@ geometry::ErrorVector<double> AxisMotions::At(double x) const {
   if (!(x >= travel_.first && x <= travel_.last)) x = InTravel(travel_, axis_, x);
   const std::size_t piece = PieceOf(x);
   const double t = (x - ends_[piece]) * per_width_[piece];
-  const auto* const c = &coefficients_[piece * static_cast<std::size_t>(degree_ + 1)];
+  const auto* const c = &coefficients_[piece * (degree_ + 1)];
   geometry::ErrorVector<double> errors = c[degree_];
   for (int k = degree_ - 1; k >= 0; --k) errors = c[k] + t * errors;
   for (const auto& [motion, function] : others_) errors[motion] = function.Evaluate(x);

@@ -136,9 +136,7 @@ std::string Chain::PositiveText() const {
   return text;
 }
 
-double Chain::CarriageSense(char axis) const {
-  return carriage_sense_[static_cast<std::size_t>(axis - 'X')];
-}
+double Chain::CarriageSense(char axis) const { return carriage_sense_[axis - 'X']; }
 
 double Chain::ToolSense(char axis) const {
   return CarriesTarget(axis) ? -CarriageSense(axis) : CarriageSense(axis);

@@ -10,9 +10,9 @@ using Eigen::Vector3d;
 AxisMotions MotionsOf(const VolumetricModel& model, int axis) {
   std::array<ErrorFunction, kMotions> functions;
   for (int motion = 0; motion < kMotions; ++motion) {
-    functions[static_cast<std::size_t>(motion)] = model.Function(axis, motion);
+    functions[motion] = model.Function(axis, motion);
   }
-  return {axis, functions, model.travels()[static_cast<std::size_t>(axis)]};
+  return {axis, functions, model.travels()[axis]};
 }
 
 // exp(turn) v; for small turns without the matrix: sin(a)/a and (1 - cos(a))/a^2 by their series,
@@ -40,20 +40,19 @@ Vector3d VolumetricField::ErrorOf(const Vector3d& position, const Vector3d& p_TQ
                                   const AxisErrors& errors) const {
   Vector3d p = p_TQ;
   const auto shift = [&](std::size_t axis) -> Vector3d {
-    const auto at = static_cast<Eigen::Index>(axis);
     const double sense = chain_.CarriageSense("XYZ"[axis]);
-    Vector3d way = errors[axis].head<3>() + sense * position[at] * lines_[axis];
-    if (sense < 0.0) way[at] -= 2.0 * errors[axis][at];
+    Vector3d way = errors[axis].head<3>() + sense * position[axis] * lines_[axis];
+    if (sense < 0.0) way[axis] -= 2.0 * errors[axis][axis];
     return way;
   };
   const std::string& tool = chain_.tool_axes();
   for (auto letter = tool.rbegin(); letter != tool.rend(); ++letter) {
-    const auto axis = static_cast<std::size_t>(*letter - 'X');
+    const std::size_t axis = *letter - 'X';
     p = Turned(errors[axis].tail<3>(), p) + shift(axis);
   }
   const std::string& work = chain_.workpiece_axes();
   for (auto letter = work.rbegin(); letter != work.rend(); ++letter) {
-    const auto axis = static_cast<std::size_t>(*letter - 'X');
+    const std::size_t axis = *letter - 'X';
     p = Turned(-errors[axis].tail<3>(), p - shift(axis));
   }
   return p - NominalToolInWork<double>(chain_, position, p_TQ);
@@ -71,8 +70,7 @@ Eigen::Matrix3Xd VolumetricField::Errors(const Eigen::Matrix3Xd& positions,
   for (Eigen::Index i = 0; i < positions.cols(); ++i) {
     for (int axis = 0; axis < kAxes; ++axis) {
       if (i > 0 && positions(axis, i) == positions(axis, i - 1)) continue;
-      const auto at = static_cast<std::size_t>(axis);
-      errors[at] = axes_[at].At(positions(axis, i));
+      errors[axis] = axes_[axis].At(positions(axis, i));
     }
     result.col(i) = ErrorOf(positions.col(i), p_TQ, errors);
   }

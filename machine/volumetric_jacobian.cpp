@@ -22,7 +22,7 @@ Matrix3d LineJacobian(int axis, const Vector3d& squareness) {
 // on the workpiece side; sense: its CarriageSense.
 void AddCarriage(int axis, double side, double sense, const Matrix3d& R_Wa, const Vector3d& arm,
                  double q, const MotionErrors<double>& errors, VolumetricJacobian& out) {
-  const Vector3d turn = errors.axes[static_cast<std::size_t>(axis)].tail<3>();
+  const Vector3d turn = errors.axes[axis].tail<3>();
   const Matrix3d R = side * R_Wa;
   out.J_error_motions.middleCols<3>(kMotions * axis) = R;
   out.J_error_motions.col(kMotions * axis + axis) *= sense;

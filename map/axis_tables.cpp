@@ -19,8 +19,7 @@ machine::Travel TravelOf(const AxisTables& tables, int axis) {
   machine::Travel travel{-std::numeric_limits<double>::infinity(),
                          std::numeric_limits<double>::infinity()};
   for (int motion = 0; motion < kMotions; ++motion) {
-    const auto& positions =
-        tables.errors[static_cast<std::size_t>(kMotions * axis + motion)].positions;
+    const auto& positions = tables.errors[kMotions * axis + motion].positions;
     if (positions.empty()) continue;
     travel.first = std::max(travel.first, positions.front());
     travel.last = std::min(travel.last, positions.back());
@@ -49,7 +48,7 @@ geometry::ErrorVector<double> OnToolSide(const machine::Chain& chain, int axis, 
   const auto X = machine::CarriagePose<double>(axis, sense, q, errors).Inverse();
   geometry::ErrorVector<double> turned;
   turned << X.p - q * machine::LineOf<double>(axis, errors.squareness),
-      -errors.axes[static_cast<std::size_t>(axis)].tail<3>();
+      -errors.axes[axis].tail<3>();
   return turned;
 }
 
@@ -71,17 +70,17 @@ AxisTables Tabulate(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
     tables.header.positive = all_tool.PositiveText();
   }
   for (int axis = 0; axis < kAxes; ++axis) {
-    const machine::Travel& travel = model.travels()[static_cast<std::size_t>(axis)];
-    const auto count = counts[static_cast<std::size_t>(axis)];
+    const machine::Travel& travel = model.travels()[axis];
+    const auto count = counts[axis];
     if (count < 2)
       throw InputError(fmt::format("{} points along an axis: give two or more", count));
     for (Eigen::Index i = 0; i < count; ++i) {
-      const double along = static_cast<double>(i) / static_cast<double>(count - 1);
+      const double along = i / static_cast<double>(count - 1);
       const double q =
           i == count - 1 ? travel.last : travel.first + along * (travel.last - travel.first);
       machine::MotionErrors<double> errors;
       errors.squareness = model.squareness();
-      auto& own = errors.axes[static_cast<std::size_t>(axis)];
+      auto& own = errors.axes[axis];
       for (int motion = 0; motion < kMotions; ++motion) {
         own[motion] = model.Function(axis, motion).Evaluate(q);
       }
@@ -89,7 +88,7 @@ AxisTables Tabulate(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
         own = OnToolSide(model.chain(), axis, q, errors);
       }
       for (int motion = 0; motion < kMotions; ++motion) {
-        ErrorTable& table = tables.errors[static_cast<std::size_t>(kMotions * axis + motion)];
+        ErrorTable& table = tables.errors[kMotions * axis + motion];
         table.positions.push_back(q);
         table.values.push_back(own[motion]);
       }
@@ -127,18 +126,16 @@ std::vector<std::string> SignOfTables(const AxisTables& tables) {
 ErrorMap MapOfTables(const AxisTables& tables) {
   std::array<machine::Travel, kAxes> travels;
   const machine::Chain chain = ChainOf(tables.header);
-  for (int axis = 0; axis < kAxes; ++axis)
-    travels[static_cast<std::size_t>(axis)] = TravelOf(tables, axis);
+  for (int axis = 0; axis < kAxes; ++axis) travels[axis] = TravelOf(tables, axis);
   machine::VolumetricModel model(chain, travels);
   for (int axis = 0; axis < kAxes; ++axis) {
     for (int motion = 0; motion < kMotions; ++motion) {
-      const ErrorTable& table = tables.errors[static_cast<std::size_t>(kMotions * axis + motion)];
+      const ErrorTable& table = tables.errors[kMotions * axis + motion];
       if (table.positions.empty()) continue;
       model.SetForm(axis, motion, machine::MakeTableForm(table.positions), machine::Gauge::kNone);
       model.SetCoefficients(
           axis, motion,
-          Eigen::Map<const Eigen::VectorXd>(table.values.data(),
-                                            static_cast<Eigen::Index>(table.values.size())));
+          Eigen::Map<const Eigen::VectorXd>(table.values.data(), table.values.size()));
     }
   }
   model.SetSquareness(tables.squareness);

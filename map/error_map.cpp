@@ -14,13 +14,13 @@ namespace {
 constexpr double kAsymmetry = 1e-9;
 
 void RefuseBadCovariance(const Eigen::MatrixXd& cov, const std::vector<std::string>& names) {
-  const auto count = static_cast<Eigen::Index>(names.size());
+  const Eigen::Index count = names.size();
   if (cov.rows() != count || cov.cols() != count) {
     throw InputError(fmt::format("a covariance of {} x {} for a map of {} parameters", cov.rows(),
                                  cov.cols(), count));
   }
   for (Eigen::Index i = 0; i < count; ++i) {
-    const std::string& name = names[static_cast<std::size_t>(i)];
+    const std::string& name = names[i];
     if (!cov.row(i).allFinite()) {
       throw InputError(fmt::format("the covariance of {} is not finite", name));
     }
@@ -41,7 +41,7 @@ std::string ErrorName(int error) {
   if (error < motions) {
     return machine::MotionName(error / machine::kMotions, error % machine::kMotions);
   }
-  return std::array{"A0Z", "B0Z", "C0Y"}[static_cast<std::size_t>(error - motions)];
+  return std::array{"A0Z", "B0Z", "C0Y"}[error - motions];
 }
 
 int ErrorNamed(std::string_view name) {

@@ -81,16 +81,15 @@ GridFile ReadCsvGrid(const std::filesystem::path& path) {
     for (double& position : positions) position *= 1e-3;
     return AxisOfPositions(positions, path.string());
   };
-  const GridAxis x = axis(0, 1), y = axis(1, static_cast<std::size_t>(x.count)),
-                 z = axis(2, static_cast<std::size_t>(x.count * y.count));
-  const auto count = static_cast<Eigen::Index>(rows.size());
+  const GridAxis x = axis(0, 1), y = axis(1, x.count), z = axis(2, x.count * y.count);
+  const Eigen::Index count = rows.size();
   if (count != x.count * y.count * z.count) {
     throw InputError(fmt::format("{}: {} rows for a grid of {} x {} x {} points; it is cut off",
                                  path.string(), count, x.count, y.count, z.count));
   }
   Eigen::Matrix3Xd error(3, count), u95(3, columns == 9 ? count : 0);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const auto& row = rows[static_cast<std::size_t>(i)];
+    const auto& row = rows[i];
     error.col(i) = 1e-6 * Eigen::Vector3d(row[3], row[4], row[5]);
     if (columns == 9) u95.col(i) = 1e-6 * Eigen::Vector3d(row[6], row[7], row[8]);
   }

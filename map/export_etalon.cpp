@@ -46,10 +46,10 @@ class EtalonReader {
       }
     } else if (content.starts_with('[') && content.ends_with(']')) {
       error_ = SectionNamed(content.substr(1, content.size() - 2));
-      if (seen_.test(static_cast<std::size_t>(error_))) {
+      if (seen_.test(error_)) {
         throw Refused(ErrorName(error_) + " is given twice");
       }
-      seen_.set(static_cast<std::size_t>(error_));
+      seen_.set(error_);
     } else {
       TakeAssignment(content);
     }
@@ -78,7 +78,7 @@ class EtalonReader {
   void TakePoint(std::string_view content) {
     const auto numbers = NumbersOf(content, lines_.Where());
     if (numbers.size() != 2) throw Refused("expected a position and a value");
-    ErrorTable& table = tables_.errors[static_cast<std::size_t>(error_)];
+    ErrorTable& table = tables_.errors[error_];
     table.positions.push_back(numbers[0] * kMillimetre);
     table.values.push_back(numbers[1] * TableUnit(error_));
   }
@@ -98,7 +98,7 @@ Format::Paths WriteEtalon(const ErrorMap& map, const ExportOptions& options,
   const AxisTables tables = Tabulate(map, options.tool, options.counts);
   std::string text = HeaderText(tables.header, "//", SignOfTables(tables));
   for (int error = 0; error < kFunctions; ++error) {
-    const ErrorTable& table = tables.errors[static_cast<std::size_t>(error)];
+    const ErrorTable& table = tables.errors[error];
     text += fmt::format("[{}]\nGridpoints = {{\n", ErrorName(error));
     for (std::size_t i = 0; i < table.positions.size(); ++i) {
       text += fmt::format("{} {}\n", table.positions[i] / kMillimetre,

@@ -21,12 +21,12 @@ GridFile GridFileOf(const ErrorMap& map, const ExportOptions& options) {
 }
 
 GridAxis AxisOfPositions(const std::vector<double>& positions, const std::string& where) {
-  const auto count = static_cast<Eigen::Index>(positions.size());
+  const Eigen::Index count = positions.size();
   if (count < 2) throw InputError(where + ": a grid needs at least two positions along each axis");
   const GridAxis axis{positions.front(), positions.back(), count};
   for (Eigen::Index i = 0; i < count; ++i) {
     // The file holds mm: allow for the rounding of the conversion.
-    if (!(std::abs(positions[static_cast<std::size_t>(i)] - axis.At(i)) <= 1e-9 * axis.Step())) {
+    if (!(std::abs(positions[i] - axis.At(i)) <= 1e-9 * axis.Step())) {
       throw InputError(
           fmt::format("{}: position {} is not on a grid of equal steps", where, i + 1));
     }
@@ -35,9 +35,9 @@ GridAxis AxisOfPositions(const std::vector<double>& positions, const std::string
 }
 
 std::vector<double> Millimetres(const GridAxis& axis) {
-  std::vector<double> positions(static_cast<std::size_t>(axis.count));
+  std::vector<double> positions(axis.count);
   for (Eigen::Index i = 0; i < axis.count; ++i) {
-    positions[static_cast<std::size_t>(i)] = axis.At(i) * 1e3;
+    positions[i] = axis.At(i) * 1e3;
   }
   return positions;
 }

@@ -64,7 +64,7 @@ void TakeRow(const std::vector<double>& row, const Columns& columns, AxisTables&
     if (error >= kErrors - 3) {
       tables.squareness[error - (kErrors - 3)] = value;
     } else {
-      ErrorTable& table = tables.errors[static_cast<std::size_t>(error)];
+      ErrorTable& table = tables.errors[error];
       table.positions.push_back(row[columns.position] * kMillimetre);
       table.values.push_back(value);
     }
@@ -78,7 +78,7 @@ Format::Paths WriteIsg(const ErrorMap& map, const ExportOptions& options,
   const AxisTables tables = Tabulate(map, options.tool, options.counts);
   std::string text = HeaderText(tables.header, "//", SignOfTables(tables));
   for (int axis = 0; axis < machine::kAxes; ++axis) {
-    const auto first = static_cast<std::size_t>(kMotions * axis);
+    const std::size_t first = kMotions * axis;
     text += "XYZ"[axis];
     for (int motion = 0; motion < kMotions; ++motion)
       text += fmt::format(" {}", machine::MotionName(axis, motion));
@@ -87,8 +87,7 @@ Format::Paths WriteIsg(const ErrorMap& map, const ExportOptions& options,
       text += fmt::format("{}", tables.errors[first].positions[row] / kMillimetre);
       for (int motion = 0; motion < kMotions; ++motion) {
         const int error = kMotions * axis + motion;
-        text += fmt::format(
-            " {}", tables.errors[static_cast<std::size_t>(error)].values[row] / TableUnit(error));
+        text += fmt::format(" {}", tables.errors[error].values[row] / TableUnit(error));
       }
       text += '\n';
     }

@@ -23,11 +23,10 @@ Json Triples(const Eigen::Matrix3Xd& values) {
 }
 
 Eigen::Matrix3Xd OfTriples(const Json& list) {
-  Eigen::Matrix3Xd values(3, static_cast<Eigen::Index>(list.size()));
+  Eigen::Matrix3Xd values(3, list.size());
   for (Eigen::Index i = 0; i < values.cols(); ++i) {
     for (Eigen::Index k = 0; k < 3; ++k) {
-      values(k, i) =
-          1e-6 * list.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(k)).get<double>();
+      values(k, i) = 1e-6 * list.at(i).at(k).get<double>();
     }
   }
   return values;
@@ -44,7 +43,7 @@ GridFile FileOf(const Json& json, const std::string& where) {
   header.scale = json.at("scale").get<std::string>();
   std::array<GridAxis, 3> axes;
   for (std::size_t k = 0; k < 3; ++k) {
-    header.tool[static_cast<Eigen::Index>(k)] = json.at("tool_mm").at(k).get<double>() * 1e-3;
+    header.tool[k] = json.at("tool_mm").at(k).get<double>() * 1e-3;
     auto positions = json.at(kPositionKeys[k]).get<std::vector<double>>();
     for (double& position : positions) position *= 1e-3;
     axes[k] = AxisOfPositions(positions, where);

@@ -27,7 +27,7 @@ double AxisCurve::At(double position) const {
   if (position <= positions.front()) return values.front();
   if (position >= positions.back()) return values.back();
   const auto above = std::upper_bound(positions.begin(), positions.end(), position);
-  const auto i = static_cast<std::size_t>(above - positions.begin());
+  const std::size_t i = above - positions.begin();
   const double part = (position - positions[i - 1]) / (positions[i] - positions[i - 1]);
   return values[i - 1] + part * (values[i] - values[i - 1]);
 }
@@ -41,14 +41,13 @@ Format::Paths WriteLinuxcnc(const ErrorMap& map, const ExportOptions& options,
                                (travels[2].first + travels[2].last) / 2);
   Format::Paths files;
   for (int axis = 0; axis < machine::kAxes; ++axis) {
-    const auto k = static_cast<std::size_t>(axis);
-    if (options.counts[k] < 2 || options.counts[k] > kLinuxcncPoints) {
+    if (options.counts[axis] < 2 || options.counts[axis] > kLinuxcncPoints) {
       throw InputError(
           fmt::format("{} points for {}: a .comp of LinuxCNC takes 2 to {}; give fewer "
                       "with --points",
-                      options.counts[k], "XYZ"[axis], kLinuxcncPoints));
+                      options.counts[axis], "XYZ"[axis], kLinuxcncPoints));
     }
-    const GridAxis stations{travels[k].first, travels[k].last, options.counts[k]};
+    const GridAxis stations{travels[axis].first, travels[axis].last, options.counts[axis]};
     std::string text;
     for (Eigen::Index i = 0; i < stations.count; ++i) {
       Eigen::Vector3d position = middle;

@@ -71,7 +71,7 @@ void TakeLine(std::string_view line, const std::string& where,
   const auto index = PartsOf(line.substr(open + 1, close - open - 1), ',');
   const std::string_view value = Trimmed(line.substr(equals + 1));
   const std::string_view key = Trimmed(line.substr(7, open - 7));
-  CecTable& table = tables[static_cast<std::size_t>(IndexOf(index[0], kTables, where))];
+  CecTable& table = tables[IndexOf(index[0], kTables, where)];
   if (key.empty()) {
     if (index.size() != 2) throw InputError(where + ": expected $AN_CEC[table,point]");
     table.values[IndexOf(index[1], kMaxPoints, where)] = NumberOf(value, where);
@@ -97,9 +97,8 @@ AxisCurve CurveOf(const CecTable& table, int number, const std::string& file) {
   if (table.input < 0 || table.output < 0) throw refused("lacks its axes");
   const double step = table.numbers.at("STEP"), first = table.numbers.at("MIN");
   const double points = (table.numbers.at("MAX") - first) / step + 1;
-  if (!(step > 0.0) || std::lround(points) != static_cast<long>(table.values.size()) ||
-      table.values.size() < 2 ||
-      table.values.rbegin()->first + 1 != static_cast<int>(table.values.size())) {
+  if (!(step > 0.0) || std::lround(points) != std::ssize(table.values) || table.values.size() < 2 ||
+      table.values.rbegin()->first + 1 != std::ssize(table.values)) {
     throw refused(fmt::format("has {} values where MIN, MAX and STEP make {:.6g} points",
                               table.values.size(), points));
   }
@@ -118,17 +117,16 @@ Format::Paths WriteSinumerik(const ErrorMap& map, const ExportOptions& options,
   const Eigen::Vector3d signs = map.model().chain().ToolSenses();
   const auto& travels = map.model().travels();
   Eigen::Vector3d middle;
-  for (std::size_t k = 0; k < 3; ++k) {
-    middle[static_cast<int>(k)] = (travels[k].first + travels[k].last) / 2;
+  for (int k = 0; k < 3; ++k) {
+    middle[k] = (travels[k].first + travels[k].last) / 2;
   }
   const Eigen::Vector3d at_middle = map.Error(middle, options.tool);
   std::string text = "%_N_NC_CEC_INI\n" + HeaderText(HeaderOf(map, options.tool), ";", kSignOfCec) +
                      "CHANDATA(1)\n";
   for (int table = 0; table < kTables; ++table) {
     const int input = table / 3, output = table % 3;
-    const auto k = static_cast<std::size_t>(input);
-    if (options.counts[k] < 2) throw InputError("a CEC table takes at least two points");
-    const GridAxis stations{travels[k].first, travels[k].last, options.counts[k]};
+    if (options.counts[input] < 2) throw InputError("a CEC table takes at least two points");
+    const GridAxis stations{travels[input].first, travels[input].last, options.counts[input]};
     std::vector<double> values;
     for (Eigen::Index i = 0; i < stations.count; ++i) {
       Eigen::Vector3d position = middle;
@@ -163,7 +161,7 @@ ErrorField ReadBackSinumerik(const Format::Paths& files, const machine::Chain& c
   };
   std::vector<Relation> relations;
   for (int t = 0; t < kTables; ++t) {
-    const CecTable& table = tables[static_cast<std::size_t>(t)];
+    const CecTable& table = tables[t];
     relations.push_back({table.input, table.output, CurveOf(table, t, files.front().string())});
   }
   const Eigen::Vector3d signs = chain.ToolSenses();

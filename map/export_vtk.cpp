@@ -54,8 +54,7 @@ std::vector<double> ArrayNamed(const std::string& text, const std::string& name,
 
 Eigen::Matrix3Xd OfMicrometres(const std::vector<double>& values, const std::string& where) {
   if (values.size() % 3 != 0) throw InputError(where + ": an array of vectors lacks a component");
-  return 1e-6 * Eigen::Map<const Eigen::Matrix3Xd>(values.data(), 3,
-                                                   static_cast<Eigen::Index>(values.size() / 3));
+  return 1e-6 * Eigen::Map<const Eigen::Matrix3Xd>(values.data(), 3, values.size() / 3);
 }
 
 }  // namespace

@@ -107,8 +107,7 @@ StoredValues ReadAll(const std::filesystem::path& path) {
 }
 
 Eigen::Matrix3Xd VectorsOf(const std::vector<double>& values) {
-  return 1e-6 * Eigen::Map<const Eigen::Matrix3Xd>(values.data(), 3,
-                                                   static_cast<Eigen::Index>(values.size() / 3));
+  return 1e-6 * Eigen::Map<const Eigen::Matrix3Xd>(values.data(), 3, values.size() / 3);
 }
 
 void PutGrid(hid_t file, const GridFile& content, const std::filesystem::path& path) {

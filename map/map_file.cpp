@@ -150,10 +150,10 @@ void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin
   const int error = ErrorNamed(name);
   if (error < 0 || error >= kErrors - 3)
     throw table.Error("name", "is not an error motion; write EXX ... ECZ");
-  if (std::exchange(seen[static_cast<std::size_t>(error)], true)) {
+  if (std::exchange(seen[error], true)) {
     throw table.Error("name", name + " is given twice");
   }
-  origin.sources[static_cast<std::size_t>(error)] = SourceNamed(table, "from", table.Text("from"));
+  origin.sources[error] = SourceNamed(table, "from", table.Text("from"));
   const int axis = error / machine::kMotions, motion = error % machine::kMotions;
   const std::string form = table.Text("form");
   FormShape shape;
@@ -162,12 +162,11 @@ void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin
   }
   const auto made = Located(table, "form", [&] { return machine::FormOf(form, shape); });
   // Checked before memory is allocated for the size in the shape.
-  const auto c = table.Quantities("coefficients", static_cast<std::size_t>(made->size()));
+  const auto c = table.Quantities("coefficients", made->size());
   const bool bare = table.Choice("gauge", {"zero at start", "none"}) == "none";
   const auto gauge = bare ? machine::Gauge::kNone : machine::Gauge::kZeroAtStart;
   Located(table, "form", [&] { return model.SetForm(axis, motion, made, gauge); });
-  model.SetCoefficients(axis, motion,
-                        Eigen::Map<const Eigen::VectorXd>(c.data(), static_cast<Index>(c.size())));
+  model.SetCoefficients(axis, motion, Eigen::Map<const Eigen::VectorXd>(c.data(), c.size()));
   table.RefuseUnknown();
 }
 
@@ -175,8 +174,8 @@ Eigen::MatrixXd ReadCovariance(const Table& table, const std::vector<std::string
   if (table.Texts("names", 0) != names) {
     throw table.Error("names", "are not the parameters of this map; write the map anew");
   }
-  const auto n = static_cast<Index>(names.size());
-  const auto rows = table.Quantities("rows", static_cast<std::size_t>(n * (n + 1) / 2));
+  const Index n = names.size();
+  const auto rows = table.Quantities("rows", n * (n + 1) / 2);
   Eigen::MatrixXd cov(n, n);
   std::size_t at = 0;
   for (Index i = 0; i < n; ++i) {
@@ -194,8 +193,7 @@ void WriteMap(const ErrorMap& map, const std::filesystem::path& path) {
     const auto& function =
         map.model().Function(error / machine::kMotions, error % machine::kMotions);
     if (function.form() == nullptr) continue;
-    text += FunctionText(ErrorName(error), map.origin().sources[static_cast<std::size_t>(error)],
-                         function);
+    text += FunctionText(ErrorName(error), map.origin().sources[error], function);
   }
   if (map.StatesUncertainty()) text += CovarianceText(map);
   WriteWhole(text, path);

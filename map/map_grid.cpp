@@ -59,7 +59,7 @@ MapGrid::MapGrid(const std::array<GridAxis, 3>& axes, Eigen::Matrix3Xd error, Ei
     : axes_(axes), error_(std::move(error)), u95_(std::move(u95)) {
   Index points = 1;
   for (int k = 0; k < 3; ++k) {
-    const GridAxis& axis = axes_[static_cast<std::size_t>(k)];
+    const GridAxis& axis = axes_[k];
     if (axis.count < 2 || !(axis.first < axis.last)) {
       throw InputError(fmt::format("a grid of {} points from {} to {} m along {}: give two or more",
                                    axis.count, axis.first, axis.last, "XYZ"[k]));
@@ -83,17 +83,16 @@ Vector3d MapGrid::Error(const Vector3d& position) const {
   std::array<Index, 3> strides;
   std::array<double, 3> within;
   for (int k = 0; k < 3; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const GridAxis& axis = axes_[at];
+    const GridAxis& axis = axes_[k];
     double inside = position[k];
     if (!(inside >= axis.first && inside <= axis.last)) {  // beyond an end: by rounding, or refused
       inside = machine::InTravel({axis.first, axis.last}, k, inside);
     }
     const double steps = (inside - first_[k]) * per_step_[k];
     const Index cell = std::min(static_cast<Index>(steps), axis.count - 2);
-    within[at] = steps - static_cast<double>(cell);
+    within[k] = steps - cell;
     corner += stride * cell;
-    strides[at] = stride;
+    strides[k] = stride;
     stride *= axis.count;
   }
   const auto [x, y, z] = within;
@@ -131,7 +130,7 @@ Discrepancy Compare(const ErrorMap& map, const Vector3d& p_TQ, const ErrorField&
   for (int i = 1; i <= points; ++i) {
     Vector3d position(Halton(i, 2), Halton(i, 3), Halton(i, 5));
     for (int k = 0; k < 3; ++k) {
-      const machine::Travel& travel = map.model().travels()[static_cast<std::size_t>(k)];
+      const machine::Travel& travel = map.model().travels()[k];
       position[k] = travel.first + (travel.last - travel.first) * position[k];
     }
     comparison.Add(position, field(position));
@@ -148,7 +147,7 @@ Discrepancy InterpolationError(const ErrorMap& map, const Vector3d& p_TQ, const 
       Vector3d middle = corner;
       bool is_inside = true;
       for (int k = 0; k < 3; ++k) {
-        const GridAxis& axis = axes[static_cast<std::size_t>(k)];
+        const GridAxis& axis = axes[k];
         if ((halves >> k & 1) != 0) middle[k] += axis.Step() / 2;
         is_inside = is_inside && middle[k] <= axis.last;
       }

@@ -27,10 +27,8 @@ struct GridAxis {
   double first = 0.0, last = 0.0;  // m
   Eigen::Index count = 0;
 
-  double Step() const { return (last - first) / static_cast<double>(count - 1); }
-  double At(Eigen::Index i) const {
-    return i == count - 1 ? last : first + Step() * static_cast<double>(i);
-  }
+  double Step() const { return (last - first) / (count - 1); }
+  double At(Eigen::Index i) const { return i == count - 1 ? last : first + Step() * i; }
 };
 
 class MapGrid {

@@ -35,9 +35,8 @@ struct Readings {
 };
 
 Eigen::VectorXd At(std::span<const double> column, const std::vector<std::size_t>& rows) {
-  Eigen::VectorXd values(static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    values[static_cast<Eigen::Index>(i)] = column[rows[i]];
+  Eigen::VectorXd values(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) values[i] = column[rows[i]];
   return values;
 }
 
@@ -46,11 +45,11 @@ Readings Beside(const MeasuredPath& path, const Eigen::Matrix3Xd& seen,
                 const Eigen::Matrix3Xd& expected) {
   Readings readings;
   for (int axis = 0; axis < 3; ++axis) {
-    if (path.seen[static_cast<std::size_t>(axis)]) readings.axes.push_back("XYZ"[axis]);
+    if (path.seen[axis]) readings.axes.push_back("XYZ"[axis]);
   }
-  readings.displacement.resize(path.poses(), static_cast<Eigen::Index>(readings.axes.size()));
+  readings.displacement.resize(path.poses(), readings.axes.size());
   for (Eigen::Index k = 0; k < readings.displacement.cols(); ++k) {
-    const int axis = readings.axes[static_cast<std::size_t>(k)] - 'X';
+    const int axis = readings.axes[k] - 'X';
     readings.displacement.col(k) = (seen.row(axis) - expected.row(axis)).transpose();
   }
   return readings;
@@ -59,10 +58,9 @@ Readings Beside(const MeasuredPath& path, const Eigen::Matrix3Xd& seen,
 Readings FromGauges(const Recording& recording, const std::vector<std::size_t>& rows,
                     const std::vector<CapGauge>& gauges) {
   Readings readings;
-  readings.displacement.resize(static_cast<Eigen::Index>(rows.size()),
-                               static_cast<Eigen::Index>(gauges.size()));
+  readings.displacement.resize(rows.size(), gauges.size());
   for (Eigen::Index k = 0; k < readings.displacement.cols(); ++k) {
-    const CapGauge& gauge = gauges[static_cast<std::size_t>(k)];
+    const CapGauge& gauge = gauges[k];
     readings.axes.push_back(gauge.axis);
     readings.displacement.col(k) =
         At(recording.At(gauge.column), rows) * gauge.sign * settings::UnitOf(gauge.column).si;
@@ -106,7 +104,7 @@ std::vector<Eigen::Index> Steady(const std::vector<Eigen::Index>& group,
     if (velocity.col(i).norm() > kStandstill) speeds.push_back(velocity.col(i).norm());
   }
   if (speeds.empty()) return {};
-  const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
+  const auto middle = speeds.begin() + (speeds.size() / 2);
   std::nth_element(speeds.begin(), middle, speeds.end());
   std::vector<Eigen::Index> steady;
   for (const Eigen::Index i : group) {
@@ -139,11 +137,9 @@ std::vector<Stroke> StrokesOf(const std::vector<Eigen::Index>& rows,
     stroke.middle += commanded.col(row);
   }
   // What short strokes are: the rows of a reversal.
-  std::erase_if(strokes, [](const Stroke& stroke) {
-    return stroke.rows.size() <= static_cast<std::size_t>(2 * kSpan);
-  });
+  std::erase_if(strokes, [](const Stroke& stroke) { return std::ssize(stroke.rows) <= 2 * kSpan; });
   for (Stroke& stroke : strokes) {
-    stroke.middle /= static_cast<double>(stroke.rows.size());
+    stroke.middle /= stroke.rows.size();
     stroke.direction = (stroke.to - stroke.from).normalized();
   }
   return strokes;
@@ -179,12 +175,11 @@ std::vector<Line> LinesOf(std::vector<Stroke>& strokes, const Readings& readings
   for (Line& line : lines) {
     line.seen.resize(readings.displacement.cols());
     for (Eigen::Index k = 0; k < line.seen.size(); ++k) {
-      line.seen[k] =
-          line.strokes.front()->direction[readings.axes[static_cast<std::size_t>(k)] - 'X'];
+      line.seen[k] = line.strokes.front()->direction[readings.axes[k] - 'X'];
     }
     line.weight = line.seen.squaredNorm();
     if (line.weight < kSeen) continue;
-    const auto count = static_cast<double>(line.strokes.size());
+    const double count = line.strokes.size();
     for (Stroke* stroke : line.strokes) {
       stroke->along =
           (readings.displacement(stroke->rows, Eigen::all) * line.seen).mean() / line.weight;
@@ -227,10 +222,10 @@ void AddScatter(const std::vector<Line>& lines, const Readings& readings, CapDis
       strokes += 1.0;
     }
   }
-  result.dof = strokes - static_cast<double>(lines.size()) - 1.0;
+  result.dof = strokes - lines.size() - 1.0;
   result.u = result.dof > 0.0 ? std::sqrt(left / result.dof / square)
                               : std::numeric_limits<double>::infinity();
-  result.scatter = std::sqrt(rows / static_cast<double>(result.rows));
+  result.scatter = std::sqrt(rows / result.rows);
 }
 
 CapDisplacement Evaluate(const Readings& readings, const std::vector<Eigen::Index>& rows,

@@ -39,10 +39,7 @@ CirclePlane NamedPlane(const std::string& name, const std::string& recording) {
         "{}: plane \"{}\": name two axes, the first turning towards the second: XY, YZ or ZX",
         recording, name));
   };
-  CirclePlane plane{name,
-                    Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis(0))),
-                    Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis(1))),
-                    {}};
+  CirclePlane plane{name, Eigen::Vector3d::Unit(axis(0)), Eigen::Vector3d::Unit(axis(1)), {}};
   plane.third = plane.first.cross(plane.second);
   return plane;
 }
@@ -69,7 +66,7 @@ CirclePlane CommandedPlane(const MeasuredPath& path) {
 void RefuseUnseen(const MeasuredPath& path, const CirclePlane& plane) {
   for (int axis = 0; axis < 3; ++axis) {
     const bool needed = plane.first[axis] != 0.0 || plane.second[axis] != 0.0;
-    if (needed && !path.seen[static_cast<std::size_t>(axis)]) {
+    if (needed && !path.seen[axis]) {
       throw InputError(fmt::format(
           "{}: the {} circle needs ref_{}_mm, which the recording lacks; name the plane that was "
           "measured with --plane",
@@ -110,15 +107,14 @@ Nominal CommandedCircle(const MeasuredPath& path, const CirclePlane& plane) {
     std::vector<double> sizes(off.size());
     std::transform(off.begin(), off.end(), sizes.begin(), [](double d) { return std::abs(d); });
     std::vector<double> sorted = sizes;
-    std::nth_element(sorted.begin(),
-                     sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    std::nth_element(sorted.begin(), sorted.begin() + (sorted.size() / 2), sorted.end());
     const double limit =
         std::max(kOffCircle * nominal.circle.radius, 3.0 * sorted[sorted.size() / 2]);
     InPlane kept;
     nominal.on.clear();
     for (std::size_t i = 0; i < sizes.size(); ++i) {
-      if (sizes[i] > limit || path.direction[static_cast<Eigen::Index>(i)] == 0) continue;
-      nominal.on.push_back(static_cast<Eigen::Index>(i));
+      if (sizes[i] > limit || path.direction[i] == 0) continue;
+      nominal.on.push_back(i);
       kept.first.push_back(all.first[i]);
       kept.second.push_back(all.second[i]);
     }
@@ -143,14 +139,14 @@ double Wrapped(double angle) { return angle - kTurn * std::round(angle / kTurn);
 std::vector<int> Senses(const MeasuredPath& on, const CirclePlane& plane,
                         const standards::Circle& circle) {
   const InPlane p = Project(on.commanded, plane);
-  const auto n = static_cast<std::size_t>(on.poses());
+  const std::size_t n = on.poses();
   std::vector<int> senses(n);
   const auto angle = [&](std::size_t i) {
     return std::atan2(p.second[i] - circle.y, p.first[i] - circle.x);
   };
   for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
     const auto same = [&](std::size_t i) {
-      const auto a = static_cast<Eigen::Index>(begin), b = static_cast<Eigen::Index>(i);
+      const Eigen::Index a = begin, b = i;
       return on.pass[a] == on.pass[b] && on.direction[a] == on.direction[b] &&
              on.feed[a] == on.feed[b];
     };
@@ -159,8 +155,7 @@ std::vector<int> Senses(const MeasuredPath& on, const CirclePlane& plane,
       turned += Wrapped(angle(end) - angle(end - 1));
     }
     const int sense = turned > kLeastTurn ? 1 : turned < -kLeastTurn ? -1 : 0;
-    std::fill(senses.begin() + static_cast<std::ptrdiff_t>(begin),
-              senses.begin() + static_cast<std::ptrdiff_t>(end), sense);
+    std::fill(senses.begin() + begin, senses.begin() + end, sense);
   }
   return senses;
 }
@@ -210,7 +205,7 @@ std::vector<CircleRun> RunsOf(const MeasuredPath& path, const CircleOptions& opt
   std::vector<CircleRun> runs;
   std::size_t used = 0;
   for (Eigen::Index i = 0; i < on.poses(); ++i) {
-    const int sense = senses[static_cast<std::size_t>(i)];
+    const int sense = senses[i];
     if (sense == 0) continue;
     const Eigen::Vector3d p = on.measured.col(i) - proto.centre;
     proto.feed = on.feed[i];
@@ -225,7 +220,7 @@ std::vector<CircleRun> RunsOf(const MeasuredPath& path, const CircleOptions& opt
     throw InputError(
         fmt::format("{}: no part of the commanded path goes round the circle", path.recording));
   }
-  runs.front().left_out = path.flagged + static_cast<std::size_t>(path.poses()) - used;
+  runs.front().left_out = path.flagged + path.poses() - used;
   return runs;
 }
 
@@ -312,7 +307,7 @@ double CircleRun::Covered(int sense) const {
     const double part = point.angle / kTurn - std::floor(point.angle / kTurn);
     covered.set(std::min(kBins - 1, static_cast<std::size_t>(part * kBins)));
   }
-  return kTurn * static_cast<double>(covered.count()) / kBins;
+  return kTurn * covered.count() / kBins;
 }
 
 std::vector<CircleRun> CircleRuns(const std::vector<MeasuredPath>& paths,

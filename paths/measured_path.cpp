@@ -33,12 +33,11 @@ double Finite(const Recording& recording, std::span<const double> column, std::s
 // The column at the rows, times `si`; `fallback` where the recording lacks it.
 Eigen::VectorXd Values(const Recording& recording, const Rows& rows, const std::string& name,
                        double si, double fallback) {
-  Eigen::VectorXd values =
-      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(rows.size()), fallback);
+  Eigen::VectorXd values = Eigen::VectorXd::Constant(rows.size(), fallback);
   const Column column = recording.Find(name);
   if (!column) return values;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    values[static_cast<Eigen::Index>(i)] = Finite(recording, *column, rows[i], name) * si;
+    values[i] = Finite(recording, *column, rows[i], name) * si;
   }
   return values;
 }
@@ -61,15 +60,15 @@ MeasuredPath Commanded(const Recording& recording, const Rows& rows) {
   path.radius = ProgrammedRadius(recording);
   path.rows = rows;
   path.flagged = recording.rows() - rows.size();
-  path.commanded.resize(3, static_cast<Eigen::Index>(rows.size()));
+  path.commanded.resize(3, rows.size());
   for (int axis = 0; axis < 3; ++axis) {
     path.commanded.row(axis) =
         Values(recording, rows, PositionName(axis), settings::kMillimetre, 0.0).transpose();
   }
   path.measured = path.commanded;
-  path.time = recording.Find("time_s") ? Values(recording, rows, "time_s", 1.0, 0.0)
-                                       : Eigen::VectorXd::LinSpaced(
-                                             path.poses(), 0.0, static_cast<double>(path.poses()));
+  path.time = recording.Find("time_s")
+                  ? Values(recording, rows, "time_s", 1.0, 0.0)
+                  : Eigen::VectorXd::LinSpaced(path.poses(), 0.0, path.poses());
   path.feed = Values(recording, rows, "feed_mm_min", settings::kMillimetrePerMinute, 0.0);
   path.pass = Values(recording, rows, "pass", 1.0, 1.0).cast<int>();
   path.direction =
@@ -93,7 +92,7 @@ MeasuredPath ReferencePath(const Recording& recording) {
   path.instrument = "reference";
   for (int axis = 0; axis < 3; ++axis) {
     if (!recording.Find(ReferenceName(axis))) continue;
-    path.seen[static_cast<std::size_t>(axis)] = true;
+    path.seen[axis] = true;
     path.measured.row(axis) =
         Values(recording, path.rows, ReferenceName(axis), settings::kMillimetre, 0.0).transpose();
   }
@@ -113,7 +112,7 @@ bool HasReference(const Recording& recording) {
 
 MeasuredPath Selection(const MeasuredPath& path, const std::vector<Eigen::Index>& poses) {
   MeasuredPath part = path;
-  const auto n = static_cast<Eigen::Index>(poses.size());
+  const Eigen::Index n = poses.size();
   part.rows.clear();
   part.commanded.resize(3, n);
   part.measured.resize(3, n);
@@ -122,8 +121,8 @@ MeasuredPath Selection(const MeasuredPath& path, const std::vector<Eigen::Index>
   part.pass.resize(n);
   part.direction.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::Index from = poses[static_cast<std::size_t>(i)];
-    part.rows.push_back(path.rows[static_cast<std::size_t>(from)]);
+    const Eigen::Index from = poses[i];
+    part.rows.push_back(path.rows[from]);
     part.commanded.col(i) = path.commanded.col(from);
     part.measured.col(i) = path.measured.col(from);
     part.time[i] = path.time[from];

@@ -44,7 +44,7 @@ std::array<std::size_t, 3> Columns(std::string_view header, const std::string& f
       throw InputError(fmt::format(
           "{}: has no column {}; a nominal path begins with a line x_mm,y_mm,z_mm", file, name));
     }
-    columns[axis] = static_cast<std::size_t>(found - names.begin());
+    columns[axis] = found - names.begin();
   }
   return columns;
 }
@@ -62,7 +62,7 @@ Eigen::Vector3d Point(std::string_view line, const std::array<std::size_t, 3>& c
       throw InputError(
           fmt::format("{}: {}_mm is \"{}\", a number is expected", place, "xyz"[axis], text));
     }
-    point[static_cast<Eigen::Index>(axis)] = value * settings::kMillimetre;
+    point[axis] = value * settings::kMillimetre;
   }
   return point;
 }
@@ -92,9 +92,9 @@ Eigen::Matrix3Xd ReadNominalPath(const std::filesystem::path& path) {
       headed = true;
     }
   }
-  Eigen::Matrix3Xd nominal(3, static_cast<Eigen::Index>(points.size()));
+  Eigen::Matrix3Xd nominal(3, points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    nominal.col(static_cast<Eigen::Index>(i)) = points[i];
+    nominal.col(i) = points[i];
   }
   if (nominal.cols() < 2) {
     throw InputError(fmt::format("{}: {} points: a nominal path needs two at least", path.string(),

@@ -37,10 +37,9 @@ Chain Pieces(const Eigen::Matrix3Xd& points, const std::string& recording) {
         fmt::format("{}: the nominal path has {} points: a path needs two at least that differ",
                     recording, kept.size()));
   }
-  Chain chain{Eigen::Matrix3Xd(3, static_cast<Eigen::Index>(kept.size())),
-              Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kept.size()))};
+  Chain chain{Eigen::Matrix3Xd(3, kept.size()), Eigen::VectorXd::Zero(kept.size())};
   for (Eigen::Index i = 0; i < chain.points.cols(); ++i) {
-    chain.points.col(i) = points.col(kept[static_cast<std::size_t>(i)]);
+    chain.points.col(i) = points.col(kept[i]);
     if (i > 0) {
       chain.along[i] = chain.along[i - 1] + (chain.points.col(i) - chain.points.col(i - 1)).norm();
     }
@@ -109,7 +108,7 @@ PathDeviation DeviationFrom(const MeasuredPath& path, const DeviationOptions& op
     last = nearest;
   }
   result.largest = result.deviation.colwise().norm().maxCoeff();
-  result.rms = std::sqrt(result.deviation.squaredNorm() / static_cast<double>(path.poses()));
+  result.rms = std::sqrt(result.deviation.squaredNorm() / path.poses());
   return result;
 }
 

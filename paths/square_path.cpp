@@ -32,7 +32,7 @@ void RefuseOffSides(const MeasuredPath& path, const Rectangle& box) {
     }
     if (off < kOnSide) ++on;
   }
-  const double part = static_cast<double>(on) / static_cast<double>(path.poses());
+  const double part = on / static_cast<double>(path.poses());
   if (part >= kLeastOnSides) return;
   throw InputError(fmt::format(
       "{}: {:.0f} % of the rows lie on the sides of the rectangle around the commanded path: a "

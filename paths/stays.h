@@ -19,7 +19,7 @@ struct Stay {
   std::size_t rows;                     // averaged
 };
 
-inline constexpr std::size_t kLeastRows = 5;
+inline constexpr Eigen::Index kLeastRows = 5;
 inline constexpr double kStayWindow = 5e-6;  // m
 
 std::vector<Stay> Stays(const MeasuredPath& path, double window = kStayWindow);

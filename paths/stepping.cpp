@@ -40,7 +40,7 @@ SteppingLine LineOf(int axis, const std::vector<Stay>& stays) {
     Visits& visits = places[std::llround(along / kSamePlace)];
     visits.commanded += stay.commanded;
     visits.measured += stay.measured;
-    visits.variance += stay.scatter.squaredNorm() / 3.0 / static_cast<double>(stay.rows);
+    visits.variance += stay.scatter.squaredNorm() / 3.0 / stay.rows;
     ++visits.count;
   }
   const Visits& start = places.at(0);
@@ -72,8 +72,7 @@ std::vector<SteppingLine> EvaluateStepping(const MeasuredPath& path) {
     }
     std::size_t end = begin + 2;
     while (end < stays.size() && AxisOfMove(stays[end - 1], stays[end]) == axis) ++end;
-    lines.push_back(LineOf(*axis, {stays.begin() + static_cast<std::ptrdiff_t>(begin),
-                                   stays.begin() + static_cast<std::ptrdiff_t>(end)}));
+    lines.push_back(LineOf(*axis, {stays.begin() + begin, stays.begin() + end}));
     begin = end - 1;
   }
   if (lines.empty()) {

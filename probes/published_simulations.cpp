@@ -65,9 +65,7 @@ struct Sums {
 };
 
 // Uniform in (-1, 1): the word read as a signed number, in the middle of its interval.
-double Centred(std::uint32_t word) {
-  return (static_cast<double>(static_cast<std::int32_t>(word)) + 0.5) * 0x1.0p-31;
-}
+double Centred(std::uint32_t word) { return (static_cast<std::int32_t>(word) + 0.5) * 0x1.0p-31; }
 
 void Draw(const SimulationOptions& options, std::uint64_t first, Draws& draws) {
   const bool one = options.simulation == Simulation::kOne;
@@ -181,7 +179,7 @@ Sums RunChunk(const SimulationOptions& options, std::uint64_t first, std::uint64
   for (; first < end; first += kBlock) {
     Draw(options, first, draws);
     EvaluateBlock(options, draws);
-    const auto count = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(kBlock, end - first));
+    const std::ptrdiff_t count = std::min<std::uint64_t>(kBlock, end - first);
     for (Column& errors : draws.errors) std::fill(errors.begin() + count, errors.end(), 0.0);
     AddBlock(draws, sums);
   }
@@ -195,7 +193,7 @@ ErrorStatistics Statistics(const Sums& sums, std::size_t c, std::uint64_t draws)
     sum += sums.sum[c][lane];
     squares += sums.squares[c][lane];
   }
-  const double n = static_cast<double>(draws), mean = sum / n;
+  const double n = draws, mean = sum / n;
   return {worst, mean, std::sqrt(std::max(0.0, squares / n - mean * mean))};
 }
 

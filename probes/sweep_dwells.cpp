@@ -91,7 +91,7 @@ class DwellFinder {
   void Close() {
     const std::size_t samples = gaps_[0].size();
     if (open_ && samples > 0) {
-      const double n = static_cast<double>(samples);
+      const double n = samples;
       dwell_.time = time_ / n;
       dwell_.duration = last_time_ - first_time_;
       dwell_.position = position_ / n * kMillimetre;
@@ -193,7 +193,7 @@ bool IsGood(const Rows& rows, std::size_t row) {
 }
 
 double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  const auto middle = values.begin() + (values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
@@ -211,9 +211,9 @@ void DropOtherStandstills(SweepDwells& found) {
   DropDwells(found, [](const Dwell& dwell) { return dwell.pass == 0 || dwell.direction == 0; });
   if (found.dwells.empty()) return;
   std::vector<double> samples;
-  for (const Dwell& dwell : found.dwells) samples.push_back(static_cast<double>(dwell.samples));
+  for (const Dwell& dwell : found.dwells) samples.push_back(dwell.samples);
   const double least = Median(samples) / 4.0;
-  DropDwells(found, [&](const Dwell& dwell) { return static_cast<double>(dwell.samples) < least; });
+  DropDwells(found, [&](const Dwell& dwell) { return dwell.samples < least; });
 }
 
 // Dwells nearer to their neighbour than the window belong to one station.

@@ -28,7 +28,7 @@ Eigen::MatrixXd SweepGauge::Covariance(Kind kind, const Eigen::MatrixXd& covaria
 Eigen::MatrixXd SweepGauge::StationMeans(const Eigen::MatrixXd& values) const {
   Eigen::MatrixXd means = Eigen::MatrixXd::Zero(values.rows() / directions_, values.cols());
   for (Eigen::Index group = 0; group < values.rows(); ++group) {
-    means.row(group / directions_) += values.row(group) / static_cast<double>(directions_);
+    means.row(group / directions_) += values.row(group) / directions_;
   }
   return means;
 }

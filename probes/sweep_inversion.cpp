@@ -70,9 +70,8 @@ GroupReadings SweepInversion::Deltas(const GroupReadings& readings,
   const auto gap_to_delta = [&](const GroupReadings& gaps) {
     GroupReadings delta = gaps;
     for (std::size_t probe = 0; probe < kProbes; ++probe) {
-      const auto row = static_cast<Eigen::Index>(probe);
-      zero[probe] = head_.probes[probe].zero_gap.value_or(gaps.row(row).head(first).mean());
-      delta.row(row) = (zero[probe] - gaps.row(row).array()) / head_.probes[probe].gain;
+      zero[probe] = head_.probes[probe].zero_gap.value_or(gaps.row(probe).head(first).mean());
+      delta.row(probe) = (zero[probe] - gaps.row(probe).array()) / head_.probes[probe].gain;
     }
     return delta;
   };
@@ -86,11 +85,11 @@ GroupReadings SweepInversion::Deltas(const GroupReadings& readings,
     for (Eigen::Index group = 0; group < gaps.cols(); ++group) {
       PerProbe<> at;
       for (std::size_t probe = 0; probe < kProbes; ++probe) {
-        at[probe] = delta(static_cast<Eigen::Index>(probe), group);
+        at[probe] = delta(probe, group);
       }
       const HeadErrors<> errors = invert_(at, Travel(positions[group]));
       for (std::size_t probe = 0; probe < kProbes; ++probe) {
-        double& gap = gaps(static_cast<Eigen::Index>(probe), group);
+        double& gap = gaps(probe, group);
         gap = ElectrodeGap(head_.electrode, gap,
                            TiltUnder(probe, moving_, errors, head_.installation));
       }
@@ -129,7 +128,7 @@ std::vector<GroupJacobian> SweepInversion::Jacobians(const GroupReadings& readin
   // Second-order terms cancel; the third order of 0.1 um is below the rounding of the inversion.
   constexpr double kStep = 1e-7;
   const GroupReadings delta = Deltas(readings, positions, first);
-  std::vector<GroupJacobian> jacobians(static_cast<std::size_t>(readings.cols()));
+  std::vector<GroupJacobian> jacobians(readings.cols());
   for (Eigen::Index group = 0; group < readings.cols(); ++group) {
     PerProbe<> at;
     Eigen::Map<Eigen::Matrix<double, kProbes, 1>>(at.data()) = delta.col(group);
@@ -138,8 +137,7 @@ std::vector<GroupJacobian> SweepInversion::Jacobians(const GroupReadings& readin
       PerProbe<> up = at, down = at;
       up[probe] += kStep;
       down[probe] -= kStep;
-      jacobians[static_cast<std::size_t>(group)].col(static_cast<Eigen::Index>(probe)) =
-          (ErrorsAt(up, travel) - ErrorsAt(down, travel)) / (2.0 * kStep);
+      jacobians[group].col(probe) = (ErrorsAt(up, travel) - ErrorsAt(down, travel)) / (2.0 * kStep);
     }
   }
   return jacobians;

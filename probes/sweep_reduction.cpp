@@ -47,9 +47,7 @@ bool Checked(const StationMeans& means) { return means.noise.dof > 0.0; }
 class ComponentEvaluation {
  public:
   ComponentEvaluation(const StationMeans& means, const SweepGauge& gauge)
-      : means_(means),
-        gauge_(gauge),
-        directions_(static_cast<Eigen::Index>(means.directions.size())) {}
+      : means_(means), gauge_(gauge), directions_(std::ssize(means.directions)) {}
 
   ComponentResult operator()(const Component& component, const Eigen::VectorXd& at_reference,
                              const Sources& reference_sources, const Eigen::VectorXd& at_target,
@@ -99,8 +97,7 @@ class ComponentEvaluation {
                        ComponentResult& result) const {
     const Eigen::Index stations = groups.size() / directions_;
     for (Eigen::Index k = 0; k < directions_; ++k) {
-      Eigen::VectorXd& side =
-          means_.directions[static_cast<std::size_t>(k)] > 0 ? result.forward : result.backward;
+      Eigen::VectorXd& side = means_.directions[k] > 0 ? result.forward : result.backward;
       side.resize(stations);
       for (Eigen::Index i = 0; i < stations; ++i) side[i] = groups[i * directions_ + k];
     }
@@ -268,7 +265,7 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
     }
   }
   const SweepInversion inversion(setup.machine, setup.head, sweep.axis, sweep.start);
-  const auto directions = static_cast<Eigen::Index>(means.directions.size());
+  const Eigen::Index directions = means.directions.size();
   const GroupErrors errors = inversion.Errors(means.gap, means.position, directions);
   const SweepUncertainty uncertainty(setup.machine, setup.head, setup.target, sweep.axis,
                                      sweep.start, means);
@@ -292,16 +289,13 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
   result.notes = means.notes;
   std::ranges::move(SlipNotes(sweep, means.noise, setup.noise), std::back_inserter(result.notes));
   const SweepGauge gauge(
-      Eigen::Map<const Eigen::VectorXd>(means.stations.data(),
-                                        static_cast<Eigen::Index>(means.stations.size())),
-      directions);
+      Eigen::Map<const Eigen::VectorXd>(means.stations.data(), means.stations.size()), directions);
   const ComponentEvaluation evaluate(means, gauge);
   for (int i = 0; i < kComponents; ++i) {
     const int at_target = i + kComponents;
-    result.components[static_cast<std::size_t>(i)] =
-        evaluate(inversion.components()[static_cast<std::size_t>(i)], errors.row(i).transpose(),
-                 uncertainty.Covariance(i), errors.row(at_target).transpose(),
-                 uncertainty.Covariance(at_target));
+    result.components[i] =
+        evaluate(inversion.components()[i], errors.row(i).transpose(), uncertainty.Covariance(i),
+                 errors.row(at_target).transpose(), uncertainty.Covariance(at_target));
   }
   if (auto note = FormNote(setup.target, result)) result.notes.push_back(std::move(*note));
   std::ranges::move(AssumptionNotes(setup.head, result, errors, gauge),

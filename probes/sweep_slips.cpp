@@ -29,7 +29,7 @@ void RefuseFarPositions(const std::string& name, const SweepDwells& sweep,
     for (int axis = 0; axis < 3; ++axis) {
       const bool swept = axis == sweep.axis - 'X';
       const double position = swept ? dwell.position : dwell.axes[axis];
-      const machine::Travel& travel = machine.travels[static_cast<std::size_t>(axis)];
+      const machine::Travel& travel = machine.travels[axis];
       const machine::Travel span = machine::PlausiblePositions(travel);
       if (position >= span.first && position <= span.last) continue;
       if (!(travel.last > travel.first)) {

@@ -21,7 +21,7 @@ constexpr double kSignificance = 0.99;
 constexpr double kFewDwells = 10.0;  // fewest degrees of freedom within the dwells for a scatter
 constexpr double kLeastVariance = 1e-24;  // m^2: a noise-free recording is known to 1 pm
 
-Eigen::Index Row(std::size_t probe) { return static_cast<Eigen::Index>(probe); }
+Eigen::Index Row(std::size_t probe) { return probe; }
 
 // Keeps the stations that were approached from every direction of the sweep, and their dwells.
 void KeepCompleteStations(const std::string& name, const SweepDwells& sweep, StationMeans& means) {
@@ -63,10 +63,10 @@ class DwellFit {
  public:
   explicit DwellFit(const StationMeans& means) {
     const auto directions = static_cast<int>(means.directions.size());
-    const auto dwells = static_cast<Eigen::Index>(means.dwells.size());
+    const Eigen::Index dwells = means.dwells.size();
     values_.resize(dwells, kProbes);
     for (Eigen::Index i = 0; i < dwells; ++i) {
-      const Dwell& dwell = means.dwells[static_cast<std::size_t>(i)];
+      const Dwell& dwell = means.dwells[i];
       const int k = dwell.direction == means.directions.front() ? 0 : 1;
       groups_.push_back(static_cast<int>(dwell.station) * directions + k);
       times_.push_back(dwell.time);
@@ -78,9 +78,7 @@ class DwellFit {
 
   const std::vector<int>& groups() const { return groups_; }
   int group_count() const { return group_count_; }
-  double dof() const {
-    return static_cast<double>(kProbes) * static_cast<double>(values_.rows() - group_count_);
-  }
+  double dof() const { return kProbes * static_cast<double>(values_.rows() - group_count_); }
 
   struct Sums {
     double chi2 = 0.0, log_likelihood = 0.0;  // of all probes
@@ -91,10 +89,10 @@ class DwellFit {
     means.gap.resize(kProbes, group_count_);
     for (std::size_t probe = 0; probe < kProbes; ++probe) {
       const Eigen::VectorXd white_of_probe = white.col(Row(probe));
-      const auto fit = estimation::FitGroupsUnderDrift(
-          times_, groups_, values_.col(Row(probe)),
-          std::span(white_of_probe.data(), static_cast<std::size_t>(white_of_probe.size())),
-          noise.drift, noise.drift_time, group_count_);
+      const auto fit =
+          estimation::FitGroupsUnderDrift(times_, groups_, values_.col(Row(probe)),
+                                          std::span(white_of_probe.data(), white_of_probe.size()),
+                                          noise.drift, noise.drift_time, group_count_);
       means.gap.row(Row(probe)) = fit.values.col(0).transpose();
       means.covariance[probe] = fit.covariance;
       sums.chi2 += fit.chi_square[0];
@@ -121,9 +119,9 @@ Eigen::MatrixXd WhiteFromWithin(const StationMeans& means, const PerProbe<Scatte
     const double one = scatter[probe].white * scatter[probe].white * (1.0 + r) / (1.0 - r);
     for (std::size_t i = 0; i < means.dwells.size(); ++i) {
       const Dwell& dwell = means.dwells[i];
-      const double variance = one / static_cast<double>(dwell.samples);
+      const double variance = one / dwell.samples;
       const double averaged = noise.drift * noise.drift * dwell.duration / (3.0 * noise.drift_time);
-      white(static_cast<Eigen::Index>(i), Row(probe)) =
+      white(i, Row(probe)) =
           std::max({variance - averaged, kLeastShare * variance, kLeastVariance});
     }
   }
@@ -131,7 +129,7 @@ Eigen::MatrixXd WhiteFromWithin(const StationMeans& means, const PerProbe<Scatte
 }
 
 Eigen::MatrixXd Constant(const StationMeans& means, double variance) {
-  return Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(means.dwells.size()), kProbes,
+  return Eigen::MatrixXd::Constant(means.dwells.size(), kProbes,
                                    std::max(variance, kLeastVariance));
 }
 
@@ -257,13 +255,13 @@ void CheckAgainstPasses(const DwellFit& fit, const ProbeNoise& noise, double chi
 }
 
 void FillResidualsAndFigures(const SweepDwells& sweep, const DwellFit& fit, StationMeans& means) {
-  const auto dwells = static_cast<Eigen::Index>(means.dwells.size());
+  const Eigen::Index dwells = means.dwells.size();
   means.position = Eigen::VectorXd::Zero(fit.group_count());
   means.residual.resize(kProbes, dwells);
   Eigen::VectorXd counts = Eigen::VectorXd::Zero(fit.group_count());
   for (Eigen::Index i = 0; i < dwells; ++i) {
-    const Dwell& dwell = means.dwells[static_cast<std::size_t>(i)];
-    const int group = fit.groups()[static_cast<std::size_t>(i)];
+    const Dwell& dwell = means.dwells[i];
+    const int group = fit.groups()[i];
     means.position[group] += dwell.position;
     counts[group] += 1.0;
     for (std::size_t probe = 0; probe < kProbes; ++probe) {
@@ -271,7 +269,7 @@ void FillResidualsAndFigures(const SweepDwells& sweep, const DwellFit& fit, Stat
     }
   }
   means.position.array() /= counts.array();
-  const double dof = static_cast<double>(dwells - fit.group_count());
+  const double dof = dwells - fit.group_count();
   for (std::size_t probe = 0; probe < kProbes; ++probe) {
     ProbeFigures& figures = means.noise.probes[probe];
     figures = {sweep.scatter[probe].white, sweep.scatter[probe].lag1, 0.0};

@@ -22,10 +22,7 @@ double UncheckedTimes(double known_to) { return std::exp(std::pow(std::log(known
 SweepUncertainty::SweepUncertainty(const machine::Machine& machine, const HeadSettings& head,
                                    const TargetSettings& target, char axis,
                                    const Eigen::Vector3d& start, const StationMeans& means)
-    : head_(head),
-      target_(target),
-      means_(means),
-      first_(static_cast<Eigen::Index>(means.directions.size())) {
+    : head_(head), target_(target), means_(means), first_(std::ssize(means.directions)) {
   const SweepInversion nominal(machine, head, axis, start);
   moving_ = nominal.moving();
   travel_ = means.position.unaryExpr([&](double position) { return nominal.Travel(position); });
@@ -69,10 +66,9 @@ SweepUncertainty::SweepUncertainty(const machine::Machine& machine, const HeadSe
 }
 
 Eigen::VectorXd SweepUncertainty::Sensitivity(Eigen::Index row, std::size_t probe) const {
-  Eigen::VectorXd values(static_cast<Eigen::Index>(jacobians_.size()));
+  Eigen::VectorXd values(jacobians_.size());
   for (Eigen::Index group = 0; group < values.size(); ++group) {
-    values[group] =
-        jacobians_[static_cast<std::size_t>(group)](row, static_cast<Eigen::Index>(probe));
+    values[group] = jacobians_[group](row, probe);
   }
   return values;
 }

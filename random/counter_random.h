@@ -57,7 +57,7 @@ class CounterRandom {
   static double Unit(const std::array<std::uint32_t, 4>& words, std::size_t at) {
     const std::uint64_t high = words[at] >> 5;     // 27 bits
     const std::uint64_t low = words[at + 1] >> 6;  // 26 bits
-    return (static_cast<double>((high << 26) | low) + 0.5) * 0x1.0p-53;
+    return (((high << 26) | low) + 0.5) * 0x1.0p-53;
   }
 
   std::uint64_t seed_;

@@ -93,7 +93,7 @@ class SumParser {
     if (Blank()) return {};
     double value = 0.0;
     const auto [stop, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-    const auto size = static_cast<std::size_t>(stop - rest_.data());
+    const std::size_t size = stop - rest_.data();
     const char first = rest_.front();
     const bool digit = (first >= '0' && first <= '9') || first == '.';
     if (error != std::errc{} || !digit || !EndsAt(size)) return {};
@@ -134,7 +134,7 @@ class SumParser {
       throw InputError(
           fmt::format("{}: has two columns \"{}\"; rename one in the table", place_, name));
     }
-    return static_cast<std::size_t>(found - names_.begin());
+    return found - names_.begin();
   }
 
   double FactorOf(std::string_view column) const {

@@ -43,7 +43,7 @@ void WriteAll(int pipe, const void* from, std::size_t size) {
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) _exit(1);  // the reader has closed the pipe
     at += count;
-    size -= static_cast<std::size_t>(count);
+    size -= count;
   }
 }
 
@@ -59,7 +59,7 @@ bool ReadAll(int pipe, void* to, std::size_t size, int patience) {
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return false;
     at += count;
-    size -= static_cast<std::size_t>(count);
+    size -= count;
   }
   return true;
 }
@@ -79,7 +79,7 @@ std::uint64_t Mapped() {
     if (std::fscanf(file, "%lu", &pages) != 1) pages = 0;
     std::fclose(file);
   }
-  return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  return pages * sysconf(_SC_PAGESIZE);
 }
 
 struct Child {
@@ -185,8 +185,8 @@ void RefuseForeignStorage(hid_t set, const std::string& name, const std::string&
   for (int i = 0; i < filters; ++i) {
     unsigned flags = 0, config = 0;
     std::size_t values = 0;
-    const H5Z_filter_t filter = H5Pget_filter2(layout.id(), static_cast<unsigned>(i), &flags,
-                                               &values, nullptr, 0, nullptr, &config);
+    const H5Z_filter_t filter =
+        H5Pget_filter2(layout.id(), i, &flags, &values, nullptr, 0, nullptr, &config);
     if (filter == H5Z_FILTER_DEFLATE || filter == H5Z_FILTER_SHUFFLE ||
         filter == H5Z_FILTER_FLETCHER32) {
       continue;
@@ -303,7 +303,7 @@ Hdf5Numbers::Hdf5Numbers(hid_t file, const std::string& name, int rank,
                             : fmt::format("is not an array of numbers of {} dimensions", rank));
   }
   RefuseForeignStorage(set_.id(), name, file_name);
-  std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
+  std::vector<hsize_t> shape(rank);
   H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr);
   count_ = 1;
   const hsize_t most = MostHdf5Numbers(file_name) / sizeof(double);

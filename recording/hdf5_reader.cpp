@@ -118,11 +118,11 @@ std::vector<DataSet> OpenColumns(hid_t file, const std::string& file_name) {
 void KeepWholeRows(Recording& recording) {
   std::size_t rows = recording.rows();
   for (const Column& column : recording.columns) {
-    const auto end = column.values.begin() + static_cast<std::ptrdiff_t>(rows);
+    const auto end = column.values.begin() + rows;
     const auto unwritten = std::find_if(column.values.begin(), end, [](double value) {
       return std::bit_cast<std::uint64_t>(value) == kUnwrittenBits;
     });
-    rows = static_cast<std::size_t>(unwritten - column.values.begin());
+    rows = unwritten - column.values.begin();
   }
   for (Column& column : recording.columns) column.values.resize(rows);
 }

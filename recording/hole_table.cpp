@@ -45,8 +45,7 @@ std::vector<std::string_view> Words(std::string_view line, std::size_t blanks) {
 std::array<std::size_t, 4> PlacesOf(const std::vector<std::string_view>& names) {
   std::array<std::size_t, 4> places{};
   for (std::size_t i = 0; i < kNames.size(); ++i) {
-    places[i] =
-        static_cast<std::size_t>(std::find(names.begin(), names.end(), kNames[i]) - names.begin());
+    places[i] = std::find(names.begin(), names.end(), kNames[i]) - names.begin();
   }
   return places;
 }
@@ -93,7 +92,7 @@ Recording ReadHoleTable(const std::filesystem::path& path, double u_probing_um) 
     }
     std::array<double, 4> values{};
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = Number(words[places[i]], place);
-    const double hole = static_cast<double>(recording.rows() + 1);
+    const double hole = recording.rows() + 1;
     const std::array<double, 7> row{values[0], values[1], 0.0, 1.0, hole, values[2], values[3]};
     for (std::size_t i = 0; i < row.size(); ++i) recording.columns[i].values.push_back(row[i]);
   }

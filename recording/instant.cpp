@@ -29,6 +29,6 @@ std::string InstantText(double seconds) {
   return stream.str();
 }
 
-std::string UtcNow() { return InstantText(static_cast<double>(std::time(nullptr))); }
+std::string UtcNow() { return InstantText(std::time(nullptr)); }
 
 }  // namespace abbe::recording

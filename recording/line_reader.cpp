@@ -38,7 +38,7 @@ std::size_t LineReader::ReadSome(char* to, std::size_t size) {
     throw InputError(fmt::format("{}:{}: cannot be read further: {}; check the disk", name_,
                                  number_ + 1, std::strerror(errno)));
   }
-  return static_cast<std::size_t>(count);
+  return count;
 }
 
 std::optional<std::string_view> LineReader::Next() {
@@ -56,7 +56,7 @@ std::optional<std::string_view> LineReader::NextAsItIs() {
     const void* found = std::memchr(block_.get() + searched, '\n', end_ - searched);
     if (found != nullptr) {
       const char* line = block_.get() + begin_;
-      const auto length = static_cast<std::size_t>(static_cast<const char*>(found) - line);
+      const std::size_t length = static_cast<const char*>(found) - line;
       begin_ += length + 1;
       ++number_;
       return std::string_view(line, length > 0 && line[length - 1] == '\r' ? length - 1 : length);
@@ -88,7 +88,7 @@ std::size_t LineReader::CountLineEnds() {
   std::vector<char> block(kBytesAtOnce);
   std::size_t line_ends = 0;
   while (const std::size_t size = ReadSome(block.data(), block.size())) {
-    line_ends += static_cast<std::size_t>(std::count(block.data(), block.data() + size, '\n'));
+    line_ends += std::count(block.data(), block.data() + size, '\n');
   }
   lseek(file_, here, SEEK_SET);
   return line_ends;

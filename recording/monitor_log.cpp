@@ -157,7 +157,7 @@ class LogReader {
       recording.columns.push_back({column.name, {}});
     }
     for (const auto& [instant, row] : instants_) {
-      const auto since = static_cast<double>(instant - instants_.begin()->first);
+      const double since = instant - instants_.begin()->first;
       recording.columns[0].values.push_back(since * kNanosecond);
       for (std::size_t i = 0; i < row.size(); ++i) {
         recording.columns[i + 1].values.push_back(row[i]);

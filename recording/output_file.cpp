@@ -48,13 +48,13 @@ void OutputFile::Append(std::string_view bytes) {
       const int error = errno;
       const std::size_t line_end = bytes.substr(0, written).rfind('\n');
       size_ += line_end == std::string_view::npos ? 0 : line_end + 1;
-      if (ftruncate(file_, static_cast<off_t>(size_)) != 0) {
+      if (ftruncate(file_, size_) != 0) {
         // Part of a line remains at the end; readers drop it.
       }
       errno = error;
       ThrowWriteFailure(name_, "all rows that fitted are saved");
     }
-    written += static_cast<std::size_t>(count);
+    written += count;
   }
   size_ += bytes.size();
 }

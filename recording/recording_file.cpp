@@ -94,12 +94,12 @@ std::string Begin(const std::filesystem::path& path) {
   }
   std::ifstream file(path, std::ios::binary);
   std::string begin(kHdf5Begin.size(), '\0');
-  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  file.read(begin.data(), begin.size());
   if (!file.is_open() || file.bad()) {
     throw InputError(
         fmt::format("{}: cannot be read: {}; check the path", name, std::strerror(errno)));
   }
-  begin.resize(static_cast<std::size_t>(file.gcount()));
+  begin.resize(file.gcount());
   if (begin.empty())
     throw InputError(fmt::format("{}: the file is empty; nothing was recorded", name));
   return begin;

@@ -178,7 +178,7 @@ void WholeFile::Append(std::string_view bytes) {
     const ssize_t count = write(file_, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) ThrowWriteFailure(name_, kNothingChanged);
-    bytes.remove_prefix(static_cast<std::size_t>(count));
+    bytes.remove_prefix(count);
   }
 }
 

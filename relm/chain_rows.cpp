@@ -112,7 +112,7 @@ Steps StepsOf(const std::vector<DenavitHartenbergRow>& rows) {
     step.row.theta += taken;
     taken = 0.0;
     if (next == rows.size()) {
-      all.last.assign(rows.begin() + static_cast<std::ptrdiff_t>(i), rows.end());
+      all.last.assign(rows.begin() + i, rows.end());
       all.last.front() = step.row;
       return all;
     }
@@ -236,7 +236,7 @@ Eigen::VectorXd WrittenChain::Numbers() const {
     numbers.insert(numbers.end(), axis.direction.begin(), axis.direction.end());
   }
   numbers.insert(numbers.end(), ball.begin(), ball.end());
-  return Eigen::Map<Eigen::VectorXd>(numbers.data(), static_cast<Index>(numbers.size()));
+  return Eigen::Map<Eigen::VectorXd>(numbers.data(), numbers.size());
 }
 
 }  // namespace abbe::relm

@@ -36,7 +36,7 @@ struct PivotMotions {
 };
 
 PivotMotions AddPivot(const LinkageSettings& settings, Index joint, MotionChain& motions) {
-  const auto& [point, axis] = settings.chain.axes()[static_cast<std::size_t>(joint)];
+  const auto& [point, axis] = settings.chain.axes()[joint];
   const Vector3d arriving = joint > 0 ? settings.chain.Link(joint - 1) : Vector3d::Zero();
   const Vector3d u = Across(axis, arriving), v = axis.cross(u);
   PivotMotions pivot{};
@@ -70,13 +70,13 @@ void AddGeometry(const LinkageSettings& settings, const std::vector<PivotMotions
   const LinkageTolerance& sd = settings.tolerance;
   model.Block("tilt", kMicroradians);
   for (std::size_t i = 0; i < pivots.size(); ++i) {
-    const std::string name = PivotName(static_cast<Index>(i));
+    const std::string name = PivotName(i);
     model.Entry(name + "_u", sd.pivot_angle, {.motion = pivots[i].tilt_u});
     model.Entry(name + "_v", sd.pivot_angle, {.motion = pivots[i].tilt_v});
   }
   model.Block("shift", kMicrometres);
   for (std::size_t i = 0; i < pivots.size(); ++i) {
-    const std::string name = PivotName(static_cast<Index>(i));
+    const std::string name = PivotName(i);
     model.Entry(name + "_u", pivots[i].shift_u_sd, {.motion = pivots[i].shift_u});
     model.Entry(name + "_v", sd.pivot_offset, {.motion = pivots[i].shift_v});
   }
@@ -107,7 +107,7 @@ void AddEncoders(const LinkageSettings& settings, const std::vector<PivotMotions
 
 // An upright first joint feels no weight.
 bool IsUpright(const LinkageSettings& settings, int joint) {
-  const Vector3d& axis = settings.chain.axes()[static_cast<std::size_t>(joint)].direction;
+  const Vector3d& axis = settings.chain.axes()[joint].direction;
   return joint == 0 && axis.cross(settings.DownB()).norm() < kParallel;
 }
 
@@ -121,7 +121,7 @@ void AddTorques(const LinkageSettings& settings, const std::vector<PivotMotions>
     hangs.push_back(model.motions.Weigh(static_cast<int>(mass.carrier), mass.point));
   }
   model.Block("weight", kMicroradiansPerNewtonMetre);
-  for (int i = 0; i < static_cast<int>(pivots.size()); ++i) {
+  for (int i = 0; i < std::ssize(pivots); ++i) {
     if (IsUpright(settings, i)) continue;
     bool first = true;
     for (std::size_t k = 0; k < hangs.size(); ++k) {
@@ -152,7 +152,7 @@ void AddWeights(const LinkageSettings& settings, const std::vector<PivotMotions>
     return;
   }
   model.Block("weight", kMicroradiansPerMetre);
-  for (int i = 0; i < static_cast<int>(pivots.size()); ++i) {
+  for (int i = 0; i < std::ssize(pivots); ++i) {
     if (IsUpright(settings, i)) continue;
     for (const Weight& weight : WeightsBeyond(settings.chain, i)) {
       const int hangs = model.motions.Weigh(static_cast<int>(weight.carrier), weight.point);

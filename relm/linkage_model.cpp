@@ -34,7 +34,7 @@ Eigen::VectorXd LinkageModel::Values() const {
   for (const auto& block : blocks_) {
     for (const auto& entry : block.entries) values.push_back(entry.value);
   }
-  return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return Eigen::Map<Eigen::VectorXd>(values.data(), values.size());
 }
 
 std::vector<std::string> LinkageModel::Names() const {

@@ -114,11 +114,11 @@ LinkageSensitivity AnalyseSensitivity(const LinkageModel& model, const LinkageRe
   const auto tip_errors = [&](std::span<const double> deviations, std::span<double> outputs) {
     Eigen::Map<Matrix3Xd>(outputs.data(), 3, poses.poses()) = errors.Of(varied, deviations);
   };
-  const auto outputs = static_cast<std::size_t>(3 * poses.poses());
+  const std::size_t outputs = 3 * poses.poses();
   const auto sobol = estimation::SobolIndices(varied.size(), outputs, draw, tip_errors,
                                               {.draws = options.draws, .threads = options.threads});
   // The first pose has no displacement.
-  const auto count = static_cast<double>(poses.poses() - (options.displacement ? 1 : 0));
+  const double count = poses.poses() - (options.displacement ? 1 : 0);
   LinkageSensitivity result{std::sqrt(sobol.variance / count), {}};
   for (std::size_t i = 0; i < varied.size(); ++i) {
     const Matrix3Xd alone = errors.OfOne(varied[i]);

@@ -156,7 +156,7 @@ Form ReadForm(const Table& table) {
 std::vector<Mass> ReadMasses(const Table& linkage, Eigen::Index joints) {
   std::vector<Mass> masses;
   for (const Table& table : linkage.Children("mass")) {
-    const auto after = static_cast<Eigen::Index>(table.Integer("after_pivot", {.at_least = 1.0}));
+    const auto after = table.Integer("after_pivot", {.at_least = 1.0});
     if (after > joints) {
       throw table.Error("after_pivot", fmt::format("must be 1 to {}: the pivots", joints));
     }

@@ -70,7 +70,7 @@ std::string InBrackets(const Vector3d& v, double unit, int digits) {
 std::string Pieces(const std::vector<std::string>& keys, const VectorXd& u95) {
   std::string text;
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const double value = u95[static_cast<Eigen::Index>(i)];
+    const double value = u95[i];
     if (!(value > 0.0)) continue;  // held
     const double unit = keys[i].ends_with("deg")  ? kDegreeOfText
                         : keys[i].ends_with("mm") ? settings::kMillimetre
@@ -83,7 +83,7 @@ std::string Pieces(const std::vector<std::string>& keys, const VectorXd& u95) {
 std::string GeometryText(const WrittenChain& written, const VectorXd& u95) {
   Eigen::Index at = 0;
   const auto next = [&](const std::vector<std::string>& keys) {
-    const auto count = static_cast<Eigen::Index>(keys.size());
+    const Eigen::Index count = keys.size();
     at += count;
     return Pieces(keys, u95.segment(at - count, count));
   };

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 constexpr double kLeastArm = 1e-9;  // m: an arm shorter than this across an axis is no arm
 
-std::size_t At(Eigen::Index index) { return static_cast<std::size_t>(index); }
+std::size_t At(Eigen::Index index) { return index; }
 
 }  // namespace
 
@@ -140,12 +140,12 @@ void MotionChain::LeanSlopes(const double* angles, Workspace& w) const {
 void MotionChain::LeverSlopes(const double* angles, Workspace& w) const {
   if (weights_.empty()) return;
   const Pose<double> pose = PoseAt(angles);
-  w.lever_slopes.setZero(static_cast<Eigen::Index>(w.levers.size()), joints());
+  w.lever_slopes.setZero(w.levers.size(), joints());
   Eigen::Index row = 0;
   for (Eigen::Index i = 0; i < joints(); ++i) {
     const Vector3d axis = pose.directions.col(i);
     for (std::size_t k = 0; k < weights_.size(); ++k, ++row) {
-      const Vector3d weight = pose.weights.col(static_cast<Eigen::Index>(k));
+      const Vector3d weight = pose.weights.col(k);
       for (Eigen::Index j = 0; j <= weights_[k].carrier; ++j) {
         const Vector3d turned = pose.directions.col(j);
         const Vector3d arm = weight - pose.points.col(i);
@@ -162,7 +162,7 @@ double MotionChain::BasisSlope(const Effect& effect, Eigen::Index joint, const W
     return effect.factor * w.lean_slopes(effect.joint, joint);
   }
   if (effect.basis == Basis::kWeight) {
-    return effect.factor * w.lever_slopes(static_cast<Eigen::Index>(LeverOf(effect)), joint);
+    return effect.factor * w.lever_slopes(LeverOf(effect), joint);
   }
   if (effect.joint != joint) return 0;
   const std::size_t harmonic = At(effect.joint * orders_ + effect.order);
@@ -180,7 +180,7 @@ Vector3d MotionChain::Differentiate(const double* angles, double warmth, const d
                                     double* J_tip_x, double* J_tip_q, Workspace& w) const {
   Amounts(angles, warmth, x, w);
   // From the base outwards: each line as moved by the motions before it.
-  const auto count = static_cast<Eigen::Index>(motions_.size());
+  const Eigen::Index count = motions_.size();
   w.lines.resize(3, count);
   w.points.resize(3, count);
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();

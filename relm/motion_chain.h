@@ -69,7 +69,7 @@ class MotionChain {
 
   const SerialChain& chain() const { return chain_; }
   Eigen::Index joints() const { return chain_.joints(); }
-  Eigen::Index parameters() const { return static_cast<Eigen::Index>(rest_.size()); }
+  Eigen::Index parameters() const { return rest_.size(); }
 
   // The direction of the first link after a joint that is not parallel to its axis: a unit vector
   // across the axis, in B at zero angles; zero without such a link.
@@ -113,8 +113,7 @@ class MotionChain {
   template <typename T>
   void Levers(const T* angles, T* levers) const;
   std::size_t LeverOf(const Effect& effect) const {
-    return static_cast<std::size_t>(effect.joint) * weights_.size() +
-           static_cast<std::size_t>(effect.order);
+    return effect.joint * weights_.size() + effect.order;
   }
   template <typename T>
   T BasisOf(const Effect& effect, const T* sines, const T* cosines, const T* leans, const T* levers,
@@ -171,11 +170,11 @@ void MotionChain::Leans(const T* angles, T* leans) const {
 template <typename T>
 MotionChain::Pose<T> MotionChain::PoseAt(const T* angles) const {
   Pose<T> pose{Eigen::Matrix3X<T>(3, joints()), Eigen::Matrix3X<T>(3, joints()),
-               Eigen::Matrix3X<T>(3, static_cast<Eigen::Index>(weights_.size()))};
+               Eigen::Matrix3X<T>(3, std::ssize(weights_))};
   Eigen::Matrix3<T> R = Eigen::Matrix3<T>::Identity();
   Eigen::Vector3<T> p = Eigen::Vector3<T>::Zero();
   for (Eigen::Index i = 0; i < joints(); ++i) {
-    const JointAxis& axis = chain_.axes()[static_cast<std::size_t>(i)];
+    const JointAxis& axis = chain_.axes()[i];
     const Eigen::Vector3<T> point = axis.point.cast<T>();
     pose.directions.col(i) = R * axis.direction.cast<T>();
     pose.points.col(i) = R * point + p;
@@ -187,7 +186,7 @@ MotionChain::Pose<T> MotionChain::PoseAt(const T* angles) const {
     p = pose.points.col(i) - R * point;
     for (std::size_t k = 0; k < weights_.size(); ++k) {
       if (weights_[k].carrier != i) continue;
-      pose.weights.col(static_cast<Eigen::Index>(k)) = R * weights_[k].point.cast<T>() + p;
+      pose.weights.col(k) = R * weights_[k].point.cast<T>() + p;
     }
   }
   return pose;
@@ -229,7 +228,7 @@ T MotionChain::BasisOf(const Effect& effect, const T* sines, const T* cosines, c
 template <typename T>
 Eigen::Vector3<T> MotionChain::Tip(const T* angles, const T& warmth, const T* x) const {
   const std::size_t joints = lean_direction_.size();
-  const std::size_t harmonics = joints * static_cast<std::size_t>(orders_);
+  const std::size_t harmonics = joints * orders_;
   std::vector<T> values(2 * harmonics + joints * (1 + weights_.size()), T(0));
   T* const sines = values.data();
   T* const cosines = sines + harmonics;
@@ -243,8 +242,8 @@ Eigen::Vector3<T> MotionChain::Tip(const T* angles, const T& warmth, const T* x)
     if (motions_[k].joint >= 0) amounts[k] = angles[motions_[k].joint];
   }
   for (const Effect& effect : effects_) {
-    const auto j = static_cast<std::size_t>(effect.parameter);
-    amounts[static_cast<std::size_t>(effect.motion)] +=
+    const std::size_t j = effect.parameter;
+    amounts[effect.motion] +=
         (x[j] - T(rest_[j])) * BasisOf(effect, sines, cosines, leans, levers, warmth);
   }
   Eigen::Vector3<T> p = chain_.tip().cast<T>();

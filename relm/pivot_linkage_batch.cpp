@@ -72,7 +72,7 @@ void PivotLinkage::Tips(const Eigen::Matrix3Xd& angles, Eigen::Matrix3Xd& tips) 
 Eigen::Index PivotLinkage::AnglesOf(const Eigen::Matrix3Xd& tips, const Branch& branch,
                                     Eigen::Matrix3Xd& angles, std::vector<Reach>& reach) const {
   angles.resize(3, tips.cols());
-  reach.resize(static_cast<std::size_t>(tips.cols()));
+  reach.resize(tips.cols());
   const double sign = branch.reach_over ? -1 : 1;
   const double elbow = branch.elbow == Elbow::kUp ? -sign : sign;
   Eigen::Index reached = 0;

@@ -75,7 +75,7 @@ Motions AddMotions(const LinkageSettings& settings, const std::vector<PlacedSegm
     }
     last = q;
   }
-  motions.twists.assign(static_cast<std::size_t>(settings.chain.joints()), -1);
+  motions.twists.assign(settings.chain.joints(), -1);
   motions.tilt_x = chain.Turn(Vector3d::Zero(), Vector3d::UnitX());
   motions.tilt_y = chain.Turn(Vector3d::Zero(), Vector3d::UnitY());
   for (int q = 0; q < count; ++q) {
@@ -111,10 +111,9 @@ void AddGeometry(const LinkageSettings& settings, const Motions& motions, ModelB
   model.Entry("head_y", sd.pivot_angle, {.motion = motions.tilt_y});
   model.Block("radial_angle", kMicroradians);
   for (std::size_t i = 0; i < motions.pivots.size(); ++i) {
-    const auto joint = static_cast<Eigen::Index>(i);
-    model.Entry(PivotName(joint), sd.encoder_offset, {.motion = motions.pivots[i]});
+    model.Entry(PivotName(i), sd.encoder_offset, {.motion = motions.pivots[i]});
     if (motions.twists[i] < 0) continue;
-    model.Entry(PivotName(joint + 1) + "_twist", sd.pivot_angle, {.motion = motions.twists[i]});
+    model.Entry(PivotName(i + 1) + "_twist", sd.pivot_angle, {.motion = motions.twists[i]});
   }
 }
 

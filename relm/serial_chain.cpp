@@ -61,8 +61,7 @@ SerialChain SerialChain::FromDenavitHartenberg(const std::vector<DenavitHartenbe
 }
 
 Vector3d SerialChain::Link(Eigen::Index joint) const {
-  const auto i = static_cast<std::size_t>(joint);
-  return (i + 1 < axes_.size() ? axes_[i + 1].point : tip_) - axes_[i].point;
+  return (joint + 1 < std::ssize(axes_) ? axes_[joint + 1].point : tip_) - axes_[joint].point;
 }
 
 double SerialChain::Reach() const {
@@ -77,7 +76,7 @@ Eigen::Matrix3Xd SerialChain::JacobianTipAngles(const Eigen::VectorXd& angles) c
   Eigen::Matrix3Xd J(3, joints());
   Vector3d p = tip_;
   for (Eigen::Index i = joints(); i-- > 0;) {
-    const auto& [point, direction] = axes_[static_cast<std::size_t>(i)];
+    const auto& [point, direction] = axes_[i];
     p = point + Turned<double>(p - point, direction, angles[i]);
     J.col(i) = direction.cross(p - point);
     for (Eigen::Index j = i + 1; j < joints(); ++j) {

@@ -68,7 +68,7 @@ class SerialChain {
                                            const geometry::Transform<double>& X_B0 = {},
                                            const Eigen::Vector3d& p_nT = Eigen::Vector3d::Zero());
 
-  Eigen::Index joints() const { return static_cast<Eigen::Index>(axes_.size()); }
+  Eigen::Index joints() const { return axes_.size(); }
   const std::vector<JointAxis>& axes() const { return axes_; }
   const Eigen::Vector3d& tip() const { return tip_; }  // p_BT at zero angles
 

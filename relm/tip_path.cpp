@@ -59,8 +59,7 @@ void RefuseJump(const recording::Recording& recording, const GoodReadings& good,
   throw InputError(fmt::format(
       "{}: row {}: pivot_{}_rad jumps by {:.4f} rad: the encoder's counter has wrapped or slipped; "
       "check counts_per_turn and the range of the node, and record again",
-      recording.name, recording.first_row + good.rows[static_cast<std::size_t>(pose)] + 1,
-      joint + 1, step[joint]));
+      recording.name, recording.first_row + good.rows[pose] + 1, joint + 1, step[joint]));
 }
 
 }  // namespace
@@ -71,13 +70,13 @@ GoodReadings ReadAngles(const recording::Recording& recording, const LinkageSett
   GoodReadings good;
   good.rows = recording::GoodRows(recording);
   good.flagged = recording.rows() - good.rows.size();
-  good.readings.angles.resize(settings.chain.joints(), static_cast<Eigen::Index>(good.rows.size()));
+  good.readings.angles.resize(settings.chain.joints(), good.rows.size());
   if (!temperatures.empty()) good.readings.warmth.resize(good.readings.poses());
   for (Eigen::Index pose = 0; pose < good.readings.poses(); ++pose) {
-    const std::size_t row = good.rows[static_cast<std::size_t>(pose)];
+    const std::size_t row = good.rows[pose];
     for (Eigen::Index i = 0; i < good.readings.angles.rows(); ++i) {
-      good.readings.angles(i, pose) = Finite(recording, columns[static_cast<std::size_t>(i)], row,
-                                             fmt::format("pivot_{}_rad", i + 1));
+      good.readings.angles(i, pose) =
+          Finite(recording, columns[i], row, fmt::format("pivot_{}_rad", i + 1));
     }
     if (!temperatures.empty()) {
       good.readings.warmth[pose] = Finite(recording, temperatures, row, settings.temperature) -

@@ -45,14 +45,14 @@ std::vector<Weight> WeightsBeyond(const SerialChain& chain, Index joint) {
   const Index last = chain.joints() - 1;
   std::vector<Weight> weights;
   if (joint + 1 < last) {
-    weights.push_back({"own", joint, meets[static_cast<std::size_t>(joint) + 1]});
+    weights.push_back({"own", joint, meets[joint + 1]});
   }
   if (joint < last) weights.push_back({"wrist", last - 1, meets.back()});
   weights.push_back({"ball", last, chain.tip()});
   // What joints between move does not keep on the line, unless it is on theirs as well.
   const auto on_lines = [&](const Weight& weight) {
     for (Index i = joint; i <= weight.carrier; ++i) {
-      const JointAxis& axis = chain.axes()[static_cast<std::size_t>(i)];
+      const JointAxis& axis = chain.axes()[i];
       if ((weight.point - Foot(axis, weight.point)).norm() > kOnTheLine) return false;
     }
     return true;

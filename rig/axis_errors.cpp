@@ -44,8 +44,7 @@ AxisErrors::AxisErrors(const RigSettings& settings, int axis, std::uint64_t seed
       smoothness_(settings.population.smoothness),
       low_(sense_ * (sense_ > 0.0 ? settings.travels[axis].first : settings.travels[axis].last)),
       high_(sense_ * (sense_ > 0.0 ? settings.travels[axis].last : settings.travels[axis].first)),
-      scale_(settings.population.scale *
-             random::CounterRandom(seed, kScaleStream).Normal(static_cast<std::uint64_t>(axis))) {
+      scale_(settings.population.scale * random::CounterRandom(seed, kScaleStream).Normal(axis)) {
   for (int motion = 0; motion < kMotions; ++motion) {
     const auto stream = kErrorStream + static_cast<std::uint64_t>(kMotions * axis + motion);
     functions_.emplace_back(random::CounterRandom(seed, stream),

@@ -139,7 +139,7 @@ class CampaignMaker {
   }
 
   void AddSweep(char axis, int passes, const Place& place) {
-    const auto& plan = machine_.rig.sweeps[static_cast<std::size_t>(AxisNumber(axis))];
+    const auto& plan = machine_.rig.sweeps[AxisNumber(axis)];
     if (!plan) return;
     hal::SweepPlan planned = *plan;
     planned.passes = passes;
@@ -161,7 +161,7 @@ class CampaignMaker {
   }
 
   void AddGapSteps(char axis) {
-    if (!machine_.rig.sweeps[static_cast<std::size_t>(AxisNumber(axis))]) return;
+    if (!machine_.rig.sweeps[AxisNumber(axis)]) return;
     ProbeRunOptions options = ProbeRun();
     const double duration =
         Duration(GapStepCourse(machine_.rig, axis, options), 1.0 / options.rate);
@@ -221,7 +221,7 @@ class CampaignMaker {
     Vector3d size;
     const Vector3d share(25.0 / 60.0, 25.0 / 60.0, 50.0 / 60.0);
     for (int axis = 0; axis < kAxes; ++axis) {
-      const auto [first, last] = machine_.rig.travels[static_cast<std::size_t>(axis)];
+      const auto [first, last] = machine_.rig.travels[axis];
       size[axis] = share[axis] * (last - first);
     }
     AddCourse("cube", "cube",
@@ -322,7 +322,7 @@ class CampaignMaker {
   Vector3d Middle() const {
     Vector3d middle;
     for (int axis = 0; axis < kAxes; ++axis) {
-      const auto [first, last] = machine_.rig.travels[static_cast<std::size_t>(axis)];
+      const auto [first, last] = machine_.rig.travels[axis];
       middle[axis] = std::midpoint(first, last);
     }
     return middle;

@@ -47,7 +47,7 @@ Course CircleCourse(const CircleProgram& program) {
       const int count = static_cast<int>(std::ceil((end - begin) * kPointsOfTurn));
       course.moves.push_back({{at(sense * begin)}, program.feed});
       Move turn{{}, program.feed, 0.0, pass, sense};
-      turn.points.reserve(static_cast<std::size_t>(count));
+      turn.points.reserve(count);
       for (int i = 1; i <= count; ++i) {
         turn.points.push_back(at(sense * (begin + (end - begin) * i / count)));
       }
@@ -103,7 +103,7 @@ Course DwellCourse(const std::vector<Vector3d>& places, double feed, double dwel
 std::vector<Vector3d> GridPlaces(const Vector3d& centre, const Vector3d& size,
                                  const Eigen::Vector3i& counts) {
   std::vector<Vector3d> places;
-  places.reserve(static_cast<std::size_t>(counts.prod()));
+  places.reserve(counts.prod());
   const auto share = [](int i, int count) {
     return count > 1 ? double(i) / (count - 1) - 0.5 : 0.0;
   };

@@ -17,12 +17,12 @@ constexpr int kHeartbeatMs = 100;
 
 void PutBytes(CanFrame& frame, std::size_t at, int bytes, std::uint64_t value) {
   for (int i = 0; i < bytes; ++i) {
-    frame.data[at + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(value >> (8 * i));
+    frame.data[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
   }
 }
 
 CanFrame FrameOf(std::uint32_t base, int node, int size) {
-  return {.id = base + static_cast<std::uint32_t>(node), .size = static_cast<std::uint8_t>(size)};
+  return {.id = base + node, .size = static_cast<std::uint8_t>(size)};
 }
 
 }  // namespace
@@ -40,10 +40,10 @@ void EncoderNode::Describe() {
   // The objects have 32 bits: 2^32 reads 0.
   const auto per_turn = static_cast<std::uint32_t>(std::llround(encoder_.counts_per_turn));
   const auto range = static_cast<std::uint32_t>(encoder_.range);
-  const auto turns = static_cast<std::uint32_t>(
-      std::llround(static_cast<double>(encoder_.range) / encoder_.counts_per_turn));
+  const auto turns =
+      static_cast<std::uint32_t>(std::llround(encoder_.range / encoder_.counts_per_turn));
   const std::uint32_t pdo = 0x80 + 0x100 * static_cast<std::uint32_t>(encoder_.tpdo);
-  const auto nth = static_cast<std::uint32_t>(encoder_.tpdo - 1);
+  const std::uint32_t nth = encoder_.tpdo - 1;
   Put(0x1000, 0, turns > 1 ? 0x00020196 : 0x00010196, 4);  // profile 406, absolute
   Put(0x1001, 0, 0, 1);                                    // error register
   Put(0x1017, 0, kHeartbeatMs, 2);
@@ -51,7 +51,7 @@ void EncoderNode::Describe() {
   for (int sub = 1; sub <= 3; ++sub) Put(0x1018, sub, 0, 4);
   Put(0x1018, 4, encoder_.serial.value_or(static_cast<std::uint32_t>(encoder_.node)), 4);
   Put(0x1800 + nth, 0, 2, 1);
-  Put(0x1800 + nth, 1, pdo + static_cast<std::uint32_t>(encoder_.node), 4);
+  Put(0x1800 + nth, 1, pdo + encoder_.node, 4);
   Put(0x1800 + nth, 2, 1, 1);  // at every SYNC
   Put(0x1A00 + nth, 0, 1, 1);
   Put(0x1A00 + nth, 1, 0x60040000 | static_cast<std::uint32_t>(encoder_.bits), 4);

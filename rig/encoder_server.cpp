@@ -40,7 +40,7 @@ LinkageEncoders::LinkageEncoders(LiveMachine& machine, const hal::CanopenSetting
 std::vector<std::uint32_t> LinkageEncoders::HeardIds(const hal::CanopenSettings& device) {
   std::vector<std::uint32_t> ids{kNmt, kSync};
   for (const hal::EncoderSettings& encoder : device.encoders) {
-    ids.push_back(kSdoRequest + static_cast<std::uint32_t>(encoder.node));
+    ids.push_back(kSdoRequest + encoder.node);
   }
   return ids;
 }

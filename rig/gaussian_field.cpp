@@ -33,7 +33,7 @@ std::uint64_t Index(std::int64_t a, std::int64_t b) {
 BellWindow::BellWindow(double coordinate, double length) {
   const std::int64_t middle = NodeAt(coordinate, length);
   first = middle - kReach;
-  const double offset = coordinate / length - kStep * static_cast<double>(middle);
+  const double offset = coordinate / length - kStep * middle;
   const double at_middle = std::exp(-offset * offset);
   const double shrink = std::exp(-2.0 * kStep * kStep);
   const double first_step = std::exp(-kStep * kStep);
@@ -57,19 +57,19 @@ GaussianProcess::GaussianProcess(const random::CounterRandom& random, double sd,
       first_(NodeAt(low, length) - BellWindow::kReach) {
   const std::int64_t end = NodeAt(high, length) + BellWindow::kReach + 1;
   for (std::int64_t node = first_; node < end; ++node) {
-    weights_.push_back(random_.Normal(static_cast<std::uint64_t>(node)));
+    weights_.push_back(random_.Normal(node));
   }
 }
 
 double GaussianProcess::At(const BellWindow& window) const {
   const std::int64_t at = window.first - first_;
   double sum = 0.0;
-  if (at >= 0 && at + BellWindow::kNodes <= static_cast<std::int64_t>(weights_.size())) {
+  if (at >= 0 && at + BellWindow::kNodes <= std::ssize(weights_)) {
     const double* weights = weights_.data() + at;
     for (int k = 0; k < BellWindow::kNodes; ++k) sum += window.bells[k] * weights[k];
   } else {
     for (int k = 0; k < BellWindow::kNodes; ++k) {
-      sum += window.bells[k] * random_.Normal(static_cast<std::uint64_t>(window.first + k));
+      sum += window.bells[k] * random_.Normal(window.first + k);
     }
   }
   return amplitude_ * sum;
@@ -82,7 +82,7 @@ GaussianSurface::GaussianSurface(const random::CounterRandom& random, double sd,
       length_(length),
       first_(NodeAt(low, length) - BellWindow::kReach),
       count_(std::min(kMostKept, NodeAt(high, length) + BellWindow::kReach + 1 - first_)) {
-  weights_.reserve(static_cast<std::size_t>(count_ * count_));
+  weights_.reserve(count_ * count_);
   for (std::int64_t a = 0; a < count_; ++a) {
     for (std::int64_t b = 0; b < count_; ++b) {
       weights_.push_back(random_.Normal(Index(first_ + a, first_ + b)));

@@ -266,14 +266,12 @@ void SetInTime(HiddenEffects& hidden, const std::vector<RecordedTime>& times,
         // For a tenth to a half of the recordings' mean length.
         double sum = 0.0;
         for (const RecordedTime& time : times) sum += time.duration;
-        value = effect.values.at("from_s") +
-                random.Uniform(kDrawsOfInstants + 1, 0.1, 0.5) * sum /
-                    static_cast<double>(std::max<std::size_t>(1, times.size()));
+        value = effect.values.at("from_s") + random.Uniform(kDrawsOfInstants + 1, 0.1, 0.5) * sum /
+                                                 std::max<std::size_t>(1, times.size());
       } else if (key.draw == Draw::kInstant) {
         value = Instant(random.Uniform(kDrawsOfInstants), times, probes);
       } else if (key.draw == Draw::kTurn && !turns.empty()) {
-        value = turns[static_cast<std::size_t>(effect.place())] +
-                random.Uniform(kDrawsOfInstants, -kNear, kNear);
+        value = turns[effect.place()] + random.Uniform(kDrawsOfInstants, -kNear, kNear);
       }
     }
   }

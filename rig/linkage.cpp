@@ -135,7 +135,7 @@ Linkage::Posture Linkage::PostureAt(const Vector3d& turns, double temperature) c
   Displacement moved;  // by the pivots before
   for (std::size_t i = 0; i < kPivots; ++i) {
     const PivotTruth& pivot = parts_.pivots[i];
-    const double turn = turns[static_cast<Eigen::Index>(i)];
+    const double turn = turns[i];
     const Vector3d point = i == 2 ? Vector3d(pivot.point + growth_1) : pivot.point;
     Vector3d shift = Vector3d::Zero();
     for (std::size_t k = 0; k < 2; ++k) shift += Sum(pivot.run_out[k], turn) * pivot.across[k];
@@ -189,8 +189,7 @@ Vector3d Linkage::TurnsFor(const Vector3d& p_B, double temperature) const {
     // The velocity of the ball about each axis; run-out and sag change it by 1e-4 only.
     Eigen::Matrix3d velocity;
     for (std::size_t i = 0; i < kPivots; ++i) {
-      velocity.col(static_cast<Eigen::Index>(i)) =
-          posture.direction[i].cross(posture.ball - posture.point[i]);
+      velocity.col(i) = posture.direction[i].cross(posture.ball - posture.point[i]);
     }
     turns += velocity.fullPivLu().solve(open);
   }
@@ -203,9 +202,7 @@ Vector3d Linkage::TurnsFor(const Vector3d& p_B, double temperature) const {
 Vector3d Linkage::EncodersAt(const Vector3d& turns) const {
   Vector3d shown;
   for (std::size_t i = 0; i < kPivots; ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    shown[at] =
-        turns[at] + parts_.pivots[i].encoder_zero + Sum(parts_.pivots[i].encoder, turns[at]);
+    shown[i] = turns[i] + parts_.pivots[i].encoder_zero + Sum(parts_.pivots[i].encoder, turns[i]);
   }
   return shown;
 }

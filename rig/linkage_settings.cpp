@@ -51,8 +51,7 @@ LinkageSettings ReadLinkage(const Table& root) {
   linkage.base_position = Eigen::Vector3d(place[0], place[1], place[2]);
   const auto names = base.Texts("rotation", 3, std::vector<std::string>{"x", "y", "z"});
   for (int i = 0; i < 3; ++i) {
-    linkage.base_rotation.col(i) =
-        DirectionOf(base, "rotation", names[static_cast<std::size_t>(i)]);
+    linkage.base_rotation.col(i) = DirectionOf(base, "rotation", names[i]);
   }
   if (linkage.base_rotation.determinant() < 0.5) {
     throw base.Error("rotation", "must be right-handed: x, y and then z = x cross y");

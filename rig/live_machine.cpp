@@ -115,7 +115,7 @@ const Moment& LiveMachine::Latest() {
   const auto tick = static_cast<std::uint64_t>(ticks);
   if (tick > latest_.tick) {
     latest_.tick = tick;
-    const double time = static_cast<double>(tick) / world_.settings().update_rate;
+    const double time = tick / world_.settings().update_rate;
     if (latest_.state == ProgramState::kRunning) {
       Advance(latest_);
     } else {
@@ -133,9 +133,8 @@ void LiveMachine::FollowSweep(std::uint64_t to) {
   const auto stride = static_cast<std::uint64_t>(std::max(1.0, settings.update_rate / 200.0));
   Vector3d axes = latest_.axes.position;
   for (; followed_ + stride < to; followed_ += stride) {
-    const double time = static_cast<double>(followed_ + stride) / settings.update_rate;
-    const MotionState state =
-        motion_->At(time - static_cast<double>(started_) / settings.update_rate);
+    const double time = (followed_ + stride) / settings.update_rate;
+    const MotionState state = motion_->At(time - started_ / settings.update_rate);
     axes[latest_.program] = state.position;
     const double speed = (state.command - state.position) / settings.lag;
     hidden_.Follow(time, axes, speed * Vector3d::Unit(latest_.program));
@@ -152,7 +151,7 @@ void LiveMachine::Advance(Moment& moment) {
       done = !run_->Next();
       if (hidden_.empty()) continue;
       const CourseState& state = run_->state();
-      const double time = static_cast<double>(started_ + run_ticks_) / rate;
+      const double time = (started_ + run_ticks_) / rate;
       hidden_.Follow(time, state.position, state.velocity);
       if (linkage_ != nullptr) {
         linkage_->Follow(state, climate_.At(LinkSensor(linkage_).front(), time), cap_force_,
@@ -164,7 +163,7 @@ void LiveMachine::Advance(Moment& moment) {
   } else {
     if (!hidden_.empty()) FollowSweep(moment.tick);
     const RigSettings& settings = world_.settings();
-    const MotionState state = motion_->At(static_cast<double>(since) / settings.update_rate);
+    const MotionState state = motion_->At(since / settings.update_rate);
     moment.axes.position[moment.program] = state.position;
     moment.axes.command[moment.program] = state.command;
     velocity = (state.command - state.position) / settings.lag * Vector3d::Unit(moment.program);
@@ -174,7 +173,7 @@ void LiveMachine::Advance(Moment& moment) {
     moment.axes.counts = state.pass > 0;
     done = state.done;
   }
-  hidden_.Follow(static_cast<double>(moment.tick) / rate, moment.axes.position, velocity);
+  hidden_.Follow(moment.tick / rate, moment.axes.position, velocity);
   if (!done) return;
   moment.state = ProgramState::kDone;
   moment.axes = StandingAt(RestOf(world_.settings()));

@@ -36,15 +36,14 @@ double SlowDrift::At(double time) {
     const double normal = random_.Normal(first_ + grid_.size());
     grid_.push_back(grid_.empty() ? sd_ * normal : kept_ * grid_.back() + sd_ * fresh * normal);
   }
-  const double share = place - static_cast<double>(before);
+  const double share = place - before;
   return (1.0 - share) * grid_[before - first_] + share * grid_[before - first_ + 1];
 }
 
 Eigen::Vector3d WhiteNoise::At(std::uint64_t number) const {
   Eigen::Vector3d noise;
   for (std::uint64_t i = 0; i < 3; ++i) {
-    noise[static_cast<Eigen::Index>(i)] =
-        deviation_ * random::CounterRandom(seed_, stream_ + i).Normal(number);
+    noise[i] = deviation_ * random::CounterRandom(seed_, stream_ + i).Normal(number);
   }
   return noise;
 }
@@ -71,8 +70,7 @@ SensorNoise::SensorNoise(const RigSettings& settings, std::uint64_t seed, std::u
 }
 
 double SensorNoise::OfProbe(int probe, std::uint64_t tick, double time) {
-  const auto at = static_cast<std::size_t>(probe);
-  return white_ * white_random_[at].Normal(tick) + drifts_[at].At(time);
+  return white_ * white_random_[probe].Normal(tick) + drifts_[probe].At(time);
 }
 
 double SensorNoise::OfTemperature(std::size_t sensor, double time) {

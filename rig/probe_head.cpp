@@ -99,7 +99,7 @@ TargetMounting TargetMounting::Draw(const RigSettings& settings, std::uint64_t s
   const random::CounterRandom random(seed, kTargetStream);
   TargetMounting mounting;
   for (int i = 0; i < 3; ++i) {
-    const auto index = static_cast<std::uint64_t>(i);
+    const std::uint64_t index = i;
     mounting.tilt[i] = random.Uniform(kDrawsOfMounting * number + index, -settings.target_tilt,
                                       settings.target_tilt);
     mounting.squareness[i] =

@@ -117,7 +117,7 @@ class ProbeRunMaker {
 };
 
 const hal::SweepPlan& PlanOf(const RigSettings& settings, char axis) {
-  const auto& plan = settings.sweeps[static_cast<std::size_t>(AxisNumber(axis))];
+  const auto& plan = settings.sweeps[AxisNumber(axis)];
   if (plan) return *plan;
   throw InputError(fmt::format(
       "no sweep of {:c} is programmed; add a table [sweep.{:c}] to the machine file", axis, axis));
@@ -132,8 +132,7 @@ Course GapStepCourse(const RigSettings& settings, char axis, const ProbeRunOptio
   Course course{settings.StartOf(swept) - Vector3d::Constant(kApproach), {}};
   for (int place = 0; place < options.places; ++place) {
     Vector3d point = settings.StartOf(swept);
-    point[swept] = plan.stations[last * static_cast<std::size_t>(place) /
-                                 static_cast<std::size_t>(std::max(1, options.places - 1))];
+    point[swept] = plan.stations[last * place / std::max(1, options.places - 1)];
     course.moves.push_back({{point}, plan.feed});
     for (int other = 1; other < kAxes; ++other) {
       const int stepping = (swept + other) % kAxes;

@@ -72,7 +72,7 @@ class CourseMaker {
 
   void Add(const CourseState& state) {
     column_ = 0;
-    const auto row = static_cast<std::uint64_t>(course_.rows());
+    const auto row = course_.rows();
     Put(state.time);
     for (const double each : state.position) Put(each / kMillimetre);
     Put(state.pass);

@@ -45,7 +45,7 @@ recording::Recording RecordLengths(const LinkageRig& rig, const LengthProgram& p
     hidden.Follow(i, place, standing);
     const Eigen::Vector3d tool = rig.ToolAt(hidden.Place());
     if (i == 0) first = tool;
-    const double noise = program.u * random.Normal(static_cast<std::uint64_t>(i) + 1);
+    const double noise = program.u * random.Normal(i + 1);
     const double length = i == 0 ? 0.0 : (tool - first).norm() * (1.0 + scale) + noise;
     std::vector<double> row = {static_cast<double>(i),
                                place[0] / kMillimetre,

@@ -103,7 +103,7 @@ class PlateMaker {
   void Measure(std::size_t number) {
     const PlateSetup& setup = program_.setups[number];
     const int holes = program_.holes * program_.holes;
-    const std::uint64_t first = number * static_cast<std::uint64_t>(3 * holes + 6);
+    const std::uint64_t first = number * (3 * holes + 6);
     Matrix3d R;
     R.col(0) = Vector3d::Unit(setup.directions[0]);
     R.col(1) = Vector3d::Unit(setup.directions[1]);
@@ -122,7 +122,7 @@ class PlateMaker {
   void Put(std::size_t setup, int hole, const Vector3d& axes) {
     const Vector2d certificate = Certificate(hole) / kMillimetre;
     std::size_t column = 0;
-    const auto row = static_cast<double>(recording_.rows());
+    const double row = recording_.rows();
     for (const double value :
          {row, axes[0] / kMillimetre, axes[1] / kMillimetre, axes[2] / kMillimetre,
           static_cast<double>(setup + 1), hole + 1.0, certificate[0], certificate[1],

@@ -59,7 +59,7 @@ class SweepMaker {
       for (recording::Column& column : sweep_.columns) column.values.reserve(count);
     }
     for (std::size_t i = 0; i < count; ++i) {
-      const double time = static_cast<double>(i) / options_.rate;
+      const double time = i / options_.rate;
       const MotionState state = motion_.At(time);
       axes_[axis_] = state.position;
       const double speed = (state.command - state.position) / world_.settings().lag;
@@ -92,7 +92,7 @@ class SweepMaker {
   void Add(double time, const MotionState& state) {
     Put(0, time);
     for (int axis = 0; axis < kAxes; ++axis) {
-      Put(kPosition + static_cast<std::size_t>(axis), axes_[axis] / settings::kMillimetre);
+      Put(kPosition + axis, axes_[axis] / settings::kMillimetre);
     }
     Put(kPass, state.pass);
     Put(kDirection, state.direction);

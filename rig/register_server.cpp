@@ -146,14 +146,14 @@ void RegisterServer::Refresh() {
 
 void RegisterServer::RefreshBlock(const ModbusSettings& device, const BlockSettings& block,
                                   const Moment& now) {
-  std::vector<std::uint16_t> words(static_cast<std::size_t>(block.count));
+  std::vector<std::uint16_t> words(block.count);
   for (const ChannelSettings& channel : block.channels) {
     const std::optional<double> value = machine_.ReadingOf(channel.name, now);
     if (value) {
       hal::StoreValue(channel, *value, words);
     } else {
       hal::StoreNumber(SentinelOf(channel), channel.type, channel.order,
-                       std::span(words).subspan(static_cast<std::size_t>(channel.at)));
+                       std::span(words).subspan(channel.at));
     }
   }
   auto found = registers_.find({device.unit, block.table, block.address});

@@ -88,8 +88,7 @@ std::vector<double> NumbersOf(const ordered_json& object, const std::string& key
 std::vector<double> Interpolated(const std::vector<double>& stations,
                                  const std::vector<double>& values,
                                  const std::vector<double>& places, const std::string& name) {
-  const double slack =
-      0.01 * (stations.back() - stations.front()) / static_cast<double>(stations.size() - 1);
+  const double slack = 0.01 * (stations.back() - stations.front()) / (stations.size() - 1);
   std::vector<double> found;
   for (const double place : places) {
     if (!(place > stations.front() - slack && place < stations.back() + slack)) {
@@ -99,7 +98,7 @@ std::vector<double> Interpolated(const std::vector<double>& stations,
           name, place, stations.front(), stations.back()));
     }
     const auto after = std::upper_bound(stations.begin() + 1, stations.end() - 1, place);
-    const auto i = static_cast<std::size_t>(after - stations.begin());
+    const std::size_t i = after - stations.begin();
     const double share = (place - stations[i - 1]) / (stations[i] - stations[i - 1]);
     found.push_back((1.0 - share) * values[i - 1] + share * values[i]);
   }
@@ -108,7 +107,7 @@ std::vector<double> Interpolated(const std::vector<double>& stations,
 
 // Removes what a sweep does not define: the first value of an angle, the line of a straightness.
 void Reduce(bool angle, const std::vector<double>& stations, std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
+  const double n = values.size();
   double offset = values.front(), slope = 0.0, middle = 0.0;
   if (!angle) {
     double mean = 0.0, product = 0.0, square = 0.0;
@@ -142,7 +141,7 @@ ComponentComparison CompareComponent(const std::string& component,
     inside += std::abs(pull) <= 2.0 ? 1.0 : 0.0;
     uncertain += 1.0;
   }
-  comparison.rms_error = std::sqrt(squares / static_cast<double>(errors.size()));
+  comparison.rms_error = std::sqrt(squares / errors.size());
   comparison.rms_pull = std::sqrt(pulls / uncertain);
   comparison.share_inside_2u =
       std::isnan(pulls) ? std::numeric_limits<double>::quiet_NaN() : inside / uncertain;

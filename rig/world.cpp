@@ -62,7 +62,7 @@ World::InstalledHead World::Mount(int axis, HeadPlace& place) const {
     const Eigen::Vector3d nominal = place.rotation.col(direction);
     TargetFace face(settings_, SideOf(nominal), mounting_.NormalOf(nominal), corner,
                     FaceReach(settings_, axis), seed_);
-    for (const double rms : parts_.forms[static_cast<std::size_t>(2 - direction)]) {
+    for (const double rms : parts_.forms[2 - direction]) {
       face.AddForm(settings_, rms, FaceReach(settings_, axis), seed_);
     }
     if (head_and_target_.target_reversed) {

@@ -43,7 +43,7 @@ const toml::node* Find(const toml::table* table, std::string_view key) {
 
 // An integer of any size is accepted as a number.
 double AsNumber(const toml::node& node) {
-  if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
+  if (const auto* whole = node.as_integer()) return whole->get();
   return node.as_floating_point()->get();
 }
 

@@ -13,15 +13,15 @@ Eigen::Matrix3Xd AxesInTravel(const machine::VolumetricModel& model, const Eigen
   Eigen::Matrix3Xd held = axes;
   for (Eigen::Index i = 0; i < axes.cols(); ++i) {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const auto& [first, last] = model.travels()[static_cast<std::size_t>(axis)];
+      const auto& [first, last] = model.travels()[axis];
       held(axis, i) = std::clamp(axes(axis, i), first, last);
       if (std::abs(held(axis, i) - axes(axis, i)) <= kEndWindow) continue;
       throw InputError(
           fmt::format("{}: row {}: {} = {:.4f} mm lies outside the travel of the machine file, "
                       "{:g} to {:g} mm; "
                       "correct [axis.{}] travel_mm or leave these rows out",
-                      recording, rows[static_cast<std::size_t>(i)] + 1, "xyz"[axis],
-                      1e3 * axes(axis, i), 1e3 * first, 1e3 * last, "XYZ"[axis]));
+                      recording, rows[i] + 1, "xyz"[axis], 1e3 * axes(axis, i), 1e3 * first,
+                      1e3 * last, "XYZ"[axis]));
     }
   }
   return held;

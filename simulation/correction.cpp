@@ -32,9 +32,7 @@ void Change::Add(double moved) {
   ++count;
 }
 
-double Change::rms() const {
-  return count == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(count));
-}
+double Change::rms() const { return count == 0 ? 0.0 : std::sqrt(squares / count); }
 
 Sums SumsOf(Trace& trace, const std::vector<ModelledCause>& causes, const Origin& origin) {
   CountFromOwn(origin, trace);
@@ -48,7 +46,7 @@ Sums SumsOf(Trace& trace, const std::vector<ModelledCause>& causes, const Origin
     MatrixXd& sum = instrument ? sums.instrument : sums.machine;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       for (const auto& [stage, values] : columns[i].stages()) {
-        sum.row(stage) += coefficients[static_cast<Index>(i)] * values;
+        sum.row(stage) += coefficients[i] * values;
       }
     }
   }

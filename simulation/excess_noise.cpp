@@ -16,7 +16,7 @@ VectorXd WithoutDrift(const VectorXd& left, const VectorXd& time) {
   const Index poses = left.size() / 3;
   const auto rows = left.reshaped(3, poses);
   const double span = time[poses - 1] - time[0];
-  const double first = kFirst * span / static_cast<double>(poses - 1);
+  const double first = kFirst * span / (poses - 1);
   double most = 0.0;
   const Eigen::Vector3d level = rows.rowwise().mean();
   VectorXd drift = VectorXd::Zero(left.size());
@@ -37,7 +37,7 @@ double SharedBy(const VectorXd& left) {
   constexpr double kByChance = 2.0;  // standard deviations of the correlation of white noise
   const Index poses = left.size() / 3;
   const auto rows = left.reshaped(3, poses);
-  const double least = kByChance / std::sqrt(static_cast<double>(left.size()));
+  const double least = kByChance / std::sqrt(left.size());
   double shared = 1.0;
   for (Index lag = 1; lag < poses / 2; ++lag) {
     const double rho = rows.leftCols(poses - lag).cwiseProduct(rows.rightCols(poses - lag)).sum() /
@@ -78,7 +78,7 @@ double SharedLeft(const Eigen::MatrixXd& angles, const VectorXd& left,
     }
   }
   const double shared = product / (left.norm() * other_left.norm());
-  const auto rows = static_cast<double>(std::min(left.size(), other_left.size()));
+  const double rows = std::min(left.size(), other_left.size());
   return shared * std::sqrt(rows) < kByChance ? 0.0 : shared;
 }
 

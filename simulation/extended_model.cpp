@@ -83,25 +83,23 @@ ModelledCause FindCause(const Table& table, const CauseObjects& machine) {
 void ReadCovariance(const Table& table, ModelledCause& cause) {
   if (!table.Has("covariance")) return;
   const Index n = cause.cause->coefficients();
-  const auto numbers = table.Quantities("covariance", static_cast<std::size_t>(n * n));
+  const auto numbers = table.Quantities("covariance", n * n);
   cause.covariance = Eigen::Map<const Eigen::MatrixXd>(numbers.data(), n, n);
 }
 
 ModelledCause ReadCause(const Table& table, const CauseObjects& machine) {
   ModelledCause cause = FindCause(table, machine);
   const auto& keys = cause.cause->keys;
-  cause.values.resize(static_cast<Index>(keys.size()));
+  cause.values.resize(keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    cause.values[static_cast<Index>(i)] =
-        keys[i].unit *
-        table.Number(keys[i].name, {.at_least = keys[i].least, .at_most = keys[i].most});
+    cause.values[i] = keys[i].unit * table.Number(keys[i].name, {.at_least = keys[i].least,
+                                                                 .at_most = keys[i].most});
   }
   if (table.Has("u95")) {
     const Table u95 = table.Child("u95");
     cause.u95.resize(cause.values.size());
     for (std::size_t i = 0; i < keys.size(); ++i) {
-      cause.u95[static_cast<Index>(i)] =
-          keys[i].unit * u95.Number(keys[i].name, {.fallback = 0.0, .at_least = 0.0});
+      cause.u95[i] = keys[i].unit * u95.Number(keys[i].name, {.fallback = 0.0, .at_least = 0.0});
     }
     u95.RefuseUnknown();
   }
@@ -185,11 +183,10 @@ std::string CauseText(const ModelledCause& cause) {
   std::string u95;
   for (std::size_t i = 0; i < cause.cause->keys.size(); ++i) {
     const auto& key = cause.cause->keys[i];
-    const auto at = static_cast<Index>(i);
-    text += fmt::format("{} = {}\n", key.name, Float(cause.values[at] / key.unit));
+    text += fmt::format("{} = {}\n", key.name, Float(cause.values[i] / key.unit));
     if (cause.u95.size() == 0) continue;
-    u95 += fmt::format("{}{} = {}", u95.empty() ? "" : ", ", key.name,
-                       Float(cause.u95[at] / key.unit));
+    u95 +=
+        fmt::format("{}{} = {}", u95.empty() ? "" : ", ", key.name, Float(cause.u95[i] / key.unit));
   }
   text += fmt::format("probability = {}\n", Float(cause.probability));
   if (!cause.rivals.empty()) {

@@ -12,7 +12,7 @@ constexpr double kStop = 1.0;  // s
 
 Trace TraceOf(const Eigen::Matrix3Xd& path, double feed) {
   Trace trace;
-  const auto rows = static_cast<std::size_t>(path.cols());
+  const std::size_t rows = path.cols();
   trace.pass.assign(rows, 1);
   trace.direction.assign(rows, 1);
   trace.time = Eigen::VectorXd::Zero(path.cols());

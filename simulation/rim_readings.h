@@ -29,7 +29,7 @@ struct RimReadings {
   Eigen::RowVectorXd Of(int which, const Eigen::RowVectorXd& values) const {
     Eigen::RowVectorXd own = values;
     for (Eigen::Index row = 0; row < own.size(); ++row) {
-      if (sensor[static_cast<std::size_t>(row)] != which) own[row] = 0.0;
+      if (sensor[row] != which) own[row] = 0.0;
     }
     return own;
   }

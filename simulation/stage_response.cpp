@@ -13,9 +13,9 @@ StageResponse::StageResponse(MatrixXd by_stage, Index per_instant)
     : by_stage_(std::move(by_stage)), per_instant_(per_instant) {}
 
 MatrixXd StageResponse::Columns(const std::vector<Disturbance>& disturbances) const {
-  MatrixXd columns = MatrixXd::Zero(by_stage_.rows(), static_cast<Index>(disturbances.size()));
+  MatrixXd columns = MatrixXd::Zero(by_stage_.rows(), disturbances.size());
   for (Index d = 0; d < columns.cols(); ++d) {
-    for (const auto& [stage, values] : disturbances[static_cast<std::size_t>(d)].stages()) {
+    for (const auto& [stage, values] : disturbances[d].stages()) {
       if (stage >= by_stage_.cols()) continue;
       const auto of_stage = by_stage_.col(stage).reshaped(per_instant_, instants());
       columns.col(d).reshaped(per_instant_, instants()) +=

@@ -77,12 +77,11 @@ std::vector<estimation::Stay> ReadingsIn(const Recording& recording, const std::
     const auto value = recording::ValuesOf(recording, column, rows);
     const auto time =
         timed ? recording::ValuesOf(recording, "time_s", rows) : std::vector<double>{};
-    const auto count = static_cast<Index>(rows.size());
+    const Index count = rows.size();
     estimation::Stay stay{Eigen::VectorXd(count), Eigen::VectorXd(count)};
     for (Index i = 0; i < count; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      stay.time[i] = timed ? time[at] : static_cast<double>(rows[at]);
-      stay.value[i] = value[at];
+      stay.time[i] = timed ? time[i] : rows[i];
+      stay.value[i] = value[i];
     }
     readings.push_back(std::move(stay));
   }

@@ -30,7 +30,7 @@ Origin OriginOf(const std::vector<const Trace*>& traces) {
   }
   for (const Trace* trace : in_time) {
     for (std::size_t s = 0; s < trace->sensors.size(); ++s) {
-      origin.temperature.emplace(trace->sensors[s], trace->temperature(static_cast<Index>(s), 0));
+      origin.temperature.emplace(trace->sensors[s], trace->temperature(s, 0));
     }
   }
   return origin;
@@ -42,7 +42,7 @@ void CountFrom(const Origin& origin, Trace& trace) {
   trace.clock = trace.time.array() + later;
   trace.warming = trace.temperature;
   for (std::size_t s = 0; s < trace.sensors.size(); ++s) {
-    trace.warming.row(static_cast<Index>(s)).array() -= origin.temperature.at(trace.sensors[s]);
+    trace.warming.row(s).array() -= origin.temperature.at(trace.sensors[s]);
   }
 }
 

@@ -7,7 +7,7 @@ namespace abbe::simulation {
 using Eigen::Index;
 
 Eigen::RowVectorXd ApproachOf(const std::vector<int>& direction) {
-  Eigen::RowVectorXd heading(static_cast<Eigen::Index>(direction.size()));
+  Eigen::RowVectorXd heading(direction.size());
   std::copy(direction.begin(), direction.end(), heading.begin());
   return heading;
 }
@@ -27,10 +27,9 @@ void AddSensors(const recording::Recording& recording, const std::vector<std::si
   for (const auto& column : recording.columns) {
     if (!column.name.starts_with("temp_")) continue;
     trace.sensors.push_back(column.name);
-    trace.temperature.conservativeResize(static_cast<Index>(trace.sensors.size()), trace.rows());
+    trace.temperature.conservativeResize(trace.sensors.size(), trace.rows());
     for (Index row = 0; row < trace.rows(); ++row) {
-      trace.temperature(trace.temperature.rows() - 1, row) =
-          column.values[rows[static_cast<std::size_t>(row)]];
+      trace.temperature(trace.temperature.rows() - 1, row) = column.values[rows[row]];
     }
   }
 }

@@ -19,9 +19,8 @@ constexpr double kGap = 0.5;  // s between rows: nothing is known of the way bet
 
 // Whether nothing is known of the way from the row before.
 bool Begins(const Trace& trace, Index row) {
-  const auto at = static_cast<std::size_t>(row);
-  return row == 0 || trace.pass[at] != trace.pass[at - 1] ||
-         trace.direction[at] != trace.direction[at - 1] ||
+  return row == 0 || trace.pass[row] != trace.pass[row - 1] ||
+         trace.direction[row] != trace.direction[row - 1] ||
          trace.time[row] - trace.time[row - 1] > kGap;
 }
 

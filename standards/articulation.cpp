@@ -17,10 +17,10 @@ using Points = std::vector<Eigen::Vector3d>;
 
 // The sphere with all points on its surface and its centre in their plane or line.
 std::optional<Sphere> SphereThrough(const Points& on) {
-  const auto n = static_cast<Eigen::Index>(on.size()) - 1;
+  const auto n = std::ssize(on) - 1;
   if (n == 0) return Sphere{on[0], 0.0};
   Eigen::MatrixXd edges(3, n);
-  for (Eigen::Index i = 0; i < n; ++i) edges.col(i) = on[static_cast<std::size_t>(i) + 1] - on[0];
+  for (Eigen::Index i = 0; i < n; ++i) edges.col(i) = on[i + 1] - on[0];
   const Eigen::MatrixXd gram = 2.0 * edges.transpose() * edges;
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(gram);
   if (!lu.isInvertible()) return std::nullopt;
@@ -94,8 +94,7 @@ Articulation EvaluateArticulation(const Eigen::Matrix3Xd& p) {
   figures.distances = (p.colwise() - figures.mean).colwise().norm().transpose();
   figures.largest = figures.distances.maxCoeff();
   figures.range = figures.largest - figures.distances.minCoeff();
-  figures.two_sigma =
-      2.0 * std::sqrt(figures.distances.squaredNorm() / static_cast<double>(p.cols() - 1));
+  figures.two_sigma = 2.0 * std::sqrt(figures.distances.squaredNorm() / (p.cols() - 1));
   return figures;
 }
 

@@ -33,7 +33,7 @@ void CheckPoints(std::span<const double> x, std::span<const double> y) {
 double Mean(std::span<const double> values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
+  return sum / values.size();
 }
 
 [[noreturn]] void ThrowLine(std::size_t n) {
@@ -58,8 +58,7 @@ Circle AlgebraicCircle(std::span<const double> x, std::span<const double> y) {
   constexpr double kFlat = 1e-20;  // squared ratio of the extents: rounding of points on a line
   if (!(A.determinant() > kFlat * A.trace() * A.trace())) ThrowLine(x.size());
   const Eigen::Vector2d c = A.inverse() * b;
-  return {mx + c.x(), my + c.y(),
-          std::sqrt(square / static_cast<double>(x.size()) + c.squaredNorm())};
+  return {mx + c.x(), my + c.y(), std::sqrt(square / x.size() + c.squaredNorm())};
 }
 
 // One Gauss-Newton step of the radial deviations; returns how far the centre moved.
@@ -132,7 +131,7 @@ Roundness EvaluateRoundness(CircleKind kind, std::span<const double> x, std::spa
     roundness.valley = std::max(roundness.valley, -deviation);
     squares += deviation * deviation;
   }
-  roundness.rms = std::sqrt(squares / static_cast<double>(x.size()));
+  roundness.rms = std::sqrt(squares / x.size());
   return roundness;
 }
 

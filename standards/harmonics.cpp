@@ -51,12 +51,12 @@ double HarmonicFit::At(double angle) const {
 HarmonicFit FitHarmonics(std::span<const double> angles, std::span<const double> values,
                          int highest) {
   CheckReadings(angles, values, highest);
-  const auto n = static_cast<Eigen::Index>(values.size());
+  const Eigen::Index n = values.size();
   Eigen::MatrixXd A(n, 2 * highest + 1);
   Eigen::VectorXd b(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    A.row(i) = Waves(angles[static_cast<std::size_t>(i)], highest);
-    b[i] = values[static_cast<std::size_t>(i)];
+    A.row(i) = Waves(angles[i], highest);
+    b[i] = values[i];
   }
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
   if (qr.rank() < A.cols()) {
@@ -68,10 +68,10 @@ HarmonicFit FitHarmonics(std::span<const double> angles, std::span<const double>
   const Eigen::VectorXd c = qr.solve(b);
   const double squares = (b - A * c).squaredNorm();
   const double freedom = std::max(1.0, static_cast<double>(n - A.cols()));
-  HarmonicFit fit{c[0], {}, std::sqrt(squares / static_cast<double>(n))};
+  HarmonicFit fit{c[0], {}, std::sqrt(squares / n)};
   for (int order = 1; order <= highest; ++order) {
-    fit.harmonics.push_back({order, c[2 * order - 1], c[2 * order],
-                             std::sqrt(2.0 * squares / freedom / static_cast<double>(n))});
+    fit.harmonics.push_back(
+        {order, c[2 * order - 1], c[2 * order], std::sqrt(2.0 * squares / freedom / n)});
   }
   return fit;
 }

@@ -37,7 +37,7 @@ struct HarmonicFit {
   std::vector<Harmonic> harmonics;  // order 1, 2, ...
   double rms = 0.0;                 // of the residuals
 
-  const Harmonic& Order(int order) const { return harmonics[static_cast<std::size_t>(order - 1)]; }
+  const Harmonic& Order(int order) const { return harmonics[order - 1]; }
   double At(double angle) const;
 };
 

@@ -36,7 +36,7 @@ std::optional<Annulus> ZoneThrough(const std::array<AnnulusPoint, 4>& points, in
   Eigen::Matrix4d A;
   Eigen::Vector4d b;
   for (int i = 0; i < 4; ++i) {
-    const AnnulusPoint& point = points[static_cast<std::size_t>(i)];
+    const AnnulusPoint& point = points[i];
     A.row(i) << point.u, point.v, (i < on_outer ? 1.0 : 0.0), (i < on_outer ? 0.0 : 1.0);
     b[i] = point.r;
   }
@@ -60,7 +60,7 @@ bool NextChoice(std::vector<std::size_t>& choice, std::size_t n) {
 }
 
 std::vector<std::size_t> FirstChoice(int count) {
-  std::vector<std::size_t> choice(static_cast<std::size_t>(count));
+  std::vector<std::size_t> choice(count);
   for (std::size_t i = 0; i < choice.size(); ++i) choice[i] = i;
   return choice;
 }

@@ -42,13 +42,13 @@ void Check(const std::vector<TargetDeviations>& targets) {
 double Mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
+  return sum / values.size();
 }
 
 double StandardDeviation(const std::vector<double>& values, double mean) {
   double sum = 0;
   for (const double value : values) sum += (value - mean) * (value - mean);
-  return std::sqrt(sum / static_cast<double>(values.size() - 1));
+  return std::sqrt(sum / (values.size() - 1));
 }
 
 TargetFigures Evaluate(const TargetDeviations& target) {
@@ -102,7 +102,7 @@ Positioning EvaluatePositioning(const std::vector<TargetDeviations>& targets) {
     result.repeatability_up = std::max(result.repeatability_up, figures.repeatability_up);
     result.repeatability_down = std::max(result.repeatability_down, figures.repeatability_down);
     result.reversal = std::max(result.reversal, std::abs(figures.reversal));
-    result.mean_reversal += figures.reversal / static_cast<double>(targets.size());
+    result.mean_reversal += figures.reversal / targets.size();
     result.targets.push_back(figures);
   }
   result.accuracy = bands.Size();

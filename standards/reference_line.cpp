@@ -48,7 +48,7 @@ Line Through(Point a, Point b) {
 }
 
 Line LeastSquares(const std::vector<Point>& points) {
-  const double n = static_cast<double>(points.size());
+  const double n = points.size();
   Point mean{0, 0};
   for (const Point& point : points) mean = {mean.x + point.x / n, mean.y + point.y / n};
   double xx = 0, xy = 0;

@@ -139,7 +139,7 @@ void CanInProcess::Transmit(const CanFrame& frame, const Participant* sender) {
     }
     const auto later = [](double due_s, const DelayedFrame& other) { return due_s < other.due_s; };
     delayed_.insert(std::upper_bound(delayed_.begin(), delayed_.end(), message.due_s, later),
-                    static_cast<std::size_t>(copies), message);
+                    copies, message);
   }
   DeliverDue(now);
 }

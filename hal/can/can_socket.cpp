@@ -30,7 +30,7 @@ void Set(int socket, int level, int option, const Value& value) {
 double RealTimeNow() {
   timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  return now.tv_sec + 1e-9 * now.tv_nsec;
 }
 
 can_frame ToWire(const CanFrame& frame) {
@@ -218,8 +218,7 @@ bool CanSocket::Understand(MessageBuffer& buffer, ReceivedFrame& received) {
     if (at->cmsg_type == SO_TIMESTAMPNS) {
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(at), sizeof(stamp));
-      age_s = batch_->calendar_s - static_cast<double>(stamp.tv_sec) -
-              1e-9 * static_cast<double>(stamp.tv_nsec);
+      age_s = batch_->calendar_s - stamp.tv_sec - 1e-9 * stamp.tv_nsec;
     } else if (at->cmsg_type == SO_RXQ_OVFL) {
       std::uint32_t overflow = 0;
       std::memcpy(&overflow, CMSG_DATA(at), sizeof(overflow));

@@ -96,8 +96,7 @@ bool ReadLine(std::string_view line, std::int64_t& last_us, bool& goes_back, Can
   if (log.frames.empty()) log.started_us = last_us = *stamp;
   goes_back = goes_back || *stamp < last_us;
   last_us = std::max(last_us, *stamp);
-  log.frames.push_back(
-      {1e-6 * static_cast<double>(last_us - log.started_us), std::string(interface), frame});
+  log.frames.push_back({1e-6 * (last_us - log.started_us), std::string(interface), frame});
   return true;
 }
 

@@ -25,7 +25,7 @@ constexpr double kLongestSilence = 60.0;
 
 std::string HeaderOf(const CandumpLog& log, const CanopenSettings& device,
                      const std::string& machine) {
-  const auto started = static_cast<std::time_t>(log.started_us / 1'000'000);
+  const auto started = log.started_us / 1'000'000;
   return fmt::format(
       "kind = \"dwell\"\nmachine = {}\nstarted = {:%Y-%m-%dT%H:%M:%S}.{:06}Z\n[sources]\n"
       "{} = {}\n",

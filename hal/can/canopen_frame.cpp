@@ -52,20 +52,20 @@ CanFrame NmtFrame(NmtCommand command, int node) {
 CanFrame SyncFrame() { return {.id = kSyncId}; }
 
 CanFrame HeartbeatFrame(int node, NmtState state) {
-  CanFrame frame{.id = kHeartbeatBase + static_cast<std::uint32_t>(node), .size = 1};
+  CanFrame frame{.id = kHeartbeatBase + node, .size = 1};
   frame.data[0] = static_cast<std::uint8_t>(state);
   return frame;
 }
 
 CanFrame EmergencyFrame(int node, std::uint16_t code, std::uint8_t error_register) {
-  CanFrame frame{.id = kEmergencyBase + static_cast<std::uint32_t>(node), .size = 8};
+  CanFrame frame{.id = kEmergencyBase + node, .size = 8};
   PutBits(frame, 0, 16, code);
   frame.data[2] = error_register;
   return frame;
 }
 
 CanFrame SdoReadFrame(int node, std::uint16_t index, std::uint8_t sub) {
-  CanFrame frame{.id = kSdoBase + static_cast<std::uint32_t>(node), .size = 8};
+  CanFrame frame{.id = kSdoBase + node, .size = 8};
   frame.data[0] = 0x40;
   PutBits(frame, 8, 16, index);
   frame.data[3] = sub;
@@ -111,14 +111,14 @@ std::optional<std::int64_t> TakeBits(const CanFrame& frame, int at, int bits, bo
   std::uint64_t all = 0;
   for (std::size_t i = frame.data.size(); i-- > 0;) all = all << 8 | frame.data[i];
   const std::uint64_t one_above = std::uint64_t{1} << bits;
-  const auto number = static_cast<std::int64_t>(all >> at & (one_above - 1));
+  const std::int64_t number = all >> at & (one_above - 1);
   const bool negative = is_signed && (number >> (bits - 1)) != 0;
   return negative ? number - static_cast<std::int64_t>(one_above) : number;
 }
 
 void PutBits(CanFrame& frame, int at, int bits, std::int64_t number) {
   for (int i = 0; i < bits; ++i) {
-    std::uint8_t& byte = frame.data[static_cast<std::size_t>((at + i) / 8)];
+    std::uint8_t& byte = frame.data[(at + i) / 8];
     const auto mask = static_cast<std::uint8_t>(1 << (at + i) % 8);
     byte = static_cast<std::uint8_t>((number >> i & 1) != 0 ? byte | mask : byte & ~mask);
   }

@@ -34,9 +34,7 @@ inline constexpr std::uint32_t kEmergencyBase = 0x080, kSdoReplyBase = 0x580, kS
                                kHeartbeatBase = 0x700;
 
 // The identifier of transmit PDO 1 to 4 as the profile presets it: 181h for PDO 1 of node 1.
-constexpr std::uint32_t TpdoId(int tpdo, int node) {
-  return static_cast<std::uint32_t>(0x080 + 0x100 * tpdo + node);
-}
+constexpr std::uint32_t TpdoId(int tpdo, int node) { return 0x080 + 0x100 * tpdo + node; }
 
 CanFrame NmtFrame(NmtCommand command, int node);  // node 0: all
 CanFrame SyncFrame();

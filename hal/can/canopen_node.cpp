@@ -65,7 +65,7 @@ bool CanopenNode::Hear(const ReceivedFrame& received) {
 
 void CanopenNode::HearAnswer(const SdoReply& reply) {
   if (question_ == kQuestions || !asked_s_) return;
-  const auto at = static_cast<std::size_t>(question_);
+  const std::size_t at = question_;
   if (reply.index != kObjects[at].index || reply.sub != kObjects[at].sub) return;
   answers_[at] = reply.value;
   asked_s_.reset();
@@ -76,7 +76,7 @@ void CanopenNode::HearAnswer(const SdoReply& reply) {
 void CanopenNode::Ask(CanBus& bus, double now_s) {
   if (asked_s_ && now_s - *asked_s_ < kAnswerTimeout * speed_) return;
   overdue_ = asked_s_.has_value();
-  const Object& object = kObjects[static_cast<std::size_t>(question_)];
+  const Object& object = kObjects[question_];
   bus.Send(SdoReadFrame(encoder_.node, object.index, object.sub));
   asked_s_ = now_s;
 }

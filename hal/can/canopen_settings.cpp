@@ -33,7 +33,7 @@ EncoderSettings ReadEncoder(const Table& table) {
   encoder.counts_per_turn = table.Number("counts_per_turn", {.above = 0.0});
   const double most = std::ldexp(1.0, encoder.bits);
   encoder.range = table.Integer("range", {.fallback = most, .at_least = 2.0, .at_most = most});
-  if (static_cast<double>(encoder.range) < encoder.counts_per_turn) {
+  if (encoder.range < encoder.counts_per_turn) {
     throw table.Error("range", fmt::format("{} is less than one turn of {} counts", encoder.range,
                                            encoder.counts_per_turn));
   }
@@ -78,7 +78,7 @@ CanopenSettings ReadCanopen(const Table& device) {
 }
 
 std::int64_t CountOf(const EncoderSettings& encoder, double angle) {
-  const double turned = std::fmod(angle / encoder.Step(), static_cast<double>(encoder.range));
+  const double turned = std::fmod(angle / encoder.Step(), encoder.range);
   const std::int64_t count = encoder.zero + encoder.sense * std::llround(turned);
   const std::int64_t wrapped = Wrapped(encoder, count);
   return encoder.is_signed || wrapped >= 0 ? wrapped : wrapped + encoder.range;

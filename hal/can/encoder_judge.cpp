@@ -14,7 +14,7 @@ constexpr double kNoise = 2.0;  // counts
 
 bool EncoderJudge::Reachable(const Reading& from, const Reading& to) const {
   const double seconds = to.time_s - from.time_s + kStampSlack;
-  return std::abs(static_cast<double>(Wrapped(encoder_, to.count - from.count))) <=
+  return std::abs(Wrapped(encoder_, to.count - from.count)) <=
          encoder_.fastest * seconds / encoder_.Step() + kNoise;
 }
 

@@ -158,7 +158,7 @@ ModbusClient::Fault ModbusClient::Send(std::span<const std::uint8_t> frame,
   const bool tcp = device_.framing == ModbusFraming::kTcp;
   const ssize_t sent = tcp ? send(link_->socket(), frame.data(), frame.size(), MSG_NOSIGNAL)
                            : write(link_->socket(), frame.data(), frame.size());
-  if (sent == static_cast<ssize_t>(frame.size())) return {};
+  if (sent == std::ssize(frame)) return {};
   const int error = sent < 0 ? errno : EIO;
   return Drop(ModbusFault::Kind::kNoLink,
               fmt::format("the link broke ({}) at: {}", ErrorText(error), request.Text()));
@@ -197,7 +197,7 @@ ModbusClient::Fault ModbusClient::Receive(const ModbusRequest& request, Time dea
       return Drop(ModbusFault::Kind::kNoLink,
                   fmt::format("the link broke ({}) at: {}", why, request.Text()));
     }
-    reply_size_ += static_cast<std::size_t>(size);
+    reply_size_ += size;
     wanted = ReplyLength(got(), device_.framing);
     limit = std::min(After(BootClock::now(), device_.times.byte), deadline);
   }

@@ -50,7 +50,7 @@ ModbusReply CheckBody(const ModbusRequest& request, std::span<const std::uint8_t
       reply.objects = body.subspan(2 + kIdentityHead);
     }
   } else if (Reads(request.function)) {
-    const auto wanted = static_cast<std::size_t>(2 * request.value);
+    const std::size_t wanted = 2 * request.value;
     if (body[2] != wanted || body.size() != 3 + wanted) {
       reply.wrong = fmt::format("{} bytes of registers instead of {}", body[2], wanted);
     } else {
@@ -117,7 +117,7 @@ ModbusFrame Encode(const ModbusRequest& request, ModbusFraming framing, std::uin
 std::size_t ReplyLength(std::span<const std::uint8_t> got, ModbusFraming framing) {
   if (framing == ModbusFraming::kTcp) {
     if (got.size() < kTcpHead) return kTcpHead;
-    return std::min(kTcpHead + static_cast<std::size_t>(Word(got, 4)), kLongestFrame);
+    return std::min(kTcpHead + Word(got, 4), kLongestFrame);
   }
   constexpr std::size_t kShortest = 5;  // an exception: unit, function, code, CRC
   if (got.size() >= 2 && got[1] == kWhoAreYou) {
@@ -159,7 +159,7 @@ std::string ExceptionText(int exception) {
                                                        "",
                                                        "gateway path unavailable",
                                                        "gateway target does not answer"};
-  const auto at = static_cast<std::size_t>(exception);
+  const std::size_t at = exception;
   return at < kNames.size() && !kNames[at].empty()
              ? fmt::format("exception {} ({})", exception, kNames[at])
              : fmt::format("exception {}", exception);

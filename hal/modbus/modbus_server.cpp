@@ -60,7 +60,7 @@ std::optional<Request> TakeApart(View body) {
   if (request.function != kWriteMany) return body.size() == 5 ? request : std::optional<Request>{};
   if (body.size() < 6 || body.size() != 6U + body[5] || body[5] != 2 * request.count) return {};
   for (int i = 0; i < std::min(request.count, kMostWrite); ++i) {
-    request.words[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(Word(data + 5 + 2 * i));
+    request.words[i] = static_cast<std::uint16_t>(Word(data + 5 + 2 * i));
   }
   return request;
 }
@@ -73,7 +73,7 @@ Answer Ask(RegisterBank& bank, int unit, Request& request) {
     return Answer::kIllegalValue;
   }
   if (request.address + request.count > 0x10000) return Answer::kIllegalAddress;
-  const std::span words(request.words.data(), static_cast<std::size_t>(request.count));
+  const std::span words(request.words.data(), request.count);
   if (writes) return bank.Write(unit, request.address, words);
   const auto table =
       request.function == kReadInput ? RegisterTable::kInput : RegisterTable::kHolding;
@@ -113,7 +113,7 @@ Bytes ReplyTo(RegisterBank& bank, int unit, View body) {
   }
   Bytes reply{body[0], static_cast<std::uint8_t>(2 * request->count)};
   for (int i = 0; i < request->count; ++i) {
-    const std::uint16_t word = request->words[static_cast<std::size_t>(i)];
+    const std::uint16_t word = request->words[i];
     reply.push_back(static_cast<std::uint8_t>(word >> 8));
     reply.push_back(static_cast<std::uint8_t>(word & 0xFF));
   }
@@ -172,11 +172,11 @@ struct ModbusServer::Client {
     got.insert(got.end(), bytes.begin(), bytes.begin() + size);
     return size > 0;
   }
-  void Drop(std::size_t count) { got.erase(got.begin(), got.begin() + static_cast<long>(count)); }
+  void Drop(std::size_t count) { got.erase(got.begin(), got.begin() + count); }
   bool Stuck() const { return !got.empty() && Clock::now() - since > kHalfRequest; }
   // False when the client does not take it at once.
   bool Send(View bytes) const {
-    return write(end, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size());
+    return write(end, bytes.data(), bytes.size()) == std::ssize(bytes);
   }
 };
 
@@ -273,7 +273,7 @@ void ModbusServer::ServeTcp(const std::stop_token& stop) {
       const bool stays = ends[i + 1].revents == 0 ? !clients[i].Stuck() : AnswerTcp(clients[i]);
       if (stays) continue;
       close(clients[i].end);
-      clients.erase(clients.begin() + static_cast<std::ptrdiff_t>(i));
+      clients.erase(clients.begin() + i);
     }
     if (ends[0].revents == 0) continue;
     int listener = link_->listener;
@@ -290,7 +290,7 @@ bool ModbusServer::AnswerTcp(Client& client) {
   if (!client.Take()) return false;
   while (client.got.size() >= kTcpHead) {
     const View got(client.got);
-    const auto length = static_cast<std::size_t>(Word(got.data() + 4));
+    const std::size_t length = Word(got.data() + 4);
     if (Word(got.data() + 2) != 0 || length < 2 || length > kLongestFrame - kTcpHead) return false;
     if (got.size() < kTcpHead + length) break;
     const Bytes body = ReplyTo(bank_, got[kTcpHead], got.subspan(kTcpHead + 1, length - 1));

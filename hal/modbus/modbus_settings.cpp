@@ -187,7 +187,7 @@ ModbusSettings ReadModbus(const Table& table, ModbusFraming framing) {
 }
 
 double RawOf(const ChannelSettings& channel, std::span<const std::uint16_t> block) {
-  return NumberOf(block.subspan(static_cast<std::size_t>(channel.at)), channel.type, channel.order);
+  return NumberOf(block.subspan(channel.at), channel.type, channel.order);
 }
 
 double ValueOf(const ChannelSettings& channel, double raw) {
@@ -196,7 +196,7 @@ double ValueOf(const ChannelSettings& channel, double raw) {
 
 void StoreValue(const ChannelSettings& channel, double value, std::span<std::uint16_t> block) {
   StoreNumber((value - channel.offset) / channel.scale, channel.type, channel.order,
-              block.subspan(static_cast<std::size_t>(channel.at)));
+              block.subspan(channel.at));
 }
 
 std::string PlaceOf(const ModbusSettings& device) {

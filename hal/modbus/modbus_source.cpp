@@ -15,7 +15,7 @@ constexpr int kAcknowledge = 5, kBusy = 6;  // exceptions
 ModbusSource::ModbusSource(const ModbusSettings& device, double stale_s, Clock& clock, Log log)
     : device_(device), clock_(clock), log_(std::move(log)), client_(device_) {
   for (const BlockSettings& block : device_.blocks) {
-    readings_.push_back({std::vector<std::uint16_t>(static_cast<std::size_t>(block.count))});
+    readings_.push_back({std::vector<std::uint16_t>(block.count)});
     for (const ChannelSettings& channel : block.channels) {
       channels_.push_back({channel.name, device_.name});
       judges_.emplace_back(channel, stale_s);
@@ -109,7 +109,7 @@ std::optional<std::uint16_t> ModbusSource::StatusOf(const ChannelSettings& chann
     const int at = channel.status->address - block.address;
     if (block.table != channel.status->table || at < 0 || at >= block.count) continue;
     if (readings_[b].cause != Cause::kNone) return {};
-    return readings_[b].words[static_cast<std::size_t>(at)];
+    return readings_[b].words[at];
   }
   return {};
 }

@@ -33,7 +33,7 @@ std::uint32_t Pattern(double number, WordType type) {
     case WordType::kUint16:
       return Nearest<std::uint16_t>(number);
     case WordType::kInt32:
-      return static_cast<std::uint32_t>(Nearest<std::int32_t>(number));
+      return Nearest<std::int32_t>(number);
     case WordType::kUint32:
       return Nearest<std::uint32_t>(number);
     case WordType::kFloat32:

@@ -14,7 +14,7 @@ Effect BearingRoundness() {
                {"cos3_um", Draw::kEvenSigned, 1.0, 10.0}},
       .in_linkage =
           [](const HiddenEffect& e, LinkageParts& linkage) {
-            auto& stretch = linkage.pivots[static_cast<std::size_t>(e.place())].stretch;
+            auto& stretch = linkage.pivots[e.place()].stretch;
             stretch.push_back({2, e.At("sin2_um"), e.At("cos2_um")});
             stretch.push_back({3, e.At("sin3_um"), e.At("cos3_um")});
           },

@@ -10,7 +10,7 @@ Effect ChannelSign() {
       .objects = kProbeObject,
       .in_world =
           [](const HiddenEffect& e, WorldParts& world) {
-            world.response.inverted[static_cast<std::size_t>(e.place())] = true;
+            world.response.inverted[e.place()] = true;
             world.response.any = true;
           },
   };

@@ -9,10 +9,8 @@ Effect ClockSkew() {
       .name = "clock-skew",
       .objects = kSourceObject,
       .keys = {{"delay_ms", Draw::kEvenSigned, 0.3, 10.0}},
-      .in_run =
-          [](const HiddenEffect& e, RunParts& run) {
-            run.late[static_cast<std::size_t>(e.place())] += e.At("delay_ms");
-          },
+      .in_run = [](const HiddenEffect& e,
+                   RunParts& run) { run.late[e.place()] += e.At("delay_ms"); },
   };
 }
 

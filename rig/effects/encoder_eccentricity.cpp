@@ -12,8 +12,7 @@ Effect EncoderEccentricity() {
                {"cos_urad", Draw::kEvenSigned, 20.0, 200.0}},
       .in_linkage =
           [](const HiddenEffect& e, LinkageParts& linkage) {
-            linkage.pivots[static_cast<std::size_t>(e.place())].encoder.push_back(
-                {1, e.At("sin_urad"), e.At("cos_urad")});
+            linkage.pivots[e.place()].encoder.push_back({1, e.At("sin_urad"), e.At("cos_urad")});
           },
   };
 }

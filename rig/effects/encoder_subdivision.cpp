@@ -13,7 +13,7 @@ Effect EncoderSubdivision() {
                {"cos_urad", Draw::kEvenSigned, 3.0, 40.0}},
       .in_linkage =
           [](const HiddenEffect& e, LinkageParts& linkage) {
-            linkage.pivots[static_cast<std::size_t>(e.place())].encoder.push_back(
+            linkage.pivots[e.place()].encoder.push_back(
                 {static_cast<int>(e.At("order")), e.At("sin_urad"), e.At("cos_urad")});
           },
   };

@@ -11,7 +11,7 @@ Effect LinkGravityBend() {
       .keys = {{"compliance_urad", Draw::kEven, 20.0, 300.0}},
       .in_linkage =
           [](const HiddenEffect& e, LinkageParts& linkage) {
-            linkage.pivots[static_cast<std::size_t>(e.place())].give += e.At("compliance_urad");
+            linkage.pivots[e.place()].give += e.At("compliance_urad");
           },
   };
 }

@@ -12,7 +12,7 @@ Effect LinkThermalGrowth() {
       .sensor = true,
       .in_linkage =
           [](const HiddenEffect& e, LinkageParts& linkage) {
-            linkage.expansion[static_cast<std::size_t>(e.place())] += e.At("coefficient_ppm_per_c");
+            linkage.expansion[e.place()] += e.At("coefficient_ppm_per_c");
           },
   };
 }

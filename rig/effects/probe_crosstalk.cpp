@@ -11,9 +11,7 @@ Effect ProbeCrosstalk() {
       .keys = {{"coefficient", Draw::kEvenSigned, 0.002, 0.05}},
       .in_world =
           [](const HiddenEffect& e, WorldParts& world) {
-            world.response
-                .of[static_cast<std::size_t>(e.place())][static_cast<std::size_t>(e.places[1])] +=
-                e.At("coefficient");
+            world.response.of[e.place()][e.places[1]] += e.At("coefficient");
             world.response.any = true;
           },
   };

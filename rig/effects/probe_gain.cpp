@@ -9,10 +9,8 @@ Effect ProbeGain() {
       .name = "probe-gain",
       .objects = kProbeObject,
       .keys = {{"delta", Draw::kEvenSigned, 0.002, 0.05}},
-      .in_world =
-          [](const HiddenEffect& e, WorldParts& world) {
-            world.probes[static_cast<std::size_t>(e.place())].gain += e.At("delta");
-          },
+      .in_world = [](const HiddenEffect& e,
+                     WorldParts& world) { world.probes[e.place()].gain += e.At("delta"); },
   };
 }
 

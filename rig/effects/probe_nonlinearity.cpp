@@ -11,8 +11,7 @@ Effect ProbeNonlinearity() {
       .keys = {{"quadratic_per_mm", Draw::kEvenSigned, 0.1, 2.0}},
       .in_world =
           [](const HiddenEffect& e, WorldParts& world) {
-            world.response.quadratic[static_cast<std::size_t>(e.place())] +=
-                e.At("quadratic_per_mm");
+            world.response.quadratic[e.place()] += e.At("quadratic_per_mm");
             world.response.any = true;
           },
   };

@@ -11,7 +11,7 @@ Effect ProbePosition() {
       .keys = {{"du_mm", Draw::kEvenSigned, 0.02, 0.3}, {"dv_mm", Draw::kEvenSigned, 0.02, 0.3}},
       .in_world =
           [](const HiddenEffect& e, WorldParts& world) {
-            ProbeTruth& probe = world.probes[static_cast<std::size_t>(e.place())];
+            ProbeTruth& probe = world.probes[e.place()];
             probe.along += e.At("du_mm");
             probe.across += e.At("dv_mm");
           },

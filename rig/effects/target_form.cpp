@@ -9,10 +9,8 @@ Effect TargetForm() {
       .name = "target-form",
       .objects = kFaceObject,
       .keys = {{"rms_um", Draw::kEven, 0.05, 0.5}},
-      .in_world =
-          [](const HiddenEffect& e, WorldParts& world) {
-            world.forms[static_cast<std::size_t>(e.place())].push_back(e.At("rms_um"));
-          },
+      .in_world = [](const HiddenEffect& e,
+                     WorldParts& world) { world.forms[e.place()].push_back(e.At("rms_um")); },
   };
 }
 

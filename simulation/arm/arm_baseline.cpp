@@ -63,15 +63,14 @@ double FarFrom(const VectorXd& norms, const std::vector<Index>& kept) {
   const auto middle = usual.begin() + usual.size() / 2;
   std::nth_element(usual.begin(), middle, usual.end());
   const double far = kFar * std::max(1.0, *middle / kMedianNorm);
-  const bool few =
-      static_cast<Index>(Within(norms, far).size()) >= norms.size() - norms.size() / kShareOut;
+  const bool few = std::ssize(Within(norms, far)) >= norms.size() - norms.size() / kShareOut;
   return few ? far : std::numeric_limits<double>::infinity();
 }
 
 void RefuseOtherArm(const LinkageRun& run, const ArmBaseline& baseline) {
   constexpr double kShare = 0.05;     // of the way
   constexpr double kLeastGap = 5e-3;  // m: what no tolerance explains
-  const double count = std::sqrt(static_cast<double>(run.poses()));
+  const double count = std::sqrt(run.poses());
   const double gap = GapsOf(run, baseline).norm() / count;
   const double way =
       (run.reference.colwise() - run.reference.rowwise().mean().eval()).norm() / count;

@@ -34,17 +34,17 @@ Correction CorrectArm(const recording::Recording& recording,
     seen.emplace_back(corrected.recording, column, corrected.changes.positions);
   }
   for (Index pose = 0; pose < run.poses(); ++pose) {
-    const std::size_t row = run.rows[static_cast<std::size_t>(pose)] - recording.first_row;
+    const std::size_t row = run.rows[pose] - recording.first_row;
     const double warmth = run.readings.warmth.size() == 0 ? 0.0 : run.readings.warmth[pose];
     const auto tip = arm.model().Differentiate(run.readings.angles.col(pose), warmth, nominal);
     const Eigen::Vector3d moved_B =
         tip.J_tip_x * parameters + by_stage.block<3, 1>(kTipStage, pose);
     const Eigen::Vector3d moved = arm.settings().X_MB.R * moved_B;
     for (Index pivot = 0; pivot < trace.pivots(); ++pivot) {
-      angles[static_cast<std::size_t>(pivot)].By(row, -by_stage(kEncoderStage + pivot, pose));
+      angles[pivot].By(row, -by_stage(kEncoderStage + pivot, pose));
     }
     for (Index axis = 0; axis < 3; ++axis) {
-      seen[static_cast<std::size_t>(axis)].By(row, -moved[axis]);
+      seen[axis].By(row, -moved[axis]);
     }
   }
   return corrected;

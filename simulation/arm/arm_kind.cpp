@@ -66,7 +66,7 @@ relm::LinkageSettings PlacedFor(const LinkageRun& run, const relm::LinkageSettin
 }
 
 std::string NoiseNote(const LinkageRun& kept, const ArmBaseline& baseline) {
-  const double rms = GapsOf(kept, baseline).norm() / std::sqrt(static_cast<double>(kept.poses()));
+  const double rms = GapsOf(kept, baseline).norm() / std::sqrt(kept.poses());
   std::string note =
       fmt::format("{}: the arm as its geometry fits {} poses leaves {:.3g} mm rms in space",
                   kept.name, kept.poses(), 1e3 * rms);
@@ -83,8 +83,7 @@ std::string FarNote(const LinkageRun& run, const ArmBaseline& baseline, std::vec
   std::sort(far.begin(), far.end(), [&](Index a, Index b) { return size[a] > size[b]; });
   std::vector<std::string> worst;
   for (std::size_t i = 0; i < std::min(kNamed, far.size()); ++i) {
-    worst.push_back(fmt::format(
-        "row {} by {:.3g} mm", run.rows[static_cast<std::size_t>(far[i])] + 1, 1e3 * size[far[i]]));
+    worst.push_back(fmt::format("row {} by {:.3g} mm", run.rows[far[i]] + 1, 1e3 * size[far[i]]));
   }
   const std::string more =
       far.size() > kNamed ? fmt::format(" and {} more", far.size() - kNamed) : "";

@@ -43,7 +43,7 @@ Matrix3Xd TipsOf(const relm::SerialChain& chain, const LinkageRun& run) {
 // Rms along the principal directions, the largest first.
 Vector3d SpreadOf(const Matrix3Xd& places) {
   const Matrix3Xd off = places.colwise() - places.rowwise().mean().eval();
-  const Eigen::Matrix3d square = off * off.transpose() / static_cast<double>(places.cols());
+  const Eigen::Matrix3d square = off * off.transpose() / places.cols();
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(square)
       .eigenvalues()
       .cwiseMax(0.0)

@@ -17,7 +17,7 @@ std::size_t KeyOfShape(const Cause& cause) {
   const Eigen::VectorXd values = cause.ValuesOf(Eigen::VectorXd::Zero(cause.coefficients()),
                                                 Eigen::VectorXd::Constant(1, kMark));
   const auto at = std::find(values.begin(), values.end(), kMark);
-  return at == values.end() ? std::string::npos : static_cast<std::size_t>(at - values.begin());
+  return at == values.end() ? std::string::npos : at - values.begin();
 }
 
 // With two digits.

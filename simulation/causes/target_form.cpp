@@ -52,13 +52,12 @@ void Take(const RowVectorXd& coordinate, Places& places) {
 VectorXd NodesAt(const Places& places, Index count) {
   constexpr double kFarAway = 10.0;  // m
   VectorXd nodes(count);
-  for (Index i = 0; i < count; ++i) nodes[i] = kFarAway * static_cast<double>(i + 1);
-  if (static_cast<Index>(places.size()) > count) {
-    return VectorXd::LinSpaced(count, kSamePlace * static_cast<double>(*places.begin()),
-                               kSamePlace * static_cast<double>(*places.rbegin()));
+  for (Index i = 0; i < count; ++i) nodes[i] = kFarAway * (i + 1);
+  if (std::ssize(places) > count) {
+    return VectorXd::LinSpaced(count, kSamePlace * *places.begin(), kSamePlace * *places.rbegin());
   }
   Index i = 0;
-  for (const long place : places) nodes[i++] = kSamePlace * static_cast<double>(place);
+  for (const long place : places) nodes[i++] = kSamePlace * place;
   return nodes;
 }
 
@@ -72,21 +71,20 @@ VectorXd GridOver(const Scene& scene) {
   for (const Trace* trace : scene.traces) {
     if (!trace->HasSpots()) continue;
     for (const char* object : {"target_top", "target_side"}) {
-      const auto face = static_cast<std::size_t>(FaceOf(*trace, object));
+      const std::size_t face = FaceOf(*trace, object);
       for (const Index probe : ProbesAt(object)) {
         Take(trace->head->spots.row(2 * probe), along[face]);
-        Take(trace->head->spots.row(2 * probe + 1),
-             across[face][static_cast<std::size_t>(UnitOf(object))]);
+        Take(trace->head->spots.row(2 * probe + 1), across[face][UnitOf(object)]);
       }
     }
   }
   VectorXd grid = VectorXd::Zero(kFirst + kOfFace * kFaces);
   grid.head<3>() << kUsual, scene.form, std::max(scene.form_length, kSamePlace);
   for (std::size_t face = 0; face < kFaces; ++face) {
-    Index at = kFirst + kOfFace * static_cast<Index>(face);
+    Index at = kFirst + kOfFace * face;
     const auto add = [&](const Places& places, Index count) {
       grid.segment(at, count) = NodesAt(places, count);
-      if (static_cast<Index>(places.size()) > count) {
+      if (std::ssize(places) > count) {
         grid[kLength] = std::max(grid[kLength], (grid[at + 1] - grid[at]) / kApart);
       }
       at += count;
@@ -136,7 +134,7 @@ Cause TargetForm() {
                          across = FunctionsOf(trace.head->spots.row(2 * probe + 1),
                                               shape.segment(across_at, kAcross), shape[kLength]);
           for (Index node = 0; node < kNodes; ++node) {
-            columns[static_cast<std::size_t>(face * kNodes + node)].row(kReadingStage + probe) =
+            columns[face * kNodes + node].row(kReadingStage + probe) =
                 along.row(node / kAcross).cwiseProduct(across.row(node % kAcross));
           }
         }

@@ -33,7 +33,7 @@ Cause ThermalGrowth() {
         const int axis = object.first();
         const auto sensor = std::find(trace.sensors.begin(), trace.sensors.end(), object.sensor());
         if (sensor == trace.sensors.end()) return {};
-        const auto row = static_cast<Eigen::Index>(sensor - trace.sensors.begin());
+        const auto row = sensor - trace.sensors.begin();
         return {InStage(trace, Positioning(axis),
                         trace.warming.row(row).cwiseProduct(trace.axes.row(axis)))};
       },

@@ -11,14 +11,14 @@ void CellMeans::Add(const LinkageRun& part, Index pose, const Eigen::Vector3d& g
   if (cells_.empty()) like_ = Blank(part, 0);
   std::array<std::int64_t, 3> key{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double position = part.commanded(static_cast<Index>(axis), pose);
+    const double position = part.commanded(axis, pose);
     key[axis] = static_cast<std::int64_t>(std::floor(position / cell_));
   }
   const auto angles = part.readings.angles.col(pose);
   const auto [at, is_new] = cells_.try_emplace(key);
   Sums& sums = at->second;
   if (is_new) {
-    sums.row = part.rows[static_cast<std::size_t>(pose)];
+    sums.row = part.rows[pose];
     sums.first_angles = angles;
     sums.reference_sd = part.reference_sd.col(pose);
     sums.angles.setZero(angles.size());
@@ -37,10 +37,10 @@ void CellMeans::Add(const LinkageRun& part, Index pose, const Eigen::Vector3d& g
 }
 
 LinkageRun CellMeans::Run() const {
-  LinkageRun means = Blank(like_, static_cast<Index>(cells_.size()));
+  LinkageRun means = Blank(like_, cells_.size());
   Index pose = 0;
   for (const auto& [key, sums] : cells_) {
-    means.rows[static_cast<std::size_t>(pose)] = sums.row;
+    means.rows[pose] = sums.row;
     means.time[pose] = sums.time / sums.weight;
     means.commanded.col(pose) = sums.commanded / sums.weight;
     means.reference.col(pose) = means.commanded.col(pose);
@@ -54,7 +54,7 @@ LinkageRun CellMeans::Run() const {
 }
 
 Eigen::Matrix3Xd CellMeans::Gaps() const {
-  Eigen::Matrix3Xd gaps(3, static_cast<Index>(cells_.size()));
+  Eigen::Matrix3Xd gaps(3, cells_.size());
   Index pose = 0;
   for (const auto& [key, sums] : cells_) gaps.col(pose++) = sums.gap / sums.weight;
   return gaps;

@@ -65,7 +65,7 @@ VectorXd ParametersMoved(const relm::LinkageModel& model,
     const std::vector<std::string> widened = each.cause->relaxes(each.object);
     for (std::size_t i = 0; i < widened.size(); ++i) {
       const auto found = std::find(names.begin(), names.end(), widened[i]);
-      if (found != names.end()) moved[found - names.begin()] += coefficients[static_cast<Index>(i)];
+      if (found != names.end()) moved[found - names.begin()] += coefficients[i];
     }
   }
   return moved;
@@ -93,13 +93,13 @@ Correction CorrectLinkage(const Recording& recording, const std::vector<Modelled
   }
   Index stay = 0;
   for (const std::size_t row : rows.rows) {
-    while (stay + 1 < stays.poses() && stays.rows[static_cast<std::size_t>(stay) + 1] <= row) {
+    while (stay + 1 < stays.poses() && stays.rows[stay + 1] <= row) {
       ++stay;
     }
     for (std::size_t k = 0; k < angles.size(); ++k) {
-      angles[k].By(row, steps.angles(static_cast<Index>(k), stay));
+      angles[k].By(row, steps.angles(k, stay));
     }
-    for (std::size_t k = 0; k < 3; ++k) axes[k].By(row, steps.axes(static_cast<Index>(k), stay));
+    for (std::size_t k = 0; k < 3; ++k) axes[k].By(row, steps.axes(k, stay));
   }
   return corrected;
 }

@@ -42,7 +42,7 @@ bool HasReference(const Recording& head) {
 }
 
 Eigen::Matrix3Xd PositionsOf(const Recording& path, const std::vector<std::size_t>& rows) {
-  Eigen::Matrix3Xd positions(3, static_cast<Index>(rows.size()));
+  Eigen::Matrix3Xd positions(3, rows.size());
   for (Index axis = 0; axis < 3; ++axis) {
     const auto values = recording::ValuesOf(path, fmt::format("{}_mm", "xyz"[axis]), rows);
     positions.row(axis) = Eigen::Map<const Eigen::RowVectorXd>(values.data(), positions.cols());
@@ -63,10 +63,9 @@ void SetAngles(const Instruments& on, Recording& path) {
     double before = 0.0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       // A turn on, not a jump by a turn, where an angle passes pi.
-      const double angle = angles(pivot, static_cast<Index>(i));
+      const double angle = angles(pivot, i);
       before += std::remainder(angle - before, 2.0 * std::numbers::pi);
-      column[rows[i]] =
-          before + MixedSign(i, static_cast<std::size_t>(pivot)) * linkage.noise.encoder;
+      column[rows[i]] = before + MixedSign(i, pivot) * linkage.noise.encoder;
     }
   }
 }
@@ -149,7 +148,7 @@ class AfterLinkage {
     for (std::size_t axis = 0; axis < on_.machine.travels.size(); ++axis) {
       const machine::Travel& travel = on_.machine.travels[axis];
       smallest = std::min(smallest, travel.last - travel.first);
-      middle[static_cast<Index>(axis)] = std::midpoint(travel.first, travel.last);
+      middle[axis] = std::midpoint(travel.first, travel.last);
     }
     const auto add = [&](const char* plane, double radius) {
       runs_.push_back(

@@ -159,7 +159,7 @@ LinkageRun Given(LinkageRun run, const LinkageSimulation& linkage) {
 double CellOf(const machine::VolumetricModel& model) {
   double cell = std::numeric_limits<double>::infinity(), volume = 1.0;
   for (int axis = 0; axis < machine::kAxes; ++axis) {
-    const auto& [first, last] = model.travels()[static_cast<std::size_t>(axis)];
+    const auto& [first, last] = model.travels()[axis];
     volume *= last - first;
     cell = std::min(cell, (last - first) / kFewestCells);
     for (int motion = 0; motion < machine::kMotions; ++motion) {
@@ -202,7 +202,7 @@ void RefuseOtherChain(const LinkageSimulation& linkage, const LinkageRun& run,
   linkage.Gap(run, linkage.Values(), gap);
   const Matrix3Xd way = run.commanded.colwise() - run.commanded.rowwise().mean().eval();
   gap.colwise() -= gap.rowwise().mean().eval();
-  const double count = std::sqrt(static_cast<double>(run.poses()));
+  const double count = std::sqrt(run.poses());
   if (gap.norm() <= kShare * way.norm() || gap.norm() / count < kLeastGap) return;
   throw InputError(fmt::format(
       "{}: the ball of the linkage and the axes go different ways, {:.1f} mm rms apart over {:.1f} "

@@ -32,7 +32,7 @@ void Append(const Recording& block, Recording& rows) {
 
 // Drops the rows before this one of the file.
 void DropBefore(std::size_t row, Recording& rows) {
-  const auto count = static_cast<std::ptrdiff_t>(row - rows.first_row);
+  const std::ptrdiff_t count = row - rows.first_row;
   for (Column& column : rows.columns) {
     column.values.erase(column.values.begin(), column.values.begin() + count);
   }
@@ -40,7 +40,7 @@ void DropBefore(std::size_t row, Recording& rows) {
 }
 
 std::vector<Index> UpTo(Index count) {
-  std::vector<Index> poses(static_cast<std::size_t>(count));
+  std::vector<Index> poses(count);
   std::iota(poses.begin(), poses.end(), Index{0});
   return poses;
 }
@@ -52,10 +52,9 @@ LinkageRun Thinned(const LinkageRun& run, Index count) {
   std::vector<double> drawn;
   for (const std::size_t row : run.rows) drawn.push_back(random.Uniform(row));
   std::vector<Index> poses = UpTo(run.poses());
-  std::nth_element(poses.begin(), poses.begin() + count, poses.end(), [&](Index a, Index b) {
-    return drawn[static_cast<std::size_t>(a)] < drawn[static_cast<std::size_t>(b)];
-  });
-  poses.resize(static_cast<std::size_t>(count));
+  std::nth_element(poses.begin(), poses.begin() + count, poses.end(),
+                   [&](Index a, Index b) { return drawn[a] < drawn[b]; });
+  poses.resize(count);
   std::sort(poses.begin(), poses.end());
   return Selection(run, poses);
 }

@@ -58,7 +58,7 @@ VectorXd ParametersOf(const std::vector<ParameterBlock>& blocks, const std::stri
   for (const ParameterBlock* block : BlocksOf(blocks, mounting)) {
     for (const auto& entry : block->entries) x.push_back(entry.value);
   }
-  return Eigen::Map<VectorXd>(x.data(), static_cast<Index>(x.size()));
+  return Eigen::Map<VectorXd>(x.data(), x.size());
 }
 
 std::vector<int> ColumnsOf(const std::vector<ParameterBlock>& blocks, const std::string& mounting,
@@ -120,8 +120,8 @@ estimation::Problem MakeLinkageProblem(const LinkageSimulation& simulation,
     const bool unique = std::count_if(runs.begin(), runs.end(), same) == 1;
     const auto source = problem.AddSource(
         unique ? run.name : fmt::format("{} ({})", run.name, r + 1), {.loss = options.loss});
-    const auto m = static_cast<std::size_t>(
-        std::find(mountings.begin(), mountings.end(), run.mounting) - mountings.begin());
+    const std::size_t m =
+        std::find(mountings.begin(), mountings.end(), run.mounting) - mountings.begin();
     problem.Add(source, std::make_shared<simulation::LinkageGaps>(simulation, run), inputs[m], 1.0);
   }
   return problem;

@@ -32,7 +32,7 @@ void RefuseOtherKinds(const recording::Recording& recording) {
 Eigen::VectorXd Take(const recording::Recording& recording, const std::string& name,
                      const std::vector<std::size_t>& rows) {
   const std::vector<double> values = recording::ValuesOf(recording, name, rows);
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), values.size());
 }
 
 // Where a new stay begins; the last one is the number of poses.
@@ -47,7 +47,7 @@ std::vector<Index> StartsOfStays(const LinkageRun& run, double window) {
 }
 
 void Resize(LinkageRun& run, Index joints, Index poses, bool warmth) {
-  run.rows.resize(static_cast<std::size_t>(poses));
+  run.rows.resize(poses);
   run.time.resize(poses);
   run.commanded.resize(3, poses);
   run.reference.resize(3, poses);
@@ -76,7 +76,6 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
   run.samples.setOnes();
   const auto stated = recording.Find(kStated);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto row = static_cast<Index>(axis);
     const auto commanded = recording.Find(kCommanded[axis]);
     const auto reference = recording.Find(kReference[axis]);
     if (!commanded && !reference) {
@@ -86,13 +85,13 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
           recording.name, kCommanded[axis], kReference[axis]));
     }
     run.referenced[axis] = reference.has_value();
-    run.commanded.row(row) =
+    run.commanded.row(axis) =
         Take(recording, commanded ? kCommanded[axis] : kReference[axis], run.rows);
-    run.reference.row(row) = reference ? Take(recording, kReference[axis], run.rows)
-                                       : Eigen::VectorXd(run.commanded.row(row));
-    run.reference_sd.row(row).setConstant(reference ? settings.noise.reference
-                                                    : settings.noise.machine);
-    if (stated && reference) run.reference_sd.row(row) = Take(recording, kStated, run.rows);
+    run.reference.row(axis) = reference ? Take(recording, kReference[axis], run.rows)
+                                        : Eigen::VectorXd(run.commanded.row(axis));
+    run.reference_sd.row(axis).setConstant(reference ? settings.noise.reference
+                                                     : settings.noise.machine);
+    if (stated && reference) run.reference_sd.row(axis) = Take(recording, kStated, run.rows);
   }
   for (std::size_t& row : run.rows) row += recording.first_row;
   return run;
@@ -101,14 +100,14 @@ LinkageRun ReadLinkageRun(const recording::Recording& recording,
 LinkageRun MeansOfStays(LinkageRun run, double window) {
   if (run.poses() == 0 || run.one_by_one) return run;
   const std::vector<Index> starts = StartsOfStays(run, window);
-  if (static_cast<Index>(starts.size()) == run.poses() + 1) return run;  // it never stands
-  LinkageRun means = Blank(run, static_cast<Index>(starts.size()) - 1);
+  if (std::ssize(starts) == run.poses() + 1) return run;  // it never stands
+  LinkageRun means = Blank(run, starts.size() - 1);
   for (Index stay = 0; stay < means.poses(); ++stay) {
-    const Index first = starts[static_cast<std::size_t>(stay)];
-    const Index count = starts[static_cast<std::size_t>(stay) + 1] - first;
+    const Index first = starts[stay];
+    const Index count = starts[stay + 1] - first;
     const auto weights = run.samples.segment(first, count);
     const double total = weights.sum();
-    means.rows[static_cast<std::size_t>(stay)] = run.rows[static_cast<std::size_t>(first)];
+    means.rows[stay] = run.rows[first];
     means.time[stay] = run.time.segment(first, count).dot(weights) / total;
     means.commanded.col(stay) = run.commanded.middleCols(first, count) * weights / total;
     means.reference.col(stay) = run.reference.middleCols(first, count) * weights / total;
@@ -141,7 +140,7 @@ LinkageRun RunAt(const Eigen::Matrix3Xd& positions, const relm::LinkageSettings&
   LinkageRun run;
   run.name = "planned";
   Resize(run, settings.chain.joints(), positions.cols(), false);
-  run.time = Eigen::VectorXd::LinSpaced(run.poses(), 0.0, static_cast<double>(run.poses()) - 1.0);
+  run.time = Eigen::VectorXd::LinSpaced(run.poses(), 0.0, run.poses() - 1.0);
   run.commanded = positions;
   run.reference = positions;
   run.reference_sd.setConstant(settings.noise.reference);
@@ -153,10 +152,10 @@ LinkageRun RunAt(const Eigen::Matrix3Xd& positions, const relm::LinkageSettings&
 }
 
 LinkageRun Selection(const LinkageRun& run, const std::vector<Index>& poses) {
-  LinkageRun chosen = Blank(run, static_cast<Index>(poses.size()));
+  LinkageRun chosen = Blank(run, poses.size());
   for (Index i = 0; i < chosen.poses(); ++i) {
-    const Index pose = poses[static_cast<std::size_t>(i)];
-    chosen.rows[static_cast<std::size_t>(i)] = run.rows[static_cast<std::size_t>(pose)];
+    const Index pose = poses[i];
+    chosen.rows[i] = run.rows[pose];
     chosen.time[i] = run.time[pose];
     chosen.commanded.col(i) = run.commanded.col(pose);
     chosen.reference.col(i) = run.reference.col(pose);
@@ -179,8 +178,7 @@ LinkageRun AtMost(const LinkageRun& run, Index most) {
 LinkageRun Joined(const LinkageRun& run, const LinkageRun& next) {
   LinkageRun both = Blank(run, run.poses() + next.poses());
   std::copy(run.rows.begin(), run.rows.end(), both.rows.begin());
-  std::copy(next.rows.begin(), next.rows.end(),
-            both.rows.begin() + static_cast<std::ptrdiff_t>(run.rows.size()));
+  std::copy(next.rows.begin(), next.rows.end(), both.rows.begin() + run.rows.size());
   both.time << run.time, next.time;
   both.commanded << run.commanded, next.commanded;
   both.reference << run.reference, next.reference;

@@ -37,8 +37,8 @@ NumericalError OutOfReach(const LinkageRun& run, Index pose, std::string_view wh
   return NumericalError(fmt::format(
       "{}: row {}: the linkage does not reach ({:.3f}, {:.3f}, {:.3f}) mm of the axes ({}); keep "
       "the poses inside its workspace or move its base",
-      run.name, run.rows[static_cast<std::size_t>(pose)] + 1, 1e3 * run.reference(0, pose),
-      1e3 * run.reference(1, pose), 1e3 * run.reference(2, pose), why));
+      run.name, run.rows[pose] + 1, 1e3 * run.reference(0, pose), 1e3 * run.reference(1, pose),
+      1e3 * run.reference(2, pose), why));
 }
 
 estimation::ParameterBlock BlockOf(const std::string& name, const estimation::PrintUnit& unit,
@@ -140,7 +140,7 @@ Matrix3Xd LinkageSimulation::GapNoise(const LinkageRun& run) const {
         settings_.X_MB.R * model_.chain().JacobianTipAngles(run.readings.angles.col(pose));
     VectorXd variances(J_tip_q.cols());
     for (Index joint = 0; joint < variances.size(); ++joint) {
-      const double encoder = settings_.noise.EncoderOf(static_cast<std::size_t>(joint));
+      const double encoder = settings_.noise.EncoderOf(joint);
       variances[joint] = encoder * encoder / run.samples[pose];
     }
     Matrix3d covariance = J_tip_q * variances.asDiagonal() * J_tip_q.transpose();
@@ -150,7 +150,7 @@ Matrix3Xd LinkageSimulation::GapNoise(const LinkageRun& run) const {
       throw InputError(fmt::format(
           "{}: row {}: neither the encoders nor the reference have noise; state encoder_urad and "
           "reference_um (machine_um without a reference) in [linkage.noise]",
-          run.name, run.rows[static_cast<std::size_t>(pose)] + 1));
+          run.name, run.rows[pose] + 1));
     }
     factors.middleCols<3>(3 * pose) = factor.matrixL();
   }

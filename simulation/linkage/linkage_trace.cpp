@@ -45,7 +45,7 @@ VectorXd LastingOf(const recording::Recording& recording, const LinkageRun& run)
   if (!time) return duration;
   for (Index pose = 0; pose < run.poses(); ++pose) {
     if (run.samples[pose] == 1.0) continue;
-    duration[pose] = 2.0 * (run.time[pose] - (*time)[run.rows[static_cast<std::size_t>(pose)]]);
+    duration[pose] = 2.0 * (run.time[pose] - (*time)[run.rows[pose]]);
   }
   return duration;
 }
@@ -145,7 +145,7 @@ MatrixXd BehindCommands(const recording::Recording& recording, const LinkageRun&
     const auto sent = recording.Find(fmt::format("pivot_{}_commanded_rad", pivot + 1));
     if (!sent) return {};
     for (Index pose = 0; pose < run.poses(); ++pose) {
-      const std::size_t row = run.rows[static_cast<std::size_t>(pose)] - recording.first_row;
+      const std::size_t row = run.rows[pose] - recording.first_row;
       // A command may count a turn more.
       behind(pivot, pose) =
           std::remainder(behind(pivot, pose) - (*sent)[row], 2.0 * std::numbers::pi);

@@ -46,8 +46,8 @@ double DistancesDiffer(const LinkageRun& one, const LinkageRun& other) {
     const double here = (other.reference.col(next_j) - other.reference.col(j)).norm();
     differences.push_back(std::abs(here - there));
   }
-  if (static_cast<Index>(differences.size()) < OneBall::kFewest) return 0.0;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  if (std::ssize(differences) < OneBall::kFewest) return 0.0;
+  const auto middle = differences.begin() + (differences.size() / 2);
   std::nth_element(differences.begin(), middle, differences.end());
   return *middle;
 }

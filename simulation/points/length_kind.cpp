@@ -45,12 +45,12 @@ class LengthRuns : public RunKind {
                                 const PathAbout& about) const override {
     Eigen::Vector3d middle;
     for (int axis = 0; axis < machine::kAxes; ++axis) {
-      const machine::Travel& travel = on.machine.travels[static_cast<std::size_t>(axis)];
+      const machine::Travel& travel = on.machine.travels[axis];
       middle[axis] = std::midpoint(travel.first, travel.last);
     }
     std::vector<NextRun> runs;
     for (const char axis : {'X', 'Y', 'Z'}) {
-      const machine::Travel& travel = on.machine.travels[static_cast<std::size_t>(axis - 'X')];
+      const machine::Travel& travel = on.machine.travels[axis - 'X'];
       if (travel.first == travel.last) continue;
       runs.push_back({fmt::format("measure a length along {} (interferometer or step gauge)", axis),
                       LengthPath(axis, middle, travel, about)});

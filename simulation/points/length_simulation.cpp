@@ -22,8 +22,7 @@ using Eigen::VectorXd;
 constexpr double kOnePlace = 1e-6;  // m
 
 InputError Bad(const MachinePoints& points, Index i, std::string_view what) {
-  return InputError(fmt::format("{}: row {}: {}", points.name,
-                                points.rows[static_cast<std::size_t>(i)] + 1, what));
+  return InputError(fmt::format("{}: row {}: {}", points.name, points.rows[i] + 1, what));
 }
 
 // What moves the points moves the lengths between them.
@@ -40,7 +39,7 @@ class LengthResponse : public Response {
     const MatrixXd moved = points_.Columns(disturbances);
     MatrixXd columns(Rows(), moved.cols());
     for (Index k = 0; k < Rows(); ++k) {
-      const Length& each = lengths_[static_cast<std::size_t>(k)];
+      const Length& each = lengths_[k];
       columns.row(k) = ByPoint(k).transpose() *
                        (moved.middleRows<3>(3 * each.to) - moved.middleRows<3>(3 * each.from));
     }
@@ -50,7 +49,7 @@ class LengthResponse : public Response {
   MatrixXd BackToReadings(const MatrixXd& left) const override {
     MatrixXd back = MatrixXd::Zero(by_stage_.rows(), left.cols());
     for (Index k = 0; k < Rows(); ++k) {
-      const Length& each = lengths_[static_cast<std::size_t>(k)];
+      const Length& each = lengths_[k];
       back.middleRows<3>(3 * each.to) += ByPoint(k) * left.row(k);
       back.middleRows<3>(3 * each.from) -= ByPoint(k) * left.row(k);
     }
@@ -64,7 +63,7 @@ class LengthResponse : public Response {
     Eigen::RowVectorXd weights = Eigen::RowVectorXd::Zero(by_stage_.rows() / 3);
     if (stage >= by_stage_.cols()) return weights;
     for (Index k = 0; k < Rows(); ++k) {
-      const Length& each = lengths_[static_cast<std::size_t>(k)];
+      const Length& each = lengths_[k];
       for (const Index point : {each.from, each.to}) {
         weights[point] +=
             2.0 * std::pow(ByPoint(k).dot(by_stage_.col(stage).segment<3>(3 * point)), 2);
@@ -74,11 +73,9 @@ class LengthResponse : public Response {
   }
 
  private:
-  Index Rows() const { return static_cast<Index>(lengths_.size()); }
+  Index Rows() const { return lengths_.size(); }
   // A longer way leaves more: the residual is what is simulated less what was measured.
-  Vector3d ByPoint(Index k) const {
-    return -along_.col(k) / lengths_[static_cast<std::size_t>(k)].u;
-  }
+  Vector3d ByPoint(Index k) const { return -along_.col(k) / lengths_[k].u; }
 
   MatrixXd by_stage_;
   StageResponse points_;
@@ -94,7 +91,7 @@ class LengthResidual : public Responsive {
         lengths_(std::move(lengths)),
         scaled_(scaled) {}
 
-  Index Rows() const override { return static_cast<Index>(lengths_.size()); }
+  Index Rows() const override { return lengths_.size(); }
 
   void Evaluate(const VectorXd& x, VectorXd& values,
                 estimation::RowMatrix* jacobian) const override {
@@ -104,14 +101,12 @@ class LengthResidual : public Responsive {
     const Matrix3Xd places = points_.Places(x.head(machine), jacobian == nullptr ? nullptr : &J);
     for (std::size_t k = 0; k < lengths_.size(); ++k) {
       const Length& each = lengths_[k];
-      const auto row = static_cast<Index>(k);
       const Vector3d apart = places.col(each.to) - places.col(each.from);
-      values[row] = (apart.norm() - each.length * (1.0 + scale)) / each.u;
+      values[k] = (apart.norm() - each.length * (1.0 + scale)) / each.u;
       if (jacobian == nullptr) continue;
-      jacobian->row(row).head(machine) =
-          apart.normalized().transpose() *
-          (J[static_cast<std::size_t>(each.to)] - J[static_cast<std::size_t>(each.from)]) / each.u;
-      if (scaled_) (*jacobian)(row, machine) = -each.length / each.u;
+      jacobian->row(k).head(machine) =
+          apart.normalized().transpose() * (J[each.to] - J[each.from]) / each.u;
+      if (scaled_) (*jacobian)(k, machine) = -each.length / each.u;
     }
   }
 
@@ -119,7 +114,7 @@ class LengthResidual : public Responsive {
     const Matrix3Xd places = points_.Places(x.head(points_.parameters()));
     Matrix3Xd along(3, Rows());
     for (Index k = 0; k < Rows(); ++k) {
-      const Length& each = lengths_[static_cast<std::size_t>(k)];
+      const Length& each = lengths_[k];
       along.col(k) = (places.col(each.to) - places.col(each.from)).normalized();
     }
     return std::make_shared<LengthResponse>(points_.ByMotions(x.head(points_.parameters())),

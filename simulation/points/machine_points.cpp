@@ -30,7 +30,7 @@ MachinePoints ReadMachinePoints(const recording::Recording& recording) {
   points.name = recording.name;
   points.rows = recording::GoodRows(recording);
   points.tool = HeaderPoint(recording, "tool_mm").value_or(Vector3d::Zero());
-  points.axes.resize(3, static_cast<Index>(points.rows.size()));
+  points.axes.resize(3, points.rows.size());
   for (Index axis = 0; axis < 3; ++axis) {
     points.axes.row(axis) = ColumnAt(recording, points, fmt::format("{}_mm", "xyz"[axis]));
   }
@@ -40,7 +40,7 @@ MachinePoints ReadMachinePoints(const recording::Recording& recording) {
 Eigen::VectorXd ColumnAt(const recording::Recording& recording, const MachinePoints& points,
                          const std::string& column) {
   const std::vector<double> values = recording::ValuesOf(recording, column, points.rows);
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), values.size());
 }
 
 PointsOnMachine::PointsOnMachine(machine::VolumetricModel model, const Vector3d& reference,

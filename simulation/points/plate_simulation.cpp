@@ -34,16 +34,15 @@ struct Hole {
 };
 
 InputError Bad(const MachinePoints& points, Index i, const std::string& what) {
-  return InputError(fmt::format("{}: row {}: {}", points.name,
-                                points.rows[static_cast<std::size_t>(i)] + 1, what));
+  return InputError(fmt::format("{}: row {}: {}", points.name, points.rows[i] + 1, what));
 }
 
 void RefuseTwoPlaces(const MachinePoints& points, const std::vector<int>& holes,
                      const Eigen::Matrix2Xd& certificate) {
   std::map<int, Hole> known;
   for (Index i = 0; i < points.count(); ++i) {
-    const auto row = points.rows[static_cast<std::size_t>(i)];
-    const int number = holes[static_cast<std::size_t>(i)];
+    const auto row = points.rows[i];
+    const int number = holes[i];
     const Hole& first = known.try_emplace(number, Hole{row, certificate.col(i)}).first->second;
     if (first.place == certificate.col(i)) continue;
     throw Bad(points, i,
@@ -77,7 +76,7 @@ Vector3d ToolOf(const recording::Recording& recording, int setup, std::size_t ro
 void RefuseLine(const PlateSetup& setup) {
   const Eigen::Matrix2Xd centred =
       setup.certificate.colwise() - setup.certificate.rowwise().mean().eval();
-  const Matrix2d spread = centred * centred.transpose() / static_cast<double>(centred.cols());
+  const Matrix2d spread = centred * centred.transpose() / centred.cols();
   if (Eigen::SelfAdjointEigenSolver<Matrix2d>(spread).eigenvalues()[0] > kSpan * kSpan) return;
   throw InputError(
       fmt::format("{}: {} holes do not say how the plate lay; measure three or more that do not "
@@ -88,22 +87,22 @@ void RefuseLine(const PlateSetup& setup) {
 // The part of a plate that was measured in one set-up.
 PlateSetup Subset(const PlateSetup& all, const std::vector<Index>& of) {
   PlateSetup part = all;
-  const auto n = static_cast<Index>(of.size());
+  const Index n = of.size();
   part.points.axes = all.points.axes(Eigen::all, of);
   part.certificate = all.certificate(Eigen::all, of);
   part.u_form = all.u_form(of);
   part.holes.resize(of.size());
   part.points.rows.resize(of.size());
   for (Index i = 0; i < n; ++i) {
-    const auto from = static_cast<std::size_t>(of[static_cast<std::size_t>(i)]);
-    part.holes[static_cast<std::size_t>(i)] = all.holes[from];
-    part.points.rows[static_cast<std::size_t>(i)] = all.points.rows[from];
+    const std::size_t from = of[i];
+    part.holes[i] = all.holes[from];
+    part.points.rows[i] = all.points.rows[from];
   }
   return part;
 }
 
 estimation::ParameterBlock FormOf(const PlateSetup& setup, std::size_t point) {
-  const double u = setup.u_form[static_cast<Index>(point)];
+  const double u = setup.u_form[point];
   estimation::ParameterBlock block(HoleBlock(setup, setup.holes[point]), {"um", 1e-6}, {});
   for (const char* direction : {"u", "v"}) {
     block.entries.push_back({.name = direction, .prior_sd = u > 0.0 ? u : estimation::kNoPrior});
@@ -134,13 +133,13 @@ class PlateResidual : public Responsive {
     if (jacobian != nullptr) jacobian->setZero();
     for (Index i = 0; i < p.cols(); ++i) {
       const Vector2d off = (X_PM_ * Vector3d(p.col(i))).head<2>() - x.segment<2>(machine);
-      const Index form = form_.empty() ? -1 : first_form + 2 * form_[static_cast<std::size_t>(i)];
+      const Index form = form_.empty() ? -1 : first_form + 2 * form_[i];
       Vector2d place = setup_.certificate.col(i);
       if (form >= 0) place += x.segment<2>(form);
       values.segment<2>(2 * i) = (back * off - scale * place) / setup_.u_probing;
       if (jacobian == nullptr) continue;
       auto out = jacobian->middleRows<2>(2 * i);
-      out.leftCols(machine) = back * X_PM_.R.topRows<2>() * J[static_cast<std::size_t>(i)];
+      out.leftCols(machine) = back * X_PM_.R.topRows<2>() * J[i];
       out.middleCols<2>(machine) = -back;
       out.col(machine + 2) = back * Vector2d(off.y(), -off.x());
       if (scaled_) out.col(machine + kPose) = -place;
@@ -223,7 +222,7 @@ geometry::Transform<double> PlatePose(const PointsOnMachine& points, const Plate
         points.points(), worst,
         fmt::format("hole {} is {:.1f} mm from where the plate has it; correct the numbers of "
                     "holes and set-ups, the certificate or the positions",
-                    setup.holes[static_cast<std::size_t>(worst)], 1e3 * off));
+                    setup.holes[worst], 1e3 * off));
   }
   return X_MP;
 }
@@ -244,7 +243,7 @@ SimulatedRun SimulatePlate(const machine::VolumetricModel& model, const Vector3d
   if (setup.u_form.maxCoeff() > 0.0) {
     std::map<int, Index> known;
     for (std::size_t i = 0; i < setup.holes.size(); ++i) {
-      const auto next = static_cast<Index>(known.size());
+      const Index next = known.size();
       const auto [at, is_new] = known.try_emplace(setup.holes[i], next);
       if (is_new) blocks.push_back(FormOf(setup, i));
       form.push_back(at->second);

@@ -39,7 +39,7 @@ Correction CorrectPoints(const Recording& recording, std::vector<PartOfPoints> p
     for (const std::size_t row : part.rows) {
       while (point + 1 < part.points.rows.size() && part.points.rows[point + 1] <= row) ++point;
       for (Index axis = 0; axis < 3; ++axis) {
-        axes[static_cast<std::size_t>(axis)].By(row, steps(axis, static_cast<Index>(point)));
+        axes[axis].By(row, steps(axis, point));
       }
     }
   }

@@ -35,7 +35,7 @@ std::string NoiseText(const ReferenceRun& run, const RepeatNoise& noise) {
   std::string text =
       fmt::format("{}: noise of the reference by how well its readings repeat:", run.points.name);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    if (!run.shown[static_cast<std::size_t>(axis)]) continue;
+    if (!run.shown[axis]) continue;
     text += fmt::format(" ref_{} {:.3g} um", "xyz"[axis], 1e6 * noise.sd[axis]);
   }
   return text + fmt::format(", {} degrees of freedom", noise.freedom);

@@ -22,7 +22,7 @@ constexpr double kRounding = 1e-12;   // m
 
 // Numbers the targets; one entry per row.
 std::vector<int> TargetsOf(const Eigen::RowVectorXd& position) {
-  std::vector<Index> order(static_cast<std::size_t>(position.size()));
+  std::vector<Index> order(position.size());
   std::iota(order.begin(), order.end(), Index{0});
   std::sort(order.begin(), order.end(),
             [&](Index a, Index b) { return position[a] < position[b]; });
@@ -30,7 +30,7 @@ std::vector<int> TargetsOf(const Eigen::RowVectorXd& position) {
   int target = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i > 0 && position[order[i]] - position[order[i - 1]] > kOneTarget) ++target;
-    targets[static_cast<std::size_t>(order[i])] = target;
+    targets[order[i]] = target;
   }
   return targets;
 }
@@ -43,16 +43,14 @@ MatrixXd DesignOf(const ReferenceRun& run, const Eigen::RowVectorXd& position) {
   const double middle = position.minCoeff() + half;
   std::map<Key, Index> means, ways;
   for (Index row = 0; row < run.rows(); ++row) {
-    const auto at = static_cast<std::size_t>(row);
-    means.try_emplace({targets[at], run.direction[at]}, static_cast<Index>(means.size()));
-    ways.try_emplace({run.pass[at], run.direction[at]}, static_cast<Index>(ways.size()));
+    means.try_emplace({targets[row], run.direction[row]}, std::ssize(means));
+    ways.try_emplace({run.pass[row], run.direction[row]}, std::ssize(ways));
   }
-  const auto first_way = static_cast<Index>(means.size());
-  MatrixXd design = MatrixXd::Zero(run.rows(), first_way + 2 * static_cast<Index>(ways.size()));
+  const Index first_way = means.size();
+  MatrixXd design = MatrixXd::Zero(run.rows(), first_way + 2 * ways.size());
   for (Index row = 0; row < run.rows(); ++row) {
-    const auto at = static_cast<std::size_t>(row);
-    const Index way = first_way + 2 * ways.at({run.pass[at], run.direction[at]});
-    design(row, means.at({targets[at], run.direction[at]})) = 1.0;
+    const Index way = first_way + 2 * ways.at({run.pass[row], run.direction[row]});
+    design(row, means.at({targets[row], run.direction[row]})) = 1.0;
     design(row, way) = 1.0;
     design(row, way + 1) = (position[row] - middle) / half;
   }
@@ -63,16 +61,16 @@ MatrixXd DesignOf(const ReferenceRun& run, const Eigen::RowVectorXd& position) {
 
 std::optional<RepeatNoise> NoiseOfRepeats(const ReferenceRun& run) {
   if (run.tested == ' ') return std::nullopt;
-  const auto along = static_cast<Index>(run.tested - 'X');
+  const Index along = run.tested - 'X';
   const MatrixXd design = DesignOf(run, run.points.axes.row(along));
   const Eigen::CompleteOrthogonalDecomposition<MatrixXd> fit(design);
   RepeatNoise noise{Eigen::Vector3d::Zero(), run.rows() - fit.rank()};
   if (noise.freedom < kLeastFreedom) return std::nullopt;
   for (Index axis = 0; axis < 3; ++axis) {
-    if (!run.shown[static_cast<std::size_t>(axis)]) continue;
+    if (!run.shown[axis]) continue;
     const Eigen::VectorXd deviation = (run.place - run.points.axes).row(axis).transpose();
     const Eigen::VectorXd left = deviation - design * fit.solve(deviation);
-    noise.sd[axis] = std::sqrt(left.squaredNorm() / static_cast<double>(noise.freedom - 2));
+    noise.sd[axis] = std::sqrt(left.squaredNorm() / (noise.freedom - 2));
     if (noise.sd[axis] > kRounding) continue;
     throw InputError(fmt::format(
         "{}: ref_{}_mm repeats to its last digit in every cycle; state the noise of the reference "
@@ -84,7 +82,7 @@ std::optional<RepeatNoise> NoiseOfRepeats(const ReferenceRun& run) {
 
 void SetNoise(const Eigen::Vector3d& sd, ReferenceRun& run) {
   for (Index axis = 0; axis < 3; ++axis) {
-    if (!run.shown[static_cast<std::size_t>(axis)]) continue;
+    if (!run.shown[axis]) continue;
     for (Index row = 0; row < run.rows(); ++row) {
       if (run.sd(axis, row) == 0.0) run.sd(axis, row) = sd[axis];
     }

@@ -24,7 +24,7 @@ void ReadPlaces(const Recording& recording, ReferenceRun& run) {
   for (Index axis = 0; axis < 3; ++axis) {
     const std::string column = fmt::format("ref_{}_mm", "xyz"[axis]);
     if (!recording.Find(column)) continue;
-    run.shown[static_cast<std::size_t>(axis)] = true;
+    run.shown[axis] = true;
     run.place.row(axis) = ColumnAt(recording, run.points, column).transpose();
   }
   if (std::find(run.shown.begin(), run.shown.end(), true) != run.shown.end()) return;
@@ -71,7 +71,7 @@ struct Together {
 
 ReferenceRun Gathered(const ReferenceRun& run, const std::vector<Together>& each) {
   ReferenceRun gathered = run;
-  const auto count = static_cast<Index>(each.size());
+  const Index count = each.size();
   gathered.points.rows.resize(each.size());
   gathered.points.axes.resize(3, count);
   gathered.place.resize(3, count);
@@ -80,16 +80,14 @@ ReferenceRun Gathered(const ReferenceRun& run, const std::vector<Together>& each
   gathered.pass.resize(each.size());
   gathered.direction.resize(each.size());
   for (std::size_t i = 0; i < each.size(); ++i) {
-    const auto row = static_cast<Index>(i);
     const Index first = each[i].first, rows = each[i].last - first;
-    const auto from = static_cast<std::size_t>(first);
-    gathered.points.rows[i] = run.points.rows[from];
-    gathered.points.axes.col(row) = run.points.axes.middleCols(first, rows).rowwise().mean();
-    gathered.place.col(row) = run.place.middleCols(first, rows).rowwise().mean();
-    gathered.sd.col(row) = run.sd.middleCols(first, rows).rowwise().mean();
-    gathered.time[row] = run.time.segment(first, rows).mean();
-    gathered.pass[i] = run.pass[from];
-    gathered.direction[i] = run.direction[from];
+    gathered.points.rows[i] = run.points.rows[first];
+    gathered.points.axes.col(i) = run.points.axes.middleCols(first, rows).rowwise().mean();
+    gathered.place.col(i) = run.place.middleCols(first, rows).rowwise().mean();
+    gathered.sd.col(i) = run.sd.middleCols(first, rows).rowwise().mean();
+    gathered.time[i] = run.time.segment(first, rows).mean();
+    gathered.pass[i] = run.pass[first];
+    gathered.direction[i] = run.direction[first];
   }
   return gathered;
 }
@@ -102,9 +100,8 @@ ReferenceRun ReadReferenceRun(const Recording& recording) {
   ReadPlaces(recording, run);
   ReadStatedNoise(recording, run);
   run.timed = recording.KnowsTimes();
-  run.time = recording.Find("time_s")
-                 ? ColumnAt(recording, run.points, "time_s")
-                 : Eigen::VectorXd::LinSpaced(run.rows(), 0.0, static_cast<double>(run.rows() - 1));
+  run.time = recording.Find("time_s") ? ColumnAt(recording, run.points, "time_s")
+                                      : Eigen::VectorXd::LinSpaced(run.rows(), 0.0, run.rows() - 1);
   run.pass = IntegersAt(recording, "pass", run.points.rows);
   run.direction = IntegersAt(recording, "direction", run.points.rows);
   run.tested = TestedAxis(recording, run);
@@ -125,11 +122,10 @@ Recording WithAllAxes(Recording recording, const std::array<machine::Travel, 3>&
 ReferenceRun MeansOfStays(const ReferenceRun& run) {
   std::vector<Together> stays;
   for (Index row = 0; row < run.rows(); ++row) {
-    const auto at = static_cast<std::size_t>(row);
     const auto stays_on = [&](const Together& stay) {
-      const auto first = static_cast<std::size_t>(stay.first);
+      const std::size_t first = stay.first;
       const auto moved = run.points.axes.col(row) - run.points.axes.col(stay.first);
-      return run.pass[at] == run.pass[first] && run.direction[at] == run.direction[first] &&
+      return run.pass[row] == run.pass[first] && run.direction[row] == run.direction[first] &&
              moved.cwiseAbs().maxCoeff() <= kStayWindow;
     };
     if (!stays.empty() && stays_on(stays.back())) {

@@ -27,7 +27,7 @@ constexpr double kAlignment = 10e-3;  // rad: how well an instrument is aligned 
 std::vector<Index> AxesShown(const ReferenceRun& run) {
   std::vector<Index> shown;
   for (Index axis = 0; axis < 3; ++axis) {
-    if (run.shown[static_cast<std::size_t>(axis)]) shown.push_back(axis);
+    if (run.shown[axis]) shown.push_back(axis);
   }
   return shown;
 }
@@ -63,9 +63,7 @@ class ReferenceResidual : public Responsive {
         place_(PlacesInMachine(model.chain(), run)),
         sd_(run.sd) {}
 
-  Index Rows() const override {
-    return static_cast<Index>(shown_.size()) * points_.points().count();
-  }
+  Index Rows() const override { return shown_.size() * points_.points().count(); }
 
   void Evaluate(const VectorXd& x, VectorXd& values,
                 estimation::RowMatrix* jacobian) const override {
@@ -86,7 +84,7 @@ class ReferenceResidual : public Responsive {
           auto out = jacobian->row(row);
           out.head<3>() = -Eigen::RowVector3d::Unit(axis);
           out.segment<3>(3) = J_turn.row(axis);
-          out.tail(points_.parameters()) = -R.row(axis) * J[static_cast<std::size_t>(i)];
+          out.tail(points_.parameters()) = -R.row(axis) * J[i];
           out /= sd_(axis, i);
         }
         ++row;

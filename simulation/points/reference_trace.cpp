@@ -8,7 +8,7 @@ namespace abbe::simulation {
 namespace {
 
 Eigen::VectorXd NumbersOf(const std::vector<std::size_t>& rows) {
-  Eigen::VectorXd numbers(static_cast<Eigen::Index>(rows.size()));
+  Eigen::VectorXd numbers(rows.size());
   std::copy(rows.begin(), rows.end(), numbers.begin());
   return numbers;
 }
@@ -36,7 +36,7 @@ Trace TraceOf(const recording::Recording& recording, const MachinePoints& points
   trace.name = points.name;
   trace.averages_known = recording.Kind() != "plate";
   trace.started = StartedOf(recording);
-  const auto rows = static_cast<Eigen::Index>(points.count());
+  const auto rows = points.count();
   trace.time = trace.clock =
       recording.Find("time_s") ? ColumnAt(recording, points, "time_s") : NumbersOf(points.rows);
   trace.pass = IntegersAt(recording, "pass", points.rows);

@@ -22,7 +22,7 @@ constexpr double kByChance = 2.0;  // standard deviations of a correlation of wh
 std::vector<Index> RowsOf(const ShaftRun& run, int sensor) {
   std::vector<Index> rows;
   for (std::size_t row = 0; row < run.rim.sensor.size(); ++row) {
-    if (run.rim.sensor[row] == sensor) rows.push_back(static_cast<Index>(row));
+    if (run.rim.sensor[row] == sensor) rows.push_back(row);
   }
   return rows;
 }
@@ -30,21 +30,21 @@ std::vector<Index> RowsOf(const ShaftRun& run, int sensor) {
 // sin and cos of each order, then the offsets of the turns.
 MatrixXd DesignOf(const ShaftRun& run, const std::vector<Index>& rows) {
   const int turns = *std::max_element(run.turn.begin(), run.turn.end());
-  MatrixXd design = MatrixXd::Zero(static_cast<Index>(rows.size()), 2 * kRepeatedOrders + turns);
+  MatrixXd design = MatrixXd::Zero(rows.size(), 2 * kRepeatedOrders + turns);
   for (Index i = 0; i < design.rows(); ++i) {
-    const Index row = rows[static_cast<std::size_t>(i)];
+    const Index row = rows[i];
     for (Index n = 1; n <= kRepeatedOrders; ++n) {
-      design(i, 2 * n - 2) = std::sin(static_cast<double>(n) * run.rim.shaft[row]);
-      design(i, 2 * n - 1) = std::cos(static_cast<double>(n) * run.rim.shaft[row]);
+      design(i, 2 * n - 2) = std::sin(n * run.rim.shaft[row]);
+      design(i, 2 * n - 1) = std::cos(n * run.rim.shaft[row]);
     }
-    design(i, 2 * kRepeatedOrders + run.turn[static_cast<std::size_t>(row)] - 1) = 1.0;
+    design(i, 2 * kRepeatedOrders + run.turn[row] - 1) = 1.0;
   }
   return design;
 }
 
 // 1 + 2 sum of the correlations.
 double Inflation(const VectorXd& left) {
-  const double chance = kByChance / std::sqrt(static_cast<double>(left.size()));
+  const double chance = kByChance / std::sqrt(left.size());
   double inflation = 1.0;
   for (Index apart = 1; apart < left.size() / 4; ++apart) {
     const Index pairs = left.size() - apart;
@@ -71,7 +71,7 @@ double Coherence(const std::vector<std::vector<Complex>>& waves, const std::vect
   for (int n = 1; n <= kTellingOrders; ++n) {
     Complex sum = 0.0;
     for (std::size_t s = 0; s < waves.size(); ++s) {
-      sum += waves[s][static_cast<std::size_t>(n - 1)] * std::polar(1.0, n * sense * places[s]);
+      sum += waves[s][n - 1] * std::polar(1.0, n * sense * places[s]);
     }
     power += std::norm(sum);
   }
@@ -102,7 +102,7 @@ RimRepeats RepeatsOf(const ShaftRun& run) {
     const VectorXd left = gap - design * found;
     const Index freedom = gap.size() - fit.rank();
     repeats.freedom = std::min(repeats.freedom, freedom);
-    const double variance = left.squaredNorm() / static_cast<double>(freedom - 2);
+    const double variance = left.squaredNorm() / (freedom - 2);
     repeats.scatter[sensor] = std::sqrt(variance);
     repeats.sd[sensor] = std::sqrt(variance * Inflation(left));
   }

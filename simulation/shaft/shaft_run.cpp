@@ -101,7 +101,7 @@ std::vector<Cell> CellsOf(const paths::ShaftReadings& readings) {
       sum.shaft += readings.angle[last];
       sum.gap += readings.value[last];
     }
-    const auto count = static_cast<double>(last - first);
+    const double count = last - first;
     cells.push_back({sum.time / count, sum.shaft / count, sum.gap / count});
   }
   return cells;
@@ -128,8 +128,8 @@ ShaftRun Gathered(const ShaftRun& run, const std::vector<Index>& rows) {
   part.rim.by_angle = run.rim.by_angle(rows);
   part.rim.by_angle_twice = run.rim.by_angle_twice(rows);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    part.rim.sensor[i] = run.rim.sensor[static_cast<std::size_t>(rows[i])];
-    part.turn[i] = run.turn[static_cast<std::size_t>(rows[i])];
+    part.rim.sensor[i] = run.rim.sensor[rows[i]];
+    part.turn[i] = run.turn[rows[i]];
   }
   part.rim.sensor.resize(rows.size());
   part.turn.resize(rows.size());
@@ -157,12 +157,12 @@ ShaftRun ReadShaftRun(const Recording& recording) {
       run.rim.sensor.push_back(static_cast<int>(sensor));
     }
   }
-  const auto rows = static_cast<Index>(cells.size());
+  const Index rows = cells.size();
   run.time.resize(rows);
   run.rim.gap.resize(rows);
   run.rim.shaft.resize(rows);
   for (Index row = 0; row < rows; ++row) {
-    const Cell& cell = cells[static_cast<std::size_t>(row)];
+    const Cell& cell = cells[row];
     run.time[row] = cell.time;
     run.rim.gap[row] = cell.gap;
     run.rim.shaft[row] = cell.shaft;

@@ -55,7 +55,7 @@ class RimResidual : public Responsive {
   }
 
  private:
-  Index SensorOf(Index row) const { return rim_.sensor[static_cast<std::size_t>(row)]; }
+  Index SensorOf(Index row) const { return rim_.sensor[row]; }
 
   RimReadings rim_;
   RowVectorXd sd_;

@@ -27,7 +27,7 @@ SweepRun RowsOf(const Recording& recording) {
   run.first_rows = recording::GoodRows(recording);
   const auto column = [&](const std::string& name) -> VectorXd {
     const std::vector<double> values = recording::ValuesOf(recording, name, run.first_rows);
-    return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
+    return Eigen::Map<const VectorXd>(values.data(), values.size());
   };
   const auto whole = [&](const char* name) {
     const VectorXd values = column(name);
@@ -55,7 +55,7 @@ MotionJacobian ReadingsByMotions(const SweepPlan& plan, const probes::HeadSettin
   machine::MotionErrors<Dual> errors;
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     for (int motion = 0; motion < machine::kMotions; ++motion) {
-      errors.axes[static_cast<std::size_t>(axis)][motion].v[MotionStage(axis, motion)] = 1.0;
+      errors.axes[axis][motion].v[MotionStage(axis, motion)] = 1.0;
     }
   }
   const auto X_WT = ToolSeenFromWork<Dual>(plan, axes, errors);
@@ -67,7 +67,7 @@ MotionJacobian ReadingsByMotions(const SweepPlan& plan, const probes::HeadSettin
     for (auto* turn : {&at.turn, &at.shift, &at.tilt, &at.face_squareness}) {
       turn->setConstant(Dual(0.0));
     }
-    J.row(static_cast<Index>(probe)) = ReadingOf<Dual>(plan, probe, X_WT, at).v.transpose();
+    J.row(probe) = ReadingOf<Dual>(plan, probe, X_WT, at).v.transpose();
   }
   return J;
 }
@@ -94,7 +94,7 @@ Correction CorrectSweep(const Recording& recording, const std::vector<ModelledCa
   }
   const Eigen::MatrixXd sum = sums.machine + sums.instrument;
   for (Index row = 0; row < run.rows(); ++row) {
-    const std::size_t at = run.first_rows[static_cast<std::size_t>(row)];
+    const std::size_t at = run.first_rows[row];
     position.By(at, along[row]);
     const auto motions = sum.col(row).head<kToolStage>();
     Eigen::Matrix<double, kProbes, 1> shown = sum.col(row).segment<kProbes>(kReadingStage);
@@ -102,7 +102,7 @@ Correction CorrectSweep(const Recording& recording, const std::vector<ModelledCa
       shown += ReadingsByMotions(plan, head, run.AxesAt(row)) * motions;
     }
     for (std::size_t probe = 0; probe < kProbes; ++probe) {
-      gaps[probe].By(at, -shown[static_cast<Index>(probe)]);
+      gaps[probe].By(at, -shown[probe]);
     }
   }
   return corrected;

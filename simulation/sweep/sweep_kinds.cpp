@@ -185,9 +185,7 @@ class AfterSweep {
                              {about_.machine, about_.started, MountingLines(kAnew, mounted)});
   }
 
-  const machine::Travel& TravelOf(char axis) const {
-    return on_.machine.travels[static_cast<std::size_t>(axis - 'X')];
-  }
+  const machine::Travel& TravelOf(char axis) const { return on_.machine.travels[axis - 'X']; }
   double Length() const { return TravelOf(axis_).last - TravelOf(axis_).first; }
 
   // With the head where the sweep has it.

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr std::array<std::size_t, 3> kFaceBounds{0, kTopProbes, kProbes};
+constexpr std::array<Index, 3> kFaceBounds{0, kTopProbes, kProbes};
 
 // How the form of a face correlates between two readings: row g of probe p, row h of probe q.
 class FormOfFace {
@@ -44,15 +44,14 @@ class FormOfFace {
 
 // cov of the readings of the probes of one face: noise of each, form of the face for all.
 MatrixXd FaceCovariance(const SweepPlan& plan, const SweepInstrument& instrument,
-                        const SweepRun& run, std::size_t first, std::size_t count) {
+                        const SweepRun& run, Index first, Index count) {
   const Index n = run.rows();
-  const auto probes_of_face = static_cast<Index>(count);
   const FormOfFace form(plan, instrument, run);
   const double variance = instrument.target.form * instrument.target.form;
-  MatrixXd V = MatrixXd::Zero(n * probes_of_face, n * probes_of_face);
-  for (std::size_t p = 0; p < count; ++p) {
-    for (std::size_t q = 0; q < count; ++q) {
-      auto block = V.block(static_cast<Index>(p) * n, static_cast<Index>(q) * n, n, n);
+  MatrixXd V = MatrixXd::Zero(n * count, n * count);
+  for (Index p = 0; p < count; ++p) {
+    for (Index q = 0; q < count; ++q) {
+      auto block = V.block(p * n, q * n, n, n);
       for (Index h = 0; h < n && variance > 0.0; ++h) {
         for (Index g = 0; g < n; ++g) block(g, h) = variance * form(first + p, g, first + q, h);
       }
@@ -100,17 +99,16 @@ VectorXd InverseDiagonal(const Eigen::LLT<MatrixXd>& factor) {
 
 FaceNoise FaceNoiseOf(const SweepPlan& plan, const SweepInstrument& instrument,
                       const SweepRun& run) {
-  FaceNoise noise{{}, VectorXd(static_cast<Index>(kProbes) * run.rows())};
+  FaceNoise noise{{}, VectorXd(kProbes * run.rows())};
   for (std::size_t face = 0; face < noise.factors.size(); ++face) {
-    const std::size_t first = kFaceBounds[face], count = kFaceBounds[face + 1] - first;
+    const Index first = kFaceBounds[face], count = kFaceBounds[face + 1] - first;
     auto& factor = noise.factors[face];
     factor.compute(FaceCovariance(plan, instrument, run, first, count));
     if (factor.info() != Eigen::Success) {
       throw InputError(fmt::format(
           "{}: the probes have no noise; state probe_nm in [noise] of the machine file", run.name));
     }
-    noise.weights.segment(static_cast<Index>(first) * run.rows(), factor.rows()) =
-        InverseDiagonal(factor);
+    noise.weights.segment(first * run.rows(), factor.rows()) = InverseDiagonal(factor);
   }
   return noise;
 }
@@ -119,13 +117,11 @@ MatrixXd FormColumns(const SweepPlan& plan, const SweepInstrument& instrument, c
                      double deviation) {
   const FormOfFace form(plan, instrument, run);
   const Index n = run.rows();
-  MatrixXd columns(static_cast<Index>(kProbes) * n, 0);
+  MatrixXd columns(kProbes * n, 0);
   for (std::size_t face = 0; face + 1 < kFaceBounds.size(); ++face) {
-    const auto first = static_cast<Index>(kFaceBounds[face]);
-    const auto count = static_cast<Index>(kFaceBounds[face + 1]) - first;
+    const Index first = kFaceBounds[face], count = kFaceBounds[face + 1] - first;
     const MatrixXd L = LowRankFactor(count * n, [&](Index i, Index j) {
-      return form(static_cast<std::size_t>(first + i / n), i % n,
-                  static_cast<std::size_t>(first + j / n), j % n);
+      return form(first + i / n, i % n, first + j / n, j % n);
     });
     const Index before = columns.cols();
     columns.conservativeResize(Eigen::NoChange, before + L.cols());
@@ -144,9 +140,9 @@ ReadingResponse::ReadingResponse(MatrixXd by_motions, MatrixXd gaps, MatrixXd ti
 
 MatrixXd ReadingResponse::Columns(const std::vector<Disturbance>& disturbances) const {
   const Index rows = gaps_.cols();
-  MatrixXd columns = MatrixXd::Zero(gaps_.size(), static_cast<Index>(disturbances.size()));
+  MatrixXd columns = MatrixXd::Zero(gaps_.size(), disturbances.size());
   for (Index d = 0; d < columns.cols(); ++d) {
-    for (const auto& [stage, values] : disturbances[static_cast<std::size_t>(d)].stages()) {
+    for (const auto& [stage, values] : disturbances[d].stages()) {
       if (stage >= kReadingStage && stage < kEncoderStage) {
         columns.col(d).segment((stage - kReadingStage) * rows, rows) += values.transpose();
       }

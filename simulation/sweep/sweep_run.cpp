@@ -52,12 +52,12 @@ Eigen::MatrixXd DriftCovariance(const Eigen::VectorXd& time, const probes::Probe
 Eigen::VectorXd ColumnOf(const recording::Recording& recording, const std::string& column,
                          const std::vector<std::size_t>& rows) {
   const std::vector<double> read = recording::ValuesOf(recording, column, rows);
-  return Eigen::Map<const Eigen::VectorXd>(read.data(), static_cast<Index>(read.size()));
+  return Eigen::Map<const Eigen::VectorXd>(read.data(), read.size());
 }
 
 Eigen::Matrix3Xd AxesOf(const recording::Recording& recording,
                         const std::vector<std::size_t>& rows) {
-  Eigen::Matrix3Xd axes(3, static_cast<Index>(rows.size()));
+  Eigen::Matrix3Xd axes(3, rows.size());
   for (Index k = 0; k < 3; ++k) {
     axes.row(k) = ColumnOf(recording, fmt::format("{}_mm", "xyz"[k]), rows).transpose();
   }
@@ -75,7 +75,7 @@ SweepRun Standing(const recording::Recording& recording, const std::vector<std::
   if (each.empty()) {
     throw InputError(fmt::format("{}: no row counts; record it again", recording.name));
   }
-  const auto count = static_cast<Index>(each.size());
+  const Index count = each.size();
   SweepRun run;
   run.name = recording.name;
   run.mounting = MountingOf(recording);
@@ -83,14 +83,14 @@ SweepRun Standing(const recording::Recording& recording, const std::vector<std::
   run.axis = recording.HeaderText("axis").value_or("X")[0];
   Eigen::VectorXd readings(count);
   for (Index row = 0; row < count; ++row) {
-    const Standstill& stands = each[static_cast<std::size_t>(row)];
-    readings[row] = static_cast<double>(stands.last - stands.first);
+    const Standstill& stands = each[row];
+    readings[row] = stands.last - stands.first;
     run.first_rows.push_back(rows[stands.first]);
   }
   const auto means = [&](const Eigen::MatrixXd& values) {
     Eigen::MatrixXd mean(values.rows(), count);
     for (Index row = 0; row < count; ++row) {
-      const auto first = static_cast<Index>(each[static_cast<std::size_t>(row)].first);
+      const Index first = each[row].first;
       mean.col(row) = values.middleCols(first, static_cast<Index>(readings[row])).rowwise().mean();
     }
     return mean;
@@ -106,15 +106,14 @@ SweepRun Standing(const recording::Recording& recording, const std::vector<std::
   run.samples = readings;
   run.duration.resize(count);
   for (Index row = 0; row < count; ++row) {
-    const Standstill& stands = each[static_cast<std::size_t>(row)];
-    run.duration[row] =
-        time[static_cast<Index>(stands.last) - 1] - time[static_cast<Index>(stands.first)];
+    const Standstill& stands = each[row];
+    run.duration[row] = time[stands.last - 1] - time[stands.first];
   }
   run.pass.assign(each.size(), 1);
   run.gap.resize(probes::kProbes, count);
   for (std::size_t i = 0; i < probes::kProbes; ++i) {
     const std::string column = fmt::format("probe_{}_um", static_cast<char>('a' + i));
-    run.gap.row(static_cast<Index>(i)) = means(ColumnOf(recording, column, rows).transpose());
+    run.gap.row(i) = means(ColumnOf(recording, column, rows).transpose());
     run.covariance[i] = DriftCovariance(run.time, noise);
     if (noise.memory[i] > 0.0) {
       probes::ProbeNoise memory = noise;
@@ -153,15 +152,14 @@ SweepRun ReadSweepRun(const recording::Recording& recording, const recording::Bl
   run.position = std::move(means.position);
   run.gap = std::move(means.gap);
   run.covariance = std::move(means.covariance);
-  run.pass.assign(static_cast<std::size_t>(run.rows()), 0);
+  run.pass.assign(run.rows(), 0);
   run.time.resize(run.rows());
   run.samples = Eigen::VectorXd::Ones(run.rows());
   run.duration = Eigen::VectorXd::Zero(run.rows());
   const std::vector<int>& directions = means.directions;
   for (Index row = 0; row < run.rows(); ++row) {
-    const auto group = static_cast<std::size_t>(row);
-    const int direction = directions[group % directions.size()];
-    const std::size_t station = group / directions.size();
+    const int direction = directions[row % directions.size()];
+    const std::size_t station = row / directions.size();
     const auto first =
         std::find_if(means.dwells.begin(), means.dwells.end(), [&](const probes::Dwell& dwell) {
           return dwell.station == station && dwell.direction == direction;
@@ -177,28 +175,28 @@ SweepRun ReadSweepDwells(const recording::Recording& recording, const probes::He
                          const probes::ProbeNoise& noise) {
   auto [run, means] = ReadMeans(
       recording, [&](const auto& use) { use(recording); }, head, noise);
-  const auto rows = static_cast<Index>(means.dwells.size());
+  const Index rows = means.dwells.size();
   run.position.resize(rows);
   run.time.resize(rows);
   run.samples.resize(rows);
   run.duration.resize(rows);
   run.gap.resize(probes::kProbes, rows);
   for (Index row = 0; row < rows; ++row) {
-    const probes::Dwell& dwell = means.dwells[static_cast<std::size_t>(row)];
+    const probes::Dwell& dwell = means.dwells[row];
     run.position[row] = dwell.position;
     run.time[row] = dwell.time;
-    run.samples[row] = static_cast<double>(dwell.samples);
+    run.samples[row] = dwell.samples;
     run.duration[row] = dwell.duration;
     run.pass.push_back(dwell.pass);
     run.direction.push_back(dwell.direction);
     run.first_rows.push_back(dwell.first_row);
     for (std::size_t i = 0; i < probes::kProbes; ++i) {
-      run.gap(static_cast<Index>(i), row) = dwell.gap[i];
+      run.gap(i, row) = dwell.gap[i];
     }
   }
   for (std::size_t i = 0; i < probes::kProbes; ++i) {
     run.covariance[i] = DriftCovariance(run.time, noise);
-    run.covariance[i].diagonal() += means.white.col(static_cast<Index>(i));
+    run.covariance[i].diagonal() += means.white.col(i);
   }
   return run;
 }
@@ -224,7 +222,7 @@ SweepRun ReadReadingsInStays(const recording::Recording& recording,
   std::vector<Index> starts;
   for (const auto& stay : stays) {
     if (rows.size() + stay.size() > kMost && !rows.empty()) break;
-    starts.push_back(static_cast<Index>(rows.size()));
+    starts.push_back(rows.size());
     for (std::size_t i = 0; i < std::min(stay.size(), kMost); ++i) {
       each.push_back({rows.size(), rows.size() + 1});
       rows.push_back(stay[i]);
@@ -257,9 +255,8 @@ SweepRun ReadGapSteps(const recording::Recording& recording, const probes::Probe
   const Eigen::VectorXd time = ColumnOf(recording, "time_s", rows);
   std::vector<Standstill> each;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto row = static_cast<Index>(i);
-    const bool stays = i > 0 && time[row] - time[row - 1] < kPause &&
-                       (axes.col(row) - axes.col(row - 1)).cwiseAbs().maxCoeff() < kStays;
+    const bool stays = i > 0 && time[i] - time[i - 1] < kPause &&
+                       (axes.col(i) - axes.col(i - 1)).cwiseAbs().maxCoeff() < kStays;
     if (stays) {
       each.back().last = i + 1;
     } else {

@@ -43,7 +43,7 @@ Circumstances<T> Unpack(const Vector& local) {
 template <typename T, typename Vector>
 machine::MotionErrors<T> ErrorsOf(int axis, const Vector& local) {
   machine::MotionErrors<T> errors;
-  errors.axes[static_cast<std::size_t>(axis)] = local.template segment<6>(0);
+  errors.axes[axis] = local.template segment<6>(0);
   errors.squareness = local.template segment<3>(6);
   return errors;
 }
@@ -60,7 +60,7 @@ class SweepResidual : public Responsive {
     noise_ = std::make_shared<const FaceNoise>(FaceNoiseOf(plan_, instrument, run_));
   }
 
-  Index Rows() const override { return static_cast<Index>(kProbes) * run_.rows(); }
+  Index Rows() const override { return kProbes * run_.rows(); }
 
   void Evaluate(const VectorXd& x, VectorXd& values,
                 estimation::RowMatrix* jacobian) const override {
@@ -108,9 +108,9 @@ class SweepResidual : public Responsive {
     machine::MotionErrors<Dual> errors;
     for (int axis = 0; axis < machine::kAxes; ++axis) {
       for (int motion = 0; motion < machine::kMotions; ++motion) {
-        Dual& error = errors.axes[static_cast<std::size_t>(axis)][motion];
+        Dual& error = errors.axes[axis][motion];
         if (axis == plan_.axis) {
-          error.a = functions[static_cast<std::size_t>(motion)].Evaluate(run_.position[row]);
+          error.a = functions[motion].Evaluate(run_.position[row]);
         }
         error.v[MotionStage(axis, motion)] = 1.0;
       }
@@ -122,10 +122,10 @@ class SweepResidual : public Responsive {
       const auto places = Places(probe);
       Eigen::Matrix<Dual, kLocal, 1> local;
       for (std::size_t k = 9; k < kLocal; ++k) {
-        local[static_cast<Index>(k)] = Dual(shared[places[k]]);
+        local[k] = Dual(shared[places[k]]);
       }
       const auto at = Unpack<Dual>(local);
-      J.row(static_cast<Index>(probe)) = ReadingOf<Dual>(plan_, probe, X_WT, at).v.transpose();
+      J.row(probe) = ReadingOf<Dual>(plan_, probe, X_WT, at).v.transpose();
       if (tilts != nullptr) tilts[probe] = SightOf<Dual>(plan_, probe, X_WT, at).Tilt();
     }
     return J;
@@ -133,14 +133,13 @@ class SweepResidual : public Responsive {
 
   // Where the numbers of Circumstances stand behind the coefficients in x, for one probe.
   static std::array<Index, kLocal> Places(std::size_t probe) {
-    const auto i = static_cast<Index>(probe);
     std::array<Index, kLocal> places{};
     places.fill(-1);
-    for (Index k = 0; k < 3; ++k) places[static_cast<std::size_t>(6 + k)] = k;  // squareness
-    places[9] = 3 + 2 * i;
-    places[10] = 4 + 2 * i;
-    places[11] = 13 + i;
-    for (Index k = 0; k < 12; ++k) places[static_cast<std::size_t>(12 + k)] = 18 + k;
+    for (Index k = 0; k < 3; ++k) places[6 + k] = k;  // squareness
+    places[9] = 3 + 2 * probe;
+    places[10] = 4 + 2 * probe;
+    places[11] = 13 + probe;
+    for (Index k = 0; k < 12; ++k) places[12 + k] = 18 + k;
     return places;
   }
   static constexpr Index kZero = 30;                 // of the first probe
@@ -170,7 +169,7 @@ class SweepResidual : public Responsive {
     Eigen::Matrix<T, kLocal, 1> local;
     Index at = 0;
     for (std::size_t motion = 0; motion < functions.size(); ++motion) {
-      local[static_cast<Index>(motion)] = T(functions[motion].Evaluate(
+      local[motion] = T(functions[motion].Evaluate(
           run_.position[row], nullptr, jacobian == nullptr ? nullptr : gradient.data() + at));
       at += functions[motion].size();
     }
@@ -183,16 +182,14 @@ class SweepResidual : public Responsive {
     for (std::size_t probe = 0; probe < kProbes; ++probe) {
       const auto places = Places(probe);
       for (std::size_t k = 9; k < kLocal; ++k) {
-        const auto index = static_cast<Index>(k);
-        local[index] = T(shared[places[k]]);
-        if constexpr (kDual) local[index].v[index] = 1.0;
+        local[k] = T(shared[places[k]]);
+        if constexpr (kDual) local[k].v[k] = 1.0;
       }
       const T reading = ReadingOf<T>(plan_, probe, X_WT, Unpack<T>(local));
-      const auto column = static_cast<Index>(probe);
-      const Index out = column * run_.rows() + row;
-      values[out] = run_.gap(column, row) - ValueOf(reading) - shared[kZero + column];
+      const Index out = probe * run_.rows() + row;
+      values[out] = run_.gap(probe, row) - ValueOf(reading) - shared[kZero + probe];
       if constexpr (kDual) AddDerivatives(functions, gradient, places, reading.v, out, jacobian);
-      if (jacobian != nullptr) (*jacobian)(out, coefficients_ + kZero + column) = -1.0;
+      if (jacobian != nullptr) (*jacobian)(out, coefficients_ + kZero + probe) = -1.0;
     }
   }
 
@@ -204,12 +201,11 @@ class SweepResidual : public Responsive {
     Index at = 0;
     for (std::size_t motion = 0; motion < functions.size(); ++motion) {
       const Index n = functions[motion].size();
-      jacobian->row(out).segment(at, n) =
-          -by_local[static_cast<Index>(motion)] * gradient.segment(at, n).transpose();
+      jacobian->row(out).segment(at, n) = -by_local[motion] * gradient.segment(at, n).transpose();
       at += n;
     }
     for (std::size_t k = 6; k < kLocal; ++k) {
-      (*jacobian)(out, coefficients_ + places[k]) = -by_local[static_cast<Index>(k)];
+      (*jacobian)(out, coefficients_ + places[k]) = -by_local[k];
     }
   }
 
@@ -223,8 +219,8 @@ class SweepResidual : public Responsive {
 std::shared_ptr<const Response> SweepResidual::At(const VectorXd& x) const {
   const std::vector<machine::ErrorFunction> functions = FunctionsAt(x);
   const VectorXd shared = x.tail(x.size() - coefficients_);
-  MatrixXd by_motions(static_cast<Index>(kProbes), kToolStage * run_.rows());
-  MatrixXd tilts(static_cast<Index>(kProbes), run_.rows());
+  MatrixXd by_motions(kProbes, kToolStage * run_.rows());
+  MatrixXd tilts(kProbes, run_.rows());
   for (Index row = 0; row < run_.rows(); ++row) {
     by_motions.middleCols<kToolStage>(row * kToolStage) =
         ReadingByMotions(functions, shared, row, tilts.col(row).data());
@@ -283,8 +279,7 @@ std::vector<ParameterBlock> InstrumentBlocks(const SweepInstrument& instrument,
         {.name = letter, .nominal = nominal, .prior_sd = tolerance.gain, .value = nominal});
     // A start from which the first step is small.
     zero.entries.push_back(
-        {.name = letter,
-         .value = run.gap.row(static_cast<Index>(i)).mean() - instrument.head.probes[i].range / 2});
+        {.name = letter, .value = run.gap.row(i).mean() - instrument.head.probes[i].range / 2});
   }
   for (ParameterBlock* block : {&position, &gain}) {
     for (auto& entry : block->entries) {

@@ -14,11 +14,11 @@ Eigen::MatrixXd SpotsOnTarget(const machine::Chain& chain, const probes::HeadSet
   const double way = chain.ToolSense(run.axis) * along_axis;
   const double turned = run.mounted.head_turned ? -1.0 : 1.0;
   const double middle = 0.5 * way * (run.position.minCoeff() + run.position.maxCoeff());
-  Eigen::MatrixXd spots(2 * static_cast<Index>(kProbes), run.rows());
+  Eigen::MatrixXd spots(2 * kProbes, run.rows());
   for (std::size_t probe = 0; probe < kProbes; ++probe) {
     const Eigen::Vector2d place = PlaceOf(head.layout, probe);
     const double across = OnTop(probe) ? turned * place[1] : place[1];
-    const auto row = 2 * static_cast<Index>(probe);
+    const Eigen::Index row = 2 * probe;
     spots.row(row) = (way * run.position.array() + turned * place[0] - run.mounted.target_shift)
                          .matrix()
                          .transpose();
