@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "failure/failure.h"
 #include "standards/narrowest_annulus.h"
@@ -15,6 +16,10 @@ namespace {
 constexpr int kMaxSteps = 50;
 // Convergence of the centre, relative to the radius.
 constexpr double kSettled = 1e-13;
+
+constexpr double kFullTurn = 2.0 * std::numbers::pi;
+// Part of a turn; a longer gap between two points of a path was not measured.
+constexpr double kGap = 0.05;
 
 void CheckPoints(std::span<const double> x, std::span<const double> y) {
   if (x.size() != y.size() || x.size() < 3) {
@@ -62,25 +67,28 @@ Circle AlgebraicCircle(std::span<const double> x, std::span<const double> y) {
 }
 
 // One Gauss-Newton step of the radial deviations; returns how far the centre moved.
-double StepLeastSquares(std::span<const double> x, std::span<const double> y, Circle& circle) {
+double StepLeastSquares(std::span<const double> x, std::span<const double> y,
+                        std::span<const double> weights, Circle& circle) {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double dx = x[i] - circle.x, dy = y[i] - circle.y;
     const double r = std::hypot(dx, dy);
     const Eigen::Vector3d g(dx / r, dy / r, 1.0);
-    A += g * g.transpose();
-    b += g * (r - circle.radius);
+    const double weight = weights.empty() ? 1.0 : weights[i];
+    A += weight * g * g.transpose();
+    b += weight * g * (r - circle.radius);
   }
   const Eigen::Vector3d step = A.ldlt().solve(b);
   circle = {circle.x + step.x(), circle.y + step.y(), circle.radius + step.z()};
   return step.head<2>().norm();
 }
 
-Circle LeastSquaresCircle(std::span<const double> x, std::span<const double> y) {
+Circle LeastSquaresCircle(std::span<const double> x, std::span<const double> y,
+                          std::span<const double> weights) {
   Circle circle = AlgebraicCircle(x, y);
   for (int step = 0; step < kMaxSteps; ++step) {
-    if (StepLeastSquares(x, y, circle) <= kSettled * circle.radius) return circle;
+    if (StepLeastSquares(x, y, weights, circle) <= kSettled * circle.radius) return circle;
   }
   throw NumericalError(fmt::format(
       "least-squares circle of {} points: the centre did not converge in {} steps; is the path a "
@@ -89,7 +97,7 @@ Circle LeastSquaresCircle(std::span<const double> x, std::span<const double> y) 
 }
 
 Circle MinimumZoneCircle(std::span<const double> x, std::span<const double> y) {
-  Circle circle = LeastSquaresCircle(x, y);
+  Circle circle = LeastSquaresCircle(x, y, {});
   std::vector<AnnulusPoint> points(x.size());
   for (int step = 0; step < kMaxSteps; ++step) {
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -109,9 +117,37 @@ Circle MinimumZoneCircle(std::span<const double> x, std::span<const double> y) {
 
 }  // namespace
 
-Circle ReferenceCircle(CircleKind kind, std::span<const double> x, std::span<const double> y) {
+std::vector<double> ArcsOf(std::span<const double> x, std::span<const double> y) {
+  if (x.size() != y.size()) {
+    throw InputError(
+        fmt::format("arcs of {} x and {} y: give both coordinates", x.size(), y.size()));
+  }
+  const std::size_t n = x.size();
+  std::vector<double> steps(n);  // from each point to the next
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t next = (i + 1) % n;
+    const double turned = std::atan2(y[next], x[next]) - std::atan2(y[i], x[i]);
+    steps[i] = std::abs(std::remainder(turned, kFullTurn));
+  }
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + std::ssize(sorted) / 2;
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  for (double& step : steps) step = step > kGap * kFullTurn ? *middle : step;
+  std::vector<double> arcs(n);
+  for (std::size_t i = 0; i < n; ++i) arcs[i] = (steps[i] + steps[(i + n - 1) % n]) / 2.0;
+  return arcs;
+}
+
+Circle ReferenceCircle(CircleKind kind, std::span<const double> x, std::span<const double> y,
+                       std::span<const double> weights) {
   CheckPoints(x, y);
-  return kind == CircleKind::kLeastSquares ? LeastSquaresCircle(x, y) : MinimumZoneCircle(x, y);
+  if (kind == CircleKind::kMinimumZone) return MinimumZoneCircle(x, y);
+  if (!weights.empty() && weights.size() != x.size()) {
+    throw InputError(
+        fmt::format("circle through {} points with {} weights: give one for each, or none",
+                    x.size(), weights.size()));
+  }
+  return LeastSquaresCircle(x, y, weights);
 }
 
 std::vector<double> RadialDeviations(const Circle& circle, std::span<const double> x,
@@ -123,15 +159,19 @@ std::vector<double> RadialDeviations(const Circle& circle, std::span<const doubl
   return deviations;
 }
 
-Roundness EvaluateRoundness(CircleKind kind, std::span<const double> x, std::span<const double> y) {
-  Roundness roundness{ReferenceCircle(kind, x, y)};
-  double squares = 0.0;
-  for (const double deviation : RadialDeviations(roundness.circle, x, y)) {
-    roundness.peak = std::max(roundness.peak, deviation);
-    roundness.valley = std::max(roundness.valley, -deviation);
-    squares += deviation * deviation;
+Roundness EvaluateRoundness(CircleKind kind, std::span<const double> x, std::span<const double> y,
+                            std::span<const double> weights) {
+  Roundness roundness{ReferenceCircle(kind, x, y, weights)};
+  const std::vector<double> deviations = RadialDeviations(roundness.circle, x, y);
+  double squares = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < deviations.size(); ++i) {
+    roundness.peak = std::max(roundness.peak, deviations[i]);
+    roundness.valley = std::max(roundness.valley, -deviations[i]);
+    const double weight = weights.empty() ? 1.0 : weights[i];
+    squares += weight * deviations[i] * deviations[i];
+    all += weight;
   }
-  roundness.rms = std::sqrt(squares / x.size());
+  roundness.rms = std::sqrt(squares / all);
   return roundness;
 }
 

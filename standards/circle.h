@@ -5,12 +5,14 @@
 //
 // Frames: x and y are the two coordinates of the plane, in any origin. A deviation is the distance
 // to the centre minus the radius: positive outside. Units: m. Shapes: n points, in any order, of a
-// whole circle or an arc; points of both senses may be evaluated together.
+// whole circle or an arc; points of both senses may be evaluated together. `weights`: the arc that
+// each point stands for (ArcsOf, any common unit); none: equal arcs. The minimum zone has no use
+// for them.
 // Failure: InputError for fewer than three points, lists of different length, numbers that are not
 // finite, or points on a line. NumericalError when the iteration does not converge (deviations that
 // are not small compared with the radius). Source: ISO 12181-1:2011, clause 3 (reference circles),
-// and ISO 230-4:2022, clause 3; not checked against their texts. Least squares: the squares of the
-// radial deviations, by Gauss-Newton from the algebraic circle of Kasa (1976). Minimum zone: two
+// and ISO 230-4:2022, clause 3; not checked against their texts. Least squares: the weighted
+// squares of the radial deviations, by Gauss-Newton from the algebraic circle of Kasa (1976). Minimum zone: two
 // concentric circles of smallest separation. About a centre c near the solution the distance of
 // point i is r_i - c u_i + O(|c|^2 / r), so each step is a linear programme in (c, outer, inner);
 // it is solved exactly by adding the points outside its zone, and repeated about the new centre
@@ -32,7 +34,14 @@ struct Circle {
 };
 
 // The reference circle of this kind.
-Circle ReferenceCircle(CircleKind kind, std::span<const double> x, std::span<const double> y);
+Circle ReferenceCircle(CircleKind kind, std::span<const double> x, std::span<const double> y,
+                       std::span<const double> weights = {});
+
+// The arc about (0, 0) for which each point of a path stands, rad: half the way to each of its two
+// neighbours along the path, the last and the first being neighbours. A gap above a twentieth of a
+// turn was not measured and counts as a usual step (the median). With it a least-squares circle
+// does not depend on how densely parts of the path were sampled.
+std::vector<double> ArcsOf(std::span<const double> x, std::span<const double> y);
 
 // The figures of ISO 12181-1:2011 about a reference circle; for the minimum zone Error() is RONt.
 struct Roundness {
@@ -44,7 +53,8 @@ struct Roundness {
   double Error() const { return peak + valley; }
 };
 
-Roundness EvaluateRoundness(CircleKind kind, std::span<const double> x, std::span<const double> y);
+Roundness EvaluateRoundness(CircleKind kind, std::span<const double> x, std::span<const double> y,
+                            std::span<const double> weights = {});
 
 // The distance of each point to (circle.x, circle.y), minus circle.radius.
 std::vector<double> RadialDeviations(const Circle& circle, std::span<const double> x,

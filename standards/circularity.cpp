@@ -19,10 +19,12 @@ std::pair<double, double> RadialRange(const Circle& about, const PlanePath& path
   return {*high, *low};
 }
 
-SenseFigures Evaluate(const PlanePath& path, double radius, std::string_view sense) {
+// `arcs`: what each point of the path stands for (ArcsOf).
+SenseFigures Evaluate(const PlanePath& path, const std::vector<double>& arcs, double radius,
+                      std::string_view sense) {
   try {
     const Roundness zone = EvaluateRoundness(CircleKind::kMinimumZone, path.x, path.y);
-    const Roundness squares = EvaluateRoundness(CircleKind::kLeastSquares, path.x, path.y);
+    const Roundness squares = EvaluateRoundness(CircleKind::kLeastSquares, path.x, path.y, arcs);
     const auto [F_max, F_min] = RadialRange({0.0, 0.0, radius}, path);
     return {zone.Error(), squares.Error(), zone.circle, squares.circle, F_max, F_min};
   } catch (const InputError& error) {
@@ -49,10 +51,15 @@ Circularity EvaluateCircularity(const CircularPaths& paths) {
     throw InputError("circular test without a point in either sense: nothing to evaluate");
   }
   Circularity figures;
-  if (!paths.cw.x.empty()) figures.cw = Evaluate(paths.cw, paths.radius, "clockwise");
-  if (!paths.ccw.x.empty()) figures.ccw = Evaluate(paths.ccw, paths.radius, "counter-clockwise");
+  std::vector<double> arcs = ArcsOf(paths.cw.x, paths.cw.y);
+  const std::vector<double> others = ArcsOf(paths.ccw.x, paths.ccw.y);
+  if (!paths.cw.x.empty()) figures.cw = Evaluate(paths.cw, arcs, paths.radius, "clockwise");
+  if (!paths.ccw.x.empty()) {
+    figures.ccw = Evaluate(paths.ccw, others, paths.radius, "counter-clockwise");
+  }
   const PlanePath all = Joined(paths.cw, paths.ccw);
-  if (figures.cw && figures.ccw) figures.both = Evaluate(all, paths.radius, "both senses");
+  arcs.insert(arcs.end(), others.begin(), others.end());
+  if (figures.cw && figures.ccw) figures.both = Evaluate(all, arcs, paths.radius, "both senses");
   const SenseFigures& widest = figures.both ? *figures.both
                                : figures.cw ? *figures.cw
                                             : *figures.ccw;

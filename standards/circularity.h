@@ -5,8 +5,9 @@
 //
 // Frames: x and y are the coordinates of the measured path in the plane of the test, from the
 // nominal centre (the set-up centre). Counter-clockwise turns the first axis of the plane towards
-// the second. Units: m. Shapes: the points of each sense, any number of turns; one sense may be
-// absent (empty); figures that need both are then absent.
+// the second. Units: m. Shapes: the points of each sense in the order of the path, any number of
+// turns; one sense may be absent (empty); figures that need both are then absent. In least-squares
+// circles a point weighs the arc that it stands for, so gaps and standstills do not move them.
 //   G(cw), G(ccw)  circular deviation: separation of the two concentric circles that enclose the
 //                  path, minimum zone (G) and about the least-squares centre (G_ls)
 //   G(b)           the same of both paths together

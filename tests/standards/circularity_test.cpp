@@ -64,6 +64,28 @@ TEST(Circularity, OvalsThatTurnWithTheSense) {
   EXPECT_NEAR(*figures.D, 0.0, kSecondOrder);
 }
 
+// Points that are lost and points at rest leave the least-squares figures where those of the even
+// path are: to the curvature of the oval over the gaps, where equal weights give 8 % more.
+TEST(Circularity, FollowsThePathAndNotTheDensityOfItsPoints) {
+  constexpr double a = 4e-6;
+  const PlanePath even = Path([](double t) { return kRadius + a * std::sin(2 * t); }, 1e-6);
+  PlanePath uneven;
+  for (std::size_t i = 0; i < 360;) {
+    for (int rest = 0; rest < (i == 0 ? 100 : 1); ++rest) {
+      uneven.x.push_back(even.x[i]);
+      uneven.y.push_back(even.y[i]);
+    }
+    i += i < 90 ? 1 : i < 180 ? 9 : i < 225 ? 2 : 5;
+  }
+  const auto figures = EvaluateCircularity({.radius = kRadius, .cw = even, .ccw = uneven});
+  EXPECT_NEAR(figures.cw->G_ls, 2 * a, 1e-3 * a);
+  EXPECT_NEAR(figures.ccw->G_ls, figures.cw->G_ls, 0.01 * a);
+  EXPECT_NEAR(figures.ccw->least_squares.x, 1e-6, 0.01 * a);
+  EXPECT_NEAR(figures.both->least_squares.radius, kRadius, 0.01 * a);
+  const Roundness unweighted = EvaluateRoundness(CircleKind::kLeastSquares, uneven.x, uneven.y);
+  EXPECT_GT(unweighted.Error(), 1.08 * figures.cw->G_ls);
+}
+
 TEST(Circularity, RefusesWhatCannotBeJudged) {
   EXPECT_THROW(EvaluateCircularity({.radius = kRadius, .cw = {}, .ccw = {}}), InputError);
   EXPECT_THROW(EvaluateCircularity({.radius = 0.0, .cw = {}, .ccw = {{0, 1, 0}, {0, 0, 1}}}),
