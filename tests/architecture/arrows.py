@@ -47,7 +47,7 @@ GATES = {
     "ceres/": r"estimation/.*",
     "Random123/": r"random/.*",
     "toml++/": r"(settings|recording)/.*\.cpp",
-    "openssl/": r"apps/file_hash\.cpp",
+    "openssl/": r"recording/file_hash\.cpp",
 }
 
 TRANSPORT = re.compile(r'\{"([\w-]+)", Read\w+\}')  # a line of hal/transports.cpp
