@@ -1,7 +1,7 @@
 // The SHA-256 of a file or of a text, which identifies data independently of the name of its file.
 //
 // Both return 64 hexadecimal digits, as sha256sum prints them. Failure: InputError when the file
-// cannot be read. Source: FIPS 180-4, by OpenSSL.
+// cannot be read. Source: FIPS 180-4, by libcrypto.
 #pragma once
 
 #include <filesystem>
