@@ -61,6 +61,19 @@ bool IsMap(const std::string& text) {
   return text.starts_with("# An error map:") || text.find("\n[[error]]") != std::string::npos;
 }
 
+// A discarded value when it is not JSON, or is nested deeper than any result: writing it again is
+// recursive.
+ordered_json JsonOf(const std::string& content) {
+  constexpr int kDeepest = 100;
+  bool too_deep = false;
+  const auto keep = [&](int depth, ordered_json::parse_event_t, ordered_json&) {
+    too_deep = too_deep || depth > kDeepest;
+    return !too_deep;
+  };
+  ordered_json json = ordered_json::parse(content, keep, /*allow_exceptions=*/false);
+  return too_deep ? ordered_json(ordered_json::value_t::discarded) : json;
+}
+
 std::string TextOf(const ordered_json& object, const char* key) {
   const auto at = object.find(key);
   return at != object.end() && at->is_string() ? at->get<std::string>() : "";
@@ -136,7 +149,7 @@ class Gathering {
 
   bool TakeResult(const fs::path& path) {
     const std::string content = ContentOf(path);
-    const ordered_json json = ordered_json::parse(content, nullptr, /*allow_exceptions=*/false);
+    const ordered_json json = JsonOf(content);
     if (!json.is_object() || TextOf(json, "command").empty()) return false;
     if (TextOf(json, "command") == "history") return false;  // made from a history
     ResultFile result{path.filename().string(),

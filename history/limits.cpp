@@ -16,8 +16,8 @@ using Names = std::vector<std::string>;
 const Names kOfAxis{"positioning_A_um", "positioning_R_um",    "positioning_E_um",
                     "positioning_M_um", "positioning_B_um",    "positioning_reversal_um",
                     "stepping_um",      "side_straightness_um"};
-const Names kOfPlane{"circularity_um", "G_b_um",   "G_ccw_um", "G_cw_um",
-                     "F_max_um",       "F_min_um", "D_um",     "out_of_plane_um"};
+const Names kOfPlane{"circularity_um", "G_ccw_um", "G_cw_um",        "F_max_um",
+                     "F_min_um",       "D_um",     "out_of_plane_um"};
 const Names kOfStraightness{"straightness_um", "straightness_ls_um", "straightness_ends_um",
                             "range_um", "reversal_um"};
 const Names kOfLength{"range_um"};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "history/result_reader.h"
@@ -10,11 +11,17 @@
 namespace abbe::history {
 namespace {
 
-// A mean feed as it was programmed: three digits.
+// A measured mean feed as it was programmed: three digits.
+double ProgrammedFeed(double mean) {
+  if (!(mean > 0.0) || !std::isfinite(mean)) return 0.0;
+  const double last = std::pow(10.0, std::floor(std::log10(mean)) - 2.0);
+  return std::round(mean / last) * last;
+}
+
 std::string CircleConditions(const Json& circle, const Json& run) {
-  return fmt::format("{}, R {:.4g} mm, F {:.3g}", TextAt(circle, "instrument"),
+  return fmt::format("{}, R {:.4g} mm, F {:g}", TextAt(circle, "instrument"),
                      NumberAt(circle, "radius_mm").value_or(0.0),
-                     NumberAt(run, "feed_mm_min").value_or(0.0));
+                     ProgrammedFeed(NumberAt(run, "feed_mm_min").value_or(0.0)));
 }
 
 void ReadCircleRun(const Json& circle, const Json& run, Extract& extract) {
@@ -22,7 +29,6 @@ void ReadCircleRun(const Json& circle, const Json& run, Extract& extract) {
   const auto add = [&](const std::string& quantity, const std::string& key) {
     const auto value = NumberAt(run, key);
     if (!value) return;
-    // Of a run with part of a circle the figures of the whole are none.
     const auto u = NumberAt(ObjectAt(run, "u"), key);
     Shares shares;
     const auto calibration = NumberAt(ObjectAt(run, "u_calibration"), key);
@@ -32,15 +38,12 @@ void ReadCircleRun(const Json& circle, const Json& run, Extract& extract) {
     extract.figures.push_back(
         {plane, quantity, conditions, *value, u, standards::kCoverage, std::move(shares)});
   };
-  for (const char* const key : {"G_b_um", "G_ccw_um", "G_cw_um"}) {
-    if (!run.contains(key)) continue;
-    add("circularity_um", key);
-    break;
+  const bool both = run.contains("G_b_um");
+  add("circularity_um", both ? "G_b_um" : run.contains("G_ccw_um") ? "G_ccw_um" : "G_cw_um");
+  if (both) {
+    for (const char* const key : {"G_ccw_um", "G_cw_um"}) add(key, key);
   }
-  for (const char* const key :
-       {"G_b_um", "G_ccw_um", "G_cw_um", "F_max_um", "F_min_um", "D_um", "out_of_plane_um"}) {
-    add(key, key);
-  }
+  for (const char* const key : {"F_max_um", "F_min_um", "D_um", "out_of_plane_um"}) add(key, key);
 }
 
 constexpr std::array<std::pair<const char*, const char*>, 6> kPositioning{

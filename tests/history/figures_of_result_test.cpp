@@ -78,8 +78,10 @@ TEST(FiguresOfResult, OfCirclesByPlaneAndConditions) {
   EXPECT_EQ(slow.value, 4.0);
   EXPECT_NEAR(slow.shares.at("linkage"), 0.64, kRounding);
   // One sense only: its G.
-  EXPECT_EQ(At(extract, "XY.circularity_um", "linkage, R 20 mm, F 2e+03").value, 9.0);
+  EXPECT_EQ(At(extract, "XY.circularity_um", "linkage, R 20 mm, F 2000").value, 9.0);
   EXPECT_EQ(At(extract, "XY.circularity_um", "reference, R 20 mm, F 300").value, 4.1);
+  EXPECT_EQ(At(extract, "XY.G_ccw_um").value, 3.0);
+  EXPECT_EQ(Find(extract, "XY.G_cw_um", "linkage, R 20 mm, F 2000"), nullptr);
   EXPECT_EQ(At(extract, "XY.D_um").value, -0.5);
   EXPECT_EQ(At(extract, "XY.F_max_um").value, 2.0);
 }
