@@ -1,6 +1,6 @@
 // The section of a check of figures against the limits of the machine file, and its table on top.
 
-const VERDICTS = {
+const LIMIT_VERDICTS = {
   pass: {mark: '\u2713', text: 'pass'},
   fail: {mark: '\u2717', text: 'fail'},
   undecided: {mark: '\u25cb', text: 'undecided'},
@@ -10,7 +10,7 @@ const VERDICTS = {
 const checksOf = (result) => result.checks ?? [];
 
 function verdictCell(verdict) {
-  const {mark, text} = VERDICTS[verdict] ?? {mark: '', text: verdict};
+  const {mark, text} = LIMIT_VERDICTS[verdict] ?? {mark: '', text: verdict};
   return element(
       'span', {class: `verdict ${verdict.replace(' ', '-')}`},
       element('span', {'aria-hidden': 'true'}, `${mark}\u00a0`), text);
@@ -55,7 +55,10 @@ registerSection({
     caption: 'Figures and their limits',
     columns: [...CHECK_COLUMNS, {head: 'U\u2089\u2085 from'}],
     rows: byVerdict(result).map(
-        (check) => [...checkRow(check), isNumber(check.U95) ? check.U95_from : 'none stated']),
+        (check) => [...checkRow(check),
+                    isNumber(check.U95)       ? check.U95_from :
+                        isNumber(check.value) ? 'none stated' :
+                                                null]),
   })],
   overview: {
     title: 'Pass and fail',

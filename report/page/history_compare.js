@@ -29,15 +29,15 @@ function differenceTable(result) {
       };
       return [
         withConditions(name), shown(one.before), shown(one.after), quantity(one.change, one.U95),
-        unitText(one.unit), isNumber(one.p) ? probabilityText(one.p) : null,
+        unitText(one.unit), isNumber(one.p) ? smallProbability(one.p) : null,
         isNumber(one.p) ? (one.significant ? 'yes' : 'no') : 'no uncertainty stated',
-        one.shared.join(', ')
+        one.shared.join(', ') || null
       ];
     }),
   });
 }
 
-const probabilityText = (p) => p < 1e-4 ? 'below 0.0001' : significant(p, 2);
+const smallProbability = (p) => p < 1e-4 ? 'below 0.0001' : significant(p, 2);
 
 function changePanel(one) {
   const unit = unitText(one.unit);

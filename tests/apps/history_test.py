@@ -284,7 +284,7 @@ class Judged(HistoryCase):
 
 class Stores(HistoryCase):
     def many(self, count, prefix="c"):
-        return [self.folder(f"{prefix}{i}", sweep(i, 2e-6 + 1e-9 * i), circle(i, 4.0 + 0.01 * i, 0.2)) for i in range(count)]
+        return [self.folder(f"{prefix}{i}", sweep(i / 10, 2e-6 + 1e-9 * i), circle(i / 10, 4.0 + 0.01 * i, 0.2)) for i in range(count)]
 
     def rows(self, statement):
         connection = sqlite3.connect(self.store)
@@ -311,7 +311,7 @@ class Stores(HistoryCase):
             run = subprocess.Popen([PROGRAM, "history", "add", *folders, "--store", self.store], stdout=subprocess.PIPE, text=True)
             time.sleep(draw.uniform(0.01, 0.25))
             run.send_signal(signal.SIGKILL)
-            said = run.communicate()[0].count("\n") if run.returncode is None else 0
+            said = run.communicate()[0].count("\n")
             killed += run.returncode == -signal.SIGKILL
             if not self.store.exists() or self.store.stat().st_size == 0 or not said:
                 continue
@@ -419,7 +419,7 @@ class Server(HistoryCase):
         self.store = run.stdout.strip()
 
     def test_a_server_that_crashes_and_comes_back(self):
-        folders = [self.folder(f"c{i}", sweep(i, 2e-6 + 1e-9 * i), circle(i, 4.0 + 0.01 * i, 0.2)) for i in range(150)]
+        folders = [self.folder(f"c{i}", sweep(i / 10, 2e-6 + 1e-9 * i), circle(i / 10, 4.0 + 0.01 * i, 0.2)) for i in range(150)]
         run = subprocess.Popen([PROGRAM, "history", "add", *folders, "--store", self.store], stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True)
         for _ in range(2):

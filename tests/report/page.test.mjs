@@ -452,6 +452,9 @@ test(
           (plots, wanted) => plots.map((plot) => plot.data.filter((trace) => trace.name === wanted)), name);
       const limits = await traces('limit');
       assert.deepEqual(limits.map((list) => list.map(({y}) => y[0])), [[6], [30, -30]]);
+      const bands = await section.locator('.plot').evaluateAll(
+          (plots) => plots.map((plot) => Math.max(...plot.data.find(({fill}) => fill === 'toself').y)));
+      assert.ok(Math.abs(bands[0] - 6.2) < 1e-9, String(bands));
       const [fitted] = (await traces('fitted'))[0];
       assert.ok(Math.abs(fitted.y.at(-1) - 6) < 1e-9);
       assert.equal((await traces('left out'))[1][0].x.length, 1);
