@@ -305,11 +305,14 @@ class Stores(HistoryCase):
     def test_a_kill_loses_nothing_that_was_said(self):
         folders = self.many(60)
         draw, killed, seen = random.Random(7), 0, 0
+        begin = time.monotonic()
+        self.history("add", *folders)
+        whole = time.monotonic() - begin
         for _ in range(25):
             for suffix in ("", "-wal", "-shm"):
                 pathlib.Path(f"{self.store}{suffix}").unlink(missing_ok=True)
             run = subprocess.Popen([PROGRAM, "history", "add", *folders, "--store", self.store], stdout=subprocess.PIPE, text=True)
-            time.sleep(draw.uniform(0.01, 0.25))
+            time.sleep(whole * draw.uniform(0.05, 0.9))
             run.send_signal(signal.SIGKILL)
             said = run.communicate()[0].count("\n")
             killed += run.returncode == -signal.SIGKILL
