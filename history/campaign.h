@@ -3,7 +3,7 @@
 //   const Campaign campaign = ReadCampaign({"measured/"}, {});
 //   for (const std::string& note : campaign.notes) fmt::print("{}\n", note);
 //
-// Of a folder (not of folders below it), or of single files, it takes the results (*.json with a
+// From a folder (not from folders below it), or single files, it takes the results (*.json with a
 // text "command"), the recordings (*.csv, *.h5, *.hdf5) and the error maps (*.toml). Other files
 // are left out; of single files that is noted. Recordings are known by path and SHA-256 and stay
 // where they are. A result's instant is its `started`, else that of the recordings, else

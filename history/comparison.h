@@ -36,7 +36,7 @@ struct Difference {
   std::optional<double> p;
   bool significant = false;
   std::vector<std::string> shared;  // instruments whose part cancels
-  // Of a curve: the positions of the later one within the earlier one's.
+  // For a curve: the positions of the later one within the earlier one's.
   std::vector<double> positions_mm, changes, U95s;
   double at_mm = 0.0;
 

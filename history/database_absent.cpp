@@ -1,4 +1,4 @@
-// Of a build without SOCI: everything that needs no store works, a store is refused.
+// A build without SOCI: everything that needs no store works, a store is refused.
 #include "failure/failure.h"
 #include "history/database.h"
 

@@ -33,7 +33,7 @@ TEST(Compare, TheSameHeadInTheSameMountingCancels) {
                 .differences.front()
                 .U95;
   };
-  // Of each variance 1 a part of 0.36 is its own; otherwise all of 2.
+  // A part of 0.36 of each variance of 1 is its own; otherwise all of 2 counts.
   EXPECT_NEAR(U95(same), 2.0 * std::sqrt(0.72), kRounding);
   EXPECT_NEAR(U95({{"head", "P-13"}, {"mounting", "A"}}), 2.0 * std::sqrt(2.0), kRounding);
   EXPECT_NEAR(U95({{"head", "P-12"}, {"mounting", "B"}}), 2.0 * std::sqrt(2.0), kRounding);
