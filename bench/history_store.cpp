@@ -81,6 +81,7 @@ int main(int argc, char** argv) {
     double filling = 0.0;
     for (int machine = 0; machine < machines; ++machine) {
       std::vector<history::Campaign> all;
+      all.reserve(static_cast<std::size_t>(campaigns));
       for (int number = 0; number < campaigns; ++number) all.push_back(Made(machine, number));
       filling += Seconds([&] { store.AddAll(all, kFirst); });
     }

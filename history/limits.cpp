@@ -87,6 +87,7 @@ Limits ReadLimits(const settings::Table& root) {
   const settings::Table table = root.Child("limits");
   const std::vector<Object> objects = Objects();
   Names names;
+  names.reserve(objects.size());
   for (const Object& each : objects) names.push_back(each.name);
   const settings::Table axes = root.Child("axis");
   for (const settings::Table& of_object : table.Named()) {
