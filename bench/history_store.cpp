@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
   const fs::path folder =
       fs::temp_directory_path() / fmt::format("abbe_history_{}", fmt::ptr(&machines));
   fs::create_directories(folder);
-  const history::StoreAddress address{folder / "history.db", ""};
+  const history::StoreAddress address{.file = folder / "history.db"};
   {
     history::Store store(address, history::Store::Missing::kMake);
     double filling = 0.0;

@@ -169,11 +169,12 @@ class Database::Connection {
       }
     }
     constexpr std::chrono::seconds kFirst{3};  // a wrong address shows at once
-    Patiently(steady_clock::now() + kFirst, [this] { Open(); });
+    Patiently(steady_clock::now() + (address_.IsFile() ? address_.patience : kFirst),
+              [this] { Open(); });
   }
 
   void InTransaction(Intent intent, const std::function<void()>& work) {
-    Patiently(steady_clock::now() + kPatience, [&] {
+    Patiently(steady_clock::now() + address_.patience, [&] {
       if (!session_) Open();
       Guarded([&] { Begin(intent); });
       try {
@@ -223,7 +224,7 @@ class Database::Connection {
   }
 
   void RunAlone(const std::string& text, const std::vector<Value>& values) {
-    Patiently(steady_clock::now() + kPatience, [&] {
+    Patiently(steady_clock::now() + address_.patience, [&] {
       if (!session_) Open();
       Run(text, values);
       prepared_.clear();
@@ -244,7 +245,7 @@ class Database::Connection {
         }
         session_ = std::make_unique<soci::session>(
             soci::sqlite3,
-            fmt::format("db=\"{}\" timeout={}", address_.file.string(), kPatience.count()));
+            fmt::format("db=\"{}\" timeout={}", address_.file.string(), address_.patience.count()));
         for (const char* const pragma : {"pragma journal_mode = wal", "pragma synchronous = full",
                                          "pragma foreign_keys = on"}) {
           Rows(pragma, {});

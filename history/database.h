@@ -9,14 +9,13 @@
 //
 // Transactions. When InTransaction() returns, the work is on the disk; when it throws, none of it
 // is in the store. It repeats the whole work when another writer was in the way, and when a server
-// went away, with a new connection, for up to kPatience.
+// went away, with a new connection, for as long as the patience of its address.
 //
 // Failure: InputError for a file that is no SQLite database or cannot be opened; DeviceError when
-// the store is locked by another program for kPatience, the disk is full, or a server does not
+// the store is locked by another program for longer, the disk is full, or a server does not
 // answer. A build without SOCI (ABBE_HISTORY) throws InputError from the constructor.
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -53,7 +52,6 @@ enum class Intent { kRead, kWrite };
 class Database {
  public:
   enum class Missing { kRefuse, kMake };
-  static constexpr std::chrono::seconds kPatience{10};
 
   Database(const StoreAddress& address, Missing missing);
   ~Database();

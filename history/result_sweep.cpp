@@ -36,7 +36,9 @@ Shares SharesOf(const Json& budget) {
 
 void ReadSweep(const Json& result, Extract& extract) {
   const std::vector<double> stations = ListAt(result, "stations", kToMillimetre);
-  for (const auto& [name, error] : ObjectAt(result, "errors").items()) {
+  for (const auto& entry : ObjectAt(result, "errors").items()) {
+    const std::string& name = entry.key();
+    const Json& error = entry.value();
     const std::string unit = ShownUnit(TextAt(error, "unit"));
     const double coverage = NumberAt(error, "coverage").value_or(standards::kCoverage);
     const Shares shares = SharesOf(ObjectAt(ObjectAt(result, "budget"), name));

@@ -35,8 +35,9 @@ std::string StoreAddress::Shown() const {
 
 StoreAddress ReadAddress(const std::string& typed) {
   const auto scheme = typed.find("://");
-  if (scheme == std::string::npos) return {typed, ""};
-  if (typed.starts_with("postgresql://") || typed.starts_with("postgres://")) return {{}, typed};
+  if (scheme == std::string::npos) return {.file = typed};
+  if (typed.starts_with("postgresql://") || typed.starts_with("postgres://"))
+    return {.file = {}, .server = typed};
   throw InputError(
       fmt::format("--store {}://: no such kind of store; name a file, or a server as "
                   "postgresql://user@host/database",
@@ -45,12 +46,12 @@ StoreAddress ReadAddress(const std::string& typed) {
 
 StoreAddress DefaultAddress() {
   std::filesystem::path data = Variable("XDG_DATA_HOME");
-  if (data.is_absolute()) return {data / "abbe" / "history.db", ""};
+  if (data.is_absolute()) return {.file = data / "abbe" / "history.db"};
   const std::filesystem::path home = Variable("HOME");
   if (home.empty()) {
     throw InputError("neither XDG_DATA_HOME nor HOME is set; name the store with --store FILE");
   }
-  return {home / ".local" / "share" / "abbe" / "history.db", ""};
+  return {.file = home / ".local" / "share" / "abbe" / "history.db"};
 }
 
 }  // namespace abbe::history

@@ -7,6 +7,7 @@
 // default is known.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 
@@ -14,7 +15,9 @@ namespace abbe::history {
 
 struct StoreAddress {
   std::filesystem::path file;  // of SQLite; empty: a server
-  std::string server;          // "postgresql://..."
+  std::string server{};        // "postgresql://..."
+  // How long a step waits for another writer, or for a server that went away.
+  std::chrono::seconds patience{30};
 
   bool IsFile() const { return !file.empty(); }
   std::string Shown() const;  // for messages: a password in it becomes ***

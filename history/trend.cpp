@@ -27,7 +27,8 @@ std::set<std::string> CommonRoles(const std::vector<TrendPoint>& points,
     return at == instruments.end() ? none : at->second;
   };
   std::set<std::string> roles;
-  for (const auto& [role, share] : points.front().point.figure.shares) {
+  for (const auto& share : points.front().point.figure.shares) {
+    const std::string& role = share.first;
     const bool common = std::ranges::all_of(points, [&](const TrendPoint& each) {
       return each.point.figure.shares.contains(role) &&
              IsShared(role, of(points.front()), of(each));

@@ -31,11 +31,11 @@ class Server {
   const std::string& address() const { return address_; }
   // A database of its own.
   StoreAddress Database(const std::string& name) const {
-    history::Database admin({{}, address_}, history::Database::Missing::kMake);
+    history::Database admin({.file = {}, .server = address_}, history::Database::Missing::kMake);
     admin.RunAlone("create database " + name);
     std::string address = address_;
     address.replace(address.find("/postgres?"), 10, "/" + name + "?");
-    return {{}, address};
+    return {.file = {}, .server = address};
   }
   void Run(const std::string& action, const std::string& mode = "") const {
     EXPECT_EQ(std::system((Command(action) + " " + mode).c_str()), 0) << action;
@@ -86,9 +86,12 @@ TEST(PostgresqlStore, KeepsTheContract) {
       store.Add(MadeCampaign("mill", kMade + 1, {FullResult(kMade + 1, "after")}), kMade).campaign);
   EXPECT_EQ(store.List("mill").size(), 2U);
 
+  StoreAddress impatient = address;
+  impatient.patience = std::chrono::seconds(2);
+  Store hasty(impatient, Store::Missing::kRefuse);
   server.Run("stop", "fast");
   const std::string message = MessageOf<DeviceError>(
-      [&] { store.Add(MadeCampaign("mill", kMade + 2, {FullResult(kMade + 2, "never")}), kMade); });
+      [&] { hasty.Add(MadeCampaign("mill", kMade + 2, {FullResult(kMade + 2, "never")}), kMade); });
   ExpectHas(message, "the server does not answer");
   ExpectHas(message, "nothing of this step was stored");
   server.Run("again");

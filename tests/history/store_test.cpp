@@ -6,7 +6,7 @@
 namespace abbe::history {
 namespace store_test {
 
-StoreAddress FileIn(const Scratch& scratch) { return {scratch / "history.db", ""}; }
+StoreAddress FileIn(const Scratch& scratch) { return {.file = scratch / "history.db"}; }
 
 TEST(Store, KeepsTheContractInAFile) {
   const Scratch scratch;
@@ -17,7 +17,7 @@ TEST(Store, AnOlderFileIsMigratedAfterACopy) {
   const Scratch scratch;
   const std::string note = MigratesAnOlderOne(FileIn(scratch));
   ExpectHas(note, "history.db.version-1");
-  Database copy({scratch / "history.db.version-1", ""}, Database::Missing::kRefuse);
+  Database copy({.file = scratch / "history.db.version-1"}, Database::Missing::kRefuse);
   EXPECT_EQ(VersionIn(copy), 1);
   copy.InTransaction(Intent::kRead, [&] {
     EXPECT_EQ(copy.Rows("select name from machine").front().TextAt(0), "old");
@@ -37,21 +37,20 @@ TEST(Store, ANewerFileIsRefusedAndStays) {
 TEST(Store, WhatIsNoStoreIsRefusedAndStays) {
   const Scratch scratch;
   const auto refusal = [&](const std::filesystem::path& path) {
-    return MessageOf<InputError>([&] { Store({path, ""}, Store::Missing::kMake); });
+    return MessageOf<InputError>([&] { Store({.file = path}, Store::Missing::kMake); });
   };
   std::ofstream(scratch / "letter.txt") << "Dear reader";
   ExpectHas(refusal(scratch / "letter.txt"), "is not a history of abbe (no SQLite database)");
   EXPECT_EQ(Bytes(scratch / "letter.txt"), "Dear reader");
   {
-    Database other({scratch / "other.db", ""}, Database::Missing::kMake);
+    Database other({.file = scratch / "other.db"}, Database::Missing::kMake);
     other.InTransaction(Intent::kWrite, [&] { other.Run("create table songs (id integer)"); });
   }
   ExpectHas(refusal(scratch / "other.db"), "it has the table \"songs\" of something else");
   ExpectHas(refusal(scratch / ""), "is a folder");
-  ExpectHas(MessageOf<InputError>([&] {
-              Store({scratch / "none.db", ""}, Store::Missing::kRefuse);
-            }),
-            "there is no history yet");
+  ExpectHas(
+      MessageOf<InputError>([&] { Store({.file = scratch / "none.db"}, Store::Missing::kRefuse); }),
+      "there is no history yet");
   EXPECT_FALSE(std::filesystem::exists(scratch / "none.db"));
 }
 
@@ -66,10 +65,12 @@ TEST(Store, ADamagedFileIsSaid) {
             "is damaged");
 }
 
-// The one that holds it locked lets go of it after kPatience only.
+// The one that holds it locked is not waited for any longer than the patience of the other.
 TEST(Store, ALockedFileIsWaitedForAndSaid) {
   const Scratch scratch;
-  Store store(FileIn(scratch), Store::Missing::kMake);
+  StoreAddress hasty = FileIn(scratch);
+  hasty.patience = std::chrono::seconds(2);
+  Store store(hasty, Store::Missing::kMake);
   Database holder(FileIn(scratch), Database::Missing::kRefuse);
   holder.InTransaction(Intent::kWrite, [&] {
     const auto campaign = MadeCampaign("mill", kMade, {FullResult(kMade, "locked out")});
