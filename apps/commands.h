@@ -24,11 +24,12 @@ void AddCorrect(CLI::App& program, int& exit_code);
 void AddSimulate(CLI::App& program, int& exit_code);
 void AddConvert(CLI::App& program, int& exit_code);
 void AddSensitivity(CLI::App& program, int& exit_code);
+void AddHistory(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands = std::to_array<AddCommand>(
     {AddRig, AddSweep, AddRecord, AddReduce, AddCalibrate, AddCircle, AddPath, AddHarmonics,
      AddPlate, AddFuse, AddDiagnose, AddCauses, AddExport, AddCorrect, AddSimulate, AddConvert,
-     AddSensitivity, AddReport});
+     AddSensitivity, AddHistory, AddReport});
 
 }  // namespace abbe::apps

@@ -13,7 +13,6 @@
 #include "apps/commands.h"
 #include "apps/diagnose_plan.h"
 #include "apps/diagnosis_result.h"
-#include "apps/file_hash.h"
 #include "apps/instruments.h"
 #include "apps/machine_recording.h"
 #include "apps/protocol.h"
@@ -23,6 +22,7 @@
 #include "diagnosis/measured_noise.h"
 #include "diagnosis/next_run.h"
 #include "failure/failure.h"
+#include "recording/file_hash.h"
 #include "settings/toml_text.h"
 #include "simulation/doubt.h"
 #include "simulation/kinds.h"
@@ -41,7 +41,7 @@ struct DiagnoseArguments {
 
 void WriteModel(simulation::ExtendedModel model, const DiagnoseArguments& arguments) {
   for (const fs::path& path : arguments.recordings) {
-    model.sources.push_back({path.filename().string(), Sha256Of(path)});
+    model.sources.push_back({path.filename().string(), recording::Sha256OfFile(path)});
   }
   WriteText(simulation::ExtendedModelText(model), arguments.out);
   if (!simulation::IsUnexplained(model)) return;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/protocol.h"
+#include "history/limits.h"
 #include "rig/rig_settings.h"
 
 namespace abbe::apps {
@@ -51,6 +52,7 @@ MachineFile ReadMachineFile(const std::filesystem::path& path) {
   if (root.Has("linkage")) file.linkage = relm::ReadLinkageSettings(root);
   rig::ReadRigSettings(root);
   ReadProtocol(root);
+  history::ReadLimits(root);
   root.RefuseUnknown();
   return file;
 }
@@ -60,6 +62,7 @@ machine::Machine ReadMachineOf(const std::filesystem::path& path) {
   if (document.Root().Has("devices")) return ReadMachineFile(path).sweep_setup.machine;
   machine::Machine machine = machine::ReadMachine(document.Root());
   ReadProtocol(document.Root());
+  history::ReadLimits(document.Root());
   document.Root().RefuseUnknown();
   return machine;
 }
@@ -70,6 +73,7 @@ MachineAlone ReadMachineAlone(const settings::Document& document) {
   MachineAlone alone{bare ? machine::ReadMachineWithoutAxes(root) : machine::ReadMachine(root), {}};
   if (root.Has("linkage")) alone.linkage = relm::ReadLinkageSettings(root);
   ReadProtocol(root);
+  history::ReadLimits(root);
   root.RefuseUnknown();
   return alone;
 }

@@ -1,7 +1,10 @@
 #include "standards/student_coverage.h"
 
 #include <boost/math/distributions/students_t.hpp>
+#include <cmath>
 #include <limits>
+
+#include "standards/coverage.h"
 
 namespace abbe::standards {
 
@@ -10,6 +13,23 @@ double StudentCoverage(double degrees_of_freedom) {
   if (!(degrees_of_freedom > 0.0)) return std::numeric_limits<double>::infinity();
   if (degrees_of_freedom > kMany) return kNormal;
   return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975);
+}
+
+double StudentTwoSided(double ratio, double degrees_of_freedom) {
+  if (std::isinf(degrees_of_freedom)) return std::erfc(std::abs(ratio) / std::sqrt(2.0));
+  return 2.0 * boost::math::cdf(boost::math::complement(boost::math::students_t(degrees_of_freedom),
+                                                        std::abs(ratio)));
+}
+
+double DegreesOfFreedomOf(double coverage) {
+  if (coverage <= kCoverage) return std::numeric_limits<double>::infinity();
+  // By bisection of the logarithm: the coverage falls as the degrees of freedom grow.
+  double low = -7.0, high = 7.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (StudentCoverage(std::exp(middle)) > coverage ? low : high) = middle;
+  }
+  return std::exp(high);
 }
 
 }  // namespace abbe::standards

@@ -10,4 +10,11 @@ namespace abbe::standards {
 
 double StudentCoverage(double degrees_of_freedom);
 
+// The probability that Student's t is farther from 0 than `ratio`, on either side.
+double StudentTwoSided(double ratio, double degrees_of_freedom);
+
+// The degrees of freedom that a coverage factor states: the inverse of StudentCoverage(), and
+// infinite for 2 or less, the factor of normal errors (standards/coverage.h).
+double DegreesOfFreedomOf(double coverage);
+
 }  // namespace abbe::standards

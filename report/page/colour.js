@@ -2,7 +2,7 @@
 
 const COLOUR_NAMES = [
   'ink', 'muted', 'line', 'axis', 'surface', 'mean', 'band', 'forward', 'backward', 'zone',
-  'series-1', 'series-2', 'series-3', 'series-4', 'series-5', 'series-6'
+  'series-1', 'series-2', 'series-3', 'series-4', 'series-5', 'series-6', 'fail'
 ];
 
 function palette() {

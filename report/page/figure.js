@@ -54,11 +54,11 @@ const FIGURE_OPTIONS = {
   modeBarButtons: [['zoom2d', 'pan2d', 'resetScale2d', 'toImage']],
 };
 
-// A band between two lists of the same length, as one closed shape. Stations without a number are
-// left out and do not split it.
+// A band between two lists of the same length over numbers or dates, as one closed shape. Stations
+// without a number are left out and do not split it.
 function bandTrace(x, middle, half, colour) {
   const points = x.map((at, index) => [at, middle[index], half[index]])
-                     .filter((point) => point.every(isNumber));
+                     .filter(([at, ...half]) => at !== null && half.every(isNumber));
   const back = [...points].reverse();
   return {
     type: 'scatter',

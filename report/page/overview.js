@@ -1,17 +1,20 @@
 // The top of the page: all axes with their key figures, and what was left out.
 
-// One table per kind of section, one row per result; the first cell leads to the section.
+// `row` gives one row for a result, `rows` several.
+const rowsOf = ({row, rows}, result) => rows ? rows(result) : [row(result)];
+
+// One table per kind of section; the first cell leads to the section.
 function overviewTables(sections) {
-  return sectionKinds.filter((kind) => kind.overview).flatMap((kind) => {
+  const kinds = sectionKinds.filter((kind) => kind.overview);
+  const on_top = kinds.filter((kind) => kind.overview.onTop);
+  return [...new Set([...on_top, ...kinds])].flatMap((kind) => {
     const mine = sections.filter((section) => section.kind === kind);
     if (!mine.length) return [];
     return [table({
       caption: kind.overview.title,
       columns: kind.overview.columns,
-      rows: mine.map(({id, result}) => {
-        const [first, ...rest] = kind.overview.row(result);
-        return [element('a', {href: `#${id}`}, first ?? result.command), ...rest];
-      }),
+      rows: mine.flatMap(({id, result}) => rowsOf(kind.overview, result).map(([first, ...rest]) =>
+        [element('a', {href: `#${id}`}, first ?? result.command), ...rest])),
     })];
   });
 }

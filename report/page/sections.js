@@ -4,7 +4,7 @@
 //    summary(result),                     one sentence for a machinist
 //    facts(result),                       [[name, text]] in addition to the common ones
 //    body(result),                        elements: tables and figure groups
-//    overview?: {title, columns, row(result)}}
+//    overview?: {title, columns, row(result) or rows(result), onTop?}}
 // and is registered with registerSection in a file of its own.
 
 const sectionKinds = [];

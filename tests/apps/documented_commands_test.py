@@ -9,6 +9,7 @@ with its reason, and what would take minutes with less data in its place: an ent
 """
 import collections
 import math
+import os
 import pathlib
 import random
 import re
@@ -149,7 +150,8 @@ class DocumentedCommands(unittest.TestCase):
         (cls.data / "build/release/apps/abbe").symlink_to(PROGRAM)
         shutil.copytree(ROOT / "machines", cls.data / "machines")
         mill = pathlib.Path(MACHINE).read_text()
-        (cls.data / "mill.toml").write_text(mill.replace("step_mm = 1.0", "step_mm = 5.0").replace("passes = 5", "passes = 2"))
+        (cls.data / "mill.toml").write_text(mill.replace("step_mm = 1.0", "step_mm = 5.0").replace("passes = 5", "passes = 2") +
+                                            "\n[limits]\nEYX = { straightness_um = 50.0 }\n")
         for name, text in (("turn.log", monitor_log()), ("b02_target_x.dat", target_table()), ("part.ngc", PART),
                            ("D1597A_redrilled_meas_2011.txt", hole_table()),
                            ("leica_left_hand_6x6x6_dataset_poses.csv", arm_table()), ("stage.toml", BARE.format("stage")),
@@ -220,7 +222,8 @@ class DocumentedCommands(unittest.TestCase):
             with self.subTest(f"{page}:{number}"):
                 run = subprocess.run(["bash", "-c", line.replace("abbe ", "build/release/apps/abbe ", 1)
                                       if line.startswith("abbe ") else line],
-                                     cwd=folder, capture_output=True, text=True)
+                                     cwd=folder, capture_output=True, text=True,
+                                     env={**os.environ, "XDG_DATA_HOME": str(folder / "data")})
                 self.assertEqual(run.returncode, 0, f"{page}:{number}: {line}\n{run.stdout[-500:]}{run.stderr}")
         for key in [*NOT_HERE, *SMALLER]:
             self.assertGreater(left[key], 0, f"{key}: no line of the manual is so; take it out")

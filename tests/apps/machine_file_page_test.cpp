@@ -21,6 +21,14 @@ std::string GeneralName(const std::string& path) {
   name = std::regex_replace(name, std::regex("axis_[XYZ]"), "axis_AXIS");
   name = std::regex_replace(name, std::regex("probe_[a-e]\\."), "probe_P.");
   name = std::regex_replace(name, std::regex("devices\\.\\[\\]"), "devices.NAME");
+  // Limits: every figure of every object.
+  name = std::regex_replace(name, std::regex("^limits\\.\\[\\]\\.u95_urad$"),
+                            "limits.OBJECT.QUANTITY_u95_urad");
+  name = std::regex_replace(name, std::regex("^limits\\.\\[\\]\\.(?!urad$)\\w+?((_u95)?_[a-z]+)$"),
+                            "limits.OBJECT.QUANTITY$1");
+  name = std::regex_replace(name, std::regex("^limits\\.\\[\\]\\."), "limits.OBJECT.");
+  name = std::regex_replace(name, std::regex("^limits\\.(?!OBJECT)\\w+?((_u95)?_[a-z]+)$"),
+                            "limits.QUANTITY$1");
   return std::regex_replace(name, std::regex("\\.\\[\\]"), "");
 }
 
@@ -43,6 +51,10 @@ std::map<std::string, Row> RowsOfPage() {
 
 // The demonstration machine with the keys that a file may do without.
 constexpr char kMore[] = R"(
+[limits]
+EYX = { straightness_um = 3 }
+EAX = { range_urad = 30 }
+C0Y = { urad = 30 }
 [devices.more]
 transport = "modbus-rtu"
 serial = { device = "/dev/ttyUSB0" }

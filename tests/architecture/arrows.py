@@ -31,9 +31,10 @@ ARROWS = {
     "simulation": "failure random settings recording geometry estimation machine probes paths relm",
     "fusion": "failure settings recording geometry estimation standards machine map probes paths relm simulation",
     "diagnosis": "failure standards settings recording estimation machine probes relm simulation fusion",
+    "history": "failure standards settings recording",
     "report": "failure",
     "rig": "failure random settings recording hal",
-    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis report rig",
+    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis history report rig",
 }
 
 # header of a library or of a transport -> the files that may include it; everybody else goes through them.
@@ -47,7 +48,8 @@ GATES = {
     "ceres/": r"estimation/.*",
     "Random123/": r"random/.*",
     "toml++/": r"(settings|recording)/.*\.cpp",
-    "openssl/": r"apps/file_hash\.cpp",
+    "soci/": r"history/database\.cpp",
+    "openssl/": r"recording/file_hash\.cpp",
 }
 
 TRANSPORT = re.compile(r'\{"([\w-]+)", Read\w+\}')  # a line of hal/transports.cpp

@@ -83,6 +83,8 @@ test(
         'Performance simulation: circle', 'Corrected program: part_corrected.ngc', 'Export: isg',
         'Diagnosis: what the simulation lacks', 'Diagnosis: what the simulation lacks',
         'Plan: what these runs would show',
+        'Limits: <img src=x onerror="window.escaped = true">', 'Trend: EYX and C0Y',
+        'What changed: campaign 1 to 5',
         'rig-compare \u00b7 X'
       ]);
       assert.equal(await page.title(), 'Geometric errors of demo-mill');
@@ -126,8 +128,9 @@ test(
       // Three whole sweeps of 5 + 2 + 2 + 1 + 2 panels, one early one with its roll, one
       // positioning test, polar plot, space and harmonics of two circles, one square, residuals
       // before and after and the cells of a calibration; a map in space, its slices and their
-      // uncertainty, 18 functions and the squarenesses; a performance simulation; where a cause shows, twice.
-      assert.equal(figures.length, 3 * 12 + 1 + 1 + 2 * 3 + 1 + 3 + (1 + 6 + 19) + 1 + 2);
+      // uncertainty, 18 functions and the squarenesses; a performance simulation; where a cause shows, twice; two
+      // trends and a changed curve.
+      assert.equal(figures.length, 3 * 12 + 1 + 1 + 2 * 3 + 1 + 3 + (1 + 6 + 19) + 1 + 2 + 2 + 1);
       for (const {about, traces, drawn, height} of figures) {
         assert.ok(about.length > 20, about);
         assert.ok(traces > 0 && drawn >= traces, about);
@@ -417,6 +420,69 @@ test(
     }));
 
 test(
+    'pass and fail stand on top of the page, what fails first',
+    () => withPage({}, async (page) => {
+      const first = page.locator('#overview table').first();
+      assert.equal(await first.locator('caption').textContent(), 'Pass and fail');
+      const rows = await first.locator('tbody tr').allTextContents();
+      assert.equal(rows.length, 4);
+      // 6.1 with U95 = 0.40: two digits of it.
+      assert.match(rows[0], /^XY circularity \(linkage, R 20 mm, F 300\).*fail6\.10\u00b10\.405\.00/);
+      assert.match(rows[1], /X positioning A.*undecided7\.90/);
+      assert.match(rows[2], /EYX straightness.*pass2\.34\u00b10\.123\.00/);
+      assert.match(rows[3], /volumetric.*not measured/);
+      const section = page.locator('section.result', {hasText: 'Figures and their limits'});
+      assert.match(
+          await section.locator('.summary').textContent(),
+          /Of 4 limits 1 within their limits, 1 beyond them, 1 undecided.*1 not measured/);
+      assert.match(await section.locator('tr', {hasText: 'positioning'}).textContent(), /none stated/);
+      await page.locator('#overview').screenshot({path: join(screenshots, 'history_on_top.png')});
+    }));
+
+test(
+    'a trend is drawn with band and limit, and says when the limit is reached',
+    () => withPage({}, async (page) => {
+      const section = page.locator('section.result', {hasText: 'Rate of change and limit'});
+      assert.match(
+          await section.locator('.summary').textContent(),
+          /EYX straightness reaches its limit about 30 Nov 2026/);
+      const row = section.locator('tr', {hasText: 'EYX straightness'}).first();
+      assert.match(await row.textContent(), /1\.50\u00b10\.30drifts.*30 Nov 2026 \(23 Nov 2026 to 11 Dec 2026\)/);
+      const traces = (name) => section.locator('.plot').evaluateAll(
+          (plots, wanted) => plots.map((plot) => plot.data.filter((trace) => trace.name === wanted)), name);
+      const limits = await traces('limit');
+      assert.deepEqual(limits.map((list) => list.map(({y}) => y[0])), [[6], [30, -30]]);
+      const bands = await section.locator('.plot').evaluateAll(
+          (plots) => plots.map((plot) => Math.max(...plot.data.find(({fill}) => fill === 'toself').y)));
+      assert.ok(Math.abs(bands[0] - 6.2) < 1e-9, String(bands));
+      const [fitted] = (await traces('fitted'))[0];
+      assert.ok(Math.abs(fitted.y.at(-1) - 6) < 1e-9);
+      assert.equal((await traces('left out'))[1][0].x.length, 1);
+      assert.deepEqual((await traces('measured'))[0][0].error_y.array, [0.2, 0.2, 0.2, 0.2, 0.2]);
+      await section.getByRole('button', {name: 'Limit'}).click();
+      assert.deepEqual((await traces('limit')).map((list) => list.length), [0, 0]);
+      await section.getByRole('button', {name: 'Limit'}).click();
+      assert.match(await section.locator('[role=note]').textContent(), /dated before it.*dated in the future/);
+      await section.screenshot({path: join(screenshots, 'history_trend.png')});
+    }));
+
+test(
+    'a comparison says what changed and where along the travel',
+    () => withPage({}, async (page) => {
+      const section = page.locator('section.result', {hasText: 'What changed: campaign'});
+      assert.match(await section.locator('.summary').textContent(), /1 of 2 differences is significant.*below 5/);
+      assert.match(
+          await section.locator('tr', {hasText: 'EYX curve'}).textContent(),
+          /at 30.mm.*0\.202\.202\.00\u00b10\.30.*below 0\.0001yeshead/);
+      assert.match(await section.locator('tr', {hasText: 'XY circularity'}).textContent(), /0\.62no/);
+      assert.match(await section.locator('[role=note]').textContent(), /Servo lag, X/);
+      assert.match(await section.locator('dl').first().textContent(), /before <b>service<\/b>/);
+      const y = await section.locator('.plot').evaluate((div) => div.data.find(({name}) => name === 'change').y);
+      assert.deepEqual(y, [0, 1, 2, 1, 0]);
+      await section.screenshot({path: join(screenshots, 'history_compare.png')});
+    }));
+
+test(
     'before and after of a correction stand side by side',
     () => withPage({}, async (page) => {
       const section = page.locator('section.result', {hasText: 'Performance simulation'});
@@ -467,7 +533,8 @@ test('text is legible in both themes', async () => {
         const of = (selector, key) =>
             luminance(getComputedStyle(document.querySelector(selector))[key]);
         const ground = of('body', 'backgroundColor');
-        return ['body', '.intro', 'main a', '.code', '.plus-minus'].map((selector) => {
+        return ['body', '.intro', 'main a', '.code', '.plus-minus', '.verdict.pass', '.verdict.fail',
+                '.verdict.undecided'].map((selector) => {
           const [low, high] = [of(selector, 'color'), ground].sort((a, b) => a - b);
           return (high + 0.05) / (low + 0.05);
         });

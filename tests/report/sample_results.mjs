@@ -618,6 +618,137 @@ export function planResult() {
   };
 }
 
+// Limits that are kept, not kept, undecided and without a figure; one name tries to leave its element.
+export function checkResult() {
+  const check = (name, verdict, value, U95, limit, unit = 'um', conditions = '') =>
+      ({name, verdict, value, U95, limit, unit, conditions, U95_from: 'result'});
+  return {
+    abbe: '0.1.0',
+    command: 'history',
+    kind: 'check',
+    machine: 'demo-mill',
+    of: '<img src=x onerror="window.escaped = true">',
+    rule: 'pass: |value| + U95 <= limit; fail: |value| - U95 > limit (ISO 14253-1)',
+    counts: {pass: 1, fail: 1, undecided: 1, 'not measured': 1},
+    checks: [
+      check('EYX straightness', 'pass', 2.34, 0.12, 3),
+      check('XY circularity', 'fail', 6.1, 0.4, 5, 'um', 'linkage, R 20 mm, F 300'),
+      check('X positioning A', 'undecided', 7.9, null, 8), check('volumetric', 'not measured', null, null, 25)
+    ],
+  };
+}
+
+// 0.05 um a day from 3 um on, which meets 6 um on day 60; and a squareness that does not drift, with a
+// campaign of a clock that was wrong.
+const DAY = 86400e3;
+const trendInstant = (day) => new Date(Date.UTC(2026, 9, 1) + day * DAY).toISOString().replace('.000', '');
+export function trendResult() {
+  const days = [0, 10, 20, 30, 40];
+  const series = (object, name, unit, value, U95, more) => ({
+    object,
+    name,
+    unit,
+    conditions: '',
+    points: days.map((day, index) => ({
+                       campaign: index + 1,
+                       measured: trendInstant(day),
+                       value: value(day),
+                       U95,
+                       used: true
+                     })),
+    notes: [],
+    ...more
+  });
+  const line = (last, value) => {
+    const at = Array.from({length: 11}, (_, index) => last * index / 10);
+    return {measured: at.map(trendInstant), value: at.map(value), U95: at.map(() => 0.2)};
+  };
+  const straightness = series('EYX', 'EYX straightness', 'um', (day) => 3 + 0.05 * day, 0.2, {
+    signed: false,
+    limit: 6,
+    fit: {rate_per_day: 0.05, U95_rate_per_day: 0.01, excess_scatter: 0, drifts: true},
+    line: line(60, (day) => 3 + 0.05 * day),
+    limit_reached: {
+      already: false,
+      expected: trendInstant(60),
+      earliest: trendInstant(53),
+      latest: trendInstant(71)
+    },
+    words: 'it changes by 1.50 +- 0.30 um a month',
+  });
+  const squareness = series('C0Y', 'C0Y squareness', 'urad', () => -12, 4, {
+    signed: true,
+    limit: 30,
+    fit: {rate_per_day: 0, U95_rate_per_day: 0.1, excess_scatter: 0.5, drifts: false},
+    line: line(40, () => -12),
+    limit_reached: {already: false, expected: null, earliest: null, latest: null},
+    words: 'no drift is seen: 0.0 +- 3.0 urad a month',
+    notes: ['1 of its campaigns is dated in the future (campaign 6, 2036-01-01T00:00:00Z)'],
+  });
+  squareness.points.push(
+      {campaign: 6, measured: '2026-12-24T00:00:00Z', value: -11, U95: 4, used: false});
+  return {
+    abbe: '0.1.0',
+    command: 'history',
+    kind: 'trend',
+    machine: 'demo-mill',
+    series: [straightness, squareness],
+    notes: ['campaign 5 was added after campaign 4 but is dated before it'],
+  };
+}
+
+// A curve and a figure of which one changed significantly.
+export function comparisonResult() {
+  const campaign = (number, day, note) =>
+      ({campaign: number, machine: 'demo-mill', measured: trendInstant(day), note});
+  const positions_mm = [0, 15, 30, 45, 60];
+  return {
+    abbe: '0.1.0',
+    command: 'history',
+    kind: 'comparison',
+    machine: 'demo-mill',
+    before: campaign(1, 0, 'before <b>service</b>'),
+    after: campaign(5, 40, ''),
+    family_level: 0.05,
+    differences: [
+      {
+        name: 'EYX curve',
+        object: 'EYX',
+        unit: 'um',
+        conditions: 'sweep',
+        before: 0.2,
+        after: 2.2,
+        change: 2,
+        U95: 0.3,
+        p: 2e-9,
+        significant: true,
+        shared: ['head'],
+        words: 'EYX at 30 mm changed by 2.00 +- 0.30 um',
+        at_mm: 30,
+        curve: {positions_mm, change: [0, 1, 2, 1, 0], U95: [0.3, 0.3, 0.3, 0.3, 0.3]}
+      },
+      {
+        name: 'XY circularity',
+        object: 'XY',
+        unit: 'um',
+        conditions: 'F 300',
+        before: 4,
+        after: 4.1,
+        change: 0.1,
+        U95: 0.4,
+        p: 0.62,
+        significant: false,
+        shared: [],
+        words: 'XY circularity grew by 0.10 +- 0.40 um'
+      }
+    ],
+    only_before: [],
+    only_after: ['C0Y.urad'],
+    new_findings: [{cause: 'servo-lag', object: 'X', probability: 0.98}],
+    gone_findings: [],
+  };
+}
+
 export function writeSamples(folder) {
   mkdirSync(folder, {recursive: true});
   const write = (name, content) => writeFileSync(join(folder, name), content);
@@ -636,6 +767,9 @@ export function writeSamples(folder) {
     'diagnosis.json': diagnosisResult(),
     'diagnosis_in_part.json': diagnosisInPart(),
     'plan.json': planResult(),
+    'history_check.json': checkResult(),
+    'history_trend.json': trendResult(),
+    'history_compare.json': comparisonResult(),
     // A result of a later version: no section of its own, and text that tries to leave its element.
     'compare_X.json': {
       abbe: '0.1.0',

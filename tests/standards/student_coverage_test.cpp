@@ -16,5 +16,22 @@ TEST(StudentCoverage, IsThatOfTheGum) {
   EXPECT_TRUE(std::isinf(StudentCoverage(0.0)));
 }
 
+// scipy.stats 1.10: 2 t.sf(2.5, 7.3), 2 norm.sf(1.3), t.ppf(0.975, 4.5).
+TEST(StudentTwoSided, IsThatOfSciPy) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  EXPECT_NEAR(StudentTwoSided(2.5, 7.3), 0.039650234665600415, 1e-12);
+  EXPECT_NEAR(StudentTwoSided(-2.5, 7.3), 0.039650234665600415, 1e-12);
+  EXPECT_NEAR(StudentTwoSided(1.3, kInfinite), 0.19360096917122072, 1e-12);
+  EXPECT_EQ(StudentTwoSided(0.0, 3.0), 1.0);
+}
+
+TEST(DegreesOfFreedomOf, UndoesTheCoverage) {
+  EXPECT_NEAR(DegreesOfFreedomOf(2.6589123472044034), 4.5, 1e-6);
+  for (const double dof : {1.0, 2.0, 7.0, 40.0}) {
+    EXPECT_NEAR(DegreesOfFreedomOf(StudentCoverage(dof)), dof, 1e-6 * dof);
+  }
+  EXPECT_TRUE(std::isinf(DegreesOfFreedomOf(2.0)));
+}
+
 }  // namespace student_coverage_test
 }  // namespace abbe::standards
