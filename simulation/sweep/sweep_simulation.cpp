@@ -132,14 +132,14 @@ class SweepResidual : public Responsive {
   }
 
   // Where the numbers of Circumstances stand behind the coefficients in x, for one probe.
-  static std::array<Index, kLocal> Places(std::size_t probe) {
+  std::array<Index, kLocal> Places(std::size_t probe) const {
     const auto i = static_cast<Index>(probe);
     std::array<Index, kLocal> places{};
     places.fill(-1);
     for (Index k = 0; k < 3; ++k) places[static_cast<std::size_t>(6 + k)] = k;  // squareness
     places[9] = 3 + 2 * i;
     places[10] = 4 + 2 * i;
-    places[11] = 13 + i;
+    places[11] = 13 + static_cast<Index>(run_.mounted.channels[probe]);
     for (Index k = 0; k < 12; ++k) places[static_cast<std::size_t>(12 + k)] = 18 + k;
     return places;
   }
