@@ -95,7 +95,9 @@ TEST(ZeroTolerance, OfAnyKeyOfTheMachineFileTakesNoCauseAway) {
     EXPECT_EQ(SeenWith(WithZero(text, key), world.recordings), seen) << key;
     none = WithZero(none, key);
   }
-  EXPECT_EQ(SeenWith(none, world.recordings), seen);
+  // What the tolerances hide otherwise may be seen besides.
+  const std::set<std::string> with_none = SeenWith(none, world.recordings);
+  for (const std::string& name : seen) EXPECT_TRUE(with_none.contains(name)) << name;
 }
 
 }  // namespace zero_tolerance_test
