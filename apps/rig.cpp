@@ -45,7 +45,7 @@ struct RigOptions {
   bool reduced = false;
   std::vector<std::string> hide;
   CourseRequest course;
-  bool plate = false;
+  bool plate = false, both_ways = false;
   double rate = 200.0;
   std::filesystem::path truth_to_compare;
   std::vector<std::filesystem::path> results;
@@ -210,9 +210,9 @@ int Serve(const RigOptions& options) {
 }
 
 // An interferometer over the whole travel of an axis, the other axes in the middle.
-recording::Recording RecordLine(const Rig& rig, char axis) {
+recording::Recording RecordLine(const Rig& rig, char axis, bool both_ways) {
   constexpr int kSteps = 12;
-  rig::LengthProgram program{.axis = axis, .count = kSteps};
+  rig::LengthProgram program{.axis = axis, .count = kSteps, .both_ways = both_ways};
   const rig::RigSettings& machine = rig.world.settings();
   for (int i = 0; i < rig::kAxes; ++i) {
     program.at[i] = (machine.travels[i].first + machine.travels[i].last) / 2;
@@ -228,12 +228,15 @@ recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
         rig.world, options.axis.front(), rig::ChannelsOf(rig.devices),
         {.rate = options.rate, .mounting = options.mounting, .started = recording::UtcNow()});
   }
-  if (options.plate) return rig::RecordPlate(rig.world, {.run = options.course.run});
+  if (options.plate) {
+    return rig::RecordPlate(rig.world,
+                            {.run = options.course.run, .both_sides = options.both_ways});
+  }
   if (!rig.linkage) {
     throw InputError(
         fmt::format("{} has no linkage to record with; add a table [linkage]", options.machine));
   }
-  if (!options.length.empty()) return RecordLine(rig, options.length.front());
+  if (!options.length.empty()) return RecordLine(rig, options.length.front(), options.both_ways);
   return RecordCourse(*rig.linkage, options.course, options.rate, recording::UtcNow());
 }
 
@@ -329,6 +332,8 @@ void AddRig(CLI::App& program, int& exit_code) {
   record->add_flag("--reduced", options->reduced,
                    "Fewer stations, positions and rows in a campaign");
   record->add_flag("--plate", options->plate, "A hole plate in five set-ups");
+  record->add_flag("--both-ways", options->both_ways,
+                   "Lengths there and back; every second line of holes approached from above");
   record->add_option("--mounting", options->mounting,
                      "Name of the set-up, for the header of a sweep");
   AddCourseOptions(*record, options->course);

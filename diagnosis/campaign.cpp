@@ -129,6 +129,7 @@ simulation::Scene Campaign::scene() const {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const auto& travel = instruments_.machine.travels[axis];
     scene.travel[axis] = travel.last - travel.first;
+    scene.first[axis] = travel.first;
   }
   if (instruments_.head) {
     scene.form = instruments_.target.form;

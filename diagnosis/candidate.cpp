@@ -65,12 +65,10 @@ double CoarsenessOf(const machine::Population& population) {
 std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coarseness) {
   std::vector<Candidate> candidates;
   for (const simulation::Cause& cause : simulation::Causes()) {
-    const std::vector<Eigen::VectorXd> shapes =
-        cause.shapes ? cause.shapes(scene) : std::vector<Eigen::VectorXd>{Eigen::VectorXd()};
     for (const simulation::Object& object : cause.objects(scene)) {
       if (!IsOnMachine(scene, object) || IsStandingPair(scene, object)) continue;
       const double own = ScalesWith(cause, object) ? coarseness : 1.0;
-      for (const Eigen::VectorXd& shape : shapes) {
+      for (const Eigen::VectorXd& shape : cause.ShapesFor(scene, object)) {
         candidates.push_back({&cause, object, shape, {}, own});
       }
     }

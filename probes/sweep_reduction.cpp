@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "probes/channel_order.h"
 #include "probes/sweep_slips.h"
 #include "recording/made_on.h"
 #include "standards/straightness.h"
@@ -256,7 +257,11 @@ SweepSetup ReadSweepSetup(const settings::Table& root) {
 
 SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup& setup) {
   recording::RefuseOtherMachine(recording, setup.machine.name);
-  const SweepDwells sweep = FindDwells(recording, DwellRuleOf(recording), setup.head.Ranges());
+  const ChannelOrder order = ChannelOrderOf(recording);
+  const SweepDwells sweep =
+      order == kAsNamed
+          ? FindDwells(recording, DwellRuleOf(recording), setup.head.Ranges())
+          : FindDwells(InProbeOrder(recording, order), DwellRuleOf(recording), setup.head.Ranges());
   RefuseSlips(recording.name, sweep, setup.machine, setup.head);
   StationMeans means = FitStations(recording.name, sweep, setup.noise, ExcessNoise::kFitted);
   if (!Checked(means)) {

@@ -60,12 +60,15 @@ bool NotNegative(double value) { return value >= 0.0; }
 bool Count(double value) { return value >= 0.0 && value == std::floor(value); }
 bool Sign(double value) { return value == -1.0 || value == 0.0 || value == 1.0; }
 
-constexpr std::array<ValueRule, 16> kValueRules{{
+constexpr std::array<ValueRule, 19> kValueRules{{
     {"x_mm", "x_mm", Any, ""},
     {"y_mm", "y_mm", Any, ""},
     {"z_mm", "z_mm", Any, ""},
     {"pass", "pass", Count, "a whole number from 0"},
     {"direction", "direction", Sign, "-1, 0 or 1"},
+    {"approach_x", "approach_x", Sign, "-1, 0 or 1"},
+    {"approach_y", "approach_y", Sign, "-1, 0 or 1"},
+    {"approach_z", "approach_z", Sign, "-1, 0 or 1"},
     {"feed_mm_min", "feed_mm_min", NotNegative, "0 or above"},
     {"probe_", "_um", NotNegative, "a gap, 0 or above"},
     {"pivot_", "_rad", Any, ""},

@@ -41,7 +41,8 @@ LinkageTolerance ReadTolerance(const Table& table) {
                                    .base_angle = deviation("base_urad", 2000.0),
                                    .ball = deviation("ball_um", 20.0),
                                    .compliance = deviation("compliance_urad", 20.0),
-                                   .thermal = deviation("thermal_ppm_per_c", 1.0)};
+                                   .thermal = deviation("thermal_ppm_per_c", 1.0),
+                                   .seat = deviation("seat_um", 0.0)};
   table.RefuseUnknown();
   return tolerance;
 }

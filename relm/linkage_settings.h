@@ -40,6 +40,7 @@ struct LinkageTolerance {
   double ball;            // m: of the ball's centre across the last link
   double compliance;      // rad: deflection of a pivot under a horizontal link
   double thermal;         // 1/K: of the coefficient of expansion
+  double seat = 0.0;      // m: of the ball in the spindle, each direction, anew for each run
   double weight = 0.0;  // rad/m: turn of a pivot under a weight, over its lever; 0: no such errors
 };
 

@@ -13,6 +13,8 @@ class Play {
   explicit Play(double width) : half_(0.5 * width) {}
   // The output for an input; they are equal at the first call.
   double Follow(double drive);
+  // From now on.
+  void Widen(double width) { half_ = 0.5 * width; }
 
  private:
   double half_;

@@ -32,6 +32,7 @@ void ReadPopulation(const Table& sd, LinkageSettings& linkage) {
   linkage.ball = Deviation(sd, "ball_um", 20.0);
   linkage.compliance = Deviation(sd, "compliance_urad", 20.0);
   linkage.thermal = Deviation(sd, "thermal_ppm_per_c", 1.0);
+  linkage.seat = Deviation(sd, "seat_um", 0.0);
 }
 
 }  // namespace

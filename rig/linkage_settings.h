@@ -27,6 +27,7 @@ struct LinkageSettings {
   // Standard deviations of the drawn values.
   double link, pivot_angle, pivot_offset, encoder_offset, eccentricity, graduation, bearing;
   double base_place, base_angle, ball, compliance, thermal;
+  double seat;  // of the ball against the spindle, in each run
   double encoder_noise, reference_noise, repeatability;
 };
 

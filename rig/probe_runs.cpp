@@ -97,7 +97,8 @@ class ProbeRunMaker {
     const double count = 2.0 * std::numbers::pi / machine.encoder_counts;
     const double temperature =
         climate_.At(linkage_->linkage().settings().temperature, options_.begin + state.time);
-    Vector3d angles = linkage_->EncodersAt(state, temperature, machine.cap_force, hidden_) +
+    Vector3d angles = linkage_->EncodersAt(state, temperature, machine.cap_force, hidden_,
+                                           linkage_->SeatIn(options_.run)) +
                       encoders_.At(made_.columns.front().values.size());
     hidden_.Say(angles);
     for (const double angle : angles) Put(count * std::round(angle / count));

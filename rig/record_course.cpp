@@ -36,6 +36,7 @@ class CourseMaker {
                   rig.linkage().settings().encoder_noise),
         ball_(rig.world().seed(), kBallStream + kRunStreams * options.run,
               rig.linkage().settings().repeatability),
+        seat_(rig.SeatIn(options.run)),
         reference_(rig.world().seed(), kReferenceNoiseStream + kRunStreams * options.run,
                    rig.linkage().settings().reference_noise) {
     if (!linkage_ && options.kind != "reference") {
@@ -114,7 +115,7 @@ class CourseMaker {
   void AddAngles(const CourseState& state, double temperature, std::uint64_t row) {
     const double count = 2.0 * std::numbers::pi / rig_.world().settings().encoder_counts;
     Vector3d angles =
-        rig_.EncodersAt(state, temperature, Force(), hidden_, ball_.At(state.position)) +
+        rig_.EncodersAt(state, temperature, Force(), hidden_, seat_ + ball_.At(state.position)) +
         encoders_.At(row);
     // Continuous where an angle passes pi.
     for (Eigen::Index i = 0; i < kPivots; ++i) {
@@ -136,6 +137,7 @@ class CourseMaker {
   std::vector<std::string> sensors_;
   WhiteNoise encoders_;
   BallSeat ball_;
+  Vector3d seat_;
   WhiteNoise reference_;
   recording::Recording course_;
   std::size_t column_ = 0;
@@ -181,6 +183,10 @@ Vector3d LinkageRig::TrailingAt(const Vector3d& velocity, double cap_force) cons
   const double amount =
       machine.cap * machine.cap_force / cap_force * feed / (feed + machine.cap_feed);
   return -amount / feed * moving;
+}
+
+Vector3d LinkageRig::SeatIn(std::uint64_t run) const {
+  return WhiteNoise(world_.seed(), kSeatStream + kRunStreams * run, linkage_.settings().seat).At(0);
 }
 
 Vector3d LinkageRig::BallFrom(HiddenRun& hidden) const {

@@ -54,6 +54,8 @@ class LinkageRig {
   Eigen::Vector3d ReferenceAt(const Eigen::Vector3d& position) const;
   // Ball minus cap while the axes move, by the friction of [rig] cap_um.
   Eigen::Vector3d TrailingAt(const Eigen::Vector3d& velocity, double cap_force) const;
+  // How the ball sits in the spindle in one run, in M.
+  Eigen::Vector3d SeatIn(std::uint64_t run) const;
   // Angles without noise and not rounded to counts; `hidden` has followed the axes to `state`.
   // `seat`: displacement of the ball in its cap, in M.
   Eigen::Vector3d EncodersAt(const CourseState& state, double temperature, double cap_force,

@@ -6,7 +6,8 @@
 // The axes stand at `count` + 1 places, from the first end of the travel of `axis` on, the others
 // at `at`. length_mm is the true distance of the tool from the first place, with a relative error
 // common to all lengths and white noise of u. The axis comes to each place from below, a second
-// after the place before. Columns and header: docs/recordings.md.
+// after the place before; `both_ways` then turns beyond the last one and comes back to all but the
+// first, from above (approach_x ...). Columns and header: docs/recordings.md.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +24,7 @@ struct LengthProgram {
   Eigen::Vector3d at = Eigen::Vector3d::Zero();  // m, positions of the other axes
   double step = 5e-3;                            // m
   int count = 12;
+  bool both_ways = false;
   double u = 0.1e-6;      // m: noise of one length
   double u_scale = 2e-6;  // relative: standard deviation of the common error
   std::uint64_t run = 1;

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "random/counter_random.h"
+#include "rig/climate.h"
+#include "rig/hidden_run.h"
 #include "rig/rotation.h"
 #include "rig/streams.h"
 #include "settings/toml_text.h"
@@ -24,7 +26,8 @@ using settings::kMillimetre;
 constexpr double kOffPlace = 0.2e-3, kOffTurn = 1e-3;  // m, rad: errors of placing a plate
 constexpr double kDepth = 10e-6;                       // m
 constexpr double kShareOfTravel = 0.9;
-constexpr int kApproaches = 6;  // iterations, each a thousand times nearer
+constexpr int kApproaches = 6;      // iterations, each a thousand times nearer
+constexpr double kFromSide = 1e-3;  // m, from where the axes come to a hole
 
 Vector3d Normals(const random::CounterRandom& random, std::uint64_t first) {
   return {random.Normal(first), random.Normal(first + 1), random.Normal(first + 2)};
@@ -42,7 +45,9 @@ class PlateMaker {
       : world_(world),
         program_(program),
         plate_(world.seed(), kPlateStream),
-        run_(world.seed(), kPlateRunStream + kRunStreams * program.run) {
+        run_(world.seed(), kPlateRunStream + kRunStreams * program.run),
+        climate_(world.settings(), world.seed(), program.run, {}),
+        hidden_(world.hidden(), climate_, {}) {
     for (int axis = 0; axis < kAxes; ++axis) {
       const AxisTravel& travel = world.settings().travels[axis];
       middle_[axis] = (travel.first + travel.last) / 2;
@@ -55,8 +60,9 @@ class PlateMaker {
   recording::Recording Make() {
     recording_.name = fmt::format("rig plate, seed {}", world_.seed());
     recording_.header = Header();
-    for (const char* name : {"time_s", "x_mm", "y_mm", "z_mm", "setup", "hole", "plate_x_mm",
-                             "plate_y_mm", "u_plate_um", "flags"}) {
+    for (const char* name :
+         {"time_s", "x_mm", "y_mm", "z_mm", "setup", "hole", "plate_x_mm", "plate_y_mm",
+          "u_plate_um", "approach_x", "approach_y", "approach_z", "flags"}) {
       recording_.columns.push_back({name, {}});
     }
     for (std::size_t setup = 0; setup < program_.setups.size(); ++setup) Measure(setup);
@@ -119,14 +125,28 @@ class PlateMaker {
     }
   }
 
-  void Put(std::size_t setup, int hole, const Vector3d& axes) {
+  // Where the axes show that they stand when they really stand at `axes`, having come from `side`.
+  Vector3d ShownAt(const Vector3d& axes, double side) {
+    const auto time = static_cast<double>(recording_.rows());
+    Vector3d shown = axes;
+    hidden_.Follow(time, axes - Vector3d::Constant(side * kFromSide), Vector3d::Zero());
+    for (int i = 0; i < kApproaches; ++i) {
+      hidden_.Follow(time, shown, Vector3d::Zero());
+      shown += axes - hidden_.Place();
+    }
+    return shown;
+  }
+
+  void Put(std::size_t setup, int hole, const Vector3d& place) {
+    const double side = program_.both_sides && hole / program_.holes % 2 == 1 ? -1.0 : 1.0;
+    const Vector3d axes = ShownAt(place, side);
     const Vector2d certificate = Certificate(hole) / kMillimetre;
     std::size_t column = 0;
     const double row = recording_.rows();
     for (const double value :
          {row, axes[0] / kMillimetre, axes[1] / kMillimetre, axes[2] / kMillimetre,
           static_cast<double>(setup + 1), hole + 1.0, certificate[0], certificate[1],
-          program_.u_form / kMicrometre, 0.0}) {
+          program_.u_form / kMicrometre, side, side, side, 0.0}) {
       recording_.columns[column++].values.push_back(value);
     }
   }
@@ -134,6 +154,8 @@ class PlateMaker {
   const World& world_;
   const PlateProgram& program_;
   random::CounterRandom plate_, run_;
+  Climate climate_;
+  HiddenRun hidden_;
   Vector3d middle_ = Vector3d::Zero(), sign_ = Vector3d::Ones();
   double side_ = 0.0;
   recording::Recording recording_;

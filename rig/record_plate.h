@@ -7,7 +7,8 @@
 // a common scale, which belong to the seed: all runs of a world measure one plate. Each set-up
 // places it anew, with small errors of position and angle, and measures with its own stylus. The
 // centre of a hole has white noise in the plate's two directions; the depth of the probe in it is
-// known to 10 um only. Columns and header: docs/recordings.md.
+// known to 10 um only. All axes come to each hole from below, with `both_sides` to those of every
+// second line from above (approach_x ...). Columns and header: docs/recordings.md.
 #pragma once
 
 #include <array>
@@ -34,6 +35,7 @@ struct PlateProgram {
   double u_scale = 1e-6;      // relative
   double u_probing = 0.2e-6;  // m
   std::uint64_t run = 1;
+  bool both_sides = false;
 };
 
 recording::Recording RecordPlate(const World& world, const PlateProgram& program);

@@ -25,6 +25,7 @@ enum Stream : std::uint64_t {
   kTemperatureStream = 0x10010,   // + kRunStreams * run + sensor, up to 16
   kEncoderNoiseStream = 0x10080,  // + kRunStreams * run + pivot
   kBallStream = 0x10088,          // + kRunStreams * run + direction
+  kSeatStream = 0x1008c,          // + kRunStreams * run + direction
   kReferenceNoiseStream = 0x10090,  // + kRunStreams * run + axis
 };
 

@@ -138,6 +138,8 @@ Recording LengthPath(char axis, const Vector3d& middle, const machine::Travel& t
     lengths.push_back(length / settings::kMillimetre);
   }
   Recording path = maker.Take();
+  path.columns.push_back(
+      {fmt::format("approach_{}", "xyz"[axis - 'X']), std::vector<double>(lengths.size(), 1.0)});
   path.columns.push_back({"u_length_um", std::vector<double>(lengths.size(), kU)});
   path.columns.push_back({"length_mm", std::move(lengths)});
   return path;

@@ -13,6 +13,7 @@ namespace abbe::rig {
 // clang-format off
 #define ABBE_HIDDEN_EFFECTS(EFFECT) \
   EFFECT(Backlash) \
+  EFFECT(VaryingBacklash) \
   EFFECT(LeadscrewCyclic) \
   EFFECT(ScaleError) \
   EFFECT(Squareness) \

@@ -66,6 +66,11 @@ double Wave::ShapeOf(double waves) const {
   return waves;
 }
 
+std::vector<VectorXd> Cause::ShapesFor(const Scene& scene, const Object& object) const {
+  if (shapes_of) return shapes_of(scene, object);
+  return shapes ? shapes(scene) : std::vector<VectorXd>{VectorXd()};
+}
+
 VectorXd Cause::ValuesOf(const VectorXd& found, const VectorXd& shape) const {
   if (tell) return tell(found, shape);
   if (FollowsItsSize()) return found;

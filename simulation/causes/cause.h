@@ -37,6 +37,7 @@ struct Scene {
   Eigen::Vector3d travel;    // m, lengths
   double form = 0.0;         // m: standard deviation of the form of the target that is stated
   double form_length = 0.0;  // m: correlation length of the form of the target; 0: not known
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();  // m: where the travels begin
 
   bool HasSweeps() const;
   bool HasArms() const;
@@ -106,6 +107,7 @@ struct Cause {
   using Columns = std::function<std::vector<Disturbance>(const Trace&, const Object& object,
                                                          const Eigen::VectorXd& shape)>;
   using Shapes = std::function<std::vector<Eigen::VectorXd>(const Scene&)>;
+  using ShapesOf = std::function<std::vector<Eigen::VectorXd>(const Scene&, const Object&)>;
   using Nearer = std::function<std::vector<Eigen::VectorXd>(const Scene&, const Eigen::VectorXd&)>;
   using Relaxes = std::function<std::vector<std::string>(const Object& object)>;
   using Tell = std::function<Eigen::VectorXd(const Eigen::VectorXd& coefficients,
@@ -118,7 +120,8 @@ struct Cause {
   Eigen::VectorXd plausible;  // standard deviation of each coefficient where the cause is present
   Objects objects;
   Columns columns = {};
-  Shapes shapes = {};  // none: no shape
+  Shapes shapes = {};       // none: no shape
+  ShapesOf shapes_of = {};  // where they depend on the object, in place of `shapes`
   Nearer nearer = {};  // those about one of the shapes, closer together; none: by halving the steps
   Relaxes relaxes = {};  // the parameters whose priors it relaxes; none: columns
   Tell tell = {};        // none: the coefficients are the keys, then the shape
@@ -136,6 +139,8 @@ struct Cause {
   std::optional<Wave> wave = {};
 
   Eigen::Index coefficients() const { return plausible.size(); }
+  // All that are tried; one without numbers where it has no shape.
+  std::vector<Eigen::VectorXd> ShapesFor(const Scene& scene, const Object& object) const;
   bool FollowsItsSize() const { return amount == Amount::kFollowsItsSize; }
   bool IsBinary() const { return amount == Amount::kBinary; }
   bool IsRandomField() const { return amount == Amount::kRandomField; }

@@ -16,7 +16,7 @@ Cause ProbeGain() {
       .columns = [](const Trace& trace, const Object& object,
                     const Eigen::VectorXd&) -> std::vector<Disturbance> {
         if (!trace.head) return {};
-        const int probe = object.first();
+        const Eigen::Index probe = trace.head->row_of[static_cast<std::size_t>(object.first())];
         return {InStage(trace, kReadingStage + probe,
                         trace.head->gap.row(probe).array() - trace.head->zero[probe])};
       },

@@ -17,6 +17,7 @@ namespace abbe::simulation {
 // clang-format off
 #define ABBE_CAUSES(CAUSE) \
   CAUSE(Backlash) \
+  CAUSE(VaryingBacklash) \
   CAUSE(LeadscrewCyclic) \
   CAUSE(ScaleError) \
   CAUSE(Squareness) \

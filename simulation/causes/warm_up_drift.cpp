@@ -30,7 +30,9 @@ Cause WarmUpDrift() {
         if (object.kind() != Object::Kind::kProbe)
           return {InStage(trace, Positioning(object.first()), warm)};
         if (!trace.head) return {};
-        return {InStage(trace, kReadingStage + object.first(), warm)};
+        return {InStage(
+            trace, kReadingStage + trace.head->row_of[static_cast<std::size_t>(object.first())],
+            warm)};
       },
       .shapes = [](const Scene&) { return GeometricShapes(20.0, 20000.0, 1.7); },
       .follows = Follows::kTime,

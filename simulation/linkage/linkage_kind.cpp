@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
-#include "recording/good_rows.h"
 #include "settings/toml_text.h"
 #include "settings/unit.h"
 #include "simulation/kinds.h"
@@ -19,6 +17,7 @@
 #include "simulation/linkage/linkage_run.h"
 #include "simulation/linkage/linkage_trace.h"
 #include "simulation/linkage/one_ball.h"
+#include "simulation/linkage/standing_linkage.h"
 #include "simulation/planned_run.h"
 #include "simulation/points/reference_simulation.h"
 #include "simulation/repeated_run.h"
@@ -39,35 +38,6 @@ LinkageSimulation Nominal(const Instruments& on, const relm::LinkageSettings& se
 
 bool HasReference(const Recording& head) {
   return head.Find("ref_x_mm") || head.Find("ref_y_mm") || head.Find("ref_z_mm");
-}
-
-Eigen::Matrix3Xd PositionsOf(const Recording& path, const std::vector<std::size_t>& rows) {
-  Eigen::Matrix3Xd positions(3, rows.size());
-  for (Index axis = 0; axis < 3; ++axis) {
-    const auto values = recording::ValuesOf(path, fmt::format("{}_mm", "xyz"[axis]), rows);
-    positions.row(axis) = Eigen::Map<const Eigen::RowVectorXd>(values.data(), positions.cols());
-  }
-  return positions;
-}
-
-// The angles that close the nominal linkage.
-void SetAngles(const Instruments& on, Recording& path) {
-  const relm::LinkageSettings& linkage = on.LinkageFor(path.name);
-  const LinkageSimulation nominal = Nominal(on, linkage);
-  const std::vector<std::size_t> rows = recording::GoodRows(path);
-  LinkageRun run = RunAt(PositionsOf(path, rows), linkage);
-  run.name = path.name;
-  const Eigen::MatrixXd angles = nominal.Readings(run, nominal.Values());
-  for (Index pivot = 0; pivot < angles.rows(); ++pivot) {
-    auto& column = ColumnIn(path, fmt::format("pivot_{}_rad", pivot + 1));
-    double before = 0.0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      // A turn on, not a jump by a turn, where an angle passes pi.
-      const double angle = angles(pivot, i);
-      before += std::remainder(angle - before, 2.0 * std::numbers::pi);
-      column[rows[i]] = before + MixedSign(i, pivot) * linkage.noise.encoder;
-    }
-  }
 }
 
 // Whether most of its rows are of a motion.
@@ -215,7 +185,7 @@ class LinkageRuns : public RunKind {
 
   Recording Plan(Recording path, const Instruments& on) const override {
     FlagPlaces(path);
-    SetAngles(on, path);
+    PlanAngles(on, path);
     return path;
   }
 

@@ -32,12 +32,14 @@ constexpr auto kLoss = estimation::RobustLoss::Huber(kHuberThreshold);
 
 class LinkageOnMachine : public Responsive {
  public:
+  // `seated`: with the seat of the ball among the parameters.
   LinkageOnMachine(machine::VolumetricModel model, Vector3d ball, LinkageSimulation linkage,
-                   LinkageRun run)
+                   LinkageRun run, bool seated)
       : model_(std::move(model)),
         ball_(std::move(ball)),
         linkage_(std::move(linkage)),
         run_(std::move(run)),
+        seated_(seated),
         noise_(linkage_.GapNoise(run_)),
         constant_(Matrix3Xd::Zero(3, run_.poses())) {
     run_.commanded = AxesInTravel(model_, run_.commanded, run_.name, run_.rows);
@@ -58,6 +60,7 @@ class LinkageOnMachine : public Responsive {
     Matrix3Xd left;
     linkage_.Gap(run_, x.head(linkage_.parameters()), left);
     left -= model.Errors(run_.commanded, ball_);
+    left.colwise() -= SeatOf(x);
     return left + constant_;
   }
 
@@ -72,6 +75,7 @@ class LinkageOnMachine : public Responsive {
   void Evaluate(const VectorXd& x, VectorXd& values,
                 estimation::RowMatrix* jacobian) const override {
     const Index own = linkage_.parameters(), machine = model_.ParameterCount();
+    const Vector3d seat = SeatOf(x);
     machine::VolumetricModel model = model_;
     model.SetParameters(x.tail(machine));
     Matrix3Xd gap;
@@ -79,7 +83,7 @@ class LinkageOnMachine : public Responsive {
     linkage_.Gap(run_, x.head(own), gap, jacobian == nullptr ? nullptr : &J);
     for (Index pose = 0; pose < run_.poses(); ++pose) {
       const auto lower = Noise(pose);
-      Vector3d left = gap.col(pose) + constant_.col(pose);
+      Vector3d left = gap.col(pose) + constant_.col(pose) - seat;
       if (jacobian == nullptr) {
         left -= model.Error(run_.commanded.col(pose), ball_);
       } else {
@@ -87,6 +91,7 @@ class LinkageOnMachine : public Responsive {
         left -= at.error;
         auto rows = jacobian->middleRows<3>(3 * pose);
         rows.leftCols(own) = J.middleRows<3>(3 * pose);
+        if (seated_) rows.middleCols<3>(own) = -Eigen::Matrix3d::Identity();
         rows.rightCols(machine) = -at.J_error_parameters;
         lower.solveInPlace(rows);
       }
@@ -97,6 +102,11 @@ class LinkageOnMachine : public Responsive {
   std::shared_ptr<const Response> At(const VectorXd& x) const override;
 
  private:
+  // Of the ball against the spindle, in M.
+  Vector3d SeatOf(const VectorXd& x) const {
+    return seated_ ? Vector3d(x.segment<3>(linkage_.parameters())) : Vector3d::Zero();
+  }
+
   void CloseGaps(const VectorXd& x) {
     constexpr int kSteps = 2;  // the first one leaves 1e-6 of the gap
     const VectorXd own = x.head(linkage_.parameters());
@@ -119,6 +129,7 @@ class LinkageOnMachine : public Responsive {
   Vector3d ball_;
   LinkageSimulation linkage_;
   LinkageRun run_;
+  bool seated_;
   Matrix3Xd noise_, constant_;
 };
 
@@ -178,17 +189,18 @@ double CellOf(const machine::VolumetricModel& model) {
 std::shared_ptr<const LinkageOnMachine> Gather(const machine::VolumetricModel& model,
                                                const Vector3d& ball,
                                                const LinkageSimulation& linkage,
-                                               const LinkageParts& parts, const VectorXd& x) {
+                                               const LinkageParts& parts, bool seated,
+                                               const VectorXd& x) {
   CellMeans means(CellOf(model));
   parts([&](const LinkageRun& part) {
-    const LinkageOnMachine poses(model, ball, linkage, Given(part, linkage));
+    const LinkageOnMachine poses(model, ball, linkage, Given(part, linkage), seated);
     const Matrix3Xd left = poses.Left(x);
     for (Index i = 0; i < left.cols(); ++i) {
       const Vector3d white = poses.Noise(i).solve(Vector3d(left.col(i)));
       means.Add(poses.run(), i, left.col(i), kLoss.Weight(white.cwiseAbs().maxCoeff()));
     }
   });
-  auto cells = std::make_shared<LinkageOnMachine>(model, ball, linkage, means.Run());
+  auto cells = std::make_shared<LinkageOnMachine>(model, ball, linkage, means.Run(), seated);
   cells->Recentre(x, means.Gaps());
   return cells;
 }
@@ -210,21 +222,38 @@ void RefuseOtherChain(const LinkageSimulation& linkage, const LinkageRun& run,
       run.name, 1e3 * gap.norm() / count, 1e3 * way.norm() / count, chain.Text()));
 }
 
+// Without its residual. `seat`: deviation of the ball against the spindle; 0: it has no block.
+SimulatedRun WithBlocks(const machine::VolumetricModel& model, const LinkageSimulation& linkage,
+                        const LinkageRun& run, double seat) {
+  SimulatedRun simulated{run.name, "linkage", linkage.Blocks(), nullptr, kLoss};
+  simulated.blocks[0].name = BaseBlock(run.mounting);
+  simulated.blocks[1].name = BaseTurnBlock(run.mounting);
+  if (seat > 0.0) {
+    simulated.blocks.push_back({"ball_seat " + run.name,
+                                {"um", 1e-6},
+                                {{.name = "x", .prior_sd = seat},
+                                 {.name = "y", .prior_sd = seat},
+                                 {.name = "z", .prior_sd = seat}}});
+  }
+  for (auto& block : model.Blocks()) simulated.blocks.push_back(std::move(block));
+  return simulated;
+}
+
 }  // namespace
 
 SimulatedRun SimulateLinkage(const machine::VolumetricModel& model, const Vector3d& reference,
                              const LinkageSimulation& linkage, const LinkageParts& parts) {
   const auto [sample, all] = SampleOf(parts, kMostPoses, kSample);
   const LinkageRun fitted = Given(sample, linkage);
-  SimulatedRun simulated{fitted.name, "linkage", linkage.Blocks(), nullptr, kLoss};
-  simulated.blocks[0].name = BaseBlock(fitted.mounting);
-  simulated.blocks[1].name = BaseTurnBlock(fitted.mounting);
-  for (auto& block : model.Blocks()) simulated.blocks.push_back(std::move(block));
+  const double seat = linkage.settings().tolerance.seat;
+  const bool seated = seat > 0.0;
+  SimulatedRun simulated = WithBlocks(model, linkage, fitted, seat);
   RefuseOtherChain(linkage, fitted, model.chain());
-  const auto residual = std::make_shared<LinkageOnMachine>(model, -reference, linkage, fitted);
+  const auto residual =
+      std::make_shared<LinkageOnMachine>(model, -reference, linkage, fitted, seated);
   simulated.residual = simulated.response = residual;
   simulated.condense = [=, gathers = all > fitted.poses()](const VectorXd& x) {
-    if (gathers) return Gather(model, -reference, linkage, parts, x);
+    if (gathers) return Gather(model, -reference, linkage, parts, seated, x);
     auto recentred = std::make_shared<LinkageOnMachine>(*residual);
     recentred->Recentre(x, residual->Left(x));
     return std::shared_ptr<const LinkageOnMachine>(recentred);
@@ -236,6 +265,18 @@ SimulatedRun SimulateLinkage(const machine::VolumetricModel& model, const Vector
                              const LinkageSimulation& linkage, const LinkageRun& run) {
   return SimulateLinkage(model, reference, linkage,
                          [run](const std::function<void(const LinkageRun&)>& use) { use(run); });
+}
+
+SimulatedRun SimulateStandingLinkage(const machine::VolumetricModel& model,
+                                     const Vector3d& reference, const LinkageSimulation& linkage,
+                                     const LinkageRun& run) {
+  const double seat =
+      std::hypot(linkage.settings().tolerance.seat, linkage.settings().noise.repeatability);
+  SimulatedRun simulated = WithBlocks(model, linkage, run, seat);
+  const auto residual =
+      std::make_shared<LinkageOnMachine>(model, -reference, linkage, run, seat > 0.0);
+  simulated.residual = simulated.response = residual;
+  return simulated;
 }
 
 }  // namespace abbe::simulation

@@ -7,7 +7,9 @@
 // Here the commanded position is no reference with an uncertainty of its own: what the machine does
 // with a command is what is to be found. What is left is the noise of the encoders and how well the
 // ball repeats (linkage.noise.repeatability). The ball stands in the machine's origin when all axes
-// are at zero.
+// are at zero, and beside it by "ball_seat" of the run, [x y z] in M, where it is seated anew for
+// each run (linkage.tolerance.seat). While the machine stands, the ball sits in one way: such a run
+// has the noise of its encoders only, and the repeatability is part of its seat.
 // A run of more than 4096 poses is gathered into cells of a quarter of the correlation length
 // (linkage_cells.h) at the parameters that fit 1024 of them; their chi-square is that of the cells.
 //
@@ -33,5 +35,9 @@ SimulatedRun SimulateLinkage(const machine::VolumetricModel& model,
 SimulatedRun SimulateLinkage(const machine::VolumetricModel& model,
                              const Eigen::Vector3d& reference, const LinkageSimulation& linkage,
                              const LinkageRun& run);
+// A run at one place.
+SimulatedRun SimulateStandingLinkage(const machine::VolumetricModel& model,
+                                     const Eigen::Vector3d& reference,
+                                     const LinkageSimulation& linkage, const LinkageRun& run);
 
 }  // namespace abbe::simulation

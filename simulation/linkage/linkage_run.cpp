@@ -22,7 +22,7 @@ constexpr const char* kStated = "ref_u_um";
 
 void RefuseOtherKinds(const recording::Recording& recording) {
   const std::string kind = recording.Kind();
-  if (kind == "linkage" || kind == "reference") return;
+  if (kind == "linkage" || kind == "reference" || kind == "dwell") return;
   throw InputError(fmt::format(
       "{}: kind is \"{}\"; the linkage needs recordings of kind linkage, with the columns "
       "pivot_1_rad ... and the axis positions",

@@ -30,6 +30,7 @@ class LengthRuns : public RunKind {
     PreparedRuns prepared{{{SimulateLengths(model, on.machine.reference, recording),
                             TraceOf(recording, ReadMachinePoints(recording))}}};
     NoteUnknownTimes(recording, prepared.notes);
+    NoteUnknownApproach(recording, prepared.notes);
     return prepared;
   }
 

@@ -32,6 +32,7 @@ class PlateRuns : public RunKind {
           {SimulatePlate(model, on.machine.reference, setup), TraceOf(recording, setup.points)});
     }
     NoteUnknownTimes(recording, prepared.notes);
+    NoteUnknownApproach(recording, prepared.notes);
     return prepared;
   }
 

@@ -1,5 +1,7 @@
 #include "simulation/points/reference_trace.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "simulation/trace_columns.h"
@@ -12,6 +14,8 @@ Eigen::VectorXd NumbersOf(const std::vector<std::size_t>& rows) {
   std::copy(rows.begin(), rows.end(), numbers.begin());
   return numbers;
 }
+
+std::string ApproachColumn(Eigen::Index axis) { return fmt::format("approach_{}", "xyz"[axis]); }
 
 }  // namespace
 
@@ -43,9 +47,23 @@ Trace TraceOf(const recording::Recording& recording, const MachinePoints& points
   trace.direction.assign(points.rows.size(), 0);
   trace.axes = points.axes;
   trace.velocity = trace.acceleration = trace.heading = Eigen::Matrix3Xd::Zero(3, rows);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const std::string column = ApproachColumn(axis);
+    if (recording.Find(column)) trace.heading.row(axis) = ColumnAt(recording, points, column);
+  }
   trace.since_reversal = Eigen::Matrix3Xd::Constant(3, rows, kLongAgo);
   AddSensors(recording, points.rows, trace);
   return trace;
+}
+
+void NoteUnknownApproach(const recording::Recording& recording, std::vector<std::string>& notes) {
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (recording.Find(ApproachColumn(axis))) return;
+  }
+  notes.push_back(fmt::format(
+      "{}: does not state from which side each axis came to its places (columns approach_x, "
+      "approach_y, approach_z), so backlash does not show in it",
+      recording.name));
 }
 
 }  // namespace abbe::simulation

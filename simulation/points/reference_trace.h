@@ -17,7 +17,11 @@
 namespace abbe::simulation {
 
 Trace TraceOf(const recording::Recording& recording, const ReferenceRun& run);
-// For lengths and plates.
+// For lengths and plates. Headings are those of the columns approach_x, approach_y, approach_z; 0
+// without one.
 Trace TraceOf(const recording::Recording& recording, const MachinePoints& points);
+
+// Where a recording of either has none of these columns.
+void NoteUnknownApproach(const recording::Recording& recording, std::vector<std::string>& notes);
 
 }  // namespace abbe::simulation

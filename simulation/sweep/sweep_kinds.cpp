@@ -9,11 +9,13 @@
 #include <utility>
 
 #include "estimation/readings_at_rest.h"
+#include "probes/channel_order.h"
 #include "probes/sweep_dwells.h"
 #include "recording/good_rows.h"
 #include "settings/toml_text.h"
 #include "settings/unit.h"
 #include "simulation/kinds.h"
+#include "simulation/linkage/standing_linkage.h"
 #include "simulation/planned_run.h"
 #include "simulation/repeated_run.h"
 #include "simulation/stays.h"
@@ -58,6 +60,12 @@ std::string MountingLines(const std::string& id, const SweepMounting& mounted) {
                      mounted.target_shift / settings::kMillimetre, mounted.target_reversed);
 }
 
+recording::Blocks BlocksInProbeOrder(recording::Blocks blocks, const probes::ChannelOrder& order) {
+  return [blocks = std::move(blocks), order](const auto& use) {
+    blocks([&](const Recording& block) { use(probes::InProbeOrder(block, order)); });
+  };
+}
+
 // Whether exchanged channels would make no difference.
 bool NoiseIsOne(const SweepRun& run) {
   constexpr double kHardly = 1.1;  // of the variance
@@ -98,11 +106,11 @@ class HeadKind : public RunKind {
   PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel& model,
                        const Instruments& on, const FactsByRun&) const override {
     on.HeadFor(recording.name);
-    PreparedRuns prepared;
-    for (const SweepRun& run : Read(recording, on)) {
-      prepared.runs.push_back(PrepareOne(recording, model, on, run));
-    }
-    return prepared;
+    const probes::ChannelOrder order = probes::ChannelOrderOf(recording);
+    if (order == probes::kAsNamed) return PrepareAll(recording, model, on);
+    Instruments of_channels = on;
+    of_channels.noise = probes::InProbeOrder(on.noise, order);
+    return PrepareAll(probes::InProbeOrder(recording, order), model, of_channels);
   }
 
   Recording Plan(Recording path, const Instruments& on) const override {
@@ -123,6 +131,16 @@ class HeadKind : public RunKind {
   virtual std::vector<SweepRun> Read(const Recording& recording, const Instruments& on) const = 0;
 
  private:
+  // In the order of the probes.
+  PreparedRuns PrepareAll(const Recording& recording, const machine::VolumetricModel& model,
+                          const Instruments& on) const {
+    PreparedRuns prepared;
+    for (const SweepRun& run : Read(recording, on)) {
+      prepared.runs.push_back(PrepareOne(recording, model, on, run));
+    }
+    return prepared;
+  }
+
   static PreparedRun PrepareOne(const Recording& recording, const machine::VolumetricModel& model,
                                 const Instruments& on, const SweepRun& run) {
     const SweepInstrument instrument{*on.head, on.target};
@@ -169,6 +187,7 @@ class AfterSweep {
     runs.push_back(
         {fmt::format("repeat {} an hour later, the machine {:.0f} K warmer", name_, kWarmer),
          AnHourLater(sweep_, as_it_was)});
+    if (is_first) AddSwapped(runs);
     AddBeside(runs, is_first);
   }
 
@@ -183,6 +202,19 @@ class AfterSweep {
   Recording Again(const SweepMounting& mounted) const {
     return simulation::Again(sweep_,
                              {about_.machine, about_.started, MountingLines(kAnew, mounted)});
+  }
+
+  // Everything but the cables as it was. Two probes of one unit see nearly the same.
+  void AddSwapped(std::vector<NextRun>& runs) const {
+    if (MountedOf(sweep_).channels != probes::kAsNamed) return;
+    for (const auto& pair :
+         {"probe_a+probe_b", "probe_a+probe_c", "probe_b+probe_c", "probe_d+probe_e"}) {
+      runs.push_back(
+          {fmt::format("swap the cables of {} at the amplifier and repeat {}", pair, name_),
+           simulation::Again(sweep_, {about_.machine, about_.started,
+                                      MountingLines(MountingIdOf(sweep_), MountedOf(sweep_)) +
+                                          fmt::format("swapped = \"{}\"\n", pair)})});
+    }
   }
 
   const machine::Travel& TravelOf(char axis) const { return on_.machine.travels[axis - 'X']; }
@@ -228,8 +260,12 @@ class SweepRuns : public HeadKind {
   std::vector<SimulatedRun> ForMap(const RunSource& source, const machine::VolumetricModel& model,
                                    const Instruments& on) const override {
     const probes::HeadSettings& head = on.HeadFor(source.head.name);
-    return {SimulateSweep(model, on.machine.reference, {head, on.target},
-                          ReadSweepRun(source.head, source.blocks, head, on.noise))};
+    const probes::ChannelOrder order = probes::ChannelOrderOf(source.head);
+    const recording::Blocks blocks =
+        order == probes::kAsNamed ? source.blocks : BlocksInProbeOrder(source.blocks, order);
+    return {SimulateSweep(
+        model, on.machine.reference, {head, on.target},
+        ReadSweepRun(source.head, blocks, head, probes::InProbeOrder(on.noise, order)))};
   }
 
   Stays StaysIn(const Recording& recording) const override {
@@ -240,7 +276,10 @@ class SweepRuns : public HeadKind {
 
   Correction Correct(const Recording& recording, const std::vector<ModelledCause>& causes,
                      const Origin& origin, const Instruments& on) const override {
-    return CorrectSweep(recording, causes, origin, on);
+    const probes::ChannelOrder order = probes::ChannelOrderOf(recording);
+    Correction corrected = CorrectSweep(probes::InProbeOrder(recording, order), causes, origin, on);
+    corrected.recording = probes::InProbeOrder(std::move(corrected.recording), order);
+    return corrected;
   }
 
   RowRule HeldOut(const Recording& recording) const override { return EverySecondPass(recording); }
@@ -273,6 +312,35 @@ class SweepRuns : public HeadKind {
 class DwellRuns : public HeadKind {
  public:
   std::string_view name() const override { return "dwell"; }
+
+  // Of what it shows: the probes, the encoders or both.
+  PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel& model,
+                       const Instruments& on, const FactsByRun& known) const override {
+    auto encoders = StandingLinkage(recording, model, on);
+    PreparedRuns prepared;
+    if (!encoders || recording.Find("probe_a_um")) {
+      prepared = HeadKind::Prepare(recording, model, on, known);
+    }
+    if (encoders) {
+      prepared.runs.push_back(*std::move(encoders));
+    } else if (recording.Find("pivot_1_rad")) {
+      prepared.notes.push_back(recording.name +
+                               ": its encoders are not used; that takes [linkage] in the machine "
+                               "file, all its pivots, and axes that stand");
+    }
+    return prepared;
+  }
+
+  Recording Plan(Recording path, const Instruments& on) const override {
+    if (!path.Find("pivot_1_rad") || !on.linkage) return HeadKind::Plan(std::move(path), on);
+    if (path.Find("probe_a_um")) {
+      path = HeadKind::Plan(std::move(path), on);
+    } else {
+      FlagPlaces(path);
+    }
+    PlanAngles(on, path);
+    return path;
+  }
 
  protected:
   std::vector<SweepRun> Read(const Recording& recording, const Instruments& on) const override {

@@ -64,6 +64,38 @@ Eigen::Matrix3Xd AxesOf(const recording::Recording& recording,
   return axes;
 }
 
+// What the means over two spans of time share of a process of variance 1 that forgets itself within
+// `fades`: the integral of exp(-|s - t| / fades) over both.
+double SharedByMeans(double apart, double span, double other, double fades) {
+  const auto kept = [&](double of) {
+    return of == 0.0 ? 1.0 : -std::expm1(-of / fades) * fades / of;
+  };
+  const double between = std::max(0.0, apart - 0.5 * (span + other));
+  return kept(span) * kept(other) * std::exp(-between / fades);
+}
+
+double VarianceOfMean(double span, double fades) {
+  constexpr double kShort = 1e-3;
+  const double x = span / fades;
+  return x < kShort ? 1.0 - x / 3.0 : 2.0 * (x + std::expm1(-x)) / (x * x);
+}
+
+// Of the rows, each of which is a mean: n readings stand for the time of n steps.
+Eigen::MatrixXd MemoryCovariance(const SweepRun& run, double sd, double fades) {
+  const Eigen::ArrayXd n = run.samples.array();
+  const Eigen::ArrayXd spans = run.duration.array() * n / (n - 1.0).max(1.0);
+  Eigen::MatrixXd covariance(run.rows(), run.rows());
+  for (Index a = 0; a < run.rows(); ++a) {
+    for (Index b = 0; b < a; ++b) {
+      const double apart = std::abs(run.time[a] - run.time[b]);
+      covariance(a, b) = covariance(b, a) =
+          sd * sd * SharedByMeans(apart, spans[a], spans[b], fades);
+    }
+    covariance(a, a) = sd * sd * VarianceOfMean(spans[a], fades);
+  }
+  return covariance;
+}
+
 // The rows [first, last) of those that count.
 struct Standstill {
   std::size_t first, last;
@@ -114,12 +146,9 @@ SweepRun Standing(const recording::Recording& recording, const std::vector<std::
   for (std::size_t i = 0; i < probes::kProbes; ++i) {
     const std::string column = fmt::format("probe_{}_um", static_cast<char>('a' + i));
     run.gap.row(i) = means(ColumnOf(recording, column, rows).transpose());
-    run.covariance[i] = DriftCovariance(run.time, noise);
+    run.covariance[i] = MemoryCovariance(run, noise.drift, noise.drift_time);
     if (noise.memory[i] > 0.0) {
-      probes::ProbeNoise memory = noise;
-      memory.drift = noise.memory[i];
-      memory.drift_time = noise.memory_time[i];
-      run.covariance[i] += DriftCovariance(run.time, memory);
+      run.covariance[i] += MemoryCovariance(run, noise.memory[i], noise.memory_time[i]);
     }
     run.covariance[i].diagonal().array() += noise.Of(i) * noise.Of(i) / readings.array();
   }
@@ -137,7 +166,8 @@ SweepMounting MountedOf(const recording::Recording& recording) {
         recording.name, head));
   }
   return {head == "180deg", 1e-3 * recording.HeaderNumber("mounting.target_shift_mm").value_or(0.0),
-          recording.HeaderText("mounting.target_reversed").value_or("false") == "true"};
+          recording.HeaderText("mounting.target_reversed").value_or("false") == "true",
+          probes::ChannelOrderOf(recording)};
 }
 
 SweepRun ReadSweepRun(const recording::Recording& recording, const probes::HeadSettings& head,
@@ -202,10 +232,14 @@ SweepRun ReadSweepDwells(const recording::Recording& recording, const probes::He
 }
 
 SweepRun ReadStillReadings(const recording::Recording& recording, const probes::ProbeNoise& noise) {
-  std::vector<std::size_t> rows = recording::GoodRows(recording);
-  if (rows.size() > kStillReadings) rows.resize(kStillReadings);
+  const std::vector<std::size_t> rows = recording::GoodRows(recording);
+  const std::size_t single = std::min(rows.size(), kStillReadings);
+  const std::size_t block = (rows.size() - single + kLaterBlocks - 1) / kLaterBlocks;
   std::vector<Standstill> each;
-  for (std::size_t i = 0; i < rows.size(); ++i) each.push_back({i, i + 1});
+  for (std::size_t i = 0; i < single; ++i) each.push_back({i, i + 1});
+  for (std::size_t i = single; i < rows.size(); i += block) {
+    each.push_back({i, std::min(i + block, rows.size())});
+  }
   SweepRun run = Standing(recording, rows, each, noise);
   run.direction.assign(each.size(), 0);
   run.steps.resize(3, 0);

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "probes/channel_order.h"
 #include "probes/head_settings.h"
 #include "recording/blocks.h"
 #include "recording/recording.h"
@@ -29,6 +30,7 @@ struct SweepMounting {
   double target_shift = 0.0;     // m, along u
   bool target_reversed = false;  // each face by half a turn about its normal, in the middle of what
                                  // the head passes
+  probes::ChannelOrder channels = probes::kAsNamed;  // cables of two probes exchanged
 };
 
 // InputError for a head that is neither.
@@ -65,8 +67,9 @@ SweepRun ReadSweepRun(const recording::Recording& recording, const probes::HeadS
 // For a run of any length: `recording` needs no rows.
 SweepRun ReadSweepRun(const recording::Recording& recording, const recording::Blocks& blocks,
                       const probes::HeadSettings& head, const probes::ProbeNoise& noise);
-// A recording that holds still (kind dwell): one row is one reading, its first kStillReadings.
-inline constexpr std::size_t kStillReadings = 120;
+// A recording that holds still (kind dwell): one row is one of the first kStillReadings readings,
+// then the mean of so many that at most kLaterBlocks rows hold all the others.
+inline constexpr std::size_t kStillReadings = 120, kLaterBlocks = 100;
 SweepRun ReadStillReadings(const recording::Recording& recording, const probes::ProbeNoise& noise);
 // Single readings of a sweep while it stands (stays.h), the first ones, each stay about a mean that
 // nobody knows: what they say of mains and vibration beyond the means of ReadSweepDwells.

@@ -132,13 +132,13 @@ class SweepResidual : public Responsive {
   }
 
   // Where the numbers of Circumstances stand behind the coefficients in x, for one probe.
-  static std::array<Index, kLocal> Places(std::size_t probe) {
+  std::array<Index, kLocal> Places(std::size_t probe) const {
     std::array<Index, kLocal> places{};
     places.fill(-1);
     for (Index k = 0; k < 3; ++k) places[6 + k] = k;  // squareness
     places[9] = 3 + 2 * probe;
     places[10] = 4 + 2 * probe;
-    places[11] = 13 + probe;
+    places[11] = 13 + static_cast<Index>(run_.mounted.channels[probe]);
     for (Index k = 0; k < 12; ++k) places[12 + k] = 18 + k;
     return places;
   }

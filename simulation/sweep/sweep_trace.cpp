@@ -1,5 +1,8 @@
 #include "simulation/sweep/sweep_trace.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "settings/unit.h"
 #include "simulation/trace_columns.h"
 #include "simulation/trace_motion.h"
@@ -42,7 +45,9 @@ Trace TraceOf(const recording::Recording& recording, const SweepRun& run) {
   for (Index k = 0; k < 3; ++k) {
     trace.since_reversal.row(k) = SinceReversal(trace, k, k == swept ? OverrunOf(recording) : 0.0);
   }
-  trace.head = HeadRows{run.gap, run.gap.rowwise().mean(), {}, run.mounted.head_turned, {}};
+  HeadRows head{run.gap, run.gap.rowwise().mean(), {}, run.mounted.head_turned, {}, {}};
+  std::ranges::copy(run.mounted.channels, head.row_of.begin());
+  trace.head = std::move(head);
   AddSensors(recording, run.first_rows, trace);
   return trace;
 }

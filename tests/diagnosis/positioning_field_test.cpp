@@ -1,6 +1,7 @@
 // Positioning tests of real axes (ISO 230-2): what is known to be there must be found without being
 // told. The data set states of b02 x a mean reversal of -25 um, so a backlash of 25; of week 42 x
 // at 8 A a drift of 0, 41, 50, 73, 90 um from cycle to cycle.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,6 +50,26 @@ class RealAxis : public testing::Test {
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: field data not found";
     campaign_.Add(recording::ReadTargetTable(path));
     diagnosis_ = Diagnose(campaign_);
+    Print();
+  }
+
+  // As in docs/results.md.
+  void Print() const {
+    fmt::print("{}, chi-square {:.2f} to {:.2f}\n", Name(diagnosis_.verdict), diagnosis_.chi_before,
+               diagnosis_.chi_after);
+    for (const Finding& finding : diagnosis_.findings) {
+      const auto [values, u] = KeysOf(finding.score);
+      fmt::print("{} {:.3f}", finding.score.candidate.Name(), finding.probability);
+      for (Eigen::Index i = 0; i < values.size(); ++i) {
+        const auto& key = finding.score.candidate.cause->keys[static_cast<std::size_t>(i)];
+        fmt::print(" {} {:.3g} +- {:.2g}", key.name, values[i] / key.unit, 2.0 * u[i] / key.unit);
+      }
+      fmt::print("\n");
+    }
+    for (const Leftover& left : diagnosis_.leftovers) {
+      fmt::print("left over {} of {}: {:.2g} um\n", left.variable, left.object,
+                 1e6 * left.amplitude);
+    }
   }
 
   const Finding* Found(const std::string& name) const {

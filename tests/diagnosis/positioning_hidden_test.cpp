@@ -100,5 +100,31 @@ INSTANTIATE_TEST_SUITE_P(
                     Shown{"warm-up-drift:object=X:amplitude_um=4:time_constant_s=100",
                           {{"amplitude_um", 4.0}, {"time_constant_s", 100.0}}}));
 
+// A mean of 6 um, from 2 um at one end to 10 um at the other, or bowed by 5 um.
+TEST(PositioningTests, TellHowBacklashVariesAlongTheAxis) {
+  const PositioningWorlds worlds;
+  for (const auto& [change, bow] : {std::pair{8.0, 0.0}, {0.0, -5.0}}) {
+    const auto world = worlds.Record(
+        5, {"backlash:object=X:width_um=6",
+            fmt::format("varying-backlash:object=X:change_um={}:bow_um={}", change, bow)});
+    const Diagnosis diagnosis = DiagnosisOf(worlds, 5, world);
+    EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
+    ASSERT_EQ(diagnosis.findings.size(), 2U);
+    for (const Finding& finding : diagnosis.findings) {
+      const auto keys = KeysOf(finding.score);
+      if (finding.score.candidate.Name() == "backlash:X") {
+        EXPECT_NEAR(keys.values[0], 6e-6, 3.9 * keys.u[0]);
+        continue;
+      }
+      EXPECT_EQ(finding.score.candidate.Name(), "varying-backlash:X");
+      EXPECT_NEAR(keys.values[0], 1e-6 * change, 3.9 * keys.u[0]);
+      EXPECT_NEAR(keys.values[1], 1e-6 * bow, 3.9 * keys.u[1]);
+      EXPECT_LT(keys.u[0], 0.5e-6);
+      EXPECT_EQ(keys.values[2], 0.0);
+      EXPECT_NEAR(keys.values[3], 60e-3, 1e-12);
+    }
+  }
+}
+
 }  // namespace positioning_hidden_test
 }  // namespace abbe

@@ -49,6 +49,14 @@ class HiddenWorlds {
     return worlds;
   }
 
+  // The same, with a ball that is seated anew for each run, m; `stated` in the machine file.
+  HiddenWorlds WithSeats(double drawn, double stated) const {
+    HiddenWorlds worlds = *this;
+    worlds.machine_.linkage->seat = drawn;
+    worlds.setup_.linkage->tolerance.seat = stated;
+    return worlds;
+  }
+
   // The same, without white noise of probes and encoders, for a test that adds its own.
   HiddenWorlds Quiet() const {
     HiddenWorlds worlds = WithoutCounts();

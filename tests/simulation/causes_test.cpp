@@ -169,7 +169,7 @@ TEST(Causes, WhatIsToldCanBeRecalled) {
   for (const Cause& cause : Causes()) {
     VectorXd coefficients = cause.plausible;
     for (Eigen::Index i = 0; i < coefficients.size(); ++i) coefficients[i] *= 1.0 + 0.5 * i;
-    const VectorXd shape = cause.shapes ? cause.shapes(scene).front() : VectorXd();
+    const VectorXd shape = cause.ShapesFor(scene, "X").front();
     for (const double sign : {1.0, -1.0}) {
       if (cause.IsBinary() && sign < 0.0) continue;
       const VectorXd values = cause.ValuesOf(sign * coefficients, shape);
@@ -195,7 +195,7 @@ TEST(Causes, APlausibleSizeIsInTheRangeOfItsKeys) {
   const Trace trace = ToAndFro();
   const Scene scene{{&trace}, Eigen::Vector3d::Constant(0.06)};
   for (const Cause& cause : Causes()) {
-    for (const VectorXd& shape : cause.shapes ? cause.shapes(scene) : std::vector{VectorXd()}) {
+    for (const VectorXd& shape : cause.ShapesFor(scene, "X")) {
       const VectorXd values = cause.ValuesOf(cause.plausible, shape);
       for (std::size_t i = 0; i < cause.keys.size(); ++i) {
         const CauseKey& key = cause.keys[i];
@@ -274,7 +274,7 @@ TEST(Causes, FollowsWhatTheySayThatTheyFollow) {
     for (const Cause& cause : Causes()) {
       const auto objects = cause.objects(scene);
       if (!cause.columns || objects.empty()) continue;
-      const VectorXd shape = cause.shapes ? cause.shapes(scene).back() : VectorXd();
+      const VectorXd shape = cause.ShapesFor(scene, "X").back();
       bool is_seen = false, by_time = false, by_warmth = false;
       for (const Object& object : objects) {
         const auto columns = cause.columns(trace, object, shape);

@@ -65,7 +65,7 @@ TEST(PathDisplacement, OfAllCausesThoseActThatFollowThePath) {
   const Scene scene{{&trace}, Eigen::Vector3d::Constant(0.06)};
   int acting = 0;
   for (const Cause& cause : Causes()) {
-    const VectorXd shape = cause.shapes ? cause.shapes(scene).front() : VectorXd();
+    const VectorXd shape = cause.ShapesFor(scene, "X").front();
     const VectorXd values = cause.ValuesOf(cause.plausible, shape);
     for (const Object& object : cause.objects(scene)) {
       const ModelledCause modelled{&cause, object, values, {}, {}};
@@ -77,7 +77,8 @@ TEST(PathDisplacement, OfAllCausesThoseActThatFollowThePath) {
       acting += acts;
     }
   }
-  EXPECT_EQ(acting, 15);  // play, spike and lag of three axes, mismatch and load of three pairs
+  EXPECT_EQ(acting,
+            18);  // both plays, spike and lag of three axes, mismatch and load of three pairs
 }
 
 TEST(PathDisplacement, InstrumentsTheMapAndDriftDoNothing) {
