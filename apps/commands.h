@@ -8,6 +8,7 @@
 namespace abbe::apps {
 
 void AddRig(CLI::App& program, int& exit_code);
+void AddAlign(CLI::App& program, int& exit_code);
 void AddSweep(CLI::App& program, int& exit_code);
 void AddRecord(CLI::App& program, int& exit_code);
 void AddReduce(CLI::App& program, int& exit_code);
@@ -25,11 +26,12 @@ void AddSimulate(CLI::App& program, int& exit_code);
 void AddConvert(CLI::App& program, int& exit_code);
 void AddSensitivity(CLI::App& program, int& exit_code);
 void AddHistory(CLI::App& program, int& exit_code);
+void AddLive(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands = std::to_array<AddCommand>(
-    {AddRig, AddSweep, AddRecord, AddReduce, AddCalibrate, AddCircle, AddPath, AddHarmonics,
-     AddPlate, AddFuse, AddDiagnose, AddCauses, AddExport, AddCorrect, AddSimulate, AddConvert,
-     AddSensitivity, AddHistory, AddReport});
+    {AddRig,     AddAlign,     AddSweep,   AddRecord,      AddReduce,   AddCalibrate, AddCircle,
+     AddPath,    AddHarmonics, AddPlate,   AddFuse,        AddDiagnose, AddCauses,    AddExport,
+     AddCorrect, AddSimulate,  AddConvert, AddSensitivity, AddHistory,  AddReport,    AddLive});
 
 }  // namespace abbe::apps

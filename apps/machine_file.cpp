@@ -35,7 +35,8 @@ const relm::LinkageSettings& MachineFile::Linkage() const {
 MachineFile ReadMachineFile(const std::filesystem::path& path) {
   const settings::Document document = settings::Document::Read(path);
   const settings::Table root = document.Root();
-  MachineFile file{document, probes::ReadSweepSetup(root), {}, {}, {}};
+  MachineFile file{document, probes::ReadSweepSetup(root),   {}, {},
+                   {},       probes::ReadAlignSettings(root)};
   if (root.Has("devices")) file.devices = hal::ReadDevices(root.Child("devices"));
   const settings::Table sweep = root.Child("sweep");
   for (const char axis : {'X', 'Y', 'Z'}) {

@@ -8,6 +8,7 @@
 
 #include "hal/device_settings.h"
 #include "hal/sweep_plan.h"
+#include "probes/align_settings.h"
 #include "probes/sweep_reduction.h"
 #include "relm/linkage_settings.h"
 #include "settings/document.h"
@@ -20,6 +21,7 @@ struct MachineFile {
   hal::DevicesSettings devices;                  // none if the file has no table [devices]
   std::map<char, hal::SweepPlan> sweep_plans;    // by axis, one for each table [sweep.X]
   std::optional<relm::LinkageSettings> linkage;  // of the table [linkage], if any
+  probes::AlignSettings align;                   // of the table [align]
 
   // InputError naming the file when it has no [sweep.AXIS].
   const hal::SweepPlan& SweepPlanOf(char axis) const;

@@ -13,6 +13,7 @@
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/interrupt.h"
+#include "apps/live_view.h"
 #include "apps/machine_file.h"
 #include "apps/plausible_channels.h"
 #include "apps/progress.h"
@@ -34,6 +35,7 @@ struct RecordCommand {
   std::optional<int> program;
   bool passes_only = false;
   bool quiet = false;
+  LiveOptions live;
 };
 
 // Keeps the requested devices only.
@@ -67,7 +69,8 @@ void RequireForOptions(const RecordCommand& options, const hal::OpenedDevices& d
   }
 }
 
-hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile& file) {
+hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile& file,
+                                 LiveView* view) {
   hal::SteadyClock clock(options.clock_speed);
   bool opened = false;  // an earlier failure is thrown
   const hal::OpenedDevices devices =
@@ -79,12 +82,16 @@ hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile
   source.Require(1, clock, file.devices.rate);
   const auto& channels = source.channels();
   RequireForOptions(options, devices);
-  const auto writer = recording::Writer::Create(
-      options.out,
-      hal::RecordHeader({file.sweep_setup.machine.name, recording::UtcNow(), devices.transport},
-                        channels) +
-          ProtocolText(file.document, options.operator_name),
-      hal::RecordColumns(channels));
+  const auto columns = hal::RecordColumns(channels);
+  const auto writer = Watched(
+      view,
+      recording::Writer::Create(
+          options.out,
+          hal::RecordHeader({file.sweep_setup.machine.name, recording::UtcNow(), devices.transport},
+                            channels) +
+              ProtocolText(file.document, options.operator_name),
+          columns),
+      columns, options.out);
   const bool endless = std::isinf(options.seconds);
   Progress progress("record", options.quiet || endless);
   hal::RecordOptions record;
@@ -92,14 +99,16 @@ hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile
   record.seconds = options.seconds;
   record.passes_only = options.passes_only;
   record.stopped = [] { return InterruptFlag().load(); };
-  if (!endless) {
-    const auto total = static_cast<std::size_t>(std::ceil(options.seconds));
-    record.progress = [&progress, total](double elapsed_s, const std::string& fault) {
-      progress.Show(static_cast<std::size_t>(elapsed_s), total, fault);
-    };
-  } else if (!options.quiet) {
-    fmt::print(stderr, "recording until Ctrl-C\n");
-  }
+  const std::size_t total = endless ? 0 : static_cast<std::size_t>(std::ceil(options.seconds));
+  LiveState shown;
+  record.progress = [&](double elapsed_s, const std::string& fault) {
+    const auto done = static_cast<std::size_t>(elapsed_s);
+    if (!endless) progress.Show(done, total, fault);
+    if (view == nullptr || (done == shown.done && fault == shown.fault)) return;
+    shown = {done, total, elapsed_s / options.clock_speed, "Recording", fault};
+    view->Show(shown);
+  };
+  if (endless && !options.quiet) fmt::print(stderr, "recording until Ctrl-C\n");
   if (options.program) devices.start_cycle(*options.program);
   return hal::Record(source, clock, *writer, record);
 }
@@ -109,7 +118,11 @@ int Record(const RecordCommand& options) {
   Select(options, file.devices);
   file.RequireDevices();
   InterruptFlag();
-  const hal::RecordOutcome outcome = RecordDevices(options, file);
+  const auto folder = std::filesystem::absolute(options.out).parent_path();
+  const auto view =
+      OpenLive(options.live, {.title = "Recording", .folder = folder, .ranges = GapRanges(file)});
+  const hal::RecordOutcome outcome = RecordDevices(options, file, view.get());
+  if (view) view->End("Finished");
   if (!outcome.worst_channel.empty()) {
     fmt::print(stderr, "abbe: {}: {} of {} rows are flagged; {}{}{}\n", options.out.string(),
                outcome.flagged, outcome.rows, outcome.worst_channel,
@@ -152,6 +165,7 @@ void AddRecord(CLI::App& program, int& exit_code) {
       ->check(CLI::Range(1, 65535));
   command->add_flag("--passes-only", options->passes_only,
                     "no rows while the channel `pass` is 0: the way to the path and back");
+  AddLiveOptions(*command, options->live);
   command->add_flag("--quiet", options->quiet, "print nothing but problems");
   command->footer(
       "Example: abbe record mill.toml --devices machine,linkage --seconds 60 -o circle.csv");

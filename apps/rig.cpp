@@ -17,6 +17,7 @@
 #include "apps/result_file.h"
 #include "apps/rig_compare.h"
 #include "apps/rig_course.h"
+#include "apps/rig_hands.h"
 #include "hal/device_settings.h"
 #include "hal/sweep_recorder.h"
 #include "recording/instant.h"
@@ -43,6 +44,7 @@ struct RigOptions {
   std::filesystem::path truth, ready_file, out;
   std::string start, axis, length, mounting, campaign;
   bool reduced = false;
+  bool hands = false;
   std::vector<std::string> hide;
   CourseRequest course;
   bool plate = false, both_ways = false;
@@ -143,6 +145,7 @@ class Served {
   Served& operator=(const Served&) = delete;
 
   int port() const { return registers_.port(); }
+  rig::LiveMachine& machine() { return machine_; }
   std::uint64_t requests() const { return registers_.requests(); }
   std::string MapText() const {
     std::string text =
@@ -197,12 +200,16 @@ int Serve(const RigOptions& options) {
   }
   const auto& interrupted = InterruptFlag();
   const Rig rig(options);
-  const Served served(rig, options);
+  Served served(rig, options);
+  RigHands hands;
   fmt::print("rig of {}, seed {}, {:g} times real time: {}Ctrl-C ends it.\n",
              rig.world.settings().name, options.seed, options.speed, served.MapText());
   std::fflush(stdout);
   if (!options.ready_file.empty()) WriteReadyFile(options.ready_file, served.port());
-  while (!interrupted) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  while (!interrupted) {
+    if (options.hands) hands.Poll(served.machine());
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
   fmt::print("rig: answered {} requests", served.requests());
   if (options.can) fmt::print(" and {} SYNCs", served.syncs());
   fmt::print("\n");
@@ -308,6 +315,10 @@ void AddRig(CLI::App& program, int& exit_code) {
   AddCourseOptions(*rig, options->course);
   rig->add_option("--start", options->start, "Sweep this axis, or run the course, at once")
       ->check(CLI::IsMember({"X", "Y", "Z", "course"}));
+  rig->add_flag(
+      "--hands", options->hands,
+      "Move axes and turn screws by lines of standard input: move X 60, turn SCREW -0.35, "
+      "head Y");
   rig->add_option("--ready-file", options->ready_file, "Write the port here when listening");
   rig->footer(
       "Example: abbe rig --machine machines/demo_mill.toml --seed 7 --port 1502 --speed 10\n"

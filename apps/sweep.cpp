@@ -12,8 +12,11 @@
 #include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/doubted_sweep.h"
+#include "apps/growing_sweep.h"
 #include "apps/interrupt.h"
+#include "apps/live_view.h"
 #include "apps/machine_file.h"
+#include "apps/mounting_file.h"
 #include "apps/plausible_channels.h"
 #include "apps/progress.h"
 #include "apps/protocol.h"
@@ -39,6 +42,7 @@ struct SweepCommand {
   bool hdf5 = false;
   bool prompt = false;
   bool quiet = false;
+  LiveOptions live;
 };
 
 // OUT/sweep_X.csv, or the first of sweep_X_2.csv, sweep_X_3.csv ... that is free: nothing measured
@@ -74,7 +78,8 @@ std::string NoteOf(const hal::SweepPlan& plan, const hal::SweepProgress& progres
 }
 
 hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
-                         const hal::SweepPlan& plan, const std::filesystem::path& path) {
+                         const hal::SweepPlan& plan, const std::filesystem::path& path,
+                         LiveView* view) {
   hal::SteadyClock clock(options.clock_speed);
   const bool operator_asks = options.prompt;
   bool opened = false;  // an earlier failure is thrown
@@ -88,14 +93,21 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
   for (const std::string& warning : source.Require(kFirstReadings, clock, file.devices.rate)) {
     fmt::print(stderr, "abbe: {}\n", warning);
   }
+  // An alignment into the same folder says the set-up, unless another is named.
+  const MountingFile aligned = ReadMounting(options.out).value_or(MountingFile{});
+  const bool as_aligned = options.mounting.empty() || options.mounting == aligned.id;
   const hal::SweepAbout about{.machine = file.sweep_setup.machine.name,
                               .started = recording::UtcNow(),
-                              .mounting = options.mounting,
-                              .more = ProtocolText(file.document, options.operator_name),
+                              .mounting = as_aligned ? aligned.id : options.mounting,
+                              .more = (as_aligned ? AlignedText(aligned, plan.axis) : "") +
+                                      ProtocolText(file.document, options.operator_name),
                               .transport = devices.transport};
   const auto& channels = source.channels();
-  const auto writer = recording::Writer::Create(path, hal::SweepHeader(plan, about, channels),
-                                                hal::SweepColumns(channels));
+  const auto columns = hal::SweepColumns(channels);
+  const auto writer = Watched(
+      view, recording::Writer::Create(path, hal::SweepHeader(plan, about, channels), columns),
+      columns, path);
+  GrowingSweep growing(view, plan, file.sweep_setup, path);
 
   Progress progress(fmt::format("sweep {}", plan.axis), options.quiet || operator_asks);
   hal::SweepOptions sweep;
@@ -103,6 +115,11 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
   sweep.stopped = [] { return InterruptFlag().load(); };
   sweep.progress = [&](const hal::SweepProgress& at) {
     progress.Show(at.visits_done, at.visits_total, NoteOf(plan, at));
+    growing.VisitsDone(at.visits_done);
+    if (view != nullptr) {
+      view->Show({at.visits_done, at.visits_total, at.elapsed_s / options.clock_speed,
+                  NoteOf(plan, at), at.fault});
+    }
   };
   if (operator_asks) {
     sweep.prompt = [&](const hal::Visit& visit) { return AskOperator(plan, visit); };
@@ -150,7 +167,13 @@ int Sweep(const SweepCommand& options) {
                                  options.out.string(), error.message()));
   }
   const std::filesystem::path path = FreeName(options);
-  const hal::SweepOutcome outcome = Record(options, file, plan, path);
+  const auto view = OpenLive(options.live, {.title = fmt::format("Sweep {}", plan.axis),
+                                            .folder = options.out,
+                                            .ranges = GapRanges(file)});
+  const hal::SweepOutcome outcome = Record(options, file, plan, path, view.get());
+  if (outcome.end != hal::SweepEnd::kComplete && view) {
+    view->End(fmt::format("Ended early: {}", hal::NameOf(outcome.end)));
+  }
   RefuseUnfinished(outcome, path);
   WarnOfLackingVisits(outcome, plan);
 
@@ -162,6 +185,7 @@ int Sweep(const SweepCommand& options) {
   auto beside = path;
   WriteResult(json, options.json.empty() ? beside.replace_extension(".json")
                                          : std::filesystem::path(options.json));
+  if (view) view->End("Finished");
   if (!options.quiet) {
     fmt::print("{}", SweepTable(result));
     if (causes.Active()) fmt::print("{}\n", causes.Line());
@@ -196,6 +220,7 @@ void AddSweep(CLI::App& program, int& exit_code) {
       ->add_option("--clock-speed", options->clock_speed,
                    "for a virtual machine that runs faster by this factor")
       ->check(CLI::PositiveNumber);
+  AddLiveOptions(*command, options->live);
   command->add_flag("--quiet", options->quiet, "print nothing but problems");
   command->footer("Example: abbe sweep --axis X --machine mill.toml --out measured");
   command->callback([options, &exit_code] { exit_code = Sweep(*options); });

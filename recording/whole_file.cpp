@@ -46,8 +46,9 @@ fs::path Followed(fs::path path) {
 }
 
 // First words of the TOML files that abbe writes.
-constexpr std::array<std::string_view, 3> kOwn{"# An error map", "# A calibration of the linkage",
-                                               "# What the simulation of this machine lacked"};
+constexpr std::array<std::string_view, 4> kOwn{"# An error map", "# A calibration of the linkage",
+                                               "# What the simulation of this machine lacked",
+                                               "# The set-up of head and target"};
 
 // The kind of a file in words, by how it begins; a command always writes the same beginning.
 std::string KindOf(std::string_view begin) {

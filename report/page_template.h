@@ -6,6 +6,8 @@
 
 namespace abbe::report {
 
+// Placeholder in the policy of the page, of the sources that it may connect to.
+inline constexpr std::string_view kConnectMark = "@@connect@@";
 // Placeholder of the results, between the tags of the script element "results".
 inline constexpr std::string_view kResultsMark = "@@results@@";
 

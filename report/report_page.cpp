@@ -73,13 +73,22 @@ std::string ScriptText(const Json& value) {
   return safe;
 }
 
-std::string Compose(const Json& content) {
+// `connect`: what the policy of the page adds.
+std::string Compose(const Json& content, std::string_view connect = "") {
   const std::string_view page = PageTemplate();
-  const std::size_t mark = page.find(kResultsMark);
-  std::string composed(page.substr(0, mark));
+  const std::size_t policy = page.find(kConnectMark);
+  const std::size_t mark = page.find(kResultsMark, policy);
+  std::string composed(page.substr(0, policy));
+  composed += connect;
+  composed += page.substr(policy + kConnectMark.size(), mark - policy - kConnectMark.size());
   composed += ScriptText(content);
   composed += page.substr(mark + kResultsMark.size());
   return composed;
+}
+
+std::string NameOfFolder(const fs::path& folder) {
+  const fs::path name = fs::absolute(folder).lexically_normal();
+  return (name.has_filename() ? name : name.parent_path()).filename().string();
 }
 
 }  // namespace
@@ -106,12 +115,25 @@ Report ComposeReport(const fs::path& folder) {
         folder.string(), report.notes.size(), folder.string(), (folder / "result.json").string()));
   }
   report.results = results.size();
-  const fs::path name = fs::absolute(folder).lexically_normal();
-  report.page =
-      Compose({{"folder", (name.has_filename() ? name : name.parent_path()).filename().string()},
-               {"results", std::move(results)},
-               {"notes", std::move(left_out)}});
+  report.page = Compose({{"folder", NameOfFolder(folder)},
+                         {"results", std::move(results)},
+                         {"notes", std::move(left_out)}});
   return report;
+}
+
+ResultFile ReadResultFile(const fs::path& file) {
+  const Json value = ReadJson(file);
+  const std::string why = WhyForeign(value);
+  if (!why.empty()) return {"", why};
+  return {value.dump(-1, ' ', false, Json::error_handler_t::replace), ""};
+}
+
+std::string LivePage(const fs::path& folder, const std::string& live) {
+  return Compose({{"folder", NameOfFolder(folder)},
+                  {"results", Json::array()},
+                  {"notes", Json::array()},
+                  {"live", Json::parse(live)}},
+                 " connect-src 'self';");
 }
 
 }  // namespace abbe::report

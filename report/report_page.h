@@ -37,4 +37,15 @@ struct Report {
 // InputError when `folder` is not a folder or has no result.
 Report ComposeReport(const std::filesystem::path& folder);
 
+// One file of the folder, as the live page takes it.
+struct ResultFile {
+  std::string json;  // of a result: one line; empty where it is none
+  std::string note;  // why it is none
+};
+ResultFile ReadResultFile(const std::filesystem::path& file);
+
+// The page without results, which come from the server that it is loaded from. `live`: a JSON object
+// for the scripts, in one line (report/page/live.js).
+std::string LivePage(const std::filesystem::path& folder, const std::string& live);
+
 }  // namespace abbe::report

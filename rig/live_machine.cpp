@@ -1,7 +1,10 @@
 #include "rig/live_machine.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "failure/failure.h"
@@ -72,7 +75,8 @@ LiveMachine::LiveMachine(const World& world, std::function<double()> time,
       encoder_noise_(world.seed(), kEncoderNoiseStream,
                      linkage != nullptr ? linkage->linkage().settings().encoder_noise : 0.0),
       ball_(world.seed(), kBallStream,
-            linkage != nullptr ? linkage->linkage().settings().repeatability : 0.0) {
+            linkage != nullptr ? linkage->linkage().settings().repeatability : 0.0),
+      screws_(world.settings(), world.CornerOf(0)) {
   latest_.axes = StandingAt(RestOf(world.settings()));
   hidden_.Follow(0.0, latest_.axes.position, Vector3d::Zero());
   if (!course) return;
@@ -87,6 +91,7 @@ StartOutcome LiveMachine::Start(int program) {
   const Dynamics dynamics{settings.acceleration, settings.lag};
   motion_.reset();
   run_.reset();
+  jog_.reset();
   if (program == kCourseProgram && course_) {
     run_.emplace(*course_, CourseRun::Dynamics{dynamics.acceleration, dynamics.lag},
                  1.0 / settings.update_rate);
@@ -94,15 +99,57 @@ StartOutcome LiveMachine::Start(int program) {
   } else if (program >= 0 && program < kAxes && settings.sweeps[program]) {
     motion_.emplace(*settings.sweeps[program], dynamics, settings.travels[program].first);
     head_axis_ = program;
+    screws_.MountAt(world_.CornerOf(program));
     hidden_.Sweep(program);
   } else {
     return StartOutcome::kNoSuchProgram;
   }
+  latest_.axes = StandingAt(RestOf(settings));
   latest_.program = program;
   latest_.state = ProgramState::kRunning;
   started_ = latest_.tick;
   gaps_tick_.reset();
   return StartOutcome::kStarted;
+}
+
+const Moment& LiveMachine::LatestByHand() {
+  if (Latest().state == ProgramState::kRunning) {
+    throw InputError("a program runs; wait until it is done");
+  }
+  gaps_tick_.reset();
+  return latest_;
+}
+
+void LiveMachine::Jog(int axis, double position) {
+  const std::lock_guard lock(mutex_);
+  const auto& [first, last] = world_.settings().travels[axis];
+  if (position < first || position > last) {
+    throw InputError(fmt::format("{:.6g} mm is beyond the travel of {:c}, {:.6g} to {:.6g} mm",
+                                 1e3 * position, 'X' + axis, 1e3 * first, 1e3 * last));
+  }
+  const Moment& now = LatestByHand();
+  jog_ = {axis, now.axes.position[axis], position, now.axes.time};
+}
+
+void LiveMachine::Turn(std::string_view screw, double turns) {
+  const std::lock_guard lock(mutex_);
+  LatestByHand();
+  screws_.Turn(screw, turns);
+}
+
+void LiveMachine::InstallHead(int axis) {
+  const std::lock_guard lock(mutex_);
+  LatestByHand();
+  head_axis_ = axis;
+  hidden_.Sweep(axis);
+  screws_.MountAt(world_.CornerOf(axis));
+}
+
+void LiveMachine::JogOn(double time) {
+  if (!jog_) return;
+  const double way = std::min(std::abs(jog_->to - jog_->from), kRapid * (time - jog_->start));
+  latest_.axes.position[jog_->axis] = jog_->from + std::copysign(way, jog_->to - jog_->from);
+  latest_.axes.command = latest_.axes.position;
 }
 
 Moment LiveMachine::Now() {
@@ -119,6 +166,7 @@ const Moment& LiveMachine::Latest() {
     if (latest_.state == ProgramState::kRunning) {
       Advance(latest_);
     } else {
+      JogOn(time);
       hidden_.Follow(time, latest_.axes.position, Vector3d::Zero());
     }
     latest_.axes.time = time;
@@ -206,7 +254,8 @@ std::optional<double> LiveMachine::ReadingOf(std::string_view channel, const Mom
 
 const Readings& LiveMachine::GapsAt(const Moment& moment) {
   if (gaps_tick_ == moment.tick) return gaps_;
-  gaps_ = world_.ReadingsAt(head_axis_, moment.axes.position + hidden_.OffsetFor(Source::kGaps));
+  gaps_ = world_.ReadingsAt(head_axis_, moment.axes.position + hidden_.OffsetFor(Source::kGaps),
+                            screws_.Seat());
   for (int probe = 0; probe < kProbes; ++probe) {
     gaps_[probe] += noise_.OfProbe(probe, moment.tick, moment.axes.time);
   }

@@ -29,6 +29,7 @@
 #include "rig/motion.h"
 #include "rig/noise.h"
 #include "rig/record_course.h"
+#include "rig/target_screws.h"
 #include "rig/world.h"
 
 namespace abbe::rig {
@@ -57,6 +58,12 @@ class LiveMachine {
               std::optional<Course> course = {}, double cap_force = 0.0);
 
   StartOutcome Start(int program);
+  // By hand, while no program runs: moves an axis to a position of the control, 50 mm/s; turns a
+  // screw of the target, clockwise; installs the head as for the sweep of `axis`. InputError for a
+  // position beyond the travel, a screw that there is not, or while a program runs.
+  void Jog(int axis, double position);
+  void Turn(std::string_view screw, double turns);
+  void InstallHead(int axis);
   Moment Now();
 
   // The reading of a channel (rig_channel.h), in the unit of its name. Empty: the gap is out of the
@@ -69,7 +76,9 @@ class LiveMachine {
   std::optional<Eigen::Vector3d> EncodersNow();
 
  private:
-  const Moment& Latest();  // moves on to it
+  const Moment& Latest();        // moves on to it
+  const Moment& LatestByHand();  // InputError while a program runs
+  void JogOn(double time);
   void Advance(Moment& moment);
   void FollowSweep(std::uint64_t to);
   const Readings& GapsAt(const Moment& moment);
@@ -89,6 +98,12 @@ class LiveMachine {
   int head_axis_ = 0;
   Moment latest_;
   std::uint64_t started_ = 0;  // tick
+  struct JogMotion {
+    int axis;
+    double from, to, start;  // s
+  };
+  std::optional<JogMotion> jog_;
+  TargetScrews screws_;
   std::optional<SweepMotion> motion_;
   std::optional<CourseRun> run_;
   std::uint64_t run_ticks_ = 0;

@@ -155,6 +155,17 @@ void ReadNoise(const Table& target, const Table& noise, RigSettings& rig) {
   rig.drift_time = noise.Quantity("drift_time_s", {.fallback = 600.0, .above = 0.0});
 }
 
+void ReadScrews(const Table& screws, RigSettings& rig) {
+  for (const Table& table : screws.Named()) {
+    if (table.Text("body", "target") != "target") continue;  // the head of the rig has none
+    const auto place = table.Quantities("position_mm", 3);
+    rig.screws.push_back({table.key(),
+                          DirectionOf(table, "clockwise", table.Text("clockwise", "z")),
+                          {place[0], place[1], place[2]},
+                          table.Quantity("pitch_mm", {.at_least = 0.0})});
+  }
+}
+
 void ReadOwn(const Table& own, RigSettings& rig) {
   rig.acceleration = own.Quantity("acceleration_mm_s2", {.fallback = 200.0, .above = 0.0});
   rig.lag = own.Quantity("lag_ms", {.fallback = 15.0, .above = 0.0});
@@ -183,6 +194,7 @@ RigSettings ReadRigSettings(const Table& root) {
     rig.sweeps[axis] = hal::ReadSweepPlan(sweep, static_cast<char>('X' + axis));
   }
   ReadNoise(root.Child("target"), root.Child("noise"), rig);
+  ReadScrews(root.Child("align").Child("screw"), rig);
   ReadOwn(root.Child("rig"), rig);
   return rig;
 }

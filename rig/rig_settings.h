@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hal/sweep_plan.h"
 #include "settings/document.h"
@@ -44,6 +45,14 @@ struct ProbePlace {
   double range;   // largest gap
 };
 
+// A screw that the target rests on, or a fixed support (`pitch` 0): table [align.screw.NAME].
+struct TargetScrew {
+  std::string name;
+  Eigen::Vector3d direction;  // in M: of the target there, turned clockwise
+  Eigen::Vector3d place;      // from the corner of the target
+  double pitch;               // a turn
+};
+
 // The pose of the head for the sweep of one axis.
 struct HeadPlace {
   Eigen::Matrix3d rotation;  // columns u, s, n in M
@@ -67,6 +76,7 @@ struct RigSettings {
   std::array<std::optional<hal::SweepPlan>, kAxes> sweeps;  // of [sweep]: those that it has
   double probe_position, installation_angle, installation_offset, gain;  // standard deviations
 
+  std::vector<TargetScrew> screws;
   double form, form_length;  // of the target's faces
   double target_squareness, u_target_squareness;
   double white, drift, drift_time;  // noise of one reading of one probe

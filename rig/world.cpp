@@ -47,12 +47,17 @@ World::World(const RigSettings& settings, std::uint64_t seed, HiddenEffects hidd
   for (int axis = 0; axis < kAxes; ++axis) heads_.push_back(Install(axis));
 }
 
+Eigen::Vector3d World::CornerOf(int axis) const {
+  const HeadPlace& place = settings_.head[axis];
+  return place.position - settings_.TargetTravel(settings_.StartOf(axis)) +
+         head_and_target_.target_shift * place.rotation.col(0);
+}
+
 World::InstalledHead World::Mount(int axis, HeadPlace& place) const {
   const Eigen::Vector3d start = settings_.StartOf(axis);
   place = settings_.head[axis];
   const Eigen::Vector3d along = place.rotation.col(0);
-  Eigen::Vector3d corner = place.position - settings_.TargetTravel(start);
-  corner += head_and_target_.target_shift * along;
+  const Eigen::Vector3d corner = CornerOf(axis);
   place.position -= settings_.HeadTravel(start);
   if (head_and_target_.head_turned) place.rotation.leftCols<2>() *= -1.0;
   InstalledHead head{DrawInstallation(settings_, axis, seed_, head_and_target_.number), {}, {}};
@@ -129,8 +134,9 @@ Displacement World::PoseOfHead(const Eigen::Vector3d& command) const {
 }
 
 std::array<World::Sight, kProbes> World::SightsOf(const InstalledHead& head,
-                                                  const Eigen::Vector3d& command) const {
-  const Displacement target = PoseOfTarget(command);
+                                                  const Eigen::Vector3d& command,
+                                                  const Displacement& seat) const {
+  const Displacement target = PoseOfTarget(command) * seat;
   const Displacement tool = PoseOfHead(command);
   // The head in the frame of the target.
   const Eigen::Matrix3d back = target.rotation.transpose();
@@ -154,15 +160,16 @@ double World::ResponseTo(const Sight& sight, int probe) const {
   return middle + (1.0 + parts_.probes[probe].gain) * (gap - middle);
 }
 
-Readings World::TrueGaps(int axis, const Eigen::Vector3d& command) const {
-  const auto sights = SightsOf(heads_[axis], command);
+Readings World::TrueGaps(int axis, const Eigen::Vector3d& command, const Displacement& seat) const {
+  const auto sights = SightsOf(heads_[axis], command, seat);
   Readings gaps{};
   for (int probe = 0; probe < kProbes; ++probe) gaps[probe] = sights[probe].gap;
   return gaps;
 }
 
-Readings World::ReadingsAt(int axis, const Eigen::Vector3d& command) const {
-  const auto sights = SightsOf(heads_[axis], command);
+Readings World::ReadingsAt(int axis, const Eigen::Vector3d& command,
+                           const Displacement& seat) const {
+  const auto sights = SightsOf(heads_[axis], command, seat);
   Readings readings{};
   for (int probe = 0; probe < kProbes; ++probe) readings[probe] = ResponseTo(sights[probe], probe);
   return parts_.response.any ? ResponseOf(heads_[axis], readings) : readings;

@@ -62,9 +62,14 @@ class World {
   Displacement PoseOfTarget(const Eigen::Vector3d& command) const;
   Displacement PoseOfHead(const Eigen::Vector3d& command) const;
 
-  // With the head installed for the sweep of `axis`. m; without noise.
-  Readings TrueGaps(int axis, const Eigen::Vector3d& command) const;
-  Readings ReadingsAt(int axis, const Eigen::Vector3d& command) const;
+  // The corner of the target, with all axes at zero, as it stands for the sweep of `axis`.
+  Eigen::Vector3d CornerOf(int axis) const;
+
+  // With the head installed for the sweep of `axis`, and the target displaced by `seat` since
+  // (target_screws.h). m; without noise.
+  Readings TrueGaps(int axis, const Eigen::Vector3d& command, const Displacement& seat = {}) const;
+  Readings ReadingsAt(int axis, const Eigen::Vector3d& command,
+                      const Displacement& seat = {}) const;
 
  private:
   // The head as installed for the sweep of one axis, and its two faces of the target.
@@ -88,8 +93,8 @@ class World {
     double tilt;  // rad, between the probe's axis and the face's normal
   };
 
-  std::array<Sight, kProbes> SightsOf(const InstalledHead& head,
-                                      const Eigen::Vector3d& command) const;
+  std::array<Sight, kProbes> SightsOf(const InstalledHead& head, const Eigen::Vector3d& command,
+                                      const Displacement& seat = {}) const;
   double ResponseTo(const Sight& sight, int probe) const;
 
   RigSettings settings_;

@@ -1,6 +1,7 @@
 // Puts the page together: node compose.mjs NODE_MODULES OUTPUT SCRIPT...
-// One HTML document with styles, fonts, Plotly and our scripts inside; the results come later, at
-// @@results@@.
+// One HTML document with styles, fonts, Plotly, uPlot and our scripts inside, and a policy that lets no
+// other script run; the results come later, at @@results@@, and the page's own server at @@connect@@.
+import {createHash} from 'node:crypto';
 import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 
@@ -19,11 +20,16 @@ function fontFace(weight) {
 const inScript = (text) => text.replaceAll(/<\/(?=script)/gi, '<\\/');
 
 const parts = {
-  style: [400, 600].map(fontFace).join('\n') + '\n' + own('page.css'),
+  style: [400, 600].map(fontFace).join('\n') + '\n' +
+      readFileSync(join(packages, 'uplot/dist/uPlot.min.css'), 'utf8') + '\n' + own('page.css'),
   plotly: inScript(readFileSync(join(packages, 'plotly.js-dist-min/plotly.min.js'), 'utf8')),
+  uplot: inScript(readFileSync(join(packages, 'uplot/dist/uPlot.iife.min.js'), 'utf8')),
   scripts: inScript(`(() => {\n'use strict';\n${
       scripts.map((file) => readFileSync(file, 'utf8')).join('\n')}})();`),
 };
-const page =
-    own('page.html').replaceAll(/@@(style|plotly|scripts)@@/g, (mark, name) => parts[name]);
+parts.hashes = [parts.plotly, parts.uplot, parts.scripts]
+                   .map((text) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`)
+                   .join(' ');
+const page = own('page.html').replaceAll(
+    /@@(style|plotly|uplot|scripts|hashes)@@/g, (mark, name) => parts[name]);
 writeFileSync(output, page);

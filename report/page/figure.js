@@ -92,13 +92,13 @@ function valuesTable(caption, values) {
 function makeFigure(
     {name, code: symbol = '', unit = '', about, width = 'full', height = 260, draw, values}) {
   const plot = element(
-      'div', {class: 'plot', role: 'img', 'aria-label': about, style: `height:${height}px`});
+      'div', {class: 'plot', role: 'group', 'aria-label': about, style: `height:${height}px`});
   const figure = {plot, width, height, drawn: false};
   figure.redraw = (size = null) => {
     const {data, layout} = draw(palette());
     const sized = size ? {...layout, autosize: false, width: size, height} : layout;
     figure.drawn = true;
-    return Plotly.react(plot, data, sized, FIGURE_OPTIONS);
+    return Plotly.react(figure.plot, data, sized, FIGURE_OPTIONS);
   };
   figures.push(figure);
   figure.node = element(

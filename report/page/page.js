@@ -96,15 +96,20 @@ function writeTitle(folder, sections) {
 }
 
 async function showReport() {
-  const {folder, results, notes} = JSON.parse(document.getElementById('results').textContent);
+  const content = JSON.parse(document.getElementById('results').textContent);
+  const {folder, results, notes} = content;
   const sections = orderedSections(results);
   writeTitle(folder, sections);
   const contents = document.getElementById('contents');
-  contents.append(
-      element('p', {class: 'contents-title', 'aria-hidden': 'true'}, 'Contents'),
-      contentsList(sections));
-  document.getElementById('content').append(
-      overviewSection(sections, notes), ...sections.map(safeSection));
+  if (content.live) {
+    startLive(content);
+  } else {
+    contents.append(
+        element('p', {class: 'contents-title', 'aria-hidden': 'true'}, 'Contents'),
+        contentsList(sections));
+    document.getElementById('content').append(
+        overviewSection(sections, notes), ...sections.map(safeSection));
+  }
   connectThemeButton(document.getElementById('theme'), redrawFigures);
   connectPrinting();
   document.getElementById('print').addEventListener('click', () => print());

@@ -27,7 +27,13 @@ COMMAND = re.compile(r"\s*((?:build/release/apps/)?abbe\s.*|echo\s.*)")
 
 # (page, beginning of the line): why it does not run here.
 NOT_HERE = {
+    ("README.md", "build/release/apps/abbe align"): "waits for a machine: align_test.py",
     ("README.md", "build/release/apps/abbe sweep"): "waits for a machine: sweep_test.py",
+    ("align.md", "abbe align"): "waits for a machine: align_test.py",
+    ("align.md", "abbe rig"): "serves until Ctrl-C",
+    ("live.md", "abbe sweep"): "waits for a machine: tests/report/live.test.mjs",
+    ("live.md", "abbe record"): "waits for a machine: record_test.py",
+    ("live.md", "abbe live"): "serves until Ctrl-C: live_test.py",
     ("sweep.md", "abbe sweep"): "waits for a machine: sweep_test.py",
     ("devices.md", "abbe record"): "waits for a machine: record_test.py",
     ("virtual-rig.md", "abbe rig --machine machines/demo_mill.toml --seed 7 --port"): "serves until Ctrl-C",

@@ -20,7 +20,7 @@ std::string GeneralName(const std::string& path) {
   std::string name = std::regex_replace(path, std::regex("\\b(axis|sweep)\\.[XYZ]\\b"), "$1.AXIS");
   name = std::regex_replace(name, std::regex("axis_[XYZ]"), "axis_AXIS");
   name = std::regex_replace(name, std::regex("probe_[a-e]\\."), "probe_P.");
-  name = std::regex_replace(name, std::regex("devices\\.\\[\\]"), "devices.NAME");
+  name = std::regex_replace(name, std::regex("(devices|screw)\\.\\[\\]"), "$1.NAME");
   // Limits: every figure of every object.
   name = std::regex_replace(name, std::regex("^limits\\.\\[\\]\\.u95_urad$"),
                             "limits.OBJECT.QUANTITY_u95_urad");

@@ -33,8 +33,9 @@ ARROWS = {
     "diagnosis": "failure standards settings recording estimation machine probes relm simulation fusion",
     "history": "failure standards settings recording",
     "report": "failure",
+    "live": "failure recording report",
     "rig": "failure random settings recording hal",
-    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis history report rig",
+    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis history report live rig",
 }
 
 # header of a library or of a transport -> the files that may include it; everybody else goes through them.
@@ -50,6 +51,7 @@ GATES = {
     "toml++/": r"(settings|recording)/.*\.cpp",
     "soci/": r"history/database\.cpp",
     "openssl/": r"recording/file_hash\.cpp",
+    "httplib.h": r"live/page_server\.cpp",
 }
 
 TRANSPORT = re.compile(r'\{"([\w-]+)", Read\w+\}')  # a line of hal/transports.cpp

@@ -18,7 +18,7 @@ function fetchPackages(folder) {
   const here = dirname(fileURLToPath(import.meta.url));
   const textOf = (file) => existsSync(file) ? readFileSync(file, 'utf8') : '';
   const wanted = textOf(join(here, 'package-lock.json'));
-  if (existsSync(join(folder, 'node_modules/playwright-core/package.json')) &&
+  if (existsSync(join(folder, 'node_modules/axe-core/package.json')) &&
       textOf(join(folder, 'package-lock.json')) === wanted) {
     return;
   }

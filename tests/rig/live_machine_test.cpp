@@ -137,5 +137,33 @@ TEST(LiveMachine, AProbeWarmsUpSinceTheRigIsOn) {
   }
 }
 
+TEST_F(Running, AJogMovesAnAxisByHand) {
+  machine_.Jog(1, 0.02);
+  now_ = 0.1;  // 50 mm/s
+  EXPECT_NEAR(machine_.Now().axes.position.y(), 0.005, 1e-9);
+  now_ = 1.0;
+  EXPECT_EQ(machine_.Now().axes.position, Eigen::Vector3d(0.0, 0.02, 0.0));
+  EXPECT_THROW(machine_.Jog(1, 0.07), InputError);
+  ASSERT_EQ(machine_.Start(0), StartOutcome::kStarted);
+  EXPECT_THROW(machine_.Jog(1, 0.01), InputError);
+}
+
+// The three screws under the target, a quarter of a turn of 0.25 mm: the top gaps close by that.
+TEST_F(Running, ScrewsRaiseTheTarget) {
+  const auto gap = [&](const char* probe) {
+    double sum = 0.0;  // of many updates: noise of 20 nm
+    for (int i = 0; i < 400; ++i) {
+      now_ += 2e-3;
+      sum += *machine_.ReadingOf(probe, machine_.Now()) / 400.0;
+    }
+    return sum;
+  };
+  const double top = gap("probe_b_um"), side = gap("probe_d_um");
+  for (const char* screw : {"base_left", "base_right", "base_back"}) machine_.Turn(screw, 0.25);
+  EXPECT_NEAR(gap("probe_b_um") - top, -62.5, 0.2);
+  EXPECT_NEAR(gap("probe_d_um") - side, 0.0, 0.2);
+  EXPECT_THROW(machine_.Turn("top", 1.0), InputError);
+}
+
 }  // namespace live_machine_test
 }  // namespace abbe::rig
