@@ -1,13 +1,13 @@
-// A fit of runs that know their derivatives (remembering_run.h) and of the causes that are taken in.
+// A fit of runs that know their derivatives (remembering_run.h) and of causes that are taken in.
 //
-//   if (auto minimum = MinimumByChords(problem, 0.3)) ...       // empty: solve as usual
+//   const auto minimum = MinimumByChords(problem, 0.3);     // empty: solve as usual
 //
-// Gauss and Newton's method with J'J of the parameters as it was summed when J was made; of the causes
-// it is summed anew, which is little beside. Residuals and gradients are those of each step. Stops when
-// the next step is shorter than `settled` standard uncertainties (times the scatter of the rows, at most
-// ten); a step that does not lower the cost, or a point that cannot be simulated, is left to
-// estimation::Problem::Solve. Units: SI; rows whitened, of no robust loss. Shapes: parameters as in
-// estimation::Layout. Source: chord method, Kelley, Iterative Methods (1995), 5.4.
+// Gauss and Newton's method with J'J of the parameters as it was summed when J was made; of the
+// causes it is summed anew, which is little beside. Residuals and gradients are those of each step.
+// Stops when the next step is shorter than `settled` standard uncertainties (times the scatter of
+// the rows, at most ten); a step that does not lower the cost, or a point that cannot be simulated,
+// is left to estimation::Problem::Solve. Units: SI; rows whitened, of no robust loss. Shapes:
+// parameters as in estimation::Layout. Source: chord method, Kelley, Iterative Methods (1995), 5.4.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
 // A run that keeps its derivatives as long as they hold.
 //
-//   run.simulated = Remembering(run.simulated);
+//   run = Remembering(run);
 //
 // A diagnosis fits the same runs dozens of times, a few standard deviations apart, and derivatives
 // cost many times what values do. Values are always those at x. Derivatives, by parameters and of
@@ -8,8 +8,8 @@
 //
 //   |r(x) - r(x0) - J(x0) (x - x0)| < 0.03         whitened, all rows together
 //
-// Threads: any. Failure: that of the residual. Validity: J is then off by about 0.03 of what the step
-// is long in standard deviations, which moves a minimum by less than that share of one.
+// Threads: any. Failure: that of the residual. Validity: J is then off by about 0.03 of what the
+// step is long in standard deviations, which moves a minimum by less than that share of one.
 #pragma once
 
 #include <Eigen/Core>

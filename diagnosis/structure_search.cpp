@@ -250,8 +250,9 @@ Found Sharpened(const Fit& fit, Found found) {
 
 // A smooth function with as many terms as the data ask for.
 Found Finest(const Fit& fit, Found found) {
-  constexpr Index kMostTerms = 256;
-  for (Index terms = 2 * found.structure.terms; terms <= kMostTerms; terms *= 2) {
+  // At a shaft that turns evenly finer functions of time are the harmonics that causes make.
+  const Index most = found.structure.channel.instruments == kRim ? 64 : 256;
+  for (Index terms = 2 * found.structure.terms; terms <= most; terms *= 2) {
     std::vector<Structure> finer(2, found.structure);
     for (Structure& each : finer) each.terms = terms;
     finer.back().is_rough = true;
