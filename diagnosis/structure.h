@@ -11,11 +11,11 @@
 //   line       sine and cosine of `wave` times v
 //   interval   1 from `from` to `to`, 0 elsewhere
 //   product    of two variables "x*y": products of their Legendre polynomials of degree 1 and 2
-// Variables (variables.h) with a factor, as the direction of motion, have it in each term, and begin
-// with k = 0. What a cause does is left out: of an axis or a pivot over its own direction k = 0
-// (lost motion that is the same everywhere), of an axis over its own speed what changes sign with
-// it (a lag), of a probe over its own gap the line and the square (a gain, a characteristic), with
-// Legendre polynomials in place of cosines. Units: SI. Used to test what is left
+// Variables (variables.h) with a factor, as the direction of motion, have it in each term, and
+// begin with k = 0. What a cause does is left out: of an axis or a pivot over its own direction
+// k = 0 (lost motion that is the same everywhere), of an axis over its own speed what changes sign
+// with it (a lag), of a probe over its own gap the line and the square (a gain, a characteristic),
+// with Legendre polynomials in place of cosines. Units: SI. Used to test what is left
 // (structure_search.h) and to let something that is in no catalogue compete with the causes
 // (something_else.h).
 #pragma once

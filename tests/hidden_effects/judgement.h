@@ -71,8 +71,8 @@ inline void AddSizes(const Finding& finding, const rig::HiddenEffect& truth, Rat
   }
 }
 
-// Whether something that is left depends on this, or on one of these: a column of the recordings, or
-// the sum of two.
+// Whether something that is left depends on this, or one of these does: a column of the
+// recordings, or the sum of two.
 inline bool LivesIn(const Diagnosis& diagnosis, std::string columns) {
   const bool sensor = columns.ends_with("_c");
   for (const char* unit : {"_mm_min", "_mm", "_rad", "_s"}) {
