@@ -248,10 +248,12 @@ Found Sharpened(const Fit& fit, Found found) {
   return found;
 }
 
+// Where it turns evenly, finer functions of time and tuned waves are the harmonics that causes make.
+bool IsAtShaft(const Found& found) { return found.structure.channel.instruments == kRim; }
+
 // A smooth function with as many terms as the data ask for.
 Found Finest(const Fit& fit, Found found) {
-  // At a shaft that turns evenly finer functions of time are the harmonics that causes make.
-  const Index most = found.structure.channel.instruments == kRim ? 64 : 256;
+  const Index most = IsAtShaft(found) ? 64 : 256;
   for (Index terms = 2 * found.structure.terms; terms <= most; terms *= 2) {
     std::vector<Structure> finer(2, found.structure);
     for (Structure& each : finer) each.terms = terms;
@@ -347,7 +349,9 @@ Found Asked(const Fit& fit, const Structure& structure) { return Ask(fit, {struc
 Found Refined(const Fit& fit, Found found) {
   if (found.structure.form == Structure::Form::kInterval) return Sharpened(fit, std::move(found));
   if (found.structure.form == Structure::Form::kSmooth) return Finest(fit, std::move(found));
-  if (found.structure.form == Structure::Form::kLine) return Tuned(fit, std::move(found));
+  if (found.structure.form == Structure::Form::kLine && !IsAtShaft(found)) {
+    return Tuned(fit, std::move(found));
+  }
   return found;
 }
 
