@@ -206,16 +206,29 @@ std::string PeriodText(const Leftover& leftover) {
 
 bool IsOfAnInterval(const Leftover& leftover) { return leftover.to > leftover.from; }
 
+// Where other variables do as well, none of them is certain.
+std::string OthersText(const Leftover& leftover) {
+  std::string text;
+  for (const auto& other : leftover.one_of) {
+    const std::string where = other.object == leftover.object ? "" : " of " + other.object;
+    text += fmt::format("{}{}{}", text.empty() ? " or with one of these: " : ", ", other.variable,
+                        where);
+  }
+  return text;
+}
+
 std::string WhatItDoes(const Leftover& leftover) {
   if (leftover.variable == diagnosis::kScatter) return "scatters beyond its stated noise";
   if (leftover.variable == diagnosis::kAtRest) return "scatters where nothing moves";
   if (leftover.variable == diagnosis::kMemory) return "is correlated from one reading to the next";
   if (IsOfAnInterval(leftover)) {
     const auto unit = diagnosis::UnitOf(leftover.variable);
-    return fmt::format("is offset where {} is {:.4g} to {:.4g} {},", leftover.variable,
-                       leftover.from / unit.si, leftover.to / unit.si, unit.name);
+    return fmt::format("is offset where {} is {:.4g} to {:.4g} {},{}{}", leftover.variable,
+                       leftover.from / unit.si, leftover.to / unit.si, unit.name,
+                       OthersText(leftover), leftover.one_of.empty() ? "" : ",");
   }
-  return fmt::format("varies with {}{}", leftover.variable, PeriodText(leftover));
+  return fmt::format("varies with {}{}{}", leftover.variable, PeriodText(leftover),
+                     OthersText(leftover));
 }
 
 std::string WhatFollows(const Leftover& leftover) {
@@ -291,6 +304,9 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const HeldOutGain& gain) 
             {"amplitude", leftover.amplitude / leftover.unit.si},
             {"unit", leftover.unit.name},
             {"p_value", leftover.p_value}};
+    for (const auto& other : leftover.one_of) {
+      left["one_of"].push_back({{"variable", other.variable}, {"object", other.object}});
+    }
     if (!IsOfAnInterval(leftover)) continue;
     const auto unit = diagnosis::UnitOf(leftover.variable);
     left["from"] = leftover.from / unit.si;

@@ -7,6 +7,7 @@
 
 #include "diagnosis/extended_run.h"
 #include "diagnosis/invalid_readings.h"
+#include "diagnosis/remembering_run.h"
 #include "failure/failure.h"
 #include "recording/made_on.h"
 #include "simulation/kinds.h"
@@ -60,6 +61,7 @@ void Campaign::Add(recording::Recording recording) {
   std::move(prepared.notes.begin(), prepared.notes.end(), std::back_inserter(notes_));
   for (PreparedRun& run : prepared.runs) {
     run.simulated.loss = estimation::RobustLoss::None();
+    run.simulated = Remembering(std::move(run.simulated));
     runs_.push_back(std::move(run));
   }
   const simulation::Origin start = origin();
@@ -67,6 +69,14 @@ void Campaign::Add(recording::Recording recording) {
     FreeForCauses(scene(), run.simulated.blocks);
     if (run.trace.rows() > 0) simulation::CountFrom(start, run.trace);
   }
+  NumberRuns();
+}
+
+void Campaign::NumberRuns() {
+  std::vector<simulation::Trace*> in_time;
+  for (PreparedRun& run : runs_) in_time.push_back(&run.trace);
+  std::ranges::stable_sort(in_time, {}, &simulation::Trace::started);
+  for (int number = 0; simulation::Trace * trace : in_time) trace->number = number++;
 }
 
 simulation::Origin Campaign::origin() const {
@@ -86,7 +96,7 @@ bool Campaign::SetExcess(const std::vector<double>& excess, Change change) {
     const double ratio = excess[r] / run.excess;
     if (change == Change::kUp ? ratio < kMuchMore : ratio > kLess) continue;
     run.excess = excess[r];
-    run.simulated = run.with_excess(excess[r]);
+    run.simulated = Remembering(run.with_excess(excess[r]));
     FreeForCauses(scene(), run.simulated.blocks);
     changed = true;
   }
@@ -95,7 +105,8 @@ bool Campaign::SetExcess(const std::vector<double>& excess, Change change) {
 
 void Campaign::SetMemory(std::size_t run, const estimation::NoiseMemory& noise) {
   PreparedRun& prepared = runs_[run];
-  prepared.simulated = simulation::WithMemory(prepared.simulated, prepared.trace.time, noise);
+  prepared.simulated =
+      Remembering(simulation::WithMemory(prepared.simulated, prepared.trace.time, noise));
   prepared.excess *= noise.sd();
   prepared.memory = noise;
 }

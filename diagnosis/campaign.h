@@ -65,6 +65,8 @@ class Campaign {
     InvalidReadings readings;
   };
 
+  void NumberRuns();
+
   simulation::Instruments instruments_;
   machine::VolumetricModel model_;
   fusion::MachinePrior prior_;

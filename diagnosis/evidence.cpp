@@ -19,35 +19,6 @@ namespace {
 constexpr SizeRange kForms{0.01e-6, 10e-6, 1.1};  // m
 constexpr Index kColumnsAtOnce = 1024;            // so many share the derivatives of the simulation
 
-Score ScoreFrom(Candidate candidate, const Fit::Projection& projection) {
-  const auto& [S, g] = projection;
-  if (candidate.cause->IsRandomField()) {
-    const VectorXd usual = candidate.Plausible();
-    const double visible = std::sqrt(std::max(0.0, S.diagonal().dot(usual.cwiseAbs2())));
-    const DrawnSize size = SizeOfDraws(projection, kForms, candidate.shape[1]);
-    candidate.shape[0] = size.sd;
-    return {std::move(candidate), VectorXd::Zero(g.size()), MatrixXd::Zero(g.size(), g.size()),
-            size.log_evidence, visible};
-  }
-  const VectorXd plausible = candidate.Plausible();
-  if (candidate.cause->IsBinary()) {
-    return {candidate, VectorXd::Ones(1), MatrixXd::Zero(1, 1), g[0] - 0.5 * S(0, 0),
-            std::sqrt(std::max(0.0, S(0, 0)))};
-  }
-  // In units of what is plausible.
-  const MatrixXd scaled = plausible.asDiagonal() * S * plausible.asDiagonal();
-  const MatrixXd precision = scaled + MatrixXd::Identity(S.rows(), S.cols());
-  const Eigen::LLT<MatrixXd> factor(precision);
-  const VectorXd mean = factor.solve(VectorXd(plausible.asDiagonal() * g));
-  Score score{candidate, plausible.cwiseProduct(mean), {}, 0.0, 0.0};
-  score.covariance = plausible.asDiagonal() * factor.solve(MatrixXd::Identity(S.rows(), S.cols())) *
-                     plausible.asDiagonal();
-  const double log_determinant = 2.0 * MatrixXd(factor.matrixL()).diagonal().array().log().sum();
-  score.log_evidence = 0.5 * (mean.dot(plausible.cwiseProduct(g)) - log_determinant);
-  score.visible = std::sqrt(std::max(0.0, scaled.diagonal().maxCoeff()));
-  return score;
-}
-
 // Candidates with columns, together.
 void ScoreTogether(const Fit& fit, std::span<const Candidate> candidates,
                    std::vector<Score>& scores) {
@@ -99,6 +70,35 @@ DrawnSize SizeOfDraws(const Fit::Projection& projection, const SizeRange& sizes,
   }
   best.log_evidence += std::log(sum / count) - std::max(0.0, evidence(stated));
   return best;
+}
+
+Score ScoreFrom(Candidate candidate, const Fit::Projection& projection) {
+  const auto& [S, g] = projection;
+  if (candidate.cause->IsRandomField()) {
+    const VectorXd usual = candidate.Plausible();
+    const double visible = std::sqrt(std::max(0.0, S.diagonal().dot(usual.cwiseAbs2())));
+    const DrawnSize size = SizeOfDraws(projection, kForms, candidate.shape[1]);
+    candidate.shape[0] = size.sd;
+    return {std::move(candidate), VectorXd::Zero(g.size()), MatrixXd::Zero(g.size(), g.size()),
+            size.log_evidence, visible};
+  }
+  const VectorXd plausible = candidate.Plausible();
+  if (candidate.cause->IsBinary()) {
+    return {candidate, VectorXd::Ones(1), MatrixXd::Zero(1, 1), g[0] - 0.5 * S(0, 0),
+            std::sqrt(std::max(0.0, S(0, 0)))};
+  }
+  // In units of what is plausible.
+  const MatrixXd scaled = plausible.asDiagonal() * S * plausible.asDiagonal();
+  const MatrixXd precision = scaled + MatrixXd::Identity(S.rows(), S.cols());
+  const Eigen::LLT<MatrixXd> factor(precision);
+  const VectorXd mean = factor.solve(VectorXd(plausible.asDiagonal() * g));
+  Score score{candidate, plausible.cwiseProduct(mean), {}, 0.0, 0.0};
+  score.covariance = plausible.asDiagonal() * factor.solve(MatrixXd::Identity(S.rows(), S.cols())) *
+                     plausible.asDiagonal();
+  const double log_determinant = 2.0 * MatrixXd(factor.matrixL()).diagonal().array().log().sum();
+  score.log_evidence = 0.5 * (mean.dot(plausible.cwiseProduct(g)) - log_determinant);
+  score.visible = std::sqrt(std::max(0.0, scaled.diagonal().maxCoeff()));
+  return score;
 }
 
 std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candidates) {

@@ -34,6 +34,7 @@ struct SizeRange {
 };
 DrawnSize SizeOfDraws(const Fit::Projection& projection, const SizeRange& sizes, double stated);
 
+Score ScoreFrom(Candidate candidate, const Fit::Projection& projection);
 std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candidates);
 
 }  // namespace abbe::diagnosis

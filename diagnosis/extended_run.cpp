@@ -17,14 +17,15 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 using simulation::SimulatedRun;
 
-class ExtendedResidual : public estimation::Residual {
+class ExtendedResidual : public ExtendedRows {
  public:
-  // values = base - always - columns * (the last of x).
   ExtendedResidual(std::shared_ptr<const estimation::Residual> base, VectorXd always,
                    MatrixXd columns)
       : base_(std::move(base)), always_(std::move(always)), columns_(std::move(columns)) {}
 
   Index Rows() const override { return base_->Rows(); }
+  const std::shared_ptr<const estimation::Residual>& base() const override { return base_; }
+  const MatrixXd& columns() const override { return columns_; }
 
   void Evaluate(const VectorXd& x, VectorXd& values,
                 estimation::RowMatrix* jacobian) const override {

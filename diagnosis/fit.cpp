@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "diagnosis/chord_solve.h"
 #include "diagnosis/extended_run.h"
 #include "failure/failure.h"
 #include "fusion/machine_problem.h"
@@ -83,15 +84,30 @@ struct Near {
 };
 constexpr Near kAsItIs{0.02, 1000.0}, kWithCauses{0.3, 1.0};
 
-estimation::Result Solve(const Problem& problem, const Near& near, estimation::Linearization& at) {
+estimation::Result Solve(const Problem& problem, const Near& near, FitSums& sums) {
   constexpr int kFewPasses = 20;
-  return problem.Solve({.max_iterations = kFewPasses,
-                        .threads = 1,
-                        .settled = near.settled,
-                        .tolerated = near.tolerated,
-                        .jacobian_bytes = 0,
-                        .weak_directions = false},
-                       &at);
+  estimation::Linearization at;
+  auto result = problem.Solve({.max_iterations = kFewPasses,
+                               .threads = 1,
+                               .settled = near.settled,
+                               .tolerated = near.tolerated,
+                               .jacobian_bytes = 0,
+                               .weak_directions = false},
+                              &at);
+  sums = SumsOf(problem, at);
+  return result;
+}
+
+// The excess of the noise of arms takes the redundancy of each source.
+estimation::Result SolveWithCauses(const Campaign& campaign, const Problem& problem,
+                                   FitSums& sums) {
+  if (!campaign.EstimatesNoise()) {
+    if (auto minimum = MinimumByChords(problem, kWithCauses.settled)) {
+      sums = std::move(minimum->at);
+      return std::move(minimum->result);
+    }
+  }
+  return Solve(problem, kWithCauses, sums);
 }
 
 // Takes out of a covariance what keeps the last entry, the logarithm of a shape, from going too far
@@ -111,9 +127,9 @@ Fit::Fit(const Campaign& campaign) : campaign_(campaign) {
   runs.reserve(campaign.runs().size());
   for (const PreparedRun& run : campaign.runs()) runs.push_back(run.simulated);
   const Problem problem = ProblemOf(campaign, runs, {});
-  estimation::Linearization at;
+  FitSums at;
   result_ = Solve(problem, kAsItIs, at);
-  Linearize(problem, at);
+  Linearize(problem, std::move(at));
 }
 
 Fit::Fit(const Fit& before, std::vector<Candidate> taken_in, int rounds)
@@ -133,13 +149,13 @@ Fit::Fit(const Fit& before, std::vector<Candidate> taken_in, int rounds)
       StartFrom(result_, runs.back().blocks);
     }
     const Problem problem = ProblemOf(campaign_, runs, taken_in_, result_);
-    estimation::Linearization at;
-    result_ = Solve(problem, kWithCauses, at);
+    FitSums at;
+    result_ = SolveWithCauses(campaign_, problem, at);
     const std::vector<Candidate> start = taken_in_;
     double moved = FollowShapes();
     if (of_shaft) moved = std::max(moved, Moved(start, taken_in_));
     if (round == rounds || (round > 1 && moved < kShapeFound)) {
-      Linearize(problem, at);
+      Linearize(problem, std::move(at));
       break;
     }
     TakeRuns(problem);
@@ -198,43 +214,34 @@ void Fit::TakeRuns(const Problem& problem) {
   }
 }
 
-void Fit::Linearize(const Problem& problem, const estimation::Linearization& at) {
+void Fit::Linearize(const Problem& problem, FitSums at) {
   TakeRuns(problem);
   const estimation::Layout layout(problem);
   names_ = layout.names;
-  MatrixXd H = at.prior.information;
-  gradient_ = at.prior.gradient;
-  data_information_ = MatrixXd::Zero(H.rows(), H.cols());
-  data_gradient_ = VectorXd::Zero(H.rows());
-  for (std::size_t s = 0; s < at.sources.size(); ++s) {
-    H += at.sources[s].information;
-    gradient_ += at.sources[s].gradient;
-    if (problem.sources()[s].options.is_prior) continue;
-    data_information_ += at.sources[s].information;
-    data_gradient_ += at.sources[s].gradient;
-  }
-  scale_ = H.diagonal().cwiseSqrt().cwiseInverse();
-  H_.compute(scale_.asDiagonal() * H * scale_.asDiagonal());
+  gradient_ = std::move(at.gradient);
+  data_information_ = std::move(at.data_information);
+  data_gradient_ = std::move(at.data_gradient);
+  scale_ = at.information.diagonal().cwiseSqrt().cwiseInverse();
+  H_.compute(scale_.asDiagonal() * at.information * scale_.asDiagonal());
   // Normalising constants of the Gaussian priors; improper priors add the same constant to every
   // fit and are left out.
-  const auto known = (at.prior.information.diagonal().array() > 0.0);
-  const double priors = known.select(at.prior.information.diagonal().array(), 1.0).log().sum();
+  const auto known = (at.prior.array() > 0.0);
+  const double priors = known.select(at.prior.array(), 1.0).log().sum();
   const double curvature = 2.0 * MatrixXd(H_.matrixL()).diagonal().array().log().sum() -
                            2.0 * scale_.array().log().sum();
-  log_likelihood_ = -at.Cost() + 0.5 * (priors - curvature);
+  log_likelihood_ = -at.cost + 0.5 * (priors - curvature);
   const VectorXd x = fusion::ValuesFound(result_, result_.blocks);
-  estimation::RowEvaluator evaluator(problem, layout);
   left_out_ = 0.0;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     if (!runs_[r].at.response) continue;
-    const auto* rows = evaluator.Evaluate(problem.terms()[r], x, true);
-    runs_[r].columns = rows->columns;
+    RunDerivatives derivatives = DerivativesAt(problem, layout, problem.terms()[r], x);
+    runs_[r].columns = std::move(derivatives.columns);
     const PreparedRun& run = campaign_.runs()[r];
+    const MatrixXd& both = derivatives.both;
     if (run.EstimatesNoise()) {
-      left_out_ += run.excess * run.excess * LeftOut(rows->r, rows->columns, rows->jacobian);
+      left_out_ += run.excess * run.excess *
+                   LeftOut(both.rightCols<1>(), runs_[r].columns, both.leftCols(both.cols() - 1));
     }
-    MatrixXd both(rows->r.size(), rows->jacobian.cols() + 1);
-    both << rows->jacobian, rows->r;
     runs_[r].back = runs_[r].at.response->BackToReadings(both);
   }
 }

@@ -23,10 +23,11 @@
 #include "diagnosis/campaign.h"
 #include "diagnosis/candidate.h"
 #include "diagnosis/extended_run.h"
-#include "estimation/linearization.h"
 #include "estimation/problem.h"
 
 namespace abbe::diagnosis {
+
+struct FitSums;
 
 class Fit {
  public:
@@ -62,6 +63,11 @@ class Fit {
   // The columns come in groups of so many; a projection for each.
   std::vector<Projection> Project(const Disturber& disturber,
                                   const std::vector<Eigen::Index>& groups) const;
+  // For columns in one stage alone, one row of `functions` each over the rows of each run (empty:
+  // the run takes no part).
+  std::vector<Projection> ProjectInStage(Eigen::Index stage,
+                                         const std::vector<Eigen::MatrixXd>& functions,
+                                         const std::vector<Eigen::Index>& groups) const;
   // For many functions f of the rows of one stage in one run: their score is scores * f', and their
   // information at most weights * f^2'. Empty where the run does not tell.
   struct RowScores {
@@ -72,6 +78,8 @@ class Fit {
   // What is left of a run, whitened.
   const Eigen::VectorXd& LeftOf(std::size_t run) const { return runs_[run].r; }
   std::size_t runs() const { return runs_.size(); }
+  // Of a cause with columns that was taken in, beside all others.
+  Projection ProjectionOf(std::size_t taken_in) const;
   // For a cause that relaxes parameters.
   Projection ProjectParameters(const Candidate& candidate) const;
 
@@ -86,7 +94,7 @@ class Fit {
   // The runs at the fit, with all that is needed to start another one from them.
   void TakeRuns(const estimation::Problem& problem);
   // The same, and what all data say together.
-  void Linearize(const estimation::Problem& problem, const estimation::Linearization& at);
+  void Linearize(const estimation::Problem& problem, FitSums at);
   double FollowShapes();
   double SeenOf(const Candidate& cause) const;
   double LeftOut(const Eigen::VectorXd& r, const std::vector<int>& columns,
@@ -94,6 +102,14 @@ class Fit {
   // [C'J C'r] of one run.
   Eigen::MatrixXd Against(const RunRows& run,
                           const std::vector<simulation::Disturbance>& disturbances) const;
+  // Whether functions of a stage have all the information that they can have, since no two rows
+  // share noise.
+  static bool RowsAreIndependent(const RunRows& run, Eigen::Index stage,
+                                 const Eigen::RowVectorXd& weights,
+                                 const Eigen::MatrixXd& functions);
+  // Whitened, a column for each function.
+  static Eigen::MatrixXd InStage(const RunRows& run, Eigen::Index stage,
+                                 const Eigen::MatrixXd& functions);
   // Groups of columns from C'C of each, C'J and C'r of all.
   std::vector<Projection> Finish(const std::vector<Eigen::MatrixXd>& C_C,
                                  const Eigen::MatrixXd& C_J, const Eigen::VectorXd& C_r) const;

@@ -23,6 +23,13 @@ double ReachBeyond(const std::string& pivot, const relm::SerialChain& chain) {
   return reach;
 }
 
+// From the furthest end of the travels to the tool, m: no arm of an axis' angles is longer.
+double LongestArm(const machine::Machine& mill) {
+  double squares = 0.0;
+  for (const auto& travel : mill.travels) squares += std::pow(travel.last - travel.first, 2);
+  return std::sqrt(squares) + mill.reference.norm();
+}
+
 VectorXd NominalValues(const PreparedRun& run) {
   std::vector<double> values;
   for (const auto& block : run.simulated.blocks) {
@@ -94,6 +101,9 @@ std::optional<double> InSpace(const Leftover& leftover, const Campaign& campaign
   }
   if (leftover.variable == kAtRest) return 0.0;  // noise, which the runs count as such
   const auto& linkage = campaign.instruments().linkage;
+  if (leftover.unit.name == "urad" && leftover.object.starts_with("E")) {
+    return leftover.amplitude * LongestArm(campaign.instruments().machine);
+  }
   if (!leftover.object.starts_with("pivot_")) return leftover.amplitude;
   return linkage ? std::optional(leftover.amplitude * ReachBeyond(leftover.object, linkage->chain))
                  : std::nullopt;

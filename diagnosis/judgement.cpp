@@ -25,15 +25,17 @@ Verdict VerdictOf(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-// Whether, all others at their best, so much of it is left that no fit without it is needed.
+// Whether, all others at their best, it is so probable that no fit without it is needed.
 bool Search::IsBeyondDoubt(std::size_t i) const {
-  constexpr double kBeyond = 400.0;  // squares of standard deviations
-  const simulation::Cause& cause = *members_[i].finding.score.candidate.cause;
-  if (cause.relaxes || cause.IsBinary()) return false;
-  const Score score = fit_->ScoreOf(i);
-  const Eigen::Index count = score.coefficients.size();
-  const Eigen::MatrixXd covariance = score.covariance.topLeftCorner(count, count);
-  return score.coefficients.dot(covariance.ldlt().solve(score.coefficients)) > kBeyond;
+  constexpr double kBeyond = 15.0;  // in log odds, to first order
+  const Member& member = members_[i];
+  const Candidate& candidate = member.finding.score.candidate;
+  if (candidate.cause->relaxes || candidate.cause->IsBinary()) return false;
+  const Fit::Projection beside = fit_->ProjectionOf(i);
+  const double log_evidence = member.other
+                                  ? Explained(member.other->structure, beside).drawn.log_evidence
+                                  : ScoreFrom(fit_->taken_in()[i], beside).log_evidence;
+  return log_evidence + member.log_prior > kBeyond;
 }
 
 // Log odds of a member that is left out, beside all others. What is there or not is too large for

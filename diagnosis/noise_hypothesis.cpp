@@ -62,6 +62,8 @@ Diagnosis BesideMemory(const Campaign& campaign) {
   Campaign remembering = campaign;
   std::vector<std::string> notes;
   for (std::size_t run = 0; run < campaign.runs().size(); ++run) {
+    // What structures explain was no memory.
+    if (!MemoryOf(white.fit(), run)) continue;
     const auto memory = MemoryOf(white.base(), run);
     if (!memory) continue;
     notes.push_back(NoteOf(campaign.runs()[run], *memory));

@@ -47,9 +47,11 @@ std::vector<Fit::Projection> Fit::Finish(const std::vector<MatrixXd>& C_C, const
     }
     first += own.cols();
   }
-  const MatrixXd B = scale_.asDiagonal() * C_J(acting, Eigen::all).transpose();
-  const MatrixXd solved = H_.solve(B);
-  const VectorXd score = C_r(acting) - solved.transpose() * (scale_.asDiagonal() * gradient_);
+  // Of H = L L': B = L^-1 J'C.
+  MatrixXd B = scale_.asDiagonal() * C_J(acting, Eigen::all).transpose();
+  H_.matrixL().solveInPlace(B);
+  const VectorXd slope = H_.matrixL().solve(scale_.cwiseProduct(gradient_));
+  const VectorXd score = C_r(acting) - B.transpose() * slope;
   std::vector<Projection> groups;
   groups.reserve(C_C.size());
   first = 0;
@@ -59,8 +61,8 @@ std::vector<Fit::Projection> Fit::Finish(const std::vector<MatrixXd>& C_C, const
     for (begin = end; end < B.cols() && acting[end] < first + count;) {
       ++end;
     }
-    const MatrixXd taken =
-        B.middleCols(begin, end - begin).transpose() * solved.middleCols(begin, end - begin);
+    const auto group = B.middleCols(begin, end - begin);
+    const MatrixXd taken = group.transpose() * group;
     for (Index i = begin; i < end; ++i) {
       const Index c = acting[i] - first;
       for (Index j = begin; j < end; ++j) {
@@ -136,12 +138,71 @@ std::vector<Fit::Projection> Fit::Project(const Disturber& disturber,
   return Finish(C_C, C_J, C_r);
 }
 
+std::vector<Fit::Projection> Fit::ProjectInStage(Index stage,
+                                                 const std::vector<MatrixXd>& functions,
+                                                 const std::vector<Index>& groups) const {
+  const Index columns = std::accumulate(groups.begin(), groups.end(), Index{0});
+  std::vector<MatrixXd> C_C;
+  C_C.reserve(groups.size());
+  for (const Index count : groups) C_C.push_back(MatrixXd::Zero(count, count));
+  MatrixXd C_J = MatrixXd::Zero(columns, static_cast<Index>(names_.size()));
+  VectorXd C_r = VectorXd::Zero(columns);
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const RunRows& run = runs_[r];
+    if (!run.at.response || functions[r].size() == 0) continue;
+    const simulation::Response& response = *run.at.response;
+    const Eigen::RowVectorXd weights = response.WeightsOf(stage);
+    if (weights.size() == 0 || !(weights.maxCoeff() > 0.0)) continue;
+    const MatrixXd of_stage = response.BackToStage(stage, run.back);
+    const MatrixXd against = functions[r] * of_stage;
+    C_J(Eigen::all, run.columns) += against.leftCols(against.cols() - 1);
+    C_r += against.rightCols<1>();
+    const MatrixXd whitened = RowsAreIndependent(run, stage, weights, functions[r])
+                                  ? MatrixXd(functions[r] * weights.cwiseSqrt().asDiagonal())
+                                  : MatrixXd(InStage(run, stage, functions[r]).transpose());
+    for (Index first = 0; MatrixXd & own : C_C) {
+      const auto part = whitened.middleRows(first, own.rows());
+      own.noalias() += part * part.transpose();
+      first += own.rows();
+    }
+  }
+  return Finish(C_C, C_J, C_r);
+}
+
+bool Fit::RowsAreIndependent(const RunRows& run, Index stage, const Eigen::RowVectorXd& weights,
+                             const MatrixXd& functions) {
+  constexpr double kRounding = 1e-9;
+  const Eigen::RowVectorXd any = functions.colwise().sum();
+  const double most = weights.dot(any.cwiseAbs2());
+  return most - InStage(run, stage, any).squaredNorm() < kRounding * most;
+}
+
+MatrixXd Fit::InStage(const RunRows& run, Index stage, const MatrixXd& functions) {
+  std::vector<Disturbance> disturbances;
+  disturbances.reserve(static_cast<std::size_t>(functions.rows()));
+  for (const auto& function : functions.rowwise()) {
+    disturbances.push_back(simulation::InStage(run.at.trace, stage, function));
+  }
+  return run.at.response->Columns(disturbances);
+}
+
 std::vector<int> Fit::ColumnsNamed(const std::string& pattern) const {
   std::vector<int> columns;
   for (std::size_t c = 0; c < names_.size(); ++c) {
     if (Matches(names_[c], pattern)) columns.push_back(static_cast<int>(c));
   }
   return columns;
+}
+
+Fit::Projection Fit::ProjectionOf(std::size_t taken_in) const {
+  const Candidate& cause = taken_in_[taken_in];
+  const Index count = cause.cause->coefficients();
+  const MatrixXd covariance =
+      result_.Covariance(BlockOf(cause), BlockOf(cause)).topLeftCorner(count, count);
+  const MatrixXd known = covariance.ldlt().solve(MatrixXd::Identity(count, count));
+  Projection beside{known, known * result_.Block(BlockOf(cause)).Values().head(count)};
+  beside.information.diagonal() -= cause.Plausible().cwiseAbs2().cwiseInverse();
+  return beside;
 }
 
 Fit::Projection Fit::ProjectParameters(const Candidate& candidate) const {

@@ -11,24 +11,34 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 std::vector<double> StrongestWaves(const Scan& scan, double step) {
-  const std::size_t channels = scan.scores.rows();
+  constexpr Index kTogether = 40;  // a product of matrices for so many
+  const auto channels = static_cast<std::size_t>(scan.scores.rows());
   std::vector<double> found(channels, 0.0), strongest(channels, 0.0);
   // From line to line by the angle of a step.
   const ArrayXd first_cosine = (step * scan.values.array()).cos().transpose(),
                 first_sine = (step * scan.values.array()).sin().transpose();
-  VectorXd cosine = VectorXd::Ones(scan.values.size()), sine = VectorXd::Zero(scan.values.size());
-  for (Index line = 1; line <= kLines; ++line) {
-    const ArrayXd before = cosine;
-    cosine = before * first_cosine - sine.array() * first_sine;
-    sine = before * first_sine + sine.array() * first_cosine;
-    const ArrayXd power = (scan.scores * sine).array().square() /
-                              (scan.weights * sine.cwiseAbs2()).array().max(1e-300) +
-                          (scan.scores * cosine).array().square() /
-                              (scan.weights * cosine.cwiseAbs2()).array().max(1e-300);
-    for (std::size_t c = 0; c < channels; ++c) {
-      if (power[c] <= strongest[c]) continue;
-      strongest[c] = power[c];
-      found[c] = step * line;
+  const VectorXd all = scan.weights.rowwise().sum();
+  MatrixXd cosine(scan.values.size(), kTogether), sine(scan.values.size(), kTogether);
+  VectorXd last_cosine = VectorXd::Ones(scan.values.size()),
+           last_sine = VectorXd::Zero(scan.values.size());
+  for (Index first = 1; first <= kLines; first += kTogether) {
+    for (Index i = 0; i < kTogether; ++i) {
+      cosine.col(i) = last_cosine.array() * first_cosine - last_sine.array() * first_sine;
+      sine.col(i) = last_cosine.array() * first_sine + last_sine.array() * first_cosine;
+      last_cosine = cosine.col(i);
+      last_sine = sine.col(i);
+    }
+    const MatrixXd of_sine = scan.weights * sine.cwiseAbs2(),
+                   of_cosine = (-of_sine).colwise() + all;
+    const Eigen::ArrayXXd power =
+        (scan.scores * sine).array().square() / of_sine.array().max(1e-300) +
+        (scan.scores * cosine).array().square() / of_cosine.array().max(1e-300);
+    for (Index i = 0; i < kTogether && first + i <= kLines; ++i) {
+      for (std::size_t c = 0; c < channels; ++c) {
+        if (power(static_cast<Index>(c), i) <= strongest[c]) continue;
+        strongest[c] = power(static_cast<Index>(c), i);
+        found[c] = step * static_cast<double>(first + i);
+      }
     }
   }
   return found;

@@ -117,8 +117,9 @@ bool Search::TakeCause(const std::vector<Named>& names, FitPointer decided) {
   return TakeIn({.finding = std::move(finding), .log_prior = LogPrior(names.size())}, fit);
 }
 
-bool Search::TakeSomethingElse(const Found& found) {
+bool Search::TakeSomethingElse(Found found) {
   const std::size_t questions = structures_.size();
+  AddThoseAlike(*fit_, structures_, found);
   Member member{.finding = {{others_.CandidateOf(found), {}, {}}, 1.0, {}},
                 .other = found,
                 .unexplained = LeftoverOf(*fit_, found, questions),

@@ -51,7 +51,7 @@ class Search {
   // search.cpp: what is taken in.
   bool TakeBest();
   bool TakeCause(const std::vector<Named>& names, FitPointer decided);
-  bool TakeSomethingElse(const Found& found);
+  bool TakeSomethingElse(Found found);
   bool TakeIn(Member member, FitPointer fit);
   bool MayOutweigh(const std::vector<Named>& names) const;
   bool Outweighs(std::vector<Named>& names, FitPointer& fitted) const;

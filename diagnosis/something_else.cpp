@@ -1,6 +1,8 @@
 #include "diagnosis/something_else.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace abbe::diagnosis {
@@ -46,6 +48,31 @@ std::optional<Found> MostProbable(const Fit& fit, const std::vector<Found>& foun
     if (!most || refined.drawn.log_evidence > most->drawn.log_evidence) most = std::move(refined);
   }
   return most;
+}
+
+void AddThoseAlike(const Fit& fit, const std::vector<Found>& found, Found& most) {
+  constexpr double kWorthRefining = 20.0;  // in log evidence
+  constexpr std::size_t kMost = 8;
+  std::vector<const Found*> near;  // the best of each other variable in each channel
+  const auto is_own = [&](const Found& each) {
+    return each.structure.variable == most.structure.variable &&
+           each.structure.channel.object == most.structure.channel.object;
+  };
+  for (const Found& each : found) {
+    if (is_own(each) || IsInCatalogue(each.structure) ||
+        each.drawn.log_evidence < most.drawn.log_evidence - kWorthRefining) {
+      continue;
+    }
+    near.push_back(&each);
+  }
+  std::ranges::sort(near, std::greater(),
+                    [](const Found* each) { return each->drawn.log_evidence; });
+  near.resize(std::min(near.size(), kMost));
+  for (const Found* each : near) {
+    const Found refined = Refined(fit, *each);
+    if (refined.drawn.log_evidence < most.drawn.log_evidence - kAsGood) continue;
+    AddAlike(refined.structure, most);
+  }
 }
 
 double LogPosterior(const Found& found, std::size_t questions) {

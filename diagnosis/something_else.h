@@ -34,6 +34,8 @@ class SomethingElse {
 
 // That with the most evidence, each form at its best; none: nothing is asked for.
 std::optional<Found> MostProbable(const Fit& fit, const std::vector<Found>& found);
+// Other variables with which the data go nearly as well as with that of `most`.
+void AddThoseAlike(const Fit& fit, const std::vector<Found>& found, Found& most);
 // Log odds that it is there, of so many that were asked for.
 double LogPosterior(const Found& found, std::size_t questions);
 

@@ -47,6 +47,20 @@ std::vector<StageChannel> ChannelsOf(const Scene& scene) {
   add(simulation::PivotsOf(scene), encoder, kMicroradians, kLinkage);
   if (scene.travel.isZero(0.0)) return channels;
   add(simulation::AxesOf(scene), simulation::Positioning, kMicrometres, kProbes | kLinkage);
+  for (const simulation::Object& axis : simulation::AxesOf(scene)) {
+    for (int motion = 0; motion < machine::kMotions; ++motion) {
+      if (motion == axis.first()) continue;
+      channels.push_back({machine::MotionName(axis.first(), motion),
+                          simulation::MotionStage(axis.first(), motion),
+                          motion < 3 ? kMicrometres : kMicroradians, kProbes | kLinkage});
+    }
+  }
+  if (scene.Pivots() > 0) {
+    for (int i = 0; i < 3; ++i) {
+      channels.push_back(
+          {std::string("ball_") + "xyz"[i], simulation::kTipStage + i, kMicrometres, kLinkage});
+    }
+  }
   add(simulation::RimSensorsOf(scene), reading, kMicrometres, kRim);
   return channels;
 }
@@ -54,6 +68,7 @@ std::vector<StageChannel> ChannelsOf(const Scene& scene) {
 std::optional<Range> RangeOf(const std::string& variable, const StageChannel& channel,
                              const Scene& scene) {
   Range range;
+  if (IsGap(variable) && variable != GapOf(channel.object)) return {};
   for (const Trace* trace : scene.traces) {
     if (!channel.Feels(*trace)) continue;
     const RowVectorXd values = ValuesOf(variable, *trace);
@@ -87,52 +102,91 @@ Eigen::VectorXd Structure::Weights() const {
 bool Structure::IsOfItself() const {
   std::string object = channel.object;
   std::ranges::transform(object, object.begin(), [](unsigned char c) { return std::tolower(c); });
-  return variable.substr(variable.rfind(' ') + 1) == object;
+  return OwnerOf(variable) == object;
 }
 
 double Structure::among() const {
   return form == Form::kLine ? kLines : form == Form::kInterval ? kIntervals : 1.0;
 }
 
-std::vector<Disturbance> Structure::ColumnsOf(const Trace& trace) const {
+Eigen::MatrixXd Structure::FunctionsOf(const Trace& trace) const {
   if (form == Form::kProduct) return ProductsOf(trace);
   const RowVectorXd values = ValuesOf(variable, trace);
-  if (!channel.Feels(trace) || values.size() == 0) {
-    return std::vector(columns(), simulation::NoDisturbance(trace));
-  }
+  if (values.size() == 0) return {};
+  if (form == Form::kSmooth) return SmoothOf(trace, values);
+  Eigen::MatrixXd functions(columns(), values.size());
   if (form == Form::kLine) {
-    return simulation::WaveInStage(trace, channel.stage, wave * values);
+    functions.row(0) = (wave * values.array()).sin();
+    functions.row(1) = (wave * values.array()).cos();
+  } else {
+    functions = (values.array() >= interval.from && values.array() < interval.to).cast<double>();
   }
-  if (form == Form::kInterval) {
-    const auto within = values.array() >= interval.from && values.array() < interval.to;
-    return {simulation::InStage(trace, channel.stage, within.cast<double>())};
-  }
-  const RowVectorXd factor = FactorOf(variable, trace);
-  const Index first = factor.size() > 0 && !IsOfItself() ? 0 : 1;
-  const Eigen::VectorXd weights = Weights();
-  std::vector<Disturbance> columns;
-  for (Index k = first; k < first + terms; ++k) {
-    const double turn = std::numbers::pi * k / range.Length();
-    RowVectorXd term = (turn * (values.array() - range.first)).cos();
-    if (factor.size() > 0) term = term.cwiseProduct(factor);
-    columns.push_back(simulation::InStage(trace, channel.stage, weights[k - first] * term));
-  }
-  return columns;
+  return functions;
 }
 
-std::vector<Disturbance> Structure::ProductsOf(const Trace& trace) const {
+Eigen::MatrixXd Structure::SmoothOf(const Trace& trace, const RowVectorXd& values) const {
+  const Eigen::ArrayXd at = range.Scaled(values);
+  // cos(k angle) from one to the next by the angle of a step; of polynomials each from two before.
+  Eigen::MatrixXd functions(terms, values.size());
+  if (IsGap(variable)) {
+    Eigen::ArrayXd before = Eigen::ArrayXd::Ones(at.size()), now = at;
+    for (Index degree = 1; degree < from + terms; ++degree) {
+      if (degree >= from) functions.row(degree - from) = now.transpose();
+      const auto k = static_cast<double>(degree);
+      const Eigen::ArrayXd next = ((2.0 * k + 1.0) * at * now - k * before) / (k + 1.0);
+      before = std::move(now);
+      now = next;
+    }
+  } else {
+    const Eigen::ArrayXd angle = 0.5 * std::numbers::pi * (at + 1.0);
+    const Eigen::ArrayXd turn = (static_cast<double>(step) * angle).cos();
+    Eigen::ArrayXd now = (static_cast<double>(from) * angle).cos(),
+                   before = (static_cast<double>(from - step) * angle).cos();
+    for (Index i = 0; i < terms; ++i) {
+      functions.row(i) = now.transpose();
+      const Eigen::ArrayXd next = 2.0 * turn * now - before;
+      before = std::move(now);
+      now = next;
+    }
+  }
+  const RowVectorXd factor = FactorOf(variable, trace);
+  if (factor.size() > 0) functions.array().rowwise() *= factor.array();
+  if (is_rough) functions = Weights().asDiagonal() * functions;
+  return functions;
+}
+
+Eigen::MatrixXd Structure::ProductsOf(const Trace& trace) const {
   const auto [one, other] = FactorsOf(variable);
   const RowVectorXd values = ValuesOf(one, trace), others = ValuesOf(other, trace);
-  std::vector<Disturbance> columns(4, simulation::NoDisturbance(trace));
-  if (!channel.Feels(trace) || values.size() == 0 || others.size() == 0) return columns;
+  if (values.size() == 0 || others.size() == 0) return {};
   const auto legendre = [](const Eigen::ArrayXd& v) {
     return std::array<Eigen::ArrayXd, 2>{v, 1.5 * v.square() - 0.5};
   };
   const auto first = legendre(range.Scaled(values)), last = legendre(second.Scaled(others));
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    columns[i].row(channel.stage) = (first[i / 2] * last[i % 2]).transpose();
+  Eigen::MatrixXd functions(4, values.size());
+  for (std::size_t i = 0; i < 4; ++i) {
+    functions.row(static_cast<Index>(i)) = (first[i / 2] * last[i % 2]).transpose();
   }
-  return columns;
+  return functions;
+}
+
+std::vector<Disturbance> Structure::ColumnsOf(const Trace& trace) const {
+  const Eigen::MatrixXd functions = channel.Feels(trace) ? FunctionsOf(trace) : Eigen::MatrixXd{};
+  std::vector<Disturbance> all(static_cast<std::size_t>(columns()),
+                               simulation::NoDisturbance(trace));
+  for (Index i = 0; i < functions.rows(); ++i) {
+    all[static_cast<std::size_t>(i)].row(channel.stage) = functions.row(i);
+  }
+  return all;
+}
+
+Structure SmoothIn(const StageChannel& channel, const std::string& variable, const Range& range) {
+  Structure structure{.channel = channel, .variable = variable, .range = range};
+  const bool has_factor = HasFactor(variable), own = structure.IsOfItself();
+  if (has_factor && !own) structure.from = 0;
+  if (IsSpeed(variable) && own) structure.from = structure.step = 2;
+  if (IsGap(variable)) structure.from = 3;
+  return structure;
 }
 
 }  // namespace abbe::diagnosis

@@ -3,15 +3,19 @@
 //   const Structure structure{channel, "feed", range};
 //   structure.ColumnsOf(trace);       // one disturbance of the channel's stage for each term
 //
-// A channel is the reading of a probe or of a sensor at a shaft, the angle of a pivot, or an error
-// motion of an axis. Forms, of a variable v over its range:
-//   smooth     cosines cos(pi k (v - first) / length), k = 1 ... terms
+// A channel is one stage of the simulation (simulation/disturbance.h): the reading of a probe or of
+// a sensor at a shaft, the angle of a pivot, an error motion of an axis ("X" its positioning, "EAX"
+// and so on the others), or the place of the ball in the linkage ("ball_x"). Forms, of a variable v
+// over its range:
+//   smooth     cosines cos(pi k (v - first) / length), `terms` of them from k = 1
 //   line       sine and cosine of `wave` times v
 //   interval   1 from `from` to `to`, 0 elsewhere
 //   product    of two variables "x*y": products of their Legendre polynomials of degree 1 and 2
 // Variables (variables.h) with a factor, as the direction of motion, have it in each term, and
-// k = 0 ... terms - 1; of an axis or a pivot over its own direction k = 1 ... terms, for lost
-// motion that is the same everywhere is a cause. Units: SI. Used to test what is left
+// begin with k = 0. What a cause does is left out: of an axis or a pivot over its own direction
+// k = 0 (lost motion that is the same everywhere), of an axis over its own speed what changes sign
+// with it (a lag), of a probe over its own gap the line and the square (a gain, a characteristic),
+// with Legendre polynomials in place of cosines. Units: SI. Used to test what is left
 // (structure_search.h) and to let something that is in no catalogue compete with the causes
 // (something_else.h).
 #pragma once
@@ -53,7 +57,8 @@ struct Range {
   // -1 to 1 over the range.
   Eigen::ArrayXd Scaled(const Eigen::RowVectorXd& values) const;
 };
-// Empty where it does not change.
+// One that may depend on the variable: a probe on its own gap alone. Empty where that does not
+// change.
 std::optional<Range> RangeOf(const std::string& variable, const StageChannel& channel,
                              const simulation::Scene& scene);
 
@@ -70,7 +75,7 @@ struct Structure {
   std::string variable;
   Range range;
   Form form = Form::kSmooth;
-  Eigen::Index terms = 8;
+  Eigen::Index terms = 8, from = 1, step = 1;  // of a smooth one: k = from, from + step, ...
   bool is_rough = false;  // of a smooth one: terms of weight 1/k, as a random walk has them
   double wave = 0.0;      // rad per unit of the variable
   Interval interval = {};
@@ -83,10 +88,16 @@ struct Structure {
   bool IsOfItself() const;
   // The number of those of which it was chosen as the strongest.
   double among() const;
+  // One row for each term, whatever the channel; no rows: the run does not have the variable.
+  Eigen::MatrixXd FunctionsOf(const simulation::Trace& trace) const;
   std::vector<simulation::Disturbance> ColumnsOf(const simulation::Trace& trace) const;
 
  private:
-  std::vector<simulation::Disturbance> ProductsOf(const simulation::Trace& trace) const;
+  Eigen::MatrixXd ProductsOf(const simulation::Trace& trace) const;
+  Eigen::MatrixXd SmoothOf(const simulation::Trace& trace, const Eigen::RowVectorXd& values) const;
 };
+
+// A smooth function of one variable, without what causes do.
+Structure SmoothIn(const StageChannel& channel, const std::string& variable, const Range& range);
 
 }  // namespace abbe::diagnosis

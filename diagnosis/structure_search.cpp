@@ -5,7 +5,9 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "diagnosis/variables.h"
@@ -17,7 +19,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
-using simulation::Disturbance;
 using simulation::Trace;
 
 constexpr double kAbsorbed = 1e-4;  // of the most information: what is left is rounding
@@ -33,7 +34,8 @@ double LogChance(double chi_square, int freedom) {
   return one > 0.0 ? std::log(one) : -0.5 * chi_square;
 }
 
-// What the projected columns explain.
+}  // namespace
+
 Found Explained(Structure structure, const Fit::Projection& projection) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(projection.information);
   const double most = eigen.eigenvalues().maxCoeff();
@@ -60,20 +62,63 @@ Found Explained(Structure structure, const Fit::Projection& projection) {
   return found;
 }
 
+namespace {
+
+// Functions of the rows of runs, made once for all channels that are asked of them.
+class SharedFunctions {
+ public:
+  explicit SharedFunctions(const Fit& fit) : fit_(fit) {}
+
+  // One row for each term; no rows: the run does not have the variable.
+  const MatrixXd& Of(std::size_t run, const Structure& structure) {
+    using Form = Structure::Form;
+    if (structure.form == Form::kLine || structure.form == Form::kInterval) {
+      return own_ = structure.FunctionsOf(fit_.TraceOf(run));
+    }
+    const Key key{run,
+                  structure.variable,
+                  structure.range.first,
+                  structure.range.last,
+                  structure.terms,
+                  structure.from,
+                  structure.is_rough};
+    const auto found = known_.find(key);
+    if (found != known_.end()) return found->second;
+    return known_.emplace(key, structure.FunctionsOf(fit_.TraceOf(run))).first->second;
+  }
+
+ private:
+  using Key = std::tuple<std::size_t, std::string, double, double, Index, Index, bool>;
+
+  const Fit& fit_;
+  std::map<Key, MatrixXd> known_;
+  MatrixXd own_;
+};
+
 // Structures of one channel, which share its stage.
-std::vector<Found> Ask(const Fit& fit, const std::vector<Structure>& structures) {
+std::vector<Found> Ask(const Fit& fit, const std::vector<Structure>& structures,
+                       SharedFunctions& shared) {
   std::vector<Index> groups;
   groups.reserve(structures.size());
-  for (const Structure& structure : structures) groups.push_back(structure.columns());
-  const auto disturb = [&](const Trace& trace) {
-    std::vector<Disturbance> columns;
-    if (!structures.front().channel.Feels(trace)) return columns;
-    for (const Structure& structure : structures) {
-      for (auto& column : structure.ColumnsOf(trace)) columns.push_back(std::move(column));
+  Index columns = 0;
+  for (const Structure& structure : structures) {
+    groups.push_back(structure.columns());
+    columns += groups.back();
+  }
+  const StageChannel& channel = structures.front().channel;
+  std::vector<MatrixXd> functions(fit.runs());
+  for (std::size_t run = 0; run < fit.runs(); ++run) {
+    const Trace& trace = fit.TraceOf(run);
+    if (trace.rows() == 0 || !channel.Feels(trace)) continue;
+    functions[run] = MatrixXd::Zero(columns, trace.rows());
+    Index first = 0;
+    for (std::size_t s = 0; s < structures.size(); ++s) {
+      const MatrixXd& own = shared.Of(run, structures[s]);
+      functions[run].middleRows(first, own.rows()) = own;
+      first += groups[s];
     }
-    return columns;
-  };
-  const auto projections = fit.Project(disturb, groups);
+  }
+  const auto projections = fit.ProjectInStage(channel.stage, functions, groups);
   std::vector<Found> found;
   for (std::size_t s = 0; s < structures.size(); ++s) {
     found.push_back(Explained(structures[s], projections[s]));
@@ -81,9 +126,30 @@ std::vector<Found> Ask(const Fit& fit, const std::vector<Structure>& structures)
   return found;
 }
 
-Scan ScanOf(const Fit& fit, const std::string& variable,
-            const std::vector<StageChannel>& channels) {
-  const Index count = channels.size();
+std::vector<Found> Ask(const Fit& fit, const std::vector<Structure>& structures) {
+  SharedFunctions shared(fit);
+  return Ask(fit, structures, shared);
+}
+
+// What is left of the rows of all runs, for each channel that they tell of.
+using ScoresByRun = std::vector<std::map<Index, Fit::RowScores>>;
+
+ScoresByRun ScoresOf(const Fit& fit, const std::vector<std::vector<Structure>>& of_channel) {
+  ScoresByRun all(fit.runs());
+  for (std::size_t run = 0; run < fit.runs(); ++run) {
+    const Trace& trace = fit.TraceOf(run);
+    if (trace.rows() == 0) continue;
+    for (const auto& structures : of_channel) {
+      const StageChannel& channel = structures.front().channel;
+      if (channel.Feels(trace)) all[run][channel.stage] = fit.ScoresOf(run, channel.stage);
+    }
+  }
+  return all;
+}
+
+Scan ScanOf(const Fit& fit, const std::string& variable, const std::vector<StageChannel>& channels,
+            const ScoresByRun& scores) {
+  const auto count = static_cast<Index>(channels.size());
   Scan scan{{}, MatrixXd(count, 0), MatrixXd(count, 0)};
   for (std::size_t run = 0; run < fit.runs(); ++run) {
     const Trace& trace = fit.TraceOf(run);
@@ -96,7 +162,7 @@ Scan ScanOf(const Fit& fit, const std::string& variable,
     scan.values.conservativeResize(scan.values.size() + own.size());
     scan.values.tail(own.size()) = own;
     for (Index c = 0; c < count; ++c) {
-      const auto of_run = fit.ScoresOf(run, channels[c].stage);
+      const auto& of_run = scores[run].at(channels[static_cast<std::size_t>(c)].stage);
       scan.scores.row(c).tail(own.size()) = of_run.scores;
       scan.weights.row(c).tail(own.size()) = of_run.weights;
     }
@@ -107,7 +173,7 @@ Scan ScanOf(const Fit& fit, const std::string& variable,
 // The strongest line and the strongest interval of each channel, to be asked as they should be.
 // Channels of one kind of run share range and waves.
 void AddStrongest(const Fit& fit, const simulation::Scene& scene, const std::string& variable,
-                  std::vector<std::vector<Structure>>& of_channel) {
+                  const ScoresByRun& scores, std::vector<std::vector<Structure>>& of_channel) {
   for (const Instrument instrument : {kProbes, kLinkage, kRim}) {
     std::vector<StageChannel> channels;
     std::vector<std::size_t> places;
@@ -122,7 +188,7 @@ void AddStrongest(const Fit& fit, const simulation::Scene& scene, const std::str
     const auto found = RangeOf(variable, of_channel[places.back()].front().channel, scene);
     if (!found) continue;
     const Range range = *found;
-    const Scan scan = ScanOf(fit, variable, channels);
+    const Scan scan = ScanOf(fit, variable, channels, scores);
     const std::vector<double> waves =
         StrongestWaves(scan, 2.0 * std::numbers::pi * kOfAWave / range.Length());
     const std::vector<Interval> intervals = StrongestIntervals(scan);
@@ -182,15 +248,42 @@ Found Sharpened(const Fit& fit, Found found) {
   return found;
 }
 
+// Where it turns evenly, finer functions of time and tuned waves are the harmonics that causes make.
+bool IsAtShaft(const Found& found) { return found.structure.channel.instruments == kRim; }
+
 // A smooth function with as many terms as the data ask for.
 Found Finest(const Fit& fit, Found found) {
-  std::vector<Structure> finer(6, found.structure);
-  for (std::size_t i = 0; i < finer.size(); ++i) {
-    finer[i].terms = found.structure.terms << (i / 2 + 1);
-    finer[i].is_rough = i % 2 == 1;
+  const Index most = IsAtShaft(found) ? 64 : 256;
+  for (Index terms = 2 * found.structure.terms; terms <= most; terms *= 2) {
+    std::vector<Structure> finer(2, found.structure);
+    for (Structure& each : finer) each.terms = terms;
+    finer.back().is_rough = true;
+    bool better = false;
+    for (Found& other : Ask(fit, finer)) {
+      if (other.drawn.log_evidence <= found.drawn.log_evidence) continue;
+      found = std::move(other);
+      better = true;
+    }
+    if (!better) break;
   }
-  for (Found& other : Ask(fit, finer)) {
-    if (other.drawn.log_evidence > found.drawn.log_evidence) found = std::move(other);
+  return found;
+}
+
+// The wave between those that were tried, to a thousandth of the step between them.
+Found Tuned(const Fit& fit, Found found) {
+  constexpr int kLevels = 5, kTried = 4;  // on both sides
+  double step = 2.0 * std::numbers::pi * kOfAWave / found.structure.range.Length() / kTried;
+  for (int level = 0; level < kLevels; ++level, step /= kTried) {
+    std::vector<Structure> others;
+    for (int i = -kTried; i <= kTried; ++i) {
+      const double wave = found.structure.wave + i * step;
+      if (i == 0 || wave <= 0.0) continue;
+      others.push_back(found.structure);
+      others.back().wave = wave;
+    }
+    for (Found& other : Ask(fit, others)) {
+      if (other.chi_square > found.chi_square) found = std::move(other);
+    }
   }
   return found;
 }
@@ -215,7 +308,7 @@ std::vector<Found> FindStructures(const Fit& fit) {
     std::vector<Structure> structures;
     for (const std::string& variable : VariablesOf(scene)) {
       if (const auto range = RangeOf(variable, channel, scene)) {
-        structures.push_back({channel, variable, *range});
+        structures.push_back(SmoothIn(channel, variable, *range));
       }
     }
     for (const std::string& product : ProductsOf(scene)) {
@@ -230,16 +323,25 @@ std::vector<Found> FindStructures(const Fit& fit) {
     }
     if (!structures.empty()) of_channel.push_back(std::move(structures));
   }
+  const ScoresByRun scores = ScoresOf(fit, of_channel);
   for (const std::string& variable : PeriodicVariablesOf(scene)) {
-    AddStrongest(fit, scene, variable, of_channel);
+    AddStrongest(fit, scene, variable, scores, of_channel);
   }
+  SharedFunctions shared(fit);
   std::vector<Found> all;
   for (const auto& structures : of_channel) {
-    for (Found& found : Ask(fit, structures)) all.push_back(std::move(found));
+    for (Found& found : Ask(fit, structures, shared)) all.push_back(std::move(found));
   }
   std::sort(all.begin(), all.end(),
             [](const Found& a, const Found& b) { return a.log_probability < b.log_probability; });
   return all;
+}
+
+void AddAlike(const Structure& other, Found& found) {
+  const Dependence own{found.structure.variable, found.structure.channel.object},
+      more{other.variable, other.channel.object};
+  const bool known = std::ranges::find(found.one_of, more) != found.one_of.end();
+  if (more != own && !known) found.one_of.push_back(more);
 }
 
 Found Asked(const Fit& fit, const Structure& structure) { return Ask(fit, {structure}).front(); }
@@ -247,6 +349,9 @@ Found Asked(const Fit& fit, const Structure& structure) { return Ask(fit, {struc
 Found Refined(const Fit& fit, Found found) {
   if (found.structure.form == Structure::Form::kInterval) return Sharpened(fit, std::move(found));
   if (found.structure.form == Structure::Form::kSmooth) return Finest(fit, std::move(found));
+  if (found.structure.form == Structure::Form::kLine && !IsAtShaft(found)) {
+    return Tuned(fit, std::move(found));
+  }
   return found;
 }
 
@@ -262,10 +367,12 @@ Leftover LeftoverOf(const Fit& fit, const Found& found, std::size_t questions) {
           std::min(1.0, std::exp(found.log_probability) * questions),
           structure.wave > 0.0 ? 2.0 * std::numbers::pi / structure.wave : 0.0,
           structure.interval.from,
-          structure.interval.to};
+          structure.interval.to,
+          found.one_of};
 }
 
 std::vector<Leftover> LeftoversOf(const Fit& fit, const std::vector<Found>& found) {
+  constexpr std::size_t kMostTold = 6;  // what one stage does, the others see too
   std::vector<Leftover> leftovers;
   for (const Found& each : found) {
     const auto same = [&](const Leftover& other) {
@@ -273,8 +380,15 @@ std::vector<Leftover> LeftoversOf(const Fit& fit, const std::vector<Found>& foun
     };
     if (std::any_of(leftovers.begin(), leftovers.end(), same)) continue;
     if (LeftoverOf(fit, each, found.size()).p_value >= kDoubt) break;
+    if (leftovers.size() == kMostTold) break;
     const bool interval = each.structure.form == Structure::Form::kInterval;
-    leftovers.push_back(LeftoverOf(fit, interval ? Sharpened(fit, each) : each, found.size()));
+    Found strongest = interval ? Sharpened(fit, each) : each;
+    for (const Found& other : found) {
+      const bool alike = other.structure.channel.object == each.structure.channel.object &&
+                         other.log_probability < strongest.log_probability + kAsGood;
+      if (alike) AddAlike(other.structure, strongest);
+    }
+    leftovers.push_back(LeftoverOf(fit, strongest, found.size()));
   }
   return leftovers;
 }

@@ -31,16 +31,25 @@ struct Found {
   double log_probability = 0.0;  // of as much by chance, the strongest of so many
   // The coefficients as draws: their deviation, and the evidence against nothing, among so many.
   DrawnSize drawn{0.0, 0.0};
+  // Other variables (and channels) with which the data go as well, within kAsGood.
+  std::vector<Dependence> one_of = {};
 };
+
+inline constexpr double kAsGood = 3.0;  // in the logarithm of a probability: one of twenty
+
+// Each of them once.
+void AddAlike(const Structure& other, Found& found);
 
 // All structures that are asked for, the least probable by chance first.
 std::vector<Found> FindStructures(const Fit& fit);
 // What the data say of one.
+Found Explained(Structure structure, const Fit::Projection& projection);
 Found Asked(const Fit& fit, const Structure& structure);
-// The borders of an interval, the number of terms of a smooth function at which most is explained.
+// The borders of an interval, the number of terms of a smooth function, the wave of a line at which
+// most is explained.
 Found Refined(const Fit& fit, Found found);
 
-// For the report, each channel once; of one of so many questions.
+// For the report, each channel once, at most six; of one of so many questions.
 std::vector<Leftover> LeftoversOf(const Fit& fit, const std::vector<Found>& found);
 Leftover LeftoverOf(const Fit& fit, const Found& found, std::size_t questions);
 

@@ -10,8 +10,15 @@
 
 namespace abbe::diagnosis {
 
+// That a channel depends on a variable.
+struct Dependence {
+  std::string variable, object;
+
+  friend bool operator==(const Dependence&, const Dependence&) = default;
+};
+
 struct Leftover {
-  std::string variable;  // "time", "x", "x+y", "pivot_2", "shaft", "temp_table_c", "feed"
+  std::string variable;  // of variables.h
   std::string object;    // channel
   // m or rad, rms over the rows; of an interval, how far apart; of a scatter, in units of the noise
   double amplitude = 0.0;
@@ -19,6 +26,8 @@ struct Leftover {
   double p_value = 1.0;         // corrected for the number of questions
   double period = 0.0;          // of a line, in the unit of the variable (s, m, rad); 0: none
   double from = 0.0, to = 0.0;  // of an interval, in that unit too
+  // Others of which the runs tell as well that it may be they; empty: none.
+  std::vector<Dependence> one_of = {};
 };
 
 inline constexpr double kDoubt = 1e-3;

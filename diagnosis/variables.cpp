@@ -1,27 +1,27 @@
 #include "diagnosis/variables.h"
 
 #include <algorithm>
+#include <set>
 
 #include "settings/unit.h"
 #include "simulation/causes/shaft.h"
 
 namespace abbe::diagnosis {
 
+using Eigen::Index;
 using Eigen::RowVectorXd;
 using simulation::Scene;
 using simulation::Trace;
 
 namespace {
 
-const std::string kDirectionOf = "direction of ", kReversalOf = "reversal of ";
+const std::string kDirectionOf = "direction of ", kReversalOf = "reversal of ",
+                  kSpeedOf = "speed of ", kRateOf = "rate of ", kGapOf = "gap of ",
+                  kColumn = "column ";
 
 // "x" of "direction of x".
 std::string BehindKind(const std::string& variable) {
   return variable.substr(variable.rfind(' ') + 1);
-}
-
-bool IsDirected(const std::string& variable) {
-  return variable.starts_with(kDirectionOf) || variable.starts_with(kReversalOf);
 }
 
 // ln(1 + way / kShort): so fine near the reversal.
@@ -30,10 +30,54 @@ RowVectorXd LogarithmOf(const RowVectorXd& way) {
   return (way.array() / kShort).log1p();
 }
 
+// The slope of the line through the values less than kReach away, 0 where these tell none.
+RowVectorXd RateOf(const RowVectorXd& values, const Eigen::VectorXd& time) {
+  constexpr double kReach = 60.0, kLeast = 1.0;  // s
+  RowVectorXd rate = RowVectorXd::Zero(values.size());
+  Index first = 0, last = 0;
+  double n = 0.0, t = 0.0, tt = 0.0, v = 0.0, tv = 0.0;
+  const auto add = [&](Index row, double sign) {
+    const double at = time[row] - time[0], value = values[row] - values[0];
+    n += sign;
+    t += sign * at;
+    tt += sign * at * at;
+    v += sign * value;
+    tv += sign * at * value;
+  };
+  for (Index row = 0; row < values.size(); ++row) {
+    for (; last < values.size() && time[last] - time[row] < kReach; ++last) add(last, 1.0);
+    for (; time[row] - time[first] > kReach; ++first) add(first, -1.0);
+    const double spread = tt - t * t / n;
+    if (spread > n * kLeast * kLeast) rate[row] = (tv - t * v / n) / spread;
+  }
+  return rate;
+}
+
+RowVectorXd RowNamed(const std::string& name, const std::vector<std::string>& names,
+                     const Eigen::MatrixXd& rows) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) return {};
+  return rows.row(found - names.begin());
+}
+
+RowVectorXd GapIn(const Trace& trace, const simulation::Object& probe) {
+  if (!trace.head || probe.first() >= trace.head->gap.rows()) return {};
+  return trace.head->gap.row(probe.first());
+}
+
+std::vector<std::string> OtherColumnsOf(const Scene& scene) {
+  std::set<std::string> names;
+  for (const Trace* trace : scene.traces) names.insert(trace->others.begin(), trace->others.end());
+  std::vector<std::string> columns;
+  columns.reserve(names.size());
+  for (const std::string& name : names) columns.push_back(kColumn + name);
+  return columns;
+}
+
 }  // namespace
 
 RowVectorXd FactorOf(const std::string& variable, const Trace& trace) {
-  if (!IsDirected(variable)) return {};
+  if (!HasFactor(variable)) return {};
   const simulation::Object object(BehindKind(variable));
   if (object.kind() == simulation::Object::Kind::kPivot) {
     return trace.linkage->heading.row(object.first());
@@ -42,11 +86,22 @@ RowVectorXd FactorOf(const std::string& variable, const Trace& trace) {
 }
 
 RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
+  if (variable.starts_with(kColumn)) {
+    return RowNamed(variable.substr(kColumn.size()), trace.others, trace.other);
+  }
   if (variable.starts_with(kDirectionOf)) return ValuesOf(BehindKind(variable), trace);
   if (variable.starts_with(kReversalOf)) {
     return LogarithmOf(trace.since_reversal.row(BehindKind(variable)[0] - 'x'));
   }
+  if (variable.starts_with(kSpeedOf)) return trace.velocity.row(BehindKind(variable)[0] - 'x');
+  if (variable.starts_with(kRateOf)) {
+    const RowVectorXd values = ValuesOf(BehindKind(variable), trace);
+    return values.size() == 0 ? values : RateOf(values, trace.clock);
+  }
+  const simulation::Object object(BehindKind(variable));
+  if (variable.starts_with(kGapOf)) return GapIn(trace, object);
   if (variable == "time") return trace.clock.transpose();
+  if (variable == "run") return RowVectorXd::Constant(trace.rows(), trace.number);
   if (variable == "shaft") return trace.rim->shaft;
   if (variable == "feed") return trace.velocity.colwise().norm();
   if (variable.size() == 1) return trace.axes.row(variable[0] - 'x');
@@ -54,27 +109,42 @@ RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
     const double sign = variable[1] == '+' ? 1.0 : -1.0;
     return trace.axes.row(variable[0] - 'x') + sign * trace.axes.row(variable[2] - 'x');
   }
-  const simulation::Object object(variable);
   if (object.kind() == simulation::Object::Kind::kPivot) {
     if (trace.pivots() == 0) return {};
     return trace.linkage->angles.row(object.first());
   }
-  const auto sensor = std::find(trace.sensors.begin(), trace.sensors.end(), variable);
-  if (sensor == trace.sensors.end()) return {};
-  return trace.temperature.row(sensor - trace.sensors.begin());
+  return RowNamed(variable, trace.sensors, trace.temperature);
 }
 
+bool HasFactor(const std::string& variable) {
+  return variable.starts_with(kDirectionOf) || variable.starts_with(kReversalOf);
+}
+
+std::string OwnerOf(const std::string& variable) {
+  return variable.starts_with(kColumn) || variable.starts_with(kRateOf) ? "" : BehindKind(variable);
+}
+
+bool IsSpeed(const std::string& variable) { return variable.starts_with(kSpeedOf); }
+bool IsGap(const std::string& variable) { return variable.starts_with(kGapOf); }
+std::string GapOf(const std::string& probe) { return kGapOf + probe; }
+
 std::vector<std::string> VariablesOf(const Scene& scene) {
-  std::vector<std::string> variables{"time", "x", "y", "z", "feed"};
+  std::vector<std::string> variables{"time", "run", "x", "y", "z", "feed"};
   for (const char* axis : {"x", "y", "z"}) {
     variables.push_back(kDirectionOf + axis);
     variables.push_back(kReversalOf + axis);
+    variables.push_back(kSpeedOf + axis);
   }
   for (const auto& pivot : simulation::PivotsOf(scene)) {
     variables.push_back(pivot.name());
     variables.push_back(kDirectionOf + pivot.name());
   }
-  for (const std::string& sensor : scene.Sensors()) variables.push_back(sensor);
+  for (const std::string& sensor : scene.Sensors()) {
+    variables.push_back(sensor);
+    variables.push_back(kRateOf + sensor);
+  }
+  for (const auto& probe : simulation::ProbesOf(scene)) variables.push_back(GapOf(probe.name()));
+  for (std::string& column : OtherColumnsOf(scene)) variables.push_back(std::move(column));
   return variables;
 }
 
@@ -97,13 +167,20 @@ std::vector<std::string> PeriodicVariablesOf(const Scene& scene) {
 }
 
 estimation::PrintUnit UnitOf(const std::string& variable) {
+  constexpr double kMicrometre = 1e-6, kHour = 3600.0;
+  if (variable.starts_with(kColumn)) {
+    return {std::string(settings::UnitOf(variable).name), 1.0};
+  }
   if (variable.starts_with(kDirectionOf)) return UnitOf(BehindKind(variable));
   if (variable.starts_with(kReversalOf) || variable.find('*') != std::string::npos) {
     return {"", 1.0};
   }
   if (variable == "time") return {"s", 1.0};
-  if (variable == "feed") return {"mm/min", settings::kMillimetrePerMinute};
+  if (variable == "run") return {"", 1.0};
+  if (variable == "feed" || IsSpeed(variable)) return {"mm/min", settings::kMillimetrePerMinute};
   if (variable == "shaft" || variable.starts_with("pivot_")) return {"rad", 1.0};
+  if (variable.starts_with(kRateOf)) return {"K/h", 1.0 / kHour};
+  if (IsGap(variable)) return {"um", kMicrometre};
   if (variable.starts_with("temp_")) return {"degC", 1.0};
   return {"mm", settings::kMillimetre};
 }

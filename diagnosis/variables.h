@@ -1,7 +1,8 @@
-// The recorded variables on which something may depend, by name: "time", "x", "x+y", "pivot_2",
-// "shaft", "temp_table_c", "feed". Two have a factor, the direction of motion (+1, -1): "direction
-// of x" is that direction, over the position, "reversal of x" the same over the logarithm of the
-// way since the reversal.
+// The recorded variables on which something may depend, by name: "time", "run" (its number), "x",
+// "x+y", "pivot_2", "shaft", "feed", "speed of x" (with its sign), "temp_table_c", "rate of
+// temp_table_c", "gap of probe_a" and "column humidity" (the user's own). Two have a factor, the
+// direction of motion (+1, -1): "direction of x" is that direction, over the position, "reversal of
+// x" the same over the logarithm of the way since the reversal.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,12 +15,19 @@
 
 namespace abbe::diagnosis {
 
-// In the rows of a run, SI; empty where the run does not have it.
+// In the rows of a run, SI (a column of the user's as it is); empty where the run does not have it.
 Eigen::RowVectorXd ValuesOf(const std::string& variable, const simulation::Trace& trace);
 // The factor of a variable that has one, else empty.
 Eigen::RowVectorXd FactorOf(const std::string& variable, const simulation::Trace& trace);
 // s, mm, mm/min, rad, degC
 estimation::PrintUnit UnitOf(const std::string& variable);
+
+bool HasFactor(const std::string& variable);
+// The axis, pivot or probe whose own the variable is, in lower case; empty: no one's.
+std::string OwnerOf(const std::string& variable);
+bool IsSpeed(const std::string& variable);
+bool IsGap(const std::string& variable);
+std::string GapOf(const std::string& probe);
 
 // Variables of which a channel may be a smooth function.
 std::vector<std::string> VariablesOf(const simulation::Scene& scene);

@@ -51,6 +51,10 @@ struct Trace {
   Eigen::Matrix3Xd since_reversal;  // m of the axis
   std::vector<std::string> sensors;
   Eigen::MatrixXd temperature, warming;  // degC and K, sensors x rows
+  // Columns of numbers that are the user's own, as they were recorded; others x rows.
+  std::vector<std::string> others;
+  Eigen::MatrixXd other;
+  int number = 0;  // of the run, in the order in which those of a campaign were made
 
   std::optional<HeadRows> head;
   std::optional<LinkageRows> linkage;

@@ -17,7 +17,8 @@ std::vector<int> IntegersAt(const recording::Recording& recording, const std::st
 // The heading of the axis that a column `direction` is of.
 Eigen::RowVectorXd ApproachOf(const std::vector<int>& direction);
 
-// All temperatures of the recording, to a trace that has its times.
+// All temperatures of the recording, and the columns that are the user's own where all their values
+// are finite, to a trace that has its times.
 void AddSensors(const recording::Recording& recording, const std::vector<std::size_t>& rows,
                 Trace& trace);
 

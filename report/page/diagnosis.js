@@ -208,11 +208,17 @@ const WITHOUT_VARIABLE = {
   memory: 'is correlated from one reading to the next',
 };
 
-const whatItDoes = ({variable, from, to, variable_unit: unit}) => {
+// Where other variables do as well, none of them is certain.
+const oneOf = ({object, one_of: others}) => (others ?? []).map(
+    (other, i) => `${i ? ', ' : ' or with one of these: '}${other.variable}${
+        other.object === object ? '' : ` of ${objectName(other.object)}`}`).join('');
+
+const whatItDoes = (left) => {
+  const {variable, from, to, variable_unit: unit} = left;
   if (WITHOUT_VARIABLE[variable]) return WITHOUT_VARIABLE[variable];
-  if (!isNumber(from)) return `varies with ${variable}`;
+  if (!isNumber(from)) return `varies with ${variable}${oneOf(left)}`;
   const [first, last] = [from, to].map((border) => plain(Number(border.toPrecision(4))));
-  return `is offset where ${variable} is ${first} to ${last}\u00a0${unit},`;
+  return `is offset where ${variable} is ${first} to ${last}\u00a0${unit},${oneOf(left)}`;
 };
 
 function leftoverBlock(result) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <cstdio>
@@ -70,7 +71,8 @@ inline void AddSizes(const Finding& finding, const rig::HiddenEffect& truth, Rat
   }
 }
 
-// Whether something that is left depends on this: a column of the recordings, or the sum of two.
+// Whether something that is left depends on this, or one of these does: a column of the
+// recordings, or the sum of two.
 inline bool LivesIn(const Diagnosis& diagnosis, std::string columns) {
   const bool sensor = columns.ends_with("_c");
   for (const char* unit : {"_mm_min", "_mm", "_rad", "_s"}) {
@@ -80,7 +82,8 @@ inline bool LivesIn(const Diagnosis& diagnosis, std::string columns) {
     }
   }
   for (const auto& leftover : diagnosis.leftovers) {
-    if (leftover.variable == columns) return true;
+    const auto named = [&](const auto& other) { return other.variable == columns; };
+    if (named(leftover) || std::ranges::any_of(leftover.one_of, named)) return true;
   }
   return false;
 }
@@ -103,6 +106,7 @@ inline void Print(std::uint64_t seed, const rig::Campaign& world, const Diagnosi
   for (const auto& leftover : diagnosis.leftovers) {
     line += fmt::format("; left {} of {} p={:.1g}", leftover.variable, leftover.object,
                         leftover.p_value);
+    for (const auto& other : leftover.one_of) line += fmt::format(" or {}", other.variable);
   }
   fmt::print("{}\n", line);
   std::fflush(stdout);

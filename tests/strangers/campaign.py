@@ -2,6 +2,7 @@
 
 The plan is that of a reduced standard campaign: sweeps of X, Y and Z in both directions, circles in three
 planes in both senses at two feeds, stays at points all over the travels, a standstill, a line of lengths.
+`wide` adds gap steps beside each sweep and, with the target mounted a second time, a sweep of each axis.
 """
 import dataclasses
 
@@ -26,6 +27,7 @@ class Run:
     direction: np.ndarray
     feed: np.ndarray  # m/s
     header: list
+    mounting: str = "first"  # of the target
     number: int = 0
     temps: np.ndarray = None  # (n, 2) column and table, degC
 
@@ -85,8 +87,27 @@ def sweep(draw, axis, start, passes=5, mounting="first", head="0deg"):
     header = [f'axis = "{axis}"', "[sweep]", "window_um = 20", "settle_s = 0.1", "[mounting]",
               f'id = "{mounting}"', f'head = "{head}"', "target_shift_mm = 0.0", "target_reversed = false"]
     n = len(t)
-    return Run(f"sweep_{axis}", "sweep", axis, start, t, q, sense, since, np.zeros((n, 3)), number,
-               sense[:, k], np.full(n, FEED), header)
+    return Run(f"sweep_{axis}" + ("_again" if mounting != "first" else ""), "sweep", axis, start, t, q, sense, since,
+               np.zeros((n, 3)), number, sense[:, k], np.full(n, FEED), header, mounting)
+
+
+def gap_steps(draw, axis, start):
+    """At three places of the swept axis each of the other two steps to 45 um on both sides and back."""
+    k = "XYZ".index(axis)
+    places, number = [], []
+    for place, at in enumerate(STATIONS[[0, len(STATIONS) // 2, -1]]):
+        for other in range(3):
+            for step in (0, 45e-6, 0, -45e-6, 0) if other != k else ():
+                places.append(np.eye(3)[k] * at + np.eye(3)[other] * step)
+                number.append(place + 1)
+    t, q, sense, since, index = stays(draw, places, 13, 0.6)
+    header = [f'axis = "{axis}"', "[mounting]", 'id = "first"', 'head = "0deg"', "target_shift_mm = 0.0",
+              "target_reversed = false"]
+    n = len(t)
+    moves = np.diff(np.vstack([places[:1], places]), axis=0)
+    last = np.where(moves.any(axis=1), np.sign(moves.sum(axis=1)), 1.0)
+    return Run(f"gap_steps_{axis}", "gap-steps", axis, start, t, q, sense, since, np.zeros((n, 3)),
+               np.array(number)[index], last[index], np.full(n, FEED), header)
 
 
 def circle(plane, feed, start, radius=0.020):
@@ -159,11 +180,14 @@ class Weather:
         return 20 + (self.share * np.sin(angle)).sum(axis=2)
 
 
-def plan(draw):
+def plan(draw, wide=False):
     """The runs of a campaign in their order, one after the other with pauses."""
     makers = [lambda s, a=a: sweep(draw, a, s) for a in "XYZ"]
     makers += [lambda s, p=p, f=f: circle(p, f / 60e3, s) for p in ("XY", "YZ", "ZX") for f in (600, 120)]
     makers += [lambda s: space(draw, s), lambda s: standstill(draw, s), lambda s: length(draw, "X", s)]
+    if wide:
+        makers += [lambda s, a=a: gap_steps(draw, a, s) for a in "XYZ"]
+        makers += [lambda s, a=a: sweep(draw, a, s, 2, "second") for a in "XYZ"]
     runs, clock, weather = [], 0.0, Weather(draw)
     for number, make in enumerate(makers):
         run = make(clock)

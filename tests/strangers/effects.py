@@ -6,6 +6,7 @@ world where the effect acts:
   carriage(run)        more error motions of an axis: {axis: (n, 6)} in m and rad
   travel(run)          where the axes truly stand less what is recorded, (n, 3) in m
   gaps(run, gaps)      more gap, (n, 5) in m         angles(run, angles)  more angle, (n, 3) in rad
+  columns(run)         columns of the user's own, {name: (n,)}
   ball(run)            how far the ball stands off in its cap, (n, 3) in m
   probe_noise, encoder_noise (draw, run, columns)    noise in units of the stated one, in its place
   machine              arguments of machine.Machine   form  factor of the target's form
@@ -54,7 +55,7 @@ def warmth(runs, sensor):
 def angular_play(draw, runs):
     k, c, h = draw.integers(3), draw.integers(3, 6), size(draw, 2e-6, 2e-5)
     return Effect({"carriage": lambda r: motion(k, c, h / 2 * r.sense[:, k])},
-                  f"E{'ABC'[c - 3]}{AXES[k]} jumps by {h * 1e6:.1f} urad at reversal", ("direction", "way"))
+                  f"E{'ABC'[c - 3]}{AXES[k]} jumps by {h * 1e6:.1f} urad at reversal", ("direction", "reversal"))
 
 
 def growing_bow(draw, runs):
@@ -128,7 +129,7 @@ def stick_slip(draw, runs):
     both = lambda r: np.stack([saw(r), 0 * r.t, 0 * r.t, 0 * r.t, 0 * r.t, saw(r) / abs(h) * turned], axis=1)
     return Effect({"carriage": lambda r: {AXES[k]: np.roll(both(r), k, axis=1) if k else both(r)}},
                   f"{AXES[k]} sticks and slips by {h * 1e6:.2f} um every {period * 1e3:.1f} mm since it turned",
-                  ("direction", "way", "xyz"[k]))
+                  ("direction", "reversal", "xyz"[k]))
 
 
 def two_scales(draw, runs):
@@ -158,6 +159,48 @@ def gears(draw, runs):
     return Effect({"travel": lambda r: np.eye(3)[k] * (h * wave(r.q[:, k]))[:, None]},
                   f"{AXES[k]} runs on wheels of {periods[0] * 1e3:.2f} and {periods[1] * 1e3:.2f} mm, "
                   f"{h * 1e6:.2f} um", ("xyz"[k],), same)
+
+
+def belt(draw, runs):
+    """The teeth of a belt: a wave that grows from one end, and slips by a part of a tooth with the direction."""
+    k, h, pitch = draw.integers(3), abs(size(draw, 5e-7, 5e-6)), draw.choice([0.002, 0.003, 0.005])
+    phase, slip = draw.uniform(0, 6.28), draw.uniform(0.2, 1.5)
+    angle = lambda r: 2 * np.pi * r.q[:, k] / pitch + phase + slip * r.sense[:, k]
+    wave = lambda r: h * (0.3 + r.q[:, k] / TRAVEL) * np.sin(angle(r))
+    same = (("leadscrew-cyclic", AXES[k], {"pitch_mm": (pitch * 980, pitch * 1020)}),)
+    return Effect({"travel": lambda r: np.eye(3)[k] * wave(r)[:, None]},
+                  f"{AXES[k]} hangs on a belt with teeth of {pitch * 1e3:.0f} mm, {h * 1e6:.2f} um",
+                  ("direction", "xyz"[k]), same)
+
+
+def damp_scale(draw, runs):
+    """A scale that swells with a moisture that the user has recorded."""
+    k, h, period, phase = draw.integers(3), size(draw, 1e-6, 1e-5), draw.uniform(600, 4000), draw.uniform(0, 6.28)
+    moisture = lambda r: 45 + 5 * np.sin(2 * np.pi * r.clock / period + phase)
+    swollen = lambda r: h * (moisture(r) - 45) / 5 * r.q[:, k] / TRAVEL
+    return Effect({"travel": lambda r: np.eye(3)[k] * swollen(r)[:, None],
+                   "columns": lambda r: {"moisture_pct": moisture(r)}},
+                  f"the scale of {AXES[k]} swells by {h * 1e6:.1f} um with moisture_pct",
+                  ("column moisture_pct", "time", "run"))
+
+
+def heavy_workpiece(draw, runs):
+    """The table leans under a load that changes from run to run and is written down."""
+    k, c, h = draw.integers(2), draw.integers(3, 6), size(draw, 2e-6, 2e-5)
+    load = draw.uniform(0, 100, len(runs)).round()
+    lean = lambda r: motion(k, c, np.full(len(r.t), h * load[r.number] / 50))
+    return Effect({"carriage": lean, "columns": lambda r: {"load_n": np.full(len(r.t), load[r.number])}},
+                  f"E{'ABC'[c - 3]}{AXES[k]} by {h * 1e6:.1f} urad for each 50 N of load_n",
+                  ("column load_n", "time", "run"))
+
+
+def tall_play(draw, runs):
+    """Play that grows evenly along the axis."""
+    k, h = draw.integers(3), abs(size(draw, 5e-7, 5e-6))
+    wide = lambda r: h * r.q[:, k] / TRAVEL * r.sense[:, k] / 2
+    return Effect({"travel": lambda r: np.eye(3)[k] * wide(r)[:, None]},
+                  f"{AXES[k]} has play from nothing to {h * 1e6:.2f} um at its end", ("direction", "xyz"[k]),
+                  (("backlash", AXES[k], {}),))
 
 
 def speed_squared(draw, runs):
@@ -207,7 +250,7 @@ def probe_hysteresis(draw, runs):
         value[:, p] = h / 2 * run.sense[:, k] * np.minimum(run.since[:, k] / 0.003, 1.0)
         return value
     return Effect({"gaps": lag}, f"probe {'abcde'[p]} lags by {h * 1e9:.0f} nm",
-                  ("direction", "way", f"probe_{'abcde'[p]}"))
+                  ("direction", "reversal", f"probe_{'abcde'[p]}"))
 
 
 def form_four_times(draw, runs):
@@ -315,8 +358,8 @@ def reseated_ball(draw, runs):
 
 EFFECTS = {f.__name__: f for f in (
     angular_play, growing_bow, varying_play, product_of_positions, bend_with_temperature, bend_with_rate,
-    beyond_threshold, late_threshold, stick_slip, two_scales, quantised_positions, gears, speed_squared,
-    floor_vibration, rougher_machine, kinked_machine, heavy_tails, larger_errors, probe_hysteresis, form_four_times,
-    wandering_target, tailed_probe_noise, probe_noise_with_memory, unequal_probes, encoder_noise_with_memory,
-    tailed_encoder_noise, fine_subdivision, late_encoder, dragging_encoder, reseated_ball)}
-
+    beyond_threshold, late_threshold, stick_slip, two_scales, quantised_positions, gears, belt, damp_scale,
+    heavy_workpiece, tall_play, speed_squared, floor_vibration, rougher_machine, kinked_machine, heavy_tails,
+    larger_errors, probe_hysteresis, form_four_times, wandering_target, tailed_probe_noise, probe_noise_with_memory,
+    unequal_probes, encoder_noise_with_memory, tailed_encoder_noise, fine_subdivision, late_encoder, dragging_encoder,
+    reseated_ball)}

@@ -2,6 +2,8 @@
 
 Frames as in docs/theory-head.md and docs/theory-linkage.md; no small angle anywhere. SI units.
 """
+import copy
+
 import numpy as np
 
 from machine import apply, inverse, joined, turn
@@ -14,7 +16,7 @@ class Face:
     """One face of the target: turned a little, and not flat; waves of random direction and length."""
 
     def __init__(self, draw, normal, tilt, form, length):
-        self.normal = turn(tilt)[0] @ normal
+        self.flat, self.normal = normal, turn(tilt)[0] @ normal
         across = [np.array(UNIT[e], float) for e in "xyz" if abs(np.dot(UNIT[e], normal)) < 0.5]
         self.directions = draw.normal(size=(24, 2)) @ np.array(across) / length
         self.phases = draw.uniform(0, 2 * np.pi, 24)
@@ -29,8 +31,16 @@ class Target:
         form, length = settings["form_nm"] * 1e-9 * form_factor, settings["form_length_mm"] * 1e-3
         mounted = draw.uniform(-1e-4, 1e-4, 3)
         a, b, c = settings["u_squareness_urad"] * 1e-6 * draw.normal(size=3)
-        lean = {"z": (0, 0, 0), "y": (a, 0, 0), "-x": (0, b, c)}
-        self.faces = {name: Face(draw, n, mounted + lean[name], form, length) for name, n in FACES.items()}
+        self.lean = {"z": (0, 0, 0), "y": (a, 0, 0), "-x": (0, b, c)}
+        self.faces = {name: Face(draw, n, mounted + self.lean[name], form, length) for name, n in FACES.items()}
+
+    def mounted_again(self, draw):
+        """The same target, tilted otherwise."""
+        other, mounted = copy.copy(self), draw.uniform(-1e-4, 1e-4, 3)
+        other.faces = {name: copy.copy(face) for name, face in self.faces.items()}
+        for name, face in other.faces.items():
+            face.normal = turn(mounted + self.lean[name])[0] @ face.flat
+        return other
 
 
 class Head:

@@ -1,4 +1,6 @@
 """What a result of abbe is worth, held against the truth of a world."""
+import re
+
 import numpy as np
 
 from machine import AXES, MOTIONS
@@ -25,11 +27,12 @@ def diagnosis(result, effect):
              if p >= CERTAIN and not same_thing(f, effect)]
     right = any(p >= CERTAIN and same_thing(f, effect) for p, f in zip(chance, result["findings"]))
     leftovers = [(u["variable"], u["object"]) for u in result["unexplained"]]
-    words = {w for variable, thing in leftovers for w in (*variable.split("-"), variable, thing)}
+    alike = [(o["variable"], o["object"]) for u in result["unexplained"] for o in u.get("one_of", ())]
+    words = {w for variable, thing in leftovers + alike for w in (*re.split("[-+* ]", variable), variable, thing)}
     return {"verdict": result["verdict"], "findings": list(zip(told, chance)), "wrong": wrong,
             "advised": [t for t, f in zip(told, result["findings"])
                         if t in wrong and f.get("words", {}).get("remedy")],
-            "unexplained": leftovers, "right": right,
+            "unexplained": leftovers, "or": alike, "right": right,
             "named": right or bool(effect and words & set(effect.named_by))}
 
 

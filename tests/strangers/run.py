@@ -8,7 +8,7 @@ rig or the models. It is never tuned to, and no effect is taken out because it i
 the world it came from is replaced by fresh ones (another --seed).
 
     run.py --abbe build/dev/abbe --worlds 60 --seed 1 --out results.jsonl        # abbe diagnose
-    run.py --abbe build/dev/abbe --worlds 20 --seed 1 --effect clean --out clean.jsonl
+    run.py --abbe build/dev/abbe --worlds 20 --seed 1 --effect clean --wide --out clean.jsonl
     run.py --abbe build/dev/abbe --worlds 20 --seed 1 --map --out maps.jsonl     # abbe fuse and abbe reduce
     run.py --abbe build/dev/abbe --worlds 20 --seed 1 --apply --out applied.jsonl  # fuse --causes of a diagnosis
     run.py --table results.jsonl                                                 # the table once more
@@ -99,13 +99,13 @@ def applied(program, world, folder):
     return {**found, "without": plain, "with": corrected, "worse": worse, "seconds": seconds}
 
 
-def one(job, program, task):
+def one(job, program, task, wide=False):
     """One world, from its seed to its line in the results."""
     seed, name = job
-    world = World(seed, MACHINE, EFFECTS.get(name))
+    world = World(seed, MACHINE, EFFECTS.get(name), wide)
     line = {"seed": seed, "effect": name, "says": world.effect.says if world.effect else ""}
     if world.effect:
-        moved = changes(world, World(seed, MACHINE))
+        moved = changes(world, World(seed, MACHINE, wide=wide))
         line["size_sd"] = round(sum(v**2 for v in moved.values()) ** 0.5, 1)
         line["touched"] = [run for run, v in moved.items() if v > 3]
     with tempfile.TemporaryDirectory() as folder:
@@ -127,6 +127,7 @@ def main():
     parser.add_argument("--worlds", type=int, default=1)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--effect", default="all", choices=["all", "clean", *EFFECTS])
+    parser.add_argument("--wide", action="store_true", help="with gap steps and the target mounted a second time")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--out", type=pathlib.Path, help="lines are added to it")
     parser.add_argument("--map", action="store_true", help="coverage of fuse and reduce")
@@ -140,7 +141,7 @@ def main():
     task = mapped if given.map else applied if given.apply else diagnosed
     lines = []
     with multiprocessing.Pool(given.jobs) as pool:
-        work = functools.partial(one, program=given.abbe, task=task)
+        work = functools.partial(one, program=given.abbe, task=task, wide=given.wide)
         for line in pool.imap_unordered(work, jobs_of(given.effect, given.worlds, given.seed)):
             lines.append(line)
             if given.out:

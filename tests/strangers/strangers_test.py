@@ -66,15 +66,24 @@ class TheWorldItself(unittest.TestCase):
 
 
 class DiagnosisOfStrangers(unittest.TestCase):
-    def diagnosed(self, seed, effect):
+    def diagnosed(self, seed, effect, wide=False):
         with tempfile.TemporaryDirectory() as folder:
-            world = World(seed, run.MACHINE, EFFECTS.get(effect))
+            world = World(seed, run.MACHINE, EFFECTS.get(effect), wide)
             return run.diagnosed(PROGRAM, world, pathlib.Path(folder))
 
     def test_clean_worlds_stay_clean(self):
         for seed in (2, 3, 4):
             with self.subTest(seed=seed):
                 self.assertEqual(self.diagnosed(seed, "clean")["verdict"], "clean")
+
+    def test_gap_steps_and_a_second_mounting_stay_clean(self):
+        self.assertEqual(self.diagnosed(5, "clean", wide=True)["verdict"], "clean")
+
+    def test_a_column_of_the_user_and_a_motion_are_named(self):
+        found = self.diagnosed(26, "heavy_workpiece")
+        self.assertEqual(found["verdict"], "unexplained", found)
+        told = [variable for variable, _ in found["unexplained"] + found["or"]]
+        self.assertIn("column load_n", told, found)
 
     def test_nothing_certain_is_wrong(self):
         for seed, effect in ((21, "bend_with_rate"), (22, "beyond_threshold"), (23, "unequal_probes"),

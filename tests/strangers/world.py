@@ -34,16 +34,18 @@ def white(draw, run, columns):
 
 
 class World:
-    def __init__(self, seed, machine_file, effect=None):
+    def __init__(self, seed, machine_file, effect=None, wide=False):
         self.seed, self.file = seed, machine_file
         self.settings = tomllib.loads(pathlib.Path(machine_file).read_text(encoding="utf-8"))
         s = self.settings
-        self.runs = plan(self.stream("plan"))
+        self.runs = plan(self.stream("plan"), wide)
         self.effect = effect(self.stream("effect"), self.runs) if effect else None
         self.hooks = self.effect.hooks if effect else {}
         self.machine = Machine(self.stream("machine"), s["population"], **self.hooks.get("machine", {}))
         self.head = Head(self.stream("head"), s["head"])
         self.target = Target(self.stream("target"), s["target"], self.hooks.get("form", 1.0))
+        again = self.stream("target", 1)
+        self.targets = {"first": self.target, "second": self.target.mounted_again(again)}
         self.linkage = Linkage(self.stream("linkage"), s["linkage"])
 
     def stream(self, name, *more):
@@ -61,7 +63,7 @@ class World:
         work, tool = self.machine.poses(q, more)
         gaps = angles = None
         if run.probes:
-            gaps = self.head.gaps(run.axis, work, tool, self.target)
+            gaps = self.head.gaps(run.axis, work, tool, self.targets[run.mounting])
             gaps = gaps + self.hook("gaps", run, gaps)
         if run.pivots:
             ball = np.broadcast_to(self.hook("ball", run), run.q.shape)
@@ -113,6 +115,7 @@ class World:
         if run.kind == "length":
             columns += [("length_mm", self.lengths(run) * 1e3, "%.8f"), ("u_length_um", 0.1 + 0 * run.t, "%g")]
         columns += [(f"temp_{n}_c", run.temps[:, k], "%.5f") for k, n in enumerate(("column", "table"))]
+        columns += [(name, value, "%.4f") for name, value in self.hook("columns", run, otherwise={}).items()]
         columns += [("flags", 0 * run.t, "%d")]
         began = datetime.datetime(2026, 11, 21, 8) + datetime.timedelta(seconds=run.start)
         header = ["abbe-recording = 1", f'kind = "{run.kind}"', f'machine = "{self.settings["name"]}"',
