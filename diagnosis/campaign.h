@@ -7,8 +7,11 @@
 // Invalid readings (invalid_readings.h) are found first and left out. Rows enter in full detail
 // (simulation/run_kind.h), so that what changes from pass to pass stays visible, and no row is
 // weighted down by a robust loss: what looks like outliers may be the cause.
+// Units: SI. Shapes: runs in the order of adding.
 // Failure: InputError for a recording of another machine, of a kind that abbe does not know or the
 // machine file does not describe, and that of the simulations.
+// Source: docs/theory-diagnosis.md.
+// Validity: runs of one machine in one state: what changes between them has to be a cause.
 #pragma once
 
 #include <optional>
@@ -31,6 +34,7 @@ class Campaign {
  public:
   explicit Campaign(simulation::Instruments instruments);
 
+  // Takes its invalid readings out first.
   void Add(recording::Recording recording);
 
   // A campaign without runs, for parts of those of this one or further ones on the same clock.
@@ -38,10 +42,12 @@ class Campaign {
 
   simulation::Origin origin() const;
 
+  // True if at least one run does.
   bool EstimatesNoise() const;
   // Noise of the runs that estimate it, one excess for each run: up where it is a third more, down
   // by a twentieth at least; false where nothing changes.
   enum class Change { kDown, kUp };
+  // `excess`: one a run, over the stated noise.
   bool SetExcess(const std::vector<double>& excess, Change change);
 
   // Noise with a memory, in units of what the run is whitened with (simulation/remembered_noise.h).

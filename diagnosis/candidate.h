@@ -1,4 +1,8 @@
 // A cause at one object and with one shape, and what the data say of it.
+// Units: SI. Shapes: coefficients and covariance as the cause has them, a free shape last.
+// Failure: none.
+// Source: docs/theory-diagnosis.md.
+// Validity: evidence is that of evidence.h.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,6 +22,7 @@ struct Candidate {
   Eigen::VectorXd coefficients = {};
   double coarseness = 1.0;  // times the plausible sizes of the cause
 
+  // "backlash:X".
   std::string Name() const { return cause->id + ":" + object.name(); }
   // Standard deviation of each coefficient, before any data.
   Eigen::VectorXd Plausible() const {
@@ -60,6 +65,7 @@ struct Score {
 struct Keys {
   Eigen::VectorXd values, u;
 };
+// The covariance goes through `tell` by its derivatives.
 Keys KeysOf(const Score& score);
 
 }  // namespace abbe::diagnosis

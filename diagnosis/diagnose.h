@@ -5,13 +5,18 @@
 //   diagnosis.verdict;                      // Verdict::kExplained
 //   diagnosis.findings[0].score.candidate.Name();          // "backlash:X"
 //
-// How: search.h. Where something is left, noise with a memory is a hypothesis of its own: the runs
-// whose rows go on from one to the next are whitened so, the search is repeated, and what is more
-// probable is told (noise_hypothesis.h).
-// Verdict: clean, nothing found, nothing left; explained, each finding is at least kCertain among
-// its rivals and nothing is left; ambiguous, rivals; unexplained, structure is left.
-// Source: MacKay, Neural Computation 4 (1992), for evidence and Occam factor. Units: SI. Failure:
-// that of Fit.
+// How: search.h. Where structure is left, correlated noise is tried as a rival explanation: runs
+// whose residuals go on from row to row are whitened for it, the search is repeated, and the more
+// probable of both results is kept (noise_hypothesis.h).
+// Verdict: `clean`: nothing found, nothing left. `explained`: each finding has at least the
+// probability kCertain among its rivals, and nothing is left. `ambiguous`: a finding has rivals.
+// `unexplained`: structure is left. Shapes: coefficients as their cause has them; one evidence a
+// cause and object.
+// Source: MacKay, Neural Computation 4 (1992), for evidence and Occam factor.
+// Units: SI.
+// Failure: that of Fit.
+// Validity: first order at the fit, noise as the runs themselves show it; a cause outside the
+// catalogue shows as structure without a name.
 #pragma once
 
 #include <optional>
@@ -27,12 +32,13 @@ namespace abbe::diagnosis {
 
 inline constexpr double kCertain = simulation::kCertain;  // 0.99
 inline constexpr double kPresent = 0.1;  // probability that a machine has a cause at all
-// No finding is more probable where structure is left that no cause explains: what makes it may
-// make the finding too.
+// The highest probability of a finding beside structure that no cause explains: the unknown origin
+// of the structure may have made the finding too.
 inline constexpr double kBesideUnexplained = 0.9;
 inline constexpr double kShowable = 5.0;  // standard deviations of a plausible size
 
 enum class Verdict { kClean, kExplained, kAmbiguous, kUnexplained };
+// "explained".
 std::string_view Name(Verdict verdict);
 
 struct Rival {
@@ -58,7 +64,7 @@ struct Finding {
   std::optional<NextRun> next_run = {};
   Curve curve = {};
 };
-// Not so: readings that are none, which were left out.
+// False for invalid readings, which are left out instead.
 bool IsModelled(const Finding& finding);
 
 struct Diagnosis {
@@ -69,10 +75,11 @@ struct Diagnosis {
   std::vector<Leftover> leftovers;
   std::vector<std::string> notes;            // what was found of the noise
   double chi_before = 0.0, chi_after = 0.0;  // chi-square per row of all runs
-  double map_change = 0.0;    // m: of the volumetric error at most, by what was found
+  double map_change = 0.0;    // m: largest change of the volumetric error by the findings
   estimation::Result fitted;  // with all that was found
 };
 
+// The whole search.
 Diagnosis Diagnose(const Campaign& campaign);
 
 }  // namespace abbe::diagnosis

@@ -6,10 +6,13 @@
 // Evidence is as good as the simulation is complete. A finding is doubtful whose U95 exceeds its
 // size, whose size lies beyond what the cause can physically be, whose period is shorter than two
 // steps of the path on which it was seen, which is a wave that fits nearly as well with another
-// frequency, period or order, or with which the rows that were held out come out worse;
-// outliers of several channels of one instrument are doubtful too. The probability is then kDoubtful
-// at most, and a verdict of `explained` becomes `ambiguous`.
+// frequency, period or order, or with which the rows that were held out come out worse; outliers of
+// several channels of one instrument are doubtful too. The probability is then kDoubtful at most,
+// and a verdict of `explained` becomes `ambiguous`.
 // Units: SI.
+// Failure: none.
+// Source: docs/theory-diagnosis.md.
+// Validity: rules of thumb: each lowers a probability, none raises one.
 #pragma once
 
 #include "diagnosis/diagnose.h"

@@ -11,10 +11,12 @@
 //
 // which is the exact marginal likelihood of the linear problem, noise known. A cause that only
 // relaxes priors uses the Jacobian columns of those parameters as C. A binary cause has c = 1 and
-// the log evidence g - S / 2.
+// the log evidence g - S / 2. Shapes: S and P square in the coefficients, g as many.
+// Failure: none; a singular S has no evidence.
 // Source: Rasmussen and Williams, Gaussian Processes (2006), 2.7; MacKay, Neural Computation 4
-// (1992), for the Occam factor. Units: SI. Validity: to first order at the fit; score anew after
-// each cause that was taken in.
+// (1992), for the Occam factor.
+// Units: SI.
+// Validity: to first order at the fit; score anew after each cause that was taken in.
 #pragma once
 
 #include <vector>
@@ -32,9 +34,11 @@ struct DrawnSize {
 struct SizeRange {
   double smallest, largest, ratio;
 };
+// `sizes`: tried, `ratio` apart.
 DrawnSize SizeOfDraws(const Fit::Projection& projection, const SizeRange& sizes, double stated);
 
 Score ScoreFrom(Candidate candidate, const Fit::Projection& projection);
+// One score a candidate, in their order.
 std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candidates);
 
 }  // namespace abbe::diagnosis

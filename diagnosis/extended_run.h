@@ -6,8 +6,11 @@
 //
 // The columns are those of the run at `x`, the parameters of its own blocks; the coefficients have
 // their plausible deviation as prior. A cause that is there or not has no parameter; one that
-// relaxes parameters changes their priors instead. Units, failure: those of
-// simulation/simulated_run.h. Validity: linear in the coefficients.
+// relaxes parameters changes their priors instead.
+// Units, failure: those of simulation/simulated_run.h. Shapes: columns rows of the run x
+// coefficients.
+// Source: docs/theory-diagnosis.md.
+// Validity: linear in the coefficients.
 #pragma once
 
 #include <Eigen/Core>
@@ -41,6 +44,7 @@ class ExtendedRows : public estimation::Residual {
   virtual const Eigen::MatrixXd& columns() const = 0;
 };
 
+// With one block more for each cause.
 simulation::SimulatedRun Extend(const PreparedRun& run, const LinearRun& at,
                                 const std::vector<Candidate>& causes);
 

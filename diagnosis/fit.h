@@ -10,8 +10,11 @@
 //
 //   S = C'C - C'J H^-1 J'C,    g = C'r - C'J H^-1 J'r        information and score of c
 //
-// Source: Rasmussen and Williams, Gaussian Processes (2006), 2.7. Units: SI. Validity: to first
-// order at the fit. Failure: NumericalError when the fit does not settle.
+// Shapes: S n x n, g n x 1, n the coefficients of a group.
+// Source: Rasmussen and Williams, Gaussian Processes (2006), 2.7.
+// Units: SI.
+// Validity: to first order at the fit.
+// Failure: NumericalError when the fit does not settle.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -73,7 +76,9 @@ class Fit {
   struct RowScores {
     Eigen::RowVectorXd scores, weights;
   };
+  // `run`: index into the campaign.
   RowScores ScoresOf(std::size_t run, Eigen::Index stage) const;
+  // With the readings as they would be without noise.
   const simulation::Trace& TraceOf(std::size_t run) const { return runs_[run].at.trace; }
   // What is left of a run, whitened.
   const Eigen::VectorXd& LeftOf(std::size_t run) const { return runs_[run].r; }

@@ -7,7 +7,11 @@
 //   file.Append(simulation::ExtendedModelText(model));
 //   file.Finish();
 //
-// Rows that are no readings (stuck channels, outliers) are no part of a model. Units: SI.
+// Rows that are no readings (stuck channels, outliers) are no part of a model.
+// Units: SI.
+// Failure: none.
+// Source: docs/extended-model.md.
+// Validity: that of the diagnosis; sizes are those of the fit with all findings.
 #pragma once
 
 #include <optional>
@@ -18,6 +22,7 @@
 
 namespace abbe::diagnosis {
 
+// Values, U95 and covariance of one.
 simulation::ModelledCause FoundCause(const Score& score);
 
 // By how much what is left moves a measured point, m rms: a length as it is; an angle of a pivot
@@ -25,6 +30,7 @@ simulation::ModelledCause FoundCause(const Score& score);
 // run, as if it did not average out. Empty where the noise of that run in space is not known.
 std::optional<double> InSpace(const Leftover& leftover, const Campaign& campaign);
 
+// All that are modelled; `gain` of hold_out.h.
 simulation::ExtendedModel FoundModel(const Diagnosis& diagnosis, const Campaign& campaign,
                                      const HeldOutGain& gain);
 

@@ -9,7 +9,10 @@
 // sweep with one pass and runs of other kinds take no part. The simulation is fitted to the rest,
 // once as it is, once with the causes and once with all but each of them, and asked for the rows
 // that were held out: rms of (measured - simulated) / stated deviation, 1 for the noise floor.
+// Units: standard deviations; m where said. Shapes: one Without a cause, in their order.
 // Failure: that of Fit.
+// Source: docs/theory-diagnosis.md.
+// Validity: says whether a cause predicts, not whether it is the right one of two that do the same.
 #pragma once
 
 #include <Eigen/Core>

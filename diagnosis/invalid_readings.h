@@ -4,11 +4,16 @@
 //
 // Stuck: a channel with one value, to the last bit, in at least kLeastStuck rows in which another
 // channel of the instrument changes mostly. Outlier: a reading that is farther than kFar times the
-// scatter from its prediction: the median of the neighbouring rows of its stay where the axes
-// stand (the mean of the others in stays of three and four), the cubic through the next four valid readings of the motion, two on either side if
-// possible, where they move. The scatter is 1.4826 times the median absolute deviation.
-// Channels: probe_*_um, pivot_*_rad. Units: s since the recording began. Rows with a flag are
-// skipped; a recording without time_s is not examined.
+// scatter from its prediction: the median of the neighbouring rows of its stay where the axes stand
+// (the mean of the others in stays of three and four), the cubic through the next four valid
+// readings of the motion, two on either side if possible, where they move. The scatter is 1.4826
+// times the median absolute deviation. Channels: probe_*_um, pivot_*_rad.
+// Units: s since the recording began. Rows with a flag are skipped; a recording without time_s is
+// not examined.
+// Failure: none.
+// Source: the median absolute deviation, Hampel, J. American Statistical Association 69 (1974).
+// Validity: a channel that stands still because nothing moves is not stuck: another one must
+// change.
 #pragma once
 
 #include <string>
@@ -22,6 +27,7 @@ namespace abbe::diagnosis {
 inline constexpr std::size_t kLeastStuck = 12;
 inline constexpr double kFar = 8.0;
 
+// Sets the flags in `recording`.
 std::vector<simulation::InvalidReadings> FlagInvalidReadings(recording::Recording& recording);
 
 }  // namespace abbe::diagnosis

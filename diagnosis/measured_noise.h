@@ -9,10 +9,13 @@
 // causes. What the machine file states is believed to 5 %; where the recordings say otherwise with
 // 4 standard uncertainties, `instruments` get what they say of that channel, and a note tells it.
 // The means of a sweep's stations have their scatter from the sweep itself
-// (simulation/sweep/sweep_run.h), so sweeps are not asked for that.
-// A channel whose noise, in a sweep too, is beyond doubt more than kFarMore times what is stated
-// is listed in `instruments.noisy`: something is wrong with it.
-// Units: m, rad.
+// (simulation/sweep/sweep_run.h), so sweeps are not asked for that. A channel whose noise, in a
+// sweep too, is beyond doubt more than kFarMore times what is stated is listed in
+// `instruments.noisy`: something is wrong with it.
+// Units: m, rad. Shapes: one noise a channel.
+// Failure: that of simulation/stays.h.
+// Source: estimation/readings_at_rest.h.
+// Validity: noise that is there only in motion does not show.
 #pragma once
 
 #include <string>

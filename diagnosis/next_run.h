@@ -8,7 +8,10 @@
 // expected_odds.h tells what each would bring, everything else that the simulation could be and the
 // other findings projected out. Proposed is the shortest run after which the right rival is
 // expected to be kCertain; where none is, the one that brings most, if it brings anything.
+// Units: s; probabilities. Shapes: one proposal a finding with rivals.
 // Failure: that of LinearRuns.
+// Source: expected information: Lindley, Ann. Math. Statist. 27 (1956).
+// Validity: first order on the fitted machine; a rival outside the catalogue is not among them.
 #pragma once
 
 #include <vector>

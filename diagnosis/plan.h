@@ -6,12 +6,15 @@
 //
 // The machine that is measured is one drawn from what the machine file says of such machines, its
 // head, target and linkage: a probe that sees no error shows none of its own. All it could be
-// instead is projected out of each cause, as in fit.h, with the information of all runs.
-// A cause with shapes is listed with the shape that stands out most, as in the list of what a
-// diagnosis cannot show. Two causes are alike by the root mean square of the canonical correlations
-// of their columns, over the directions of each that stand out at all; 1: they do the same.
-// Units: SI. Failure: that of LinearRuns. Validity: to first order; other machines of the same kind
-// differ, most of all for causes of a probe's response.
+// instead is projected out of each cause, as in fit.h, with the information of all runs. A cause
+// with shapes is listed with the shape that stands out most, as in the list of what a diagnosis
+// cannot show. Two causes are alike by the root mean square of the canonical correlations of their
+// columns, over the directions of each that stand out at all; 1: they do the same.
+// Units: SI. Shapes: one PlannedCause a cause and object.
+// Failure: that of LinearRuns.
+// Source: docs/theory-diagnosis.md.
+// Validity: to first order; other machines of the same kind differ, most of all for causes of a
+// probe's response.
 #pragma once
 
 #include <cstddef>

@@ -3,6 +3,9 @@
 // temp_table_c", "gap of probe_a" and "column humidity" (the user's own). Two have a factor, the
 // direction of motion (+1, -1): "direction of x" is that direction, over the position, "reversal of
 // x" the same over the logarithm of the way since the reversal.
+// Units: SI inside, printed in UnitOf. Shapes: one entry a row of the run.
+// Failure: none; an unknown variable is empty.
+// Source: docs/diagnose.md.
 #pragma once
 
 #include <Eigen/Core>

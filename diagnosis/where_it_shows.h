@@ -6,7 +6,9 @@
 // Each row of the runs says, by itself, what is left at the stage at which the cause acts; rows of
 // one part of the variable's range and one direction of motion are averaged. Of all variables that
 // is taken whose averages keep most of what the cause does; none where all keep less than half.
-// Units: SI.
+// Units: SI. Shapes: at, before, after of equal length.
+// Failure: none.
+// Validity: averages of rows, for the eye; the evidence is that of all rows.
 #pragma once
 
 #include <Eigen/Core>

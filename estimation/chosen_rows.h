@@ -2,8 +2,11 @@
 //
 //   const auto some = std::make_shared<ChosenRows>(all, rows);
 //
-// Shapes: `rows` are indices from 0 into the other residual; the result keeps their order. Cost:
-// that of all rows.
+// Units: those of the other residual. Shapes: `rows` are indices from 0 into the other residual;
+// the result keeps their order.
+// Cost: that of all rows.
+// Failure: that of the other residual.
+// Validity: for rows that are independent, as whitened ones are.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,8 +23,10 @@ class ChosenRows : public Residual {
   ChosenRows(std::shared_ptr<const Residual> all, std::vector<Eigen::Index> rows)
       : all_(std::move(all)), rows_(std::move(rows)) {}
 
+  // As many as were chosen.
   Eigen::Index Rows() const override { return rows_.size(); }
 
+  // All rows are evaluated, the chosen ones kept.
   void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& values,
                 RowMatrix* jacobian) const override {
     Eigen::VectorXd all(all_->Rows());

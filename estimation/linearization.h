@@ -12,9 +12,12 @@
 //
 // W holds the weights of the robust loss (robust_loss.h), 1 for a source without one, so the sums
 // are those of one step of iteratively reweighted least squares.
-// Shapes: x has all entries of all blocks in order, held ones included; columns are the free ones.
+// Units: residuals in standard deviations; columns per unit of their parameter. Shapes: x has all
+// entries of all blocks in order, held ones included; columns are the free ones.
 // Failure: when a residual is not finite or throws NumericalError, Linearize says so in `trouble`
 // (source, row, parameter) and its sums are not to be used; VisitRows throws NumericalError.
+// Source: iteratively reweighted least squares, Holland and Welsch (1977).
+// Validity: first order at x.
 #pragma once
 
 #include <Eigen/Core>
@@ -83,6 +86,7 @@ struct Linearization {
 
   // Sums over the sources and the prior.
   double Cost() const;
+  // J'Wr.
   Eigen::VectorXd Gradient() const;
 };
 

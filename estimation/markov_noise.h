@@ -16,8 +16,7 @@
 // variances (several probes read together) need one factorisation. Only the prior of the drift
 // separates a constant common to all groups from a drift that does not return: when the readings
 // last much less than tau, the standard deviation of the mean of m tends to s. Differences between
-// groups are not affected.
-// Shapes: K readings, G groups, C columns; values K x C.
+// groups are not affected. Shapes: K readings, G groups, C columns; values K x C.
 // Units: values and drift_sd in one unit, white_variances in its square; times and drift_time in s.
 // Failure: InputError for lists of different length, times that do not increase, a group without
 // readings or outside 0 .. G-1, a variance not above 0, drift_sd < 0, drift_time <= 0 where
@@ -45,6 +44,7 @@ struct MarkovNoiseFit {
   Eigen::Index freedom = 0;  // K - G
 };
 
+// `groups`: of each reading, 0 .. G-1; `drift_sd` 0: white noise alone.
 MarkovNoiseFit FitGroupsUnderDrift(std::span<const double> times, std::span<const int> groups,
                                    const Eigen::MatrixXd& values,
                                    std::span<const double> white_variances, double drift_sd,

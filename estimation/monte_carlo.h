@@ -21,9 +21,10 @@
 // Units: the model's. Shapes: one entry of `outputs` for each output of the model.
 // Failure: NumericalError when an output is not finite (which draw, which output). Exceptions of
 // the model pass through. Without stability after max_blocks, `stabilised` is false.
-// Validity: the interval is the probabilistically symmetric one, not the shortest. Memory: 8 bytes
-// for each draw and output. When not to use: a linear model has the same answer from the law of
-// propagation of uncertainty, without draws.
+// Source: JCGM 101:2008 (GUM Supplement 1), 7.9; 7.6 and 7.7.2 for the figures.
+// Validity: the interval is the probabilistically symmetric one, not the shortest.
+// Memory: 8 bytes for each draw and output. When not to use: a linear model has the same answer
+// from the law of propagation of uncertainty, without draws.
 #pragma once
 
 #include <cstddef>

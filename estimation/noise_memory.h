@@ -9,8 +9,9 @@
 // The filter is that of Kalman for the scalar d: W y are the innovations over their deviations, so
 // W V W' = 1 with V the covariance of y, W lower triangular and never formed: O(K) for each column.
 // Units: those of the readings, s. Shapes: K times, columns K x C. Times do not decrease.
-// Failure: none; FitMemory of fewer than eight readings finds white noise. Source: Rasmussen and
-// Williams, Gaussian Processes (2006), B.2; Kalman, J. Basic Engineering 82 (1960).
+// Failure: none; FitMemory of fewer than eight readings finds white noise.
+// Source: Rasmussen and Williams, Gaussian Processes (2006), B.2; Kalman, J. Basic Engineering 82
+// (1960).
 // Validity: FitMemory tries times of 1 to 60 steps between readings; a drift that is slower counts
 // as one of 60, and a line in time is none of these (readings_at_rest.h tells them apart).
 #pragma once
@@ -54,6 +55,7 @@ struct MemoryFit {
   double gain = 0.0;  // logarithm of the likelihood over that of white noise
   double step = 0.0;  // s, between readings: the median
 };
+// The most probable memory of the stays together.
 MemoryFit FitMemory(const std::vector<Stay>& stays);
 
 }  // namespace abbe::estimation

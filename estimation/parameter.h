@@ -12,8 +12,10 @@
 //   links.Values();                     // [0.200 0.180], m
 //
 // Units: SI (or any one coherent set; estimation/ knows no metrology). `unit` is for printing only.
+// Shapes: Values() n x 1, in the order of the entries.
 // Failure: InputError for a name that is not in the block; the message lists the names that are. A
 // prior is the knowledge before the data: a normal distribution around `nominal`.
+// Validity: names are unique within a problem; a block may be copied, a copy is another block.
 #pragma once
 
 #include <fmt/format.h>
@@ -65,13 +67,17 @@ struct ParameterBlock {
   Parameter& operator[](std::string_view entry) { return entries[Find(entry)]; }
   const Parameter& operator[](std::string_view entry) const { return entries[Find(entry)]; }
 
+  // "link.length_1".
   std::string FullName(std::size_t entry) const { return name + "." + entries[entry].name; }
 
+  // All entries.
   void Hold(bool held = true) {
     for (Parameter& entry : entries) entry.held = held;
   }
+  // All entries.
   void Free() { Hold(false); }
 
+  // In SI.
   Eigen::VectorXd Values() const {
     Eigen::VectorXd values(size());
     for (Eigen::Index i = 0; i < size(); ++i) values[i] = entries[i].value;

@@ -22,18 +22,20 @@
 // certificate.
 // The problem itself adds the priors of the parameters, as source "prior".
 //
-// Method: Ceres (Levenberg-Marquardt) while its Jacobian fits in `jacobian_bytes`, then passes over
-// the rows that keep only the n x n normal equations (passes.h). A larger problem uses the passes
-// alone: memory does not grow with the rows, but the start must be near the solution (solve a
-// subsample first). The solve has converged when the next step is shorter than `settled` standard
-// uncertainties; where the rows scatter beyond their stated noise the bound grows with the scatter,
-// at most ten times.
+// Method: while the Jacobian fits in `jacobian_bytes`, Levenberg-Marquardt (Ceres), finished by
+// passes over the rows that keep only the n x n normal equations (passes.h). A larger problem is
+// solved by the passes alone: memory does not grow with the rows, but the start must be near the
+// solution (solve a subsample first). The solve has converged when the next step is shorter than
+// `settled` standard uncertainties; where the rows scatter beyond their stated noise the bound
+// grows with the scatter, at most ten times.
 // Units: SI; sigma in the unit of the residual. Shapes: the x of a residual is its inputs,
 // concatenated.
 // Failure: InputError for a wrong set-up (names, sizes, deviations). NumericalError from Solve when
 // a residual or a derivative is not finite at the start or the iteration does not converge; it
 // names the source and the parameter. Undetermined parameters are no failure: the result is then
 // not usable and names them.
+// Source: Bjorck, Numerical Methods for Least Squares Problems (1996); Ceres Solver for the trust
+// region.
 // Validity: up to about 1000 parameters.
 #pragma once
 
@@ -101,6 +103,7 @@ class Problem {
  public:
   // Block and source names must be unique.
   BlockId Add(ParameterBlock block);
+  // Rows are added to it afterwards.
   SourceId AddSource(std::string name, const SourceOptions& options = {});
   // Adds the rows of `residual` to `source`, with one standard deviation for all rows or one each.
   void Add(SourceId source, std::shared_ptr<const Residual> residual,

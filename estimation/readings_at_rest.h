@@ -8,11 +8,13 @@
 // standard deviations, noise with a memory (noise_memory.h) and one sine on white noise are fitted,
 // each stay about a mean of its own, and the more probable one is told. Differences that stand out
 // six times are left out.
-// Units: those of the readings, s, Hz. Failure: none; `freedom` 0 where no stay has two readings.
+// Units: those of the readings, s, Hz. Shapes: one list of times and readings a stay.
+// Failure: none; `freedom` 0 where no stay has two readings.
 // Source: J. von Neumann et al., The mean square successive difference, Ann. Math. Statist. 12
 // (1941), for the degrees of freedom (2/3 of the differences); Lomb, Astrophys. Space Sci. 39
-// (1976). Validity: which of both it is, is judged by the first kFewForLines readings. A line
-// without any noise was not measured, but planned, and is not told.
+// (1976).
+// Validity: which of both it is, is judged by the first kFewForLines readings. A line without any
+// noise was not measured, but planned, and is not told.
 #pragma once
 
 #include <vector>
@@ -35,6 +37,7 @@ struct RestNoise {
 inline constexpr int kLags = 5;
 inline constexpr Eigen::Index kFewForLines = 300;
 
+// `stays`: of one channel, in the order of time.
 RestNoise NoiseAtRest(const std::vector<Stay>& stays);
 
 }  // namespace abbe::estimation

@@ -20,11 +20,13 @@
 // Many rows in one residual are cheap, many residuals of one row are not: put the readings of a run
 // that depend on the same parameters into one. It keeps no Jacobian, so a million rows cost no
 // memory. For derivatives without algebra see autodiff_residual.h.
-// Threads: Evaluate is called from several at once. Shapes: values n x 1 and jacobian n x x.size()
-// arrive with their size set; every element must be written.
+// Threads: Evaluate is called from several at once.
+// Units: SI. Shapes: values n x 1 and jacobian n x x.size() arrive with their size set; every
+// element must be written.
 // Failure: Evaluate throws NumericalError where the parameters are outside the model's domain (out
 // of reach, singular): at the start Solve reports it with the source's name, later the step is
 // rejected. Values that are not finite are treated the same way.
+// Validity: derivatives must be those of the values: tests compare them with differences.
 #pragma once
 
 #include <Eigen/Core>

@@ -9,13 +9,18 @@
 // Chi-square of a source: sum of (r / sigma)^2 at the solution, with the weights of a robust loss.
 // Redundancy of a source: its rows minus the parameters that they determine, tr(C J'J); the
 // redundancies of all sources add up to rows - parameters, and chi-square / redundancy is near 1
-// for a source whose stated standard deviations are right.
-// Covariance: C = (J'J)^-1 with the priors among the rows of J and the standard deviations as
-// stated; it is not multiplied by chi-square / redundancy. Where neither data nor prior determine a
-// direction, every parameter in it has an infinite uncertainty and NaN covariances: nothing is
-// silently regularised. Where only the prior determines a direction, its uncertainty is the
-// prior's, and `weak_directions` lists it. Held parameters have uncertainty 0.
-// Units: SI. Failure: InputError for a name that the result does not have.
+// for a source whose stated standard deviations are right. Covariance: C = (J'J)^-1 with the priors
+// among the rows of J and the standard deviations as stated; it is not multiplied by chi-square /
+// redundancy. Where neither data nor prior determine a direction, every parameter in it has an
+// infinite uncertainty and NaN covariances: nothing is silently regularised. Where only the prior
+// determines a direction, its uncertainty is the prior's, and `weak_directions` lists it. Held
+// parameters have uncertainty 0.
+// Units: SI. Shapes: covariance n x n of the free parameters; Covariance() entries of a by entries
+// of b.
+// Failure: InputError for a name that the result does not have.
+// Source: Gauss-Markov; redundancy: Baarda, A testing procedure for use in geodetic networks
+// (1968).
+// Validity: first order at the solution.
 #pragma once
 
 #include <Eigen/Core>
@@ -78,17 +83,24 @@ struct Result {
   double redundancy = 0.0;   // of the data
   int iterations = 0;
 
+  // Converged, and every parameter determined.
   bool Usable() const { return status == Status::kConverged; }
   // The reason in one line; empty when usable.
   std::string WhyNotUsable() const;
 
+  // With values and uncertainties.
   const ParameterBlock& Block(std::string_view block) const;
+  // In SI.
   double Value(std::string_view full_name) const;
+  // Standard, in SI; infinite where nothing determines it.
   double Uncertainty(std::string_view full_name) const;
+  // What determines the parameter.
   SeenBy Seen(std::string_view full_name) const;
+  // By its name.
   const SourceResult& Source(std::string_view source) const;
   // Entries of block a by entries of block b, held ones included.
   Eigen::MatrixXd Covariance(std::string_view block_a, std::string_view block_b) const;
+  // -1 ... 1.
   double Correlation(std::string_view full_name_a, std::string_view full_name_b) const;
 
   // Text report: redundancy, chi-square of each source, parameters, weak directions.

@@ -12,10 +12,11 @@
 // Efficiency: the variance of the mean of normal data over that of the robust mean. Huber's loss is
 // convex (one minimum) and bounds the influence of a value; with Cauchy's the influence of a gross
 // error tends to zero, but there may be several minima: start it near the solution.
+// Units: t in standard deviations.
+// Failure: none.
 // Source: Huber and Ronchetti, Robust Statistics, 2nd ed. (2009), 4.5; Holland and Welsch,
-// Communications in Statistics A6 (1977) for the Cauchy constant.
-// When not to use: with fewer than about ten values for each parameter a robust loss cannot
-// identify the wrong value.
+// Communications in Statistics A6 (1977) for the Cauchy constant. When not to use: with fewer than
+// about ten values for each parameter a robust loss cannot identify the wrong value.
 #pragma once
 
 #include <cmath>
@@ -27,10 +28,14 @@ struct RobustLoss {
   Kind kind = Kind::kNone;
   double tuning = 0.0;  // k, in standard deviations
 
+  // t^2.
   static constexpr RobustLoss None() { return {}; }
+  // 99 % efficiency at the default.
   static constexpr RobustLoss Huber(double k = 2.0) { return {Kind::kHuber, k}; }
+  // 95 % efficiency at the default.
   static constexpr RobustLoss Cauchy(double k = 2.385) { return {Kind::kCauchy, k}; }
 
+  // Loss of a residual.
   double Rho(double t) const {
     const double size = std::abs(t);
     if (kind == Kind::kHuber && size > tuning) return tuning * (2.0 * size - tuning);
@@ -38,6 +43,7 @@ struct RobustLoss {
     return t * t;
   }
 
+  // In the step of reweighted least squares; 1 for t = 0.
   double Weight(double t) const {
     const double size = std::abs(t);
     if (kind == Kind::kHuber && size > tuning) return tuning / size;

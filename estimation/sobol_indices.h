@@ -13,14 +13,15 @@
 //       [](std::span<const double> x, std::span<double> y) { y[0] = x[0] + x[1] * x[2]; });
 //   result.inputs[0].first;
 //
-// `draw` must be a pure function of the draw's index that gives independent inputs; draws 2 n and
-// 2 n + 1 are the rows n of Saltelli's matrices A and B. A model of several outputs has the indices
+// `draw` must be a pure function of the draw's index that gives independent inputs; draws 2 n and 2
+// n + 1 are the rows n of Saltelli's matrices A and B. A model of several outputs has the indices
 // of their sum of variances (Gamboa, Janon, Klein, Lagnoux, 2014), so outputs must share a unit.
 // Cost: draws x (inputs + 2) runs of the model, called from several threads at once. The result is
 // the same to the last bit for any number of threads.
 // Units: `variance` that of the outputs squared, summed over outputs. Shapes: one entry of `inputs`
-// for each input. Failure: NumericalError when an output is not finite, no output varies or there
-// are fewer than two draws. Exceptions of the model pass through.
+// for each input.
+// Failure: NumericalError when an output is not finite, no output varies or there are fewer than
+// two draws. Exceptions of the model pass through.
 // Source: first: Saltelli et al., Computer Physics Communications 181 (2010), table 2 (b); total:
 // Jansen (1999), table 2 (f) there. Standard uncertainties: of a ratio of means, first order.
 // Validity: independent inputs. An estimate may fall below 0 or above 1 by its uncertainty.
@@ -54,6 +55,7 @@ struct SobolOptions {
 using SobolDraw = std::function<void(std::uint64_t draw, std::span<double> inputs)>;
 using SobolModel = std::function<void(std::span<const double> inputs, std::span<double> outputs)>;
 
+// `input_count` inputs, `output_count` outputs of one unit.
 SobolResult SobolIndices(std::size_t input_count, std::size_t output_count, const SobolDraw& draw,
                          const SobolModel& model, const SobolOptions& options = {});
 

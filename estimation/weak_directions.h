@@ -21,10 +21,11 @@
 // within it until each has few, large coefficients (quartimax), so that they can be read.
 // Units: data and prior 1/unit^2 of the parameters; coefficients in units of each parameter's own
 // prior deviation (tolerance, rounding), of length 1. Shapes: n x n, names n.
+// Failure: none; what cannot be inverted is infinite or NaN, as said.
 // Source: Bayesian D-optimality, e.g. Chaloner and Verdinelli, Statistical Science 10 (1995);
-// quartimax: Neuhaus and Wrigley, British J. Statistical Psychology 7 (1954). Validity: normal
-// equations in double precision: a combination whose standard deviation is 10^6 times that of its
-// parameters one by one counts as undetermined.
+// quartimax: Neuhaus and Wrigley, British J. Statistical Psychology 7 (1954).
+// Validity: normal equations in double precision: a combination whose standard deviation is 10^6
+// times that of its parameters one by one counts as undetermined.
 #pragma once
 
 #include <Eigen/Core>
@@ -58,6 +59,7 @@ struct PosteriorCovariance {
   Eigen::MatrixXd determined;  // without the undetermined directions: finite everywhere
   Eigen::Index undetermined = 0;
 };
+// `data` + `prior` symmetric, not negative.
 PosteriorCovariance InvertInformation(const Eigen::MatrixXd& data, const Eigen::MatrixXd& prior);
 
 // Condition number of the whitened Jacobian with columns scaled to length 1: sqrt of the largest

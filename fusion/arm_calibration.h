@@ -8,14 +8,18 @@
 // Fitted are the lines of all joints, their encoder offsets, the balls, and where the instrument
 // stands (simulation/arm/arm_run.h); errors that are no geometry (eccentricity, gears, weights) are
 // not, and count as noise: what the geometry leaves beyond the stated noise does
-// (simulation/excess_noise.h). Poses far off all others are left out, as in a diagnosis.
-// "Before" is the arm as the file has it, with the place of the instrument and of further balls
-// found from `runs` alone, "after" the written numbers alone.
-// `with`: corrected for causes (simulation/correction.h); before is then of the recordings as they
-// are.
-// Units: m, rad. Failure: InputError for no run, too few poses for the free parameters, a test of a
-// base or a ball of which no run is, estimates that contradict their tolerances; that of
-// relm/chain_rows.h. NumericalError when the fit does not converge.
+// (simulation/excess_noise.h). Poses far off all others are left out, as in a diagnosis. "Before"
+// is the arm as the file has it, with the place of the instrument and of further balls found from
+// `runs` alone, "after" the written numbers alone. `with`: corrected for causes
+// (simulation/correction.h); before is then of the recordings as they are.
+// Frames: those of relm/chain_rows.h; the instrument's stands anywhere.
+// Units: m, rad. Shapes: `u95` as written.Numbers().
+// Failure: InputError for no run, too few poses for the free parameters, a test of a base or a ball
+// of which no run is, estimates that contradict their tolerances; that of relm/chain_rows.h.
+// NumericalError when the fit does not converge.
+// Source: product of exponentials (relm/serial_chain.h), least squares (estimation/problem.h).
+// Validity: geometry only; an arm that bends under its load by more than the noise shows as
+// `excess`.
 #pragma once
 
 #include <Eigen/Core>
@@ -51,6 +55,7 @@ struct ArmCalibration {
   double ball_noise = 0.0;  // m rms a coordinate: what the uncertainties of all numbers make
 };
 
+// Fits `runs`; `tests` take no part in the fit.
 ArmCalibration CalibrateArm(const relm::LinkageSettings& settings,
                             const std::vector<ArmPoses>& runs, const std::vector<ArmPoses>& tests);
 

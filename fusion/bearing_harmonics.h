@@ -10,10 +10,11 @@
 // Order 1 is an eccentricity of the target on the shaft, 2 and above are form of the target and of
 // the bearing. The noise is estimated from the residuals; the uncertainties assume that these are
 // independent, which neighbouring readings seldom are.
-// Units: rad, m. Shapes: lists of one length. Failure: InputError for too few readings or orders
-// below 1; NumericalError when the angles do not determine the harmonics (a short arc). Source:
-// Boelens (2006), the Fourier sum of the bearing's roundness. Validity: one speed; a delay between
-// probe and encoder turns into a phase.
+// Units: rad, m. Shapes: lists of one length.
+// Failure: InputError for too few readings or orders below 1; NumericalError when the angles do not
+// determine the harmonics (a short arc).
+// Source: Boelens (2006), the Fourier sum of the bearing's roundness.
+// Validity: one speed; a delay between probe and encoder turns into a phase.
 #pragma once
 
 #include <span>
@@ -32,6 +33,7 @@ struct BearingHarmonics {
   double Amplitude(int order) const;  // m
 };
 
+// `orders`: 1 and above, each once.
 BearingHarmonics FitBearing(std::span<const double> angles, std::span<const double> values,
                             const std::vector<int>& orders);
 

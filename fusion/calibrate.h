@@ -8,12 +8,15 @@
 // Cross-validation: the poses of each run are split into `folds` blocks in order of time, and each
 // block in turn is predicted by a calibration from all others. Blocks, because neighbouring poses
 // share errors and single held-out poses would be predicted too well.
+// Frames: M; B the base, T the ball (LinkageSimulation).
 // Units: m, rad. Shapes: as in LinkageSimulation.
 // Failure: InputError for too few poses, poses on one line or all in one place, for encoders that
 // are swapped, reversed or of wrong counts (fusion/encoder_check.h), and for estimates that
 // contradict their priors: each says which and what to do. NumericalError when a fit does not
-// converge. Validity: machine errors that the reference does not measure bias the parameters of the
-// linkage.
+// converge.
+// Source: docs/theory-linkage.md for the models; cross-validation by blocks, Burman, Chow and Nolan
+// (1994).
+// Validity: machine errors that the reference does not measure bias the parameters of the linkage.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,6 +45,7 @@ struct Distances {
   double rms = 0.0;
   double max = 0.0;
 };
+// The lengths of the columns, m.
 Distances DistancesOf(const Eigen::Matrix3Xd& gaps);
 
 struct PoseResidual {
@@ -69,6 +73,7 @@ struct CalibrationReport {
   double excess = 1.0;
 };
 
+// All runs together; a base for each mounting.
 CalibrationReport Calibrate(const machine::Chain& chain, const relm::LinkageSettings& settings,
                             const std::vector<simulation::LinkageRun>& runs,
                             const CalibrateOptions& options);

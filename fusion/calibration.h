@@ -10,10 +10,13 @@
 // to 1, so the corrected path is continuous.
 //
 // Frames: M, the machine frame as the workpiece carries it (relm/linkage_settings.h); B, the base;
-// T, the ball. Units: m, rad. Shapes: one column per pose.
+// T, the ball.
+// Units: m, rad. Shapes: one column per pose.
 // Failure: InputError when the calibration lacks the mounting or does not fit its model for the
-// linkage of the machine file. Validity: inside the calibrated volume; outside it the uncertainty
-// grows, which only StandardUncertainties shows.
+// linkage of the machine file.
+// Source: docs/theory-linkage.md; the blend of cells: Boelens (2006), fusion/mapping.h.
+// Validity: inside the calibrated volume; outside it the uncertainty grows, which only
+// StandardUncertainties shows.
 #pragma once
 
 #include <Eigen/Core>

@@ -23,8 +23,13 @@
 //   values = [...]                # SI, parameters of the model
 //
 // Numbers are written in full: read back they differ by the rounding of the unit, 2e-16.
+// Frames: those of Calibration.
+// Units: as each table says; the covariance SI. Shapes: the covariance as its whole rows, free
+// parameters only.
 // Failure: InputError with file, line and key; for a parameter that is missing, unknown or out of
 // order, the message names it.
+// Source: own format, version 1.
+// Validity: a file is read with the machine file that it was made with, or one with the same model.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// The joint estimate of one error map from all runs of a machine, with the kinds of run that
-// determine each part of it.
+// One error map of a machine, estimated jointly from all its runs, and for each error the kinds of
+// run that determine it.
 //
 //   const FuseReport report = Fuse(mill, runs, {});     // runs simulated on UnknownMachine(mill)
 //   map::WriteMap(report.map, "out/map.toml");
@@ -12,8 +12,11 @@
 // (population_estimate.h); where a function is rougher than the knots of its spline can follow,
 // the runs are simulated on finer ones.
 //
+// Frames: those of map/error_map.h. Shapes: lists in the order of the runs or of the 21 errors.
 // Source: Rasmussen and Williams (2006), 5.4.1 for the marginal likelihood.
-// Units: SI. Failure: InputError for no run; NumericalError when the estimate does not converge.
+// Units: SI.
+// Failure: InputError for no run; NumericalError when the estimate does not converge.
+// Validity: to first order at the estimate; errors that do not change between the runs.
 #pragma once
 
 #include <functional>
@@ -31,8 +34,8 @@
 
 namespace abbe::fusion {
 
-// What explains a contradiction: the run agrees with the others once it has this of its own. kNone:
-// nothing of these.
+// Why a run contradicts the others: with a mounting, or an instrument, of its own it agrees with
+// them. kNone: neither helps.
 enum class Suspect { kNone, kMounting, kInstrument };
 
 struct FuseOptions {
@@ -51,16 +54,17 @@ struct FuseReport {
   std::vector<FunctionSeen> functions = {};
   ScaleSeen scale = {};
   std::vector<Statement> statements = {};  // of the machine file; empty where they are not judged
-  std::vector<double> noise = {};          // of each run, over what is stated
+  std::vector<double> noise = {};          // of each run: its noise over the stated one
   double chosen_smoothness = 0.0;          // m: of all functions together
   std::vector<std::string> kinds = {};     // of each run
   std::vector<RunConsistency> runs = {};
   int contradicting = -1;              // index into `runs`; -1: none
   Suspect suspect = Suspect::kNone;    // of that contradiction
-  std::vector<double> follows = {};    // correlation of what each run leaves from row to row
+  std::vector<double> follows = {};    // of each run: correlation of its residuals from row to row
   std::vector<HeldOut> held_out = {};  // one for each run; empty when not asked for
 };
 
+// `runs`: simulated on one model, whose knots `runs_on` may change.
 FuseReport Fuse(const machine::Machine& machine, const std::vector<simulation::SimulatedRun>& runs,
                 const FuseOptions& options);
 

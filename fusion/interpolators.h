@@ -10,10 +10,13 @@
 // positions of the holes. It has one hidden layer of tanh and grows by one neuron until its rms is
 // 1 um or less (of an angle: at the longest travel) or kMostNeurons is reached. Each size is
 // trained in at most kMostCycles steps, under weak priors that bound its weights.
-// Units: m. Failure: InputError when too few holes are left in a set-up to lay the plate.
+// Frames: the plate's own plane, in which hole and fit are compared.
+// Units: m. Shapes: one check a form.
+// Failure: InputError when too few holes are left in a set-up to lay the plate.
 // Source: Ha and Khanh, "An application of neural network in calibration of coordinate measuring
 // machines" (2011), section 4: equations 22 and 23, stop at RMS <= 1 um or N cycles; there trained
 // by gradient descent.
+// Validity: for the plate and its set-ups; says nothing of positions between the holes.
 #pragma once
 
 #include <array>
@@ -54,6 +57,7 @@ struct InterpolatorCheck {
   Learning learning = {};
 };
 
+// `folds` fits; `smoothness` m.
 std::vector<InterpolatorCheck> CompareInterpolators(
     const machine::Machine& machine, double smoothness,
     const std::vector<simulation::PlateSetup>& setups, int folds);

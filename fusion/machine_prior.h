@@ -9,9 +9,11 @@
 // random slope (scale) besides. It is projected on a quintic B-spline; with knots half a
 // correlation length apart that represents it to 0.02 % of sd (rms). The gauge of
 // machine/error_function.h then removes the value at the reference and the slope of a straightness.
-// Units: SI. Shapes: covariance n x n of the coefficients of a function. Failure: InputError for a
-// correlation length that is not above 0. Source: Rasmussen and Williams, Gaussian Processes
-// (2006), 2.2 and 4.2.
+// Units: SI. Shapes: covariance n x n of the coefficients of a function.
+// Failure: InputError for a correlation length that is not above 0.
+// Source: Rasmussen and Williams, Gaussian Processes (2006), 2.2 and 4.2.
+// Validity: errors that vary alike along the travel; a step or a period in an error is improbable
+// under it and shows in a diagnosis.
 #pragma once
 
 #include <Eigen/Core>
@@ -56,6 +58,7 @@ class MachinePrior {
   struct Unit {
     Eigen::MatrixXd covariance, by_length;
   };
+  // `motion` 0 to 5 of `axis` 0 to 2.
   Unit UnitCovariance(int axis, int motion) const;
   // That of a random slope of standard deviation 1.
   Eigen::MatrixXd UnitSlope(int axis) const;
@@ -66,6 +69,7 @@ class MachinePrior {
     Eigen::MatrixXd axes;
     Eigen::VectorXd deviations;
   };
+  // The whole covariance, slope included.
   Spread SpreadOf(int axis, int motion) const;
   // W with W' W the inverse of the covariance.
   Eigen::MatrixXd Whitening(int axis, int motion) const;

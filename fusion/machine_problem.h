@@ -2,10 +2,12 @@
 //
 //   estimation::Problem problem = MakeMachineProblem(mill, model, prior, runs);
 //
-// `noise`: that of each run, over what is stated; empty: as stated.
-// Blocks: the functions of the machine and its squareness, then the blocks of the runs, shared by
-// name. Sources: one for each run in their order, then "smoothness", the prior of the functions.
+// `noise`: that of each run, over what is stated; empty: as stated. Blocks: the functions of the
+// machine and its squareness, then the blocks of the runs, shared by name.
+// Units: SI. Shapes: one source a run.
+// Sources: one for each run in their order, then "smoothness", the prior of the functions.
 // Failure: InputError for no run.
+// Validity: that of the simulations of the runs.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,6 +22,7 @@ namespace abbe::fusion {
 
 inline constexpr std::string_view kSmoothnessSource = "smoothness";
 
+// Not solved; functions start at the values of `model`.
 estimation::Problem MakeMachineProblem(const machine::Machine& machine,
                                        const machine::VolumetricModel& model,
                                        const MachinePrior& prior,

@@ -2,7 +2,10 @@
 //
 //   AddDoubt({.displacement = 1e-6}, model, -reference, covariance);
 //
-// Units: m, rad. Failure: none.
+// Units: m, rad. Shapes: the covariance P x P, as that of a map.
+// Failure: none.
+// Source: own; simulation/doubt.h has the reasons.
+// Validity: first order; both parts are taken as independent of the noise of the runs.
 #pragma once
 
 #include <Eigen/Core>

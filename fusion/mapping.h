@@ -13,12 +13,16 @@
 // Between centres the corrected position is the trilinear blend of the cells at the corners, beyond
 // the outer centres that of the nearest ones: continuous everywhere.
 //
-// Frames: M, B, T as in LinkageSimulation; the grid runs along the axes of M. Units: m, rad.
+// Frames: M, B, T as in LinkageSimulation; the grid runs along the axes of M.
+// Units: m, rad. Shapes: one parameter set a centre, z fastest, then y, then x.
 // Failure: InputError with the number of levels when the positions form no grid of at least 3 x 3 x
-// 3 points; NumericalError when a cell does not converge. Source: Boelens, "Error Parameter Model
-// that made three dimensional tool path measurement in the micron domain possible" (2006), section
-// "Mapping of the parameters"; the spacing of its grid is not stated, 7 x 7 x 12 over 25 x 25 x 50
-// mm gives its 530 mm^3. When not to use: a complete model is better global (docs/calibrate.md).
+// 3 points; NumericalError when a cell does not converge.
+// Source: Boelens, "Error Parameter Model that made three dimensional tool path measurement in the
+// micron domain possible" (2006), section "Mapping of the parameters"; the spacing of its grid is
+// not stated, 7 x 7 x 12 over 25 x 25 x 50 mm gives its 530 mm^3. When not to use: a complete model
+// is better global (docs/calibrate.md).
+// Validity: inside the grid; a cell of 13 poses determines few of its parameters, the others stay
+// global.
 #pragma once
 
 #include <Eigen/Core>

@@ -5,9 +5,11 @@
 // Rows: the reference itself (its circles only), the nominal linkage, then for each model the
 // calibrated linkage: global; where the poses form a grid also by the one cell in its middle alone,
 // and mapped. `checks` are runs that are not calibrated with, such as a circle. `options.model`,
-// `options.mapped` and `options.contradict` are ignored. Units: m. Failure: that of
-// Calibrate; a model that this form of linkage does not have is left out. Source of the order:
-// Boelens (2006), see fusion/mapping.h; the complete model is beyond it.
+// `options.mapped` and `options.contradict` are ignored.
+// Units: m. Shapes: one row a model, in the order above.
+// Failure: that of Calibrate; a model that this form of linkage does not have is left out.
+// Source of the order: Boelens (2006), see fusion/mapping.h; the complete model is beyond it.
+// Validity: held-out figures compare models; `after` favours the one with the most parameters.
 #pragma once
 
 #include <string>
@@ -33,6 +35,7 @@ struct ComparedModel {
   std::vector<CheckedRun> checks;
 };
 
+// Calibrates with `run`, judges by `checks`.
 std::vector<ComparedModel> CompareModels(const machine::Chain& chain,
                                          const relm::LinkageSettings& settings,
                                          const simulation::LinkageRun& run,

@@ -15,8 +15,10 @@
 //   noise amplification  s_r^2 / s_1, r the rank (Nahvi and Hollerbach, ICRA 1996): larger is
 //                        better; taken over the seen directions, for an unseen one makes it zero
 //
-// Units: none. Source: those above and estimation/weak_directions.h. Failure: NumericalError from
-// the residuals. Validity: near the solution.
+// Units: none. Shapes: singular values descending, one a parameter with a prior.
+// Source: those above and estimation/weak_directions.h.
+// Failure: NumericalError from the residuals.
+// Validity: near the solution.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,6 +38,7 @@ struct Observability {
   std::vector<estimation::WeakDirection> unseen;
 };
 
+// At the solution `result` of `problem`.
 Observability Observe(const estimation::Problem& problem, const estimation::Result& result);
 
 }  // namespace abbe::fusion

@@ -21,10 +21,13 @@
 //
 // with u_fit that of the map and the noise of each set-up as the fit found it.
 //
-// Units: rad. Failure: none; without a plate in a plane `setups` is 0 and the value NaN.
+// Frames: d in the machine's axes.
+// Units: rad. Shapes: three squarenesses, A0Z, B0Z, C0Y.
+// Failure: none; without a plate in a plane `setups` is 0 and the value NaN.
 // Source: Ha and Khanh, "An application of neural network in calibration of coordinate measuring
 // machines" (2011), section 3: squareness by the diagonal method and the errors calculated before;
-// the uncertainty is ours. Validity: first order. The fit uses every hole and is never worse.
+// the uncertainty is ours.
+// Validity: first order. The fit uses every hole and is never worse.
 #pragma once
 
 #include <array>

@@ -9,9 +9,11 @@
 //   gamma = sum (1 - u^2 / prior^2)      k^2 = (times^2 sum z^2 + n) / (gamma + n),  n = 20
 //
 // k is 1 where k^2 differs from that by less than four standard deviations. One k for all plates.
-// Units: m. Failure: none; without holes whose form is uncertain k is 1.
+// Units: m. Shapes: one k for all plates.
+// Failure: none; without holes whose form is uncertain k is 1.
 // Source: MacKay, "Bayesian interpolation" (1992), section 4.4, with the prior of
-// population_estimate.h for a size. Validity: one step to the fixed point; repeat with the new fit.
+// population_estimate.h for a size.
+// Validity: one step to the fixed point; repeat with the new fit.
 #pragma once
 
 #include <string_view>

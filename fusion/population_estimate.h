@@ -22,11 +22,13 @@
 //
 // from the best of several common lengths. Between the steps the noise of each run is set to what
 // its rows leave: k^2 = (chi-square + n) / (redundancy + n), n = 20, where that differs from 1 by
-// more than four standard deviations.
-// So is the form of the target, k >= 1 times what the file states, over a grid of k with a normal
-// prior of ln k with standard deviation 0.7.
-// Units: SI. Source: Rasmussen and Williams (2006), 5.4; Bates et al., "Fitting linear
-// mixed-effects models" (2015), for the idea. Validity: to first order in the parameters.
+// more than four standard deviations. So is the form of the target, k >= 1 times what the file
+// states, over a grid of k with a normal prior of ln k with standard deviation 0.7.
+// Units: SI. Shapes: theta: a size and a length of each function, then squareness and scale.
+// Failure: none.
+// Source: Rasmussen and Williams (2006), 5.4; Bates et al., "Fitting linear mixed-effects models"
+// (2015), for the idea.
+// Validity: to first order in the parameters.
 #pragma once
 
 #include <Eigen/Core>
@@ -78,6 +80,7 @@ struct LinearRuns {
   Eigen::VectorXd values, form_values;  // of these, at x
 };
 
+// `runs`: at the point where they are linear.
 PopulationEstimate EstimatePopulation(const machine::Machine& machine,
                                       const machine::VolumetricModel& model,
                                       const LinearRuns& runs);

@@ -14,10 +14,11 @@
 // uncertainty of ball positions over all candidates, `tip_rms`. Poses are enough when the
 // calibration adds less than a tenth to the noise of a single reading.
 //
-// Units: m. Shapes: one entry of J per pose. Failure: InputError when more poses are asked for than
-// there are candidates. Source: Fedorov, "Theory of Optimal Experiments" (1972), the exchange;
-// Borm and Menq, "Determination of optimal measurement configurations for robot calibration"
-// (1991). Validity: to first order at x; a local optimum of the exchange.
+// Units: m. Shapes: one entry of J per pose.
+// Failure: InputError when more poses are asked for than there are candidates.
+// Source: Fedorov, "Theory of Optimal Experiments" (1972), the exchange; Borm and Menq,
+// "Determination of optimal measurement configurations for robot calibration" (1991).
+// Validity: to first order at x; a local optimum of the exchange.
 #pragma once
 
 #include <Eigen/Core>
@@ -45,6 +46,7 @@ struct PoseChoice {
   double tip_rms;  // m: 3D uncertainty of ball positions from the calibration, over all candidates
   int exchanges;
 };
+// `count` of the candidates, each at most once.
 PoseChoice ChoosePoses(const PoseInformation& candidates, Eigen::Index count);
 
 // m: 3D standard uncertainty of a ball position by a calibration with `poses`, rms over all
@@ -57,6 +59,7 @@ struct EnoughRow {
   double even_rms;  // m, as many poses taken evenly from the candidates
   bool enough;
 };
+// One row a count.
 std::vector<EnoughRow> HowManyPoses(const PoseInformation& candidates,
                                     const std::vector<Eigen::Index>& counts);
 

@@ -17,6 +17,8 @@
 // A run has thousands of rows but determines few combinations of parameters. T tests these
 // combinations, the run's own chi-square tests the rows. Parameters that only this run determines
 // are eliminated.
+// Units: none. Shapes: one test a run.
+// Failure: none; a run that shares nothing with the others has 0 directions.
 // Source: the predictive form of Baarda's test, e.g. Teunissen, "Testing Theory" (2006); own form.
 // Validity: to first order at the solution. A wrong run biases the prediction for all others: the
 // smallest probability names the wrong one when at least two others agree; two runs can only

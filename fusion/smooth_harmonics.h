@@ -12,8 +12,10 @@
 // radial deviation around the circle follows to first order from the volumetric error of the chain,
 // its double Fourier transform gives the variance of each order.
 // Units: m. Shapes: one standard deviation an order, of sine and cosine each, up to the last one
-// above 1 nm or order kLastHarmonic. Failure: none. Source: own. Validity: first order; the ball is
-// at the machine's origin when all axes are at zero.
+// above 1 nm or order kLastHarmonic.
+// Failure: none.
+// Source: own.
+// Validity: first order; the ball is at the machine's origin when all axes are at zero.
 #pragma once
 
 #include <vector>
@@ -26,6 +28,7 @@ namespace abbe::fusion {
 inline constexpr int kFirstHarmonic = 4;
 inline constexpr int kLastHarmonic = 40;
 
+// `run`: its circle and the place of its centre.
 std::vector<double> SmoothHarmonics(const machine::Machine& machine, const paths::CircleRun& run);
 
 }  // namespace abbe::fusion

@@ -5,9 +5,12 @@
 //
 // The recording is of kind length (simulation/points/length_simulation.h) that was not used for the
 // map.
-// Units: m. Failure: InputError as there. Source: Ha and Khanh, "An application of neural network
-// in calibration of coordinate measuring machines" (2011), section 6: a specimen of 100 mm measured
-// 100.037 mm before and 100.009 mm after compensation.
+// Units: m. Shapes: one entry a length.
+// Failure: InputError as there.
+// Source: Ha and Khanh, "An application of neural network in calibration of coordinate measuring
+// machines" (2011), section 6: a specimen of 100 mm measured 100.037 mm before and 100.009 mm after
+// compensation.
+// Validity: U of the specimen's certificate is not in `u`; compare |after - length| with both.
 #pragma once
 
 #include <vector>
@@ -24,6 +27,7 @@ struct SpecimenLength {
   double u;              // standard uncertainty of `after` that the map brings
 };
 
+// One entry a row of the recording.
 std::vector<SpecimenLength> CheckSpecimen(const map::ErrorMap& map,
                                           const recording::Recording& recording);
 

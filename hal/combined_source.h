@@ -3,6 +3,9 @@
 // The parts are read one after another. A set whose good samples lie further apart in time than
 // `max_skew` is no measurement of one state of the machine: all its samples become bad
 // (incoherent).
+// Units: s of the clock.
+// Failure: none from Read; DeviceError from OpenDevices as said.
+// Validity: skew is that of the stamps; a device that stamps wrongly hides it.
 #pragma once
 
 #include <functional>
@@ -23,6 +26,7 @@ class CombinedSource : public SampleSource {
   CombinedSource(std::vector<std::unique_ptr<SampleSource>> parts, double max_skew_s, Clock& clock);
 
   const std::vector<Channel>& channels() const override { return channels_; }
+  // All parts, one after the other.
   SampleSet Read() override;
   bool Ended() const override;         // as soon as one part has ended
   std::string Fault() const override;  // of the first part that has one

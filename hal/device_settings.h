@@ -3,6 +3,10 @@
 //
 //   const DevicesSettings devices = ReadDevices(document.Root().Child("devices"));
 //   const OpenedDevices opened = OpenDevices(devices, clock, Presence::kRequired);
+//
+// Units: Hz, s.
+// Failure: InputError with file, line and key.
+// Source: docs/devices.md.
 #pragma once
 
 #include <memory>

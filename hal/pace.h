@@ -9,6 +9,9 @@
 //     const SampleSet set = source.Read();
 //     pace.Done();
 //   }
+//
+// Units: s of the clock; kLate in real time.
+// Failure: none.
 #pragma once
 
 #include <algorithm>

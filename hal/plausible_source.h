@@ -10,6 +10,10 @@
 //   for (const std::string& warning : source.Require(50, clock, rate)) {
 //     fmt::print(stderr, "{}\n", warning);
 //   }
+//
+// Units: those of the channels' names.
+// Failure: InputError from Require where the first readings show an error in the machine file.
+// Validity: intervals are wide: they find wrong words and units, not errors of a few per cent.
 #pragma once
 
 #include <optional>
@@ -23,6 +27,7 @@ namespace abbe::hal {
 
 struct Interval {
   double low, high;
+  // Ends included.
   bool Holds(double value) const { return value >= low && value <= high; }
 };
 
@@ -42,8 +47,11 @@ class PlausibleSource : public SampleSource {
   PlausibleSource(SampleSource& source, const std::vector<PlausibleChannel>& channels);
 
   const std::vector<Channel>& channels() const override { return source_.channels(); }
+  // A set of the source, judged.
   SampleSet Read() override;
+  // As the source.
   bool Ended() const override { return source_.Ended(); }
+  // That of the source, else an impossible value.
   std::string Fault() const override;
 
   // Reads `count` sets at `rate` Hz of the clock. InputError when they show an error in the machine

@@ -8,6 +8,9 @@
 // the latest sample of the row) and flags. The channels "pass", "direction" and "feed_mm_min" of a
 // controller are recorded unchanged. While a device does not answer, rows are flagged and the
 // recording goes on. Memory does not grow with its length.
+// Units: Hz, s; columns as their names say.
+// Failure: that of the writer; a device that fails flags rows.
+// Source: docs/recordings.md.
 #pragma once
 
 #include <functional>
@@ -32,6 +35,7 @@ struct RecordAbout {
 // the position of an axis and by a reference instrument, else "dwell".
 std::string KindOf(const std::vector<Channel>& channels);
 
+// time_s, the channels, skew_ms, flags.
 std::vector<std::string> RecordColumns(const std::vector<Channel>& channels);
 
 // The header of the recording: kind, machine, started, the sources of the channels; "simulated =

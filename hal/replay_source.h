@@ -7,6 +7,8 @@
 // The flags of the recording are those of the source that measured: NaN is bad, with the cause that
 // the flag of its row gives. A flagged row without a NaN does not name the channel, so all of it is
 // bad (or uncertain, when the flag is only "interpolated" or "clock jump").
+// Units: those of the columns.
+// Failure: InputError for a recording without time_s.
 #pragma once
 
 #include <span>
@@ -29,7 +31,9 @@ class ReplaySource : public SampleSource {
   const std::vector<Channel>& channels() const override { return channels_; }
   // Waits for the next row; after the last one all samples are bad (stale).
   SampleSet Read() override;
+  // After the last row.
   bool Ended() const override { return row_ >= times_.size(); }
+  // That the recording has ended.
   std::string Fault() const override;
 
  private:

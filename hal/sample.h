@@ -3,6 +3,9 @@
 // Only `good` is a measurement. A bad sample carries NaN, so that its number cannot be used by
 // mistake, and exactly one cause; an uncertain one carries a number that was not measured as it
 // stands.
+// Units: that of the channel's name; s.
+// Failure: none.
+// Validity: a good sample is plausible, not proven right.
 #pragma once
 
 #include <cstdint>
@@ -46,9 +49,11 @@ struct Sample {
   double age_s = 0.0;          // when it was returned
   double within_s = 0.0;       // it was measured within time_s -+ this
 
+  // A measurement.
   static Sample Good(double value, double time_s, std::uint64_t sequence) {
     return {value, Quality::kGood, Cause::kNone, time_s, sequence, 0.0, 0.0};
   }
+  // NaN with its cause.
   static Sample Bad(Cause cause, double time_s, std::uint64_t sequence) {
     return {
         std::numeric_limits<double>::quiet_NaN(), Quality::kBad, cause, time_s, sequence, 0.0, 0.0};
@@ -63,6 +68,7 @@ struct SampleSet {
   double skew_s = 0.0;         // within which all samples that are not bad were measured
   std::vector<Sample> samples;
 
+  // Every one of them.
   bool AllGood() const;
 };
 

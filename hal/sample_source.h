@@ -12,6 +12,8 @@
 //   - When the device recovers, its samples become good again without intervention.
 //
 // A source and its clock belong to one thread.
+// Units: those of the channels' names; s of the clock.
+// Failure: none from Read, as the contract says.
 #pragma once
 
 #include <functional>
@@ -34,6 +36,7 @@ class SampleSource {
  public:
   virtual ~SampleSource() = default;
   virtual const std::vector<Channel>& channels() const = 0;
+  // One sample a channel.
   virtual SampleSet Read() = 0;
   // There are no more samples (the end of a recording).
   virtual bool Ended() const { return false; }

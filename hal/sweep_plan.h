@@ -11,6 +11,9 @@
 // At each turn the axis stands still for `settle`, at each station for `settle` + `dwell` at least.
 //
 // The first motion is from anywhere to first - overrun; it belongs to no pass (pass 0).
+// Units: m, s, m/s.
+// Failure: InputError with file, line and key.
+// Source: docs/sweep.md; both approaches as in ISO 230-2.
 #pragma once
 
 #include <vector>

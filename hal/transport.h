@@ -9,6 +9,8 @@
 //
 // and one line in transports.cpp, which gives the function the transport's name. No other file may
 // compare it. tests/hal/transport_contract_test.cpp checks this contract for every transport.
+// Units: s.
+// Failure: DeviceError from Require and StartCycle.
 #pragma once
 
 #include <functional>

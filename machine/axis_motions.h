@@ -10,8 +10,12 @@
 //
 // that interpolates the functions, gauge included, at Chebyshev points of the piece. A form that is
 // not piecewise polynomial (Fourier, a network) is evaluated directly.
-// Units: m, rad. Failure: InputError for a position outside the travel. Source: own. Validity: a
-// copy of the functions at construction; equal to them to 1e-12 of their size, cubic ones to 1e-14.
+// Frames: the motions are those of the carriage in M (error_motion.h).
+// Units: m, rad. Shapes: [EXX EYX EZX EAX EBX ECX] of the axis, 6 x 1.
+// Failure: InputError for a position outside the travel.
+// Source: own.
+// Validity: a copy of the functions at construction; equal to them to 1e-12 of their size, cubic
+// ones to 1e-14.
 #pragma once
 
 #include <array>
@@ -27,6 +31,7 @@ class AxisMotions {
  public:
   AxisMotions(int axis, const std::array<ErrorFunction, kMotions>& functions, const Travel& travel);
 
+  // The six motions at x, where the control shows x.
   geometry::ErrorVector<double> At(double x) const;
 
  private:

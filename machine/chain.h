@@ -8,15 +8,21 @@
 // controlled and is ignored here. An axis X, Y or Z that is not in the chain does not exist, as Y
 // and Z of the table [w X b t]. At least one must exist.
 //
-// The chain also defines the sign of positions. Every position in abbe, in a recording, a program,
-// a travel or a table, is the number that the control shows; only here and in volumetric_error.h is
-// it converted to the displacement of a carriage:
+// The chain also defines the sign of positions. Every position in abbe (in a recording, a program,
+// a travel, a table) is the number that the control shows. Only this header and volumetric_error.h
+// turn it into the displacement of a carriage:
 //
 //   Positive::kTool      the number rises as the tool moves towards + relative to the workpiece
 //                        (ISO 841); a carriage with the workpiece on it then moves towards -
 //   Positive::kCarriage  the number rises as the carriage itself moves towards +
 //
 // For an axis that carries the tool both are the same.
+// Frames: axes are those of M, the frame of the bed.
+// Failure: InputError for a text that is no chain, for an axis other than X, Y, Z, and where the
+// sign of a position is needed and not stated.
+// Source: ISO 10791-6:2014 for the notation, ISO 841 for the signs; not checked against their
+// texts.
+// Validity: linear axes X, Y, Z, each once; a rotary axis only in parentheses, held still.
 #pragma once
 
 #include <Eigen/Core>
@@ -43,20 +49,20 @@ class Chain {
   const std::string& workpiece_axes() const { return workpiece_axes_; }
   const std::string& tool_axes() const { return tool_axes_; }
 
-  // Whether the axis moves the target, which is mounted in place of the workpiece. If not, it moves
-  // the probe head, which is mounted in place of the tool, or does not exist. InputError unless
-  // `axis` is 'X', 'Y' or 'Z'.
+  // Whether the axis carries the target (mounted in place of the workpiece). Else it carries the
+  // probe head (in place of the tool), or the machine has no such axis. InputError unless `axis` is
+  // 'X', 'Y' or 'Z'.
   bool CarriesTarget(char axis) const;
 
-  // The axes that move the carriage of `axis`: those between the bed and it, and the axis itself.
-  // For [w X Y b Z t]: X is moved by "YX", Z by "Z".
+  // The axes that move the carriage of `axis`: all from the bed up to the axis itself. For [w X Y b
+  // Z t]: X is moved by "YX", Z by "Z".
   std::string Movers(char axis) const;
 
   // The sign of the positions of X, Y and Z; Positive::kCarriage unless set.
   void SetPositive(const std::array<Positive, 3>& positive);
-  // The same from three words for X, Y and Z, or one word for all; `words` may be empty if no axis
-  // carries the workpiece. InputError for any other text; for a missing one it names the axis and
-  // says with the text of `how` where to write the words.
+  // The signs from text: three words for X, Y and Z, or one for all; none where no axis carries the
+  // workpiece. InputError for any other text; where words are missing it names the axis and quotes
+  // `how`, which says where to write them.
   void ReadPositive(std::string_view words, std::string_view how);
   // "tool tool carriage", for X, Y and Z; "tool" for an axis that carries the tool.
   std::string PositiveText() const;
@@ -64,6 +70,7 @@ class Chain {
   double CarriageSense(char axis) const;
   // +1 if the tool moves towards + relative to the workpiece as the number rises, else -1.
   double ToolSense(char axis) const;
+  // ToolSense of X, Y and Z.
   Eigen::Vector3d ToolSenses() const;
 
   // The chain without primes and parentheses: "[w X Y b Z t]".

@@ -4,6 +4,10 @@
 // other chains are the project's interpretation of the names: the bridge types move the bridge
 // along Y over a fixed table, the fixed bridge moves the table, the arm types move the arm or the
 // table along X. The column type moves the table along X on Y.
+// Failure: InputError for an unknown name, which lists all names and the nearest.
+// Source: the volumetric error lecture (docs/theory-volumetric.md, Configurations).
+// Validity: what carries a bridge does not matter here, only the order of the axes; three of the
+// seven are therefore one chain.
 #pragma once
 
 #include <array>
@@ -28,8 +32,7 @@ inline constexpr std::array<Configuration, 7> kConfigurations = {{
     {"fixed-horizontal-arm", "[w X b Z Y t]"},
 }};
 
-// The chain of a name ("gantry") or of a text in brackets ("[w b Y X Z t]"). InputError for an
-// unknown name lists all names and the nearest.
+// The chain of a name ("gantry") or of a text in brackets ("[w b Y X Z t]").
 Chain ChainOf(std::string_view chain);
 
 }  // namespace abbe::machine

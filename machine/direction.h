@@ -3,8 +3,10 @@
 // Frames: "x", "-z" are the unit vectors of the machine frame M; a rotation is given by the
 // directions of the axes of a frame F, `rotation = ["y", "-x", "z"]`, which are the columns of
 // R_MF.
+// Units: none; unit vectors. Shapes: a direction 3 x 1, R_MF 3 x 3.
 // Failure: InputError with the line for a word that is not a direction, or for three that are not a
 // right-handed frame.
+// Validity: along the axes of M only; a slanted direction cannot be written.
 #pragma once
 
 #include <Eigen/Core>

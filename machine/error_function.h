@@ -13,10 +13,15 @@
 //   eyx.SetCoefficients(c);
 //   double slope; const double value = eyx.Evaluate(0.03, &slope);
 //
+// Frames: values are motions of the carriage in M (error_motion.h).
 // Units: x in m, values in m or rad. Shapes: coefficients and gradient n x 1.
 // Failure: InputError for coefficients of another number than the form's or not finite, for an
 // empty travel and for x outside the travel (there is no extrapolation; 16 eps of the ends count as
 // the end).
+// Source: own; the slope is that of the least-squares line with uniform weight, s = 12 / L^3 times
+// the integral of (x - middle) form(x), L the travel.
+// Validity: inside the travel; a slope is that of the whole travel, so the line of a part of it may
+// be inclined.
 #pragma once
 
 #include <Eigen/Core>
@@ -40,6 +45,7 @@ class ErrorFunction {
   const SharedForm& form() const { return form_; }  // null: zero at every x
   Gauge gauge() const { return gauge_; }
   const Eigen::VectorXd& coefficients() const { return coefficients_; }
+  // n numbers, as the form counts them.
   void SetCoefficients(const Eigen::Ref<const Eigen::VectorXd>& coefficients);
 
   // f(x). Unless null, *slope becomes df/dx and gradient[0 ... n-1] df/dc.

@@ -4,7 +4,11 @@
 // A form is immutable and holds no coefficients, so several functions can share it. To add one,
 // derive a class, declare its maker in a header of its own (standard_forms.h, tanh_network.h) and
 // add a line to form_of_shape.cpp, so that files can contain it.
-// Units: x in m, f in m or rad. Failure: none here; error_function.h checks the range of x.
+// Units: x in m, f in m or rad. Shapes: c and gradient n x 1.
+// Failure: none here; error_function.h checks the range of x.
+// Source: of each form in the header of its maker.
+// Validity: f has a derivative almost everywhere; at a knot of a table it is that of the piece to
+// the right.
 #pragma once
 
 #include <map>

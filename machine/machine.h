@@ -6,7 +6,14 @@
 //
 // Frame: M, the machine frame, right-handed, along the axes X, Y, Z. The error motions of an axis
 // act at the reference point, which moves with the carriage; `reference` is its position with all
-// axes at zero. Units: SI. docs/machine-file.md lists every key.
+// axes at zero.
+// Units: SI. docs/machine-file.md lists every key. Shapes: travels, limits and positions in the
+// order X, Y, Z.
+// Failure: InputError with file, line and key; outside a travel with axis and travel.
+// Source: own; the prior is a Gaussian process with squared-exponential correlation
+// (fusion/machine_prior.h).
+// Validity: linear axes X, Y, Z; the errors do not change over the run but by the causes of a
+// diagnosis.
 #pragma once
 
 #include <Eigen/Core>

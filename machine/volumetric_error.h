@@ -1,14 +1,15 @@
 // The volumetric error: the position of the tool point relative to the workpiece, actual minus
-// nominal. Exact for any chain of three linear axes; this page is the whole model.
+// nominal. Exact for any chain of three linear axes; the equations below are the whole model.
 //
-// Frames, all in one place and parallel to M when the axes are at zero: W the workpiece, T the tool
-// body, and one carriage for each axis, all with their origin in the machine's reference point. The
-// bed is M. The tool vector p_TQ is the tool point Q seen from that origin.
+// Frames: W the workpiece, T the tool body, and one for the carriage of each axis. With the axes at
+// zero all of them coincide: parallel to M, the origin in the machine's reference point. The bed is
+// M. The tool vector p_TQ is the tool point Q seen from that origin.
 // Position: [X Y Z] as the control shows, m. The chain defines the signs (chain.h): with s the
 // CarriageSense of an axis, its carriage is at s q when the control shows q. The positioning error
 // is counted like q, as in ISO 230-2, so it displaces the carriage by s EXX. The other five errors
 // are motions of the carriage in M and do not depend on s.
-// Units: m, rad. T: double, or dual numbers for derivatives.
+// Units: m, rad. Shapes: position, p_TQ and the result 3 x 1. T: double, or dual numbers for
+// derivatives.
 // Failure: none; a value that is not finite passes through.
 //
 //   carriage    X_ab = { R = exp([EA EB EC]),  p = s q l + [EX EY EZ] }    b on a, first on the bed

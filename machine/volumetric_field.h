@@ -8,8 +8,10 @@
 // Frames, signs, units, shapes: volumetric_model.h. The motions of each axis come from
 // axis_motions.h, its line is computed once, and Errors() reuses the motions of the axes that do
 // not move from one position to the next.
-// Failure: InputError for a position outside a travel, naming axis and travel. Validity: a copy of
-// the model at construction.
+// Units: m, rad. Shapes: positions and errors in columns, 3 x N.
+// Failure: InputError for a position outside a travel, naming axis and travel.
+// Source: as volumetric_error.h, whose result it repeats to rounding.
+// Validity: a copy of the model at construction.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +26,9 @@ class VolumetricField {
  public:
   explicit VolumetricField(const VolumetricModel& model);
 
+  // The error at one position.
   Eigen::Vector3d Error(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const;
+  // At many; fastest where only one axis moves from one to the next.
   Eigen::Matrix3Xd Errors(const Eigen::Matrix3Xd& positions, const Eigen::Vector3d& p_TQ) const;
 
  private:

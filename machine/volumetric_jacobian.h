@@ -8,7 +8,12 @@
 //
 // The positioning error among EX EY EZ is multiplied by s, as in volumetric_error.h; J is the left
 // Jacobian of the rotation, ExpRotationJacobian.
-// Frames, units, signs: volumetric_error.h. Source: own.
+// Frames, units, signs: volumetric_error.h.
+// Units: m, rad. Shapes: 3 x 18 by the motions, axis by axis; 3 x 3 by squareness, position and
+// tool.
+// Failure: none; a value that is not finite passes through.
+// Source: own.
+// Validity: as volumetric_error.h, without a small angle; equal to dual numbers to rounding.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,6 +30,7 @@ struct VolumetricJacobian {
   Eigen::Matrix3d J_error_tool;                                // by p_TQ
 };
 
+// Error and derivatives at one position.
 VolumetricJacobian VolumetricErrorAndJacobian(const Chain& chain, const Eigen::Vector3d& position,
                                               const Eigen::Vector3d& p_TQ,
                                               const MotionErrors<double>& errors);

@@ -11,8 +11,11 @@
 // axes of the tool. If all of them do, Tabulate converts the map to the equivalent chain with all
 // axes on the tool side, and every error in the file is one of the tool relative to the workpiece.
 // The volumetric error is exactly the same.
+// Frames: as machine/volumetric_error.h. Shapes: positions and values of equal length; the errors
+// in the order of machine/error_motion.h.
 // Failure: InputError for an axis without any table, for a table of one position or with positions
 // that do not increase, and for a file without its chain or the sign of its positions.
+// Source: own; the equivalent chain turns every carriage into one that carries the tool.
 // Validity: linear interpolation between the positions. Tables are not changed: constants and
 // slopes stay (Gauge::kNone, machine/error_function.h), so the volumetric error is complete.
 #pragma once

@@ -6,15 +6,16 @@
 //   const Eigen::Matrix3d cov_ee = map.Covariance({0.03, 0.02, 0.05}, map.origin().tool);
 //
 // Frames: error is p_WQ - nominal along the axes of the workpiece frame W
-// (machine/volumetric_error.h);
-// position is [X Y Z] as the axes are commanded; p_TQ is the tool point from the reference point.
+// (machine/volumetric_error.h); position is [X Y Z] as the axes are commanded; p_TQ is the tool
+// point from the reference point.
 // Units: SI. Shapes: the covariance of the parameters is P x P in the order of
 // VolumetricModel::Parameters(); 0 x 0 for a map that states no uncertainty, as an imported one.
-// Failure: InputError for a position outside the travels, which is never extrapolated; for a
+// Failure: InputError for a position outside the travels (nothing is extrapolated); for a
 // covariance of another size, not symmetric, not finite or with a negative variance; for a request
 // of the uncertainty of a map without one.
-// Source: GUM (2008) 5.2.2, first order: cov_ee = J cov_pp J^T. Validity: the error is linear in
-// the parameters over their uncertainty, for errors below 1 mrad to 1e-3.
+// Source: GUM (2008) 5.2.2, first order: cov_ee = J cov_pp J^T.
+// Validity: first order in the parameters over their uncertainty; with turns below 1 mrad this
+// neglects 1e-3 of it.
 #pragma once
 
 #include <Eigen/Core>
@@ -60,6 +61,7 @@ class ErrorMap {
   const MapOrigin& origin() const { return origin_; }
   const machine::VolumetricModel& model() const { return model_; }
   const Eigen::MatrixXd& cov_pp() const { return cov_pp_; }
+  // An imported map does not.
   bool StatesUncertainty() const { return cov_pp_.size() > 0; }
   // "EXX.c0" ... "squareness.C0Y", in the order of the parameters.
   std::vector<std::string> ParameterNames() const;
@@ -68,6 +70,7 @@ class ErrorMap {
   // The soft limits; if unknown, the travels widened by kBeyondTravel.
   std::array<machine::Travel, 3> Limits() const;
 
+  // Actual minus nominal in W, m.
   Eigen::Vector3d Error(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const {
     return model_.Error(position, p_TQ);
   }
@@ -82,6 +85,7 @@ class ErrorMap {
   struct Curve {
     Eigen::VectorXd value, u;  // m or rad
   };
+  // InputError for an error outside 0 ... kErrors - 1.
   Curve CurveOf(int error, const Eigen::VectorXd& positions) const;
 
  private:

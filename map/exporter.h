@@ -7,9 +7,14 @@
 // For the discrepancy the files just written are read with the reader of the format and compared
 // with the map over the whole travels (Compare, map_grid.h): it is the part of the error that the
 // file cannot represent.
-// Units: SI inside; each format has its own, given in docs/map.md.
+// Frames: the error in W, actual minus nominal (error_map.h).
+// Units: SI inside; each format has its own, given in docs/map.md. Shapes: points along X, Y, Z, x
+// fastest.
 // Failure: InputError for an unknown format, points that the format does not take, and damaged
 // files, with the line.
+// Source: docs/map.md, format by format.
+// Validity: a format holds what it can; the discrepancy says what that leaves out, and `drops` in
+// words.
 #pragma once
 
 #include <array>
@@ -43,6 +48,7 @@ struct Format {
   AxisTables (*import)(const std::filesystem::path& file);
 };
 
+// All formats, in the order of `abbe map`'s help.
 const std::vector<Format>& Formats();
 // InputError for an unknown name, with the known ones.
 const Format& FormatNamed(std::string_view name);

@@ -9,9 +9,14 @@
 //   # scale = prior only
 //   # sign = what the numbers mean, in the words of each format
 //
-// Units: SI inside, in the file those of the key. Failure: InputError for an invalid chain or
-// number.
-// Lines without a known key are ordinary comments and are ignored.
+// Frames: p_TQ as error_map.h.
+// Units: SI inside, in the file those of the key.
+// Failure: InputError for an invalid chain or number. Lines without a known key are ordinary
+// comments and are ignored.
+// Source: own; every format has comments, so the header survives where the format has no place for
+// it.
+// Validity: an importer trusts it; without `chain` or `positive` the command line has to state
+// them.
 #pragma once
 
 #include <Eigen/Core>

@@ -28,8 +28,13 @@
 //
 // All numbers are SI and in the shortest form that reads back the same, so a map is the same bit
 // for bit after writing and reading.
+// Frames: as error_map.h.
+// Units: SI but where a key ends in another unit. Shapes: the covariance P x P as its lower
+// triangle, P names.
 // Failure: InputError with file, line and key, also for a number that is not finite; for a
 // truncated file with its last line.
+// Source: own format, version 1.
+// Validity: a reader refuses another `format`.
 #pragma once
 
 #include <filesystem>
@@ -40,6 +45,7 @@ namespace abbe::map {
 
 // Under a temporary name first, then renamed. Missing folders are made.
 void WriteMap(const ErrorMap& map, const std::filesystem::path& path);
+// The same map, bit for bit.
 ErrorMap ReadMap(const std::filesystem::path& path);
 
 }  // namespace abbe::map

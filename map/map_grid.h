@@ -5,12 +5,13 @@
 //   const Eigen::Vector3d error = grid.Error({0.03, 0.02, 0.05});     // trilinear
 //   const Discrepancy worst = InterpolationError(map, p_TQ, grid);
 //
-// Frames, signs: error_map.h. Units: m. Shapes: one column per grid point, x runs fastest, then y,
-// then z; u95 is empty for a map without uncertainty. u95 = 2 u of each component.
-// Failure: InputError for fewer than two points along an axis, and for a position outside the
-// grid.
-// Source: own; trilinear interpolation. Validity: between the points the error of interpolation is
-// that of InterpolationError, proportional to the square of the spacing.
+// Frames, signs: error_map.h.
+// Units: m. Shapes: one column per grid point, x runs fastest, then y, then z; u95 is empty for a
+// map without uncertainty. u95 = 2 u of each component.
+// Failure: InputError for fewer than two points along an axis, and for a position outside the grid.
+// Source: own; trilinear interpolation.
+// Validity: between the points the error of interpolation is that of InterpolationError,
+// proportional to the square of the spacing.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +28,9 @@ struct GridAxis {
   double first = 0.0, last = 0.0;  // m
   Eigen::Index count = 0;
 
+  // m.
   double Step() const { return (last - first) / (count - 1); }
+  // Exactly `last` at the end.
   double At(Eigen::Index i) const { return i == count - 1 ? last : first + Step() * i; }
 };
 
@@ -39,8 +42,10 @@ class MapGrid {
   const Eigen::Matrix3Xd& error() const { return error_; }
   const Eigen::Matrix3Xd& u95() const { return u95_; }
   Eigen::Index size() const { return error_.cols(); }
+  // Where a column of error() stands, m.
   Eigen::Vector3d Position(Eigen::Index point) const;
 
+  // Trilinear between the eight points around.
   Eigen::Vector3d Error(const Eigen::Vector3d& position) const;
 
  private:

@@ -1,4 +1,5 @@
 // Whole text files.
+// Failure: InputError with the path and the reason of the system.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,8 @@
 // Lines, words and numbers of the text formats of maps.
 //
+// Units: none; numbers as they stand.
 // Failure: InputError that begins with `where`, for a word that is not a finite number.
+// Validity: ASCII texts with lines that end in LF or CR LF.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +13,19 @@
 
 namespace abbe::map {
 
+// Without the blanks at both ends.
 std::string_view Trimmed(std::string_view text);
 
 // The words between blanks and tabs, or the trimmed parts between separators.
 std::vector<std::string_view> WordsOf(std::string_view text);
+// Empty parts too.
 std::vector<std::string_view> PartsOf(std::string_view text, char separator);
 
 // Numbers up to kLargest only, with a decimal point.
 inline constexpr double kLargest = 1e15;
+// One number.
 double NumberOf(std::string_view word, std::string_view where);
+// All the numbers of a line.
 std::vector<double> NumbersOf(std::string_view text, std::string_view where);
 
 // Reads a text line by line.

@@ -10,7 +10,7 @@
 //
 // The tilt acts first, then the stray capacitance. Both act on the gap itself, not on its change.
 //
-// Units: m, rad, 1/m.
+// Units: m, rad, 1/m. Shapes: one reading at a time.
 // Failure: InputError where the edge of the electrode would touch the surface (a phi >= g), or
 // where no finite gap gives the reading (k m >= 1).
 // Source: the integral of 1/gap over the disc, docs/theory-head.md.

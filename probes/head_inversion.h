@@ -3,8 +3,8 @@
 //   const SmallAngleInversion invert(layout, MovingBody::kTarget);
 //   const HeadErrors<> errors = invert(readings, d);
 //
-// Three inversions, each for a moving target and for a moving head. Frames, units, signs and the
-// order of the readings are those of head_model.h; `exx` is the positioning error where it is
+// Three inversions, each for a moving target and for a moving head. Frame, signs and the order of
+// the readings are those of head_model.h; `exx` is the positioning error where it is
 // known.
 //   SimplifiedInversion  first order in the errors: the published equations, for any layout.
 //   SmallAngleInversion  exact for SmallAngleReadings.
@@ -13,6 +13,8 @@
 // the top face, the two side readings that of the side face. What remains is a quadratic in the yaw
 // (small angles) or the rotation with two known normals (rigid). The residual is rounding.
 //
+// Frames: H, as in head_model.h.
+// Units: m and rad. Shapes: five readings in the order A, B, C, D, E; the errors of HeadErrors.
 // Failure: a constructor throws InputError for a layout that does not determine the errors: top
 // probes on a line, or side probes with the same u. The exact inversions throw NumericalError for
 // readings that no small motion gives (never NaN); SimplifiedInversion does not fail.

@@ -9,10 +9,12 @@
 // the side surface (s = 0). A position is where the measuring line meets the surface when the sweep
 // starts, so the height of a probe above the surface plays no part.
 //
-// Units: m.
+// Units: m. Shapes: one value per probe, in the order A, B, C, D, E.
 // Failure: none; the inversions refuse a layout that does not determine the five errors.
 // Source: Kweon, Liu, Yang (docs/theory-head.md), figure 5: A (l, 0), B (0, l), C (0, -l) on top
 // and D (0, l''), E (l, l'') on the side, l = 10 mm, l'' = 20 mm.
+// Validity: an ideal head: the lines along n and s exactly; installation.h has the head as it is
+// mounted.
 #pragma once
 
 #include <Eigen/Core>

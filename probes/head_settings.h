@@ -3,9 +3,12 @@
 //   const auto document = settings::Document::Read("machine.toml");
 //   const HeadSettings head = ReadHeadSettings(document.Root());
 //
-// Frames: H, the head frame (u, s, n) of head_layout.h; M, the machine frame. SI units.
+// Frames: H, the head frame (u, s, n) of head_layout.h; M, the machine frame.
+// Units: SI. Shapes: one value per probe, in the order A, B, C, D, E; one frame per swept axis.
 // Failure: InputError with file, line and key, also for an unknown key in one of these tables.
 // docs/machine-file.md lists every key.
+// Source: own; what the numbers mean in head_model.h, installation.h and electrode.h.
+// Validity: a default is stated in `assumed` where it changes a result.
 #pragma once
 
 #include <Eigen/Core>
@@ -81,13 +84,17 @@ struct ProbeNoise {
   // on from one reading to the next, m, and for how long, s. Else 0.
   PerProbe<> measured = {}, memory = {}, memory_time = {};
 
+  // m, one reading: as measured, else as stated.
   double Of(std::size_t probe_index) const {
     return measured[probe_index] > 0.0 ? measured[probe_index] : probe;
   }
 };
 
+// [head] and its sub-tables.
 HeadSettings ReadHeadSettings(const settings::Table& root);
+// [target].
 TargetSettings ReadTargetSettings(const settings::Table& root);
+// [noise]: the keys of the probes.
 ProbeNoise ReadProbeNoise(const settings::Table& root);
 
 }  // namespace abbe::probes

@@ -1,10 +1,12 @@
 // The measuring lines of a head that is mounted with small angles and offsets.
 //
-// Frame H of head_layout.h. The fixture is turned about the origin of H and then shifted; a point p
+// The fixture is turned about the origin of H and then shifted; a point p
 // of the fixture as drawn goes to R p + offset with R = Rx(roll) Ry(pitch) Rz(yaw), the source's
 // order.
 //
-// Units: m and rad. Failure: none; angles must stay well below 1 rad.
+// Frames: H of head_layout.h.
+// Units: m and rad. Shapes: five lines, or a layout, in the order A, B, C, D, E.
+// Failure: none; angles must stay well below 1 rad.
 // Source: Kweon, Liu, Yang (docs/theory-head.md), the transform before equation 16. Its printed
 // entry (2,3), -sin(pitch) sin(roll), must be -cos(pitch) sin(roll), or the matrix is no rotation.
 // Validity: InstalledLines is exact. InstalledLayout is the source's first-order form, in which the
@@ -24,6 +26,7 @@ struct Installation {
   T du{}, ds{}, dn{};        // m, along u, s, n: the source's sigma_x, sigma_y, sigma_z
 };
 
+// R, exact.
 template <typename T>
 Eigen::Matrix3<T> InstallationRotation(const Installation<T>& i) {
   return geometry::RotationX(i.roll) * geometry::RotationY(i.pitch) * geometry::RotationZ(i.yaw);

@@ -17,10 +17,11 @@
 // ten in kTwo; in each block of 256 draws, word 256 c + i is number c of draw i. The result is a
 // pure function of simulation, inversion, draws and seed; it does not depend on the threads.
 //
-// Units: m and rad.
+// Units: m and rad. Shapes: one ErrorStatistics for each of EAX, EBX, ECX, EYX, EZX.
 // Failure: InputError for no draws or a negative number of threads.
 // Source: Kweon, Liu, Yang (docs/theory-head.md), sections 5 and 6 and appendix; BoundsOf has its
 // results.
+// Validity: the largest of many draws grows with their number: compare runs of equal length.
 #pragma once
 
 #include <array>
@@ -63,11 +64,13 @@ struct PublishedBounds {
   double angle;        // rad
   double translation;  // m
 };
+// As the source states them, for both.
 constexpr PublishedBounds BoundsOf(Simulation simulation) {
   return simulation == Simulation::kOne ? PublishedBounds{1e-6, 0.06e-6}
                                         : PublishedBounds{1.5e-5, 0.6e-6};
 }
 
+// All the draws; several threads.
 SimulationErrors RunSimulation(const SimulationOptions& options);
 
 }  // namespace abbe::probes

@@ -8,12 +8,15 @@
 //   A0Z = -slope(EZY) - slope(EYZ) + t     t: target.squareness_urad
 //
 // Lines: least squares over the stations, at the axis reference. Signs: standards/squareness.h.
-// Units: rad. Validity: t and the two slopes are taken as independent. Their common sources (gains,
+// Units: rad.
+// Validity: t and the two slopes are taken as independent. Their common sources (gains,
 // installation) enter a slope as a product with a tilt, 0.3 urad for 500 ppm and 500 urad: small
 // against the uncertainty of t.
 //
+// Frames: M; slopes at the axis reference. Shapes: one number.
 // Failure: InputError that says which condition fails and what to do: two sweeps of different axes
 // and of one machine; the same `mounting` in both headers; target.u_squareness_urad above zero.
+// Source: own; the sign of t is that of the side face of docs/sweep.md.
 #pragma once
 
 #include <string>

@@ -1,4 +1,7 @@
 // The conditions of a recording: temperatures, duration, feed.
+// Units: degC, s, m/s.
+// Failure: InputError for a recording without time_s.
+// Validity: largest and smallest of single rows, so one wild row shows in them.
 #pragma once
 
 #include <string>

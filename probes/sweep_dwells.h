@@ -7,8 +7,13 @@
 // not dwells. The gap of a dwell is a Huber-type robust mean. Dwells nearer to each other than
 // `window` belong to one station.
 //
+// Frames: none; gaps of probes and positions of axes.
 // Units: m, s. Rows with a flag or a NaN are left out and counted; a gap in an unflagged row that
 // is negative or above its probe's range is an InputError with file, row, probe, value and range.
+// Shapes: five gaps a dwell; dwells in the order of time.
+// Failure: InputError for another kind of recording, and as said for a gap.
+// Source: robust mean: estimation/robust_mean.h; the rest own.
+// Validity: standstills; a sweep read in motion has none.
 #pragma once
 
 #include <Eigen/Core>

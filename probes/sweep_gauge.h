@@ -2,10 +2,12 @@
 // everywhere. An angle is counted from the first station, a straightness from its least-squares
 // line, whose slope is mounting tilt and squareness.
 //
-// A gauge is linear, y = G x, over the groups of a sweep, which are numbered
-// station * directions + k. Its reference is the mean of the directions, so it leaves a reversal
-// error unchanged. Units: those of the values. Shapes: values are groups x any number of columns.
+// A gauge is linear, y = G x, over the groups of a sweep, which are numbered station * directions +
+// k. Its reference is the mean of the directions, so it leaves a reversal error unchanged.
+// Units: those of the values. Shapes: values are groups x any number of columns.
 // Failure: none.
+// Source: own.
+// Validity: exact, for any stations; equal weight for each of them.
 #pragma once
 
 #include <Eigen/Core>

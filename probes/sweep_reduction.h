@@ -9,8 +9,13 @@
 // means), sweep_inversion.h (means -> errors), sweep_gauge.h, sweep_uncertainty.h. sweep_result.h
 // describes the result, docs/sweep.md the use.
 //
+// Frames: M, at the axis reference and at the target (sweep_inversion.h).
+// Units: SI. Shapes: one value per station (sweep_result.h).
 // Failure: InputError for a recording of another kind, an impossible gap, fewer than three
 // stations; NumericalError for readings that no small motion gives.
+// Source: docs/theory-head.md for the errors, GUM (2008) for their uncertainty.
+// Validity: a rigid target and head. Bending, and drift that is faster than the dwells follow each
+// other, enter the uncertainty only through [noise] and [head.tolerance].
 #pragma once
 
 #include "machine/machine.h"
@@ -31,6 +36,7 @@ struct SweepSetup {
 // InputError with file, line and key.
 SweepSetup ReadSweepSetup(const settings::Table& root);
 
+// All the steps, in one call.
 SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup& setup);
 
 }  // namespace abbe::probes

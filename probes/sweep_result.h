@@ -3,8 +3,12 @@
 // Errors are actual - nominal in the symbols of ISO 230-1, in the machine frame. Gauge: an angle is
 // zero at the first station, a straightness is the deviation from its least-squares line over the
 // stations. u is the combined standard uncertainty of all sources; U95 = coverage * u.
+// Frames: M.
 // Units: m, rad, s. Shapes: one value per station unless said otherwise; lists per dwell are in the
 // order of time.
+// Failure: none; ReduceSweep makes it.
+// Source: figures of straightness: ISO 230-1 (standards/reference_line.h); reversal: ISO 230-2.
+// Validity: U95 assumes errors that are near normal; its coverage is Student's t.
 #pragma once
 
 #include <Eigen/Core>

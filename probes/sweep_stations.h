@@ -18,9 +18,15 @@
 // drift and its time are those that make the dwells most probable (restricted maximum likelihood,
 // each within a factor of two of what was said before, normal in its logarithm).
 //
-// Groups are numbered station * directions + k, k in the order of `directions`. Units: m, s.
+// Groups are numbered station * directions + k, k in the order of `directions`.
+// Frames: none; gaps of the probes.
+// Units: m, s. Shapes: gaps 5 x groups, one covariance of groups x groups for each probe.
 // Failure: InputError when fewer than three stations were approached from every direction of the
 // sweep.
+// Source: Aitken's generalised least squares; restricted maximum likelihood of the variances
+// (estimation/markov_noise.h).
+// Validity: a drift that is one Ornstein-Uhlenbeck process with a time between the dwells and the
+// whole sweep; jumps show in chi2.
 #pragma once
 
 #include <Eigen/Core>

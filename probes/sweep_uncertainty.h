@@ -18,7 +18,10 @@
 // are central differences of the exact inversion over +-1 standard deviation. The tests check the
 // sum against a Monte Carlo through the exact inversion (GUM Supplement 1).
 //
+// Frames: M, as GroupErrors.
 // Units: rad^2 for an angle, m^2 for a straightness. Shapes: groups x groups.
+// Failure: InputError as sweep_inversion.h.
+// Source: GUM (2008) 5.2; docs/sweep.md lists the sources of the budget.
 // Validity: second order in the tolerances is neglected, 1e-3 of each column at 500 urad and 10 um.
 #pragma once
 

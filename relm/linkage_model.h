@@ -1,5 +1,5 @@
-// The common interface of the error models of the linkage: an estimator, a simulation or a report
-// asks for names, priors, tips and derivatives and does not depend on the model.
+// The one interface of all error models of the linkage: names, priors, ball positions, derivatives.
+// Estimators, simulations and reports use it without knowing which model it is.
 //
 //   const LinkageModel model = MakeLinkageModel(settings, ErrorModel::kComplete);
 //   for (const auto& block : model.blocks()) problem.Add(block);
@@ -9,10 +9,12 @@
 // a model: it belongs to the run.
 // Units: m, rad, K. Shapes: tips 3 x poses; the Jacobian by the parameters has the rows x, y, z of
 // pose 0, then those of pose 1, ... and one column per parameter.
-// Failure: InputError when the number of angles or parameters does not fit. Forward models always
-// succeed; an angle that is not finite gives a tip that is not (recordings are checked before,
-// tip_path.h). Source: docs/theory-linkage.md. Validity: exact kinematics; every effect is linear
-// in its parameter before it enters the geometry.
+// Failure: InputError when the number of angles or parameters does not fit. Evaluation never fails:
+// an angle that is not finite gives a tip that is not finite (tip_path.h checks recordings
+// beforehand).
+// Source: docs/theory-linkage.md.
+// Validity: exact kinematics; every effect is linear in its parameter before it enters the
+// geometry.
 #pragma once
 
 #include <Eigen/Core>
@@ -52,13 +54,14 @@ class LinkageModel {
   const SerialChain& chain() const { return motions_.chain(); }  // without errors
   Eigen::Index joints() const { return chain().joints(); }
   Eigen::Index parameters() const { return motions_.parameters(); }
-  // With the geometry of `x`: its lines and its ball at zero angles, in B.
+  // The chain as `x` makes it: joint lines and ball at zero angles, in B.
   SerialChain ChainAt(const Eigen::VectorXd& x) const;
   Eigen::VectorXd Values() const;          // x of the blocks; nominal at first
   std::vector<std::string> Names() const;  // "block.entry", in the order of x
 
   // One pose; `warmth`: K above the reference temperature.
   Eigen::Vector3d Tip(const Eigen::VectorXd& angles, double warmth, const Eigen::VectorXd& x) const;
+  // One pose, exact.
   TipDerivatives Differentiate(const Eigen::VectorXd& angles, double warmth,
                                const Eigen::VectorXd& x) const;
   // For automatic differentiation: pointers to joints() angles and parameters() values.

@@ -10,10 +10,12 @@
 // all poses together, so an index is a share of the mean squared tip error. A held parameter does
 // not vary and is left out.
 // Frames: the volume stands in M as the workpiece carries it (linkage_settings.h, NominalTip).
-// Units: m, rad. Failure: InputError for a volume without size or fewer than two points an edge;
-// NumericalError when a pose is out of reach or singular.
-// Source: estimation/sobol_indices.h. Validity: with `warmth` 0 the links are at their reference
-// temperature, and the expansion has no effect.
+// Units: m, rad. Shapes: one entry per free parameter, in the order of the model.
+// Failure: InputError for a volume without size or fewer than two points an edge; NumericalError
+// when a pose is out of reach or singular.
+// Source: estimation/sobol_indices.h.
+// Validity: with `warmth` 0 the links are at their reference temperature, and the expansion has no
+// effect.
 #pragma once
 
 #include <Eigen/Core>
@@ -59,6 +61,7 @@ struct LinkageSensitivity {
   std::vector<ParameterSensitivity> parameters;  // in the order of the model
 };
 
+// Parameters one at a time, then all together.
 LinkageSensitivity AnalyseSensitivity(const LinkageModel& model, const LinkageReadings& poses,
                                       const SensitivityOptions& options = {});
 

@@ -6,9 +6,12 @@
 //
 // Frames: B, the linkage base; M, the machine frame as the workpiece carries it: the ball of a
 // perfect machine stands at p_MT = (sx x, sy y, sz z) for the axis positions (x, y, z), s = -1 for
-// an axis that carries the workpiece, +1 for one that carries the tool. SI units.
+// an axis that carries the workpiece, +1 for one that carries the tool.
+// Units: SI. Shapes: joints, rows, segments and axes from the base to the ball.
 // Failure: InputError with file, line and key, also for an unknown key in [linkage].
 // docs/machine-file.md lists every key.
+// Source: docs/theory-linkage.md.
+// Validity: a prior is normal with the stated deviation; masses are exact.
 #pragma once
 
 #include <Eigen/Core>
@@ -53,6 +56,7 @@ struct LinkageNoise {
   // Of the variance of an encoder, what goes on from one reading to the next, and for how long, s.
   double memory_share = 0.0, memory_time = 0.0;
 
+  // rad, one reading: as measured, else as stated.
   double EncoderOf(std::size_t joint) const {
     return joint < measured.size() && measured[joint] > 0.0 ? measured[joint] : encoder;
   }
@@ -83,9 +87,11 @@ struct LinkageSettings {
   LinkageTolerance tolerance;
   LinkageNoise noise;
 
+  // The direction of gravity in B.
   Eigen::Vector3d DownB() const { return X_MB.R.transpose() * down_M; }
 };
 
+// [linkage] and its sub-tables.
 LinkageSettings ReadLinkageSettings(const settings::Table& root);
 
 // p_MT, m: the ball of a perfect machine.

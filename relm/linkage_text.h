@@ -5,9 +5,12 @@
 //
 // In [linkage] the rows (`joint`), or the axes (`axis`), and `ball_mm` are replaced by inline ones;
 // a comment behind each states the expanded uncertainties. Degrees to 1e-8, millimetres to 1e-6,
-// directions to 1e-12.
-// `u95`: of WrittenChain::Numbers, SI; 0: held, nothing is stated. Failure: InputError where the
-// text, read again, would not have this geometry (keys written in an unusual way).
+// directions to 1e-12. `u95`: of WrittenChain::Numbers, SI; 0: held, nothing is stated.
+// Frames: of the text: those of WrittenChain.
+// Units: SI inside; degrees and millimetres in the text. Shapes: `u95` as WrittenChain::Numbers.
+// Failure: InputError where the text, read again, would not have this geometry (keys written in an
+// unusual way).
+// Validity: numbers rounded as said: 1e-12 of a direction is 1e-12 m at 1 m.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,6 +20,7 @@
 
 namespace abbe::relm {
 
+// The whole text; `name` is that of the file in messages.
 std::string WithGeometry(const std::string& text, const WrittenChain& written,
                          const Eigen::VectorXd& u95, const std::string& name);
 

@@ -13,10 +13,13 @@
 // the lever of a weight, or the warmth of the links. A model is a list of motions and of effects;
 // its Jacobian is geometry: a turn moves the ball by (line x arm), a shift along its direction.
 //
-// Frames: B, the linkage base; T, the ball. Units: m, rad, K. Shapes: `angles` one per joint, `x`
-// one per parameter; T is any scalar, also ceres::Jet. Failure: none; a wrong index is a
-// programming error. Source: docs/theory-linkage.md. Validity: lean and levers under gravity are
-// taken on the nominal chain at the encoder angles: an error of 1 mrad changes them by 0.1 %.
+// Frames: B, the linkage base; T, the ball.
+// Units: m, rad, K. Shapes: `angles` one per joint, `x` one per parameter; T is any scalar, also
+// ceres::Jet.
+// Failure: none; a wrong index is a programming error.
+// Source: docs/theory-linkage.md.
+// Validity: lean and levers under gravity are taken on the nominal chain at the encoder angles: an
+// error of 1 mrad changes them by 0.1 %.
 #pragma once
 
 #include <Eigen/Core>
@@ -60,11 +63,13 @@ class MotionChain {
 
   // Building, in the order from base to ball. Each returns the index of what it adds.
   int Turn(const Eigen::Vector3d& point, const Eigen::Vector3d& direction);
+  // Along `direction`, a unit vector in B.
   int Shift(const Eigen::Vector3d& direction);
   int Joint(int joint);        // the turn of an axis of the chain; each joint once
   int Parameter(double rest);  // `rest`: the value at which its effects vanish
   // A point, in B at zero angles, that joint `carrier` is the last to move, pulled down.
   int Weigh(int carrier, const Eigen::Vector3d& point);
+  // To the amount of its motion.
   void Add(const Effect& effect);
 
   const SerialChain& chain() const { return chain_; }

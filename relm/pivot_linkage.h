@@ -13,12 +13,12 @@
 //
 // Units: m, rad. Shapes: angles [q1 q2 q3], one pose a column in the batch functions.
 // Failure: the constructor throws InputError for a length that is not positive and finite; Angles
-// throws NumericalError with the distance of the ball. The batch functions do not throw: a
-// pose without solution has its Reach and zeros, never NaN. The forward function always succeeds.
+// throws NumericalError with the distance of the ball. The batch functions do not throw: a pose
+// without solution has its Reach and zeros, never NaN. The forward function always succeeds.
 // Source: the RELM paper, equations 1 to 3; its inverse is missing from the copy at hand,
-// docs/theory-linkage.md derives this one. Validity: exact. Tip of single poses is correct to
-// rounding; the batch functions may use the C library's vector functions (4 units in the last
-// place).
+// docs/theory-linkage.md derives this one.
+// Validity: exact. Tip of single poses is correct to rounding; the batch functions may use the C
+// library's vector functions (4 units in the last place).
 #pragma once
 
 #include <Eigen/Core>
@@ -54,6 +54,7 @@ class PivotLinkage {
   double link_1() const { return link_1_; }
   double link_2() const { return link_2_; }
 
+  // p_BT of one pose.
   Eigen::Vector3d Tip(const Eigen::Vector3d& angles) const;
   // d p_BT / d q.
   Eigen::Matrix3d JacobianTipAngles(const Eigen::Vector3d& angles) const;
@@ -71,6 +72,7 @@ class PivotLinkage {
 
   // Many poses: one column each. Outputs are resized. Returns how many poses were reached.
   void Tips(const Eigen::Matrix3Xd& angles, Eigen::Matrix3Xd& tips) const;
+  // Columns without angles are zero; `reach` says why.
   Eigen::Index AnglesOf(const Eigen::Matrix3Xd& tips, const Branch& branch,
                         Eigen::Matrix3Xd& angles, std::vector<Reach>& reach) const;
 

@@ -11,11 +11,13 @@
 //   p_BT = exp([s1] q1) exp([s2] q2) ... exp([sn] qn) p_BT(0)
 //
 // Units: m, rad. Shapes: one angle per joint, in the order from base to tip; T is any scalar, also
-// ceres::Jet. Failure: InputError for no joints, a direction of no length, a number that is not
-// finite, or segments without an encoder; the forward functions always succeed. Source: Murray, Li,
-// Sastry, "A Mathematical Introduction to Robotic Manipulation" (1994), section 3.2; segments: the
-// displacement equation of Boelens (2006); Denavit-Hartenberg rows in the standard (distal)
-// convention: Rz(q + theta) Tz(d) Tx(a) Rx(alpha). Validity: exact.
+// ceres::Jet.
+// Failure: InputError for no joints, a direction of no length, a number that is not finite, or
+// segments without an encoder; the forward functions always succeed.
+// Source: Murray, Li, Sastry, "A Mathematical Introduction to Robotic Manipulation" (1994), section
+// 3.2; segments: the displacement equation of Boelens (2006); Denavit-Hartenberg rows in the
+// standard (distal) convention: Rz(q + theta) Tz(d) Tx(a) Rx(alpha).
+// Validity: exact.
 #pragma once
 
 #include <Eigen/Core>
@@ -62,6 +64,7 @@ Eigen::Vector3<T> Turned(const Eigen::Vector3<T>& v, const Eigen::Vector3d& axis
 class SerialChain {
  public:
   SerialChain(std::vector<JointAxis> axes, const Eigen::Vector3d& tip);
+  // Joints where a segment has an encoder; the last length ends in the ball.
   static SerialChain FromSegments(const std::vector<Segment>& segments);
   // `X_B0` is the base of the first row, `p_nT` the ball in the frame of the last.
   static SerialChain FromDenavitHartenberg(const std::vector<DenavitHartenbergRow>& rows,
@@ -76,6 +79,7 @@ class SerialChain {
   Eigen::Vector3d Link(Eigen::Index joint) const;
   double Reach() const;  // m: no ball farther than this from the first joint can be reached
 
+  // p_BT; joints() angles.
   template <typename T>
   Eigen::Vector3<T> Tip(const T* angles) const {
     Eigen::Vector3<T> p = tip_.cast<T>();
@@ -85,6 +89,7 @@ class SerialChain {
     }
     return p;
   }
+  // p_BT.
   Eigen::Vector3d Tip(const Eigen::VectorXd& angles) const { return Tip(angles.data()); }
 
   // d p_BT / d q, 3 x joints.

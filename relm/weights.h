@@ -8,10 +8,14 @@
 //          the joint's own
 //   wrist  where the last axis comes nearest to the one before it
 //   ball   the load
-// Where axes are parallel (within kParallel) the point is the one nearest to what follows. A
-// weight that keeps on the line of the joint is left out.
-// Frames: B, the base, at zero angles. Units: m. Failure: none. Validity: a mass between two of the
-// points acts as shares of it in both; one beside them by as much of its lever as it is beside.
+// Where axes are parallel (within kParallel) the point is the one nearest to what follows. A weight
+// that keeps on the line of the joint is left out.
+// Frames: B, the base, at zero angles.
+// Units: m. Shapes: at most three weights a joint.
+// Failure: none.
+// Source: own; docs/theory-linkage.md, block `weight`.
+// Validity: a mass between two of the points acts as shares of it in both; one beside them by as
+// much of its lever as it is beside.
 #pragma once
 
 #include <Eigen/Core>

@@ -16,8 +16,12 @@
 // Rows with a flag stay, and so do recordings of kinds that make no map. The effect of a cause is
 // computed from the reading itself: its square is neglected (a gain of 1 % with a swap: 1e-4 of the
 // gap's change).
-// Units: `changes` in m and rad. Failure: InputError as for the run itself; a recording of an
-// instrument that the machine file lacks.
+// Frames: positions as the control counts; angles of the encoders; gaps of the probes.
+// Units: `changes` in m and rad. Shapes: rows and columns of the recording stay.
+// Failure: InputError as for the run itself; a recording of an instrument that the machine file
+// lacks.
+// Source: own; docs/extended-model.md.
+// Validity: first order in the causes, as said.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,6 +39,7 @@ struct Change {
   double squares = 0.0, largest = 0.0;
   Eigen::Index count = 0;
 
+  // One number that was moved by so much.
   void Add(double moved);
   double rms() const;
 };

@@ -11,8 +11,11 @@
 //   tip       3: the ball against the linkage as it is simulated, in B                m
 //   reading   5: what the probes a ... e, at a shaft sensor_1 ..., show beside the gap m
 //   encoder   one for each pivot: what it shows beside its angle                      rad
-// Shapes: one entry for each row of the run. Validity: disturbances are small, their products with
-// each other and with the errors of the machine are left out (1e-4 of them).
+// Frames: M and B, as each stage says.
+// Units: m, rad, as each stage says. Shapes: one entry for each row of the run.
+// Failure: none; a wrong stage is a programming error.
+// Validity: disturbances are small, their products with each other and with the errors of the
+// machine are left out (1e-4 of them).
 #pragma once
 
 #include <Eigen/Core>
@@ -45,6 +48,7 @@ inline constexpr int kReadingStage = kTipStage + 3;
 inline constexpr int kEncoderStage = kReadingStage + 5;
 inline constexpr int kStages = kEncoderStage;
 
+// `motion` 0 to 5 of `axis` 0 to 2.
 constexpr int MotionStage(int axis, int motion) { return axis * machine::kMotions + motion; }
 
 }  // namespace abbe::simulation

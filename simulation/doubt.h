@@ -13,7 +13,9 @@
 // Both are combined in quadrature with what is stated, so U95 exceeds the change: a result is never
 // worse by such a cause than its U95 says. A cause that is not certain among its rivals is applied
 // likewise, without what is left.
-// Units: m, rad. Source: JCGM 100:2008, 5.1.2 (combination in quadrature); own choice of the parts.
+// Units: m, rad. Shapes: single numbers.
+// Failure: InputError as each function says.
+// Source: JCGM 100:2008, 5.1.2 (combination in quadrature); own choice of the parts.
 // Validity: what is left is taken as large elsewhere as in the runs of the diagnosis.
 #pragma once
 
@@ -27,7 +29,9 @@ namespace abbe::simulation {
 
 inline constexpr double kCertain = 0.99;  // probability of a cause that is taken as there
 
+// By the verdict of the diagnosis.
 bool IsUnexplained(const ExtendedModel& model);
+// Probable enough, and nothing unexplained beside it.
 bool IsCertain(const ExtendedModel& model, const ModelledCause& cause);
 
 // What is left, m rms, of all together; 0: nothing. InputError where a part of it has no size in

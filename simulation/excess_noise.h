@@ -8,11 +8,14 @@
 //
 //   excess^2 = chi-square / redundancy * (1 + 2 sum of rho_k),   rho_k: correlation k poses apart,
 //
-// the sum up to the first that white noise could have. Poses that are all of one time are of no known
-// order: then neither a drift nor what neighbours share is told. Up to kNoiseIsKnown the stated
-// noise stands.
-// Source: Sokal, Monte Carlo methods (1996), 2 (integrated autocorrelation).
-// Shapes: three rows, x, y and z, for each pose.
+// the sum up to the first that white noise could have. Poses that are all of one time are of no
+// known order: then neither a drift nor what neighbours share is told. Up to kNoiseIsKnown the
+// stated noise stands.
+// Units: none; residuals in standard deviations.
+// Failure: none.
+// Source: Sokal, Monte Carlo methods (1996), 2 (integrated autocorrelation). Shapes: three rows, x,
+// y and z, for each pose.
+// Validity: of n poses a correlation is known to 1 / sqrt(n).
 #pragma once
 
 #include <Eigen/Core>

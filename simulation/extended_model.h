@@ -7,9 +7,13 @@
 //
 // What the diagnosis was not sure of stands there too; simulation/doubt.h says what follows of it.
 //
-// Units: values and deviations SI, in the order of the cause's keys. Failure: InputError with file,
-// line and key for an unknown cause, object or key, a missing key, a number that is not finite or
-// beyond what is plausible, the model of another machine, a file that is no extended model.
+// Units: values and deviations SI, in the order of the cause's keys. Shapes: covariance and u95 as
+// the coefficients and the keys of the cause.
+// Failure: InputError with file, line and key for an unknown cause, object or key, a missing key, a
+// number that is not finite or beyond what is plausible, the model of another machine, a file that
+// is no extended model.
+// Source: own format; docs/extended-model.md.
+// Validity: for the machine that it names; causes are those that this version knows.
 #pragma once
 
 #include <Eigen/Core>
@@ -75,7 +79,9 @@ struct CauseObjects {
   Eigen::Index pivots = 0;
 };
 
+// `objects`: what the machine file has.
 ExtendedModel ReadExtendedModel(const std::filesystem::path& path, const CauseObjects& objects);
+// The whole file.
 std::string ExtendedModelText(const ExtendedModel& model);
 
 }  // namespace abbe::simulation

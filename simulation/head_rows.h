@@ -1,5 +1,9 @@
 // What the head of probes read in the rows of a run: the part of a trace that sweeps have.
+// Frames: gaps and tilts as the probes see them; spots on the face.
 // Units: m, rad. Shapes: one column for each row of the run, one row for each probe.
+// Failure: none; sweep_trace.h fills it in.
+// Source: docs/theory-head.md.
+// Validity: tilts are those of the simulation, not measured.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,8 @@
 // A machine and the instruments on it, as its machine file describes them.
+// Units: SI.
+// Failure: InputError for an instrument that the file lacks.
+// Source: docs/machine-file.md.
+// Validity: `noisy` and `notes` are what the recordings of this call showed.
 #pragma once
 
 #include <optional>
@@ -30,6 +34,7 @@ struct Instruments {
   bool HasAxes() const;
   // InputError naming the recording that needs the table [head] or [linkage], if it is missing.
   const probes::HeadSettings& HeadFor(const std::string& recording) const;
+  // Likewise for a linkage.
   const relm::LinkageSettings& LinkageFor(const std::string& recording) const;
 };
 

@@ -1,4 +1,8 @@
 // Every kind of run that abbe knows, and which one a recording is of.
+// Units: those of the recordings.
+// Failure: InputError with the recording's name for a kind that is not known or does not do what is
+// asked.
+// Source: docs/recordings.md lists the kinds.
 #pragma once
 
 #include <string>
@@ -27,6 +31,7 @@ namespace abbe::simulation {
 ABBE_RUN_KINDS(ABBE_DECLARE_KIND)
 #undef ABBE_DECLARE_KIND
 
+// In the order in which they are asked, added ones last.
 const std::vector<const RunKind*>& RunKinds();
 
 // The first kind that takes the recording. InputError where none does.
@@ -37,6 +42,7 @@ void AddRunKind(const RunKind& kind);
 
 // The names of the kinds of which `wanted` holds: "sweep, linkage and shaft".
 std::string KindNames(bool (RunKind::*wanted)() const);
+// All kinds.
 std::string KindNames();
 
 // The simulations of a recording, for an error map. InputError where its kind makes none.

@@ -1,5 +1,8 @@
 // What the encoders of a linkage read in the rows of a run: the part of a trace that linkages have.
+// Frames: B for `link`, M for the cap.
 // Units: rad. Shapes: one column for each row of the run.
+// Failure: none; linkage_trace.h fills it in.
+// Validity: `behind` needs commanded angles; a table of poses has none.
 #pragma once
 
 #include <Eigen/Core>

@@ -5,7 +5,10 @@
 //
 // Frames, units: axis positions [x y z], m; `feed` in m/s, 0: the axes stand at each point, so that
 // nothing lags. Points that the feed takes more than half a second for are stops too. Only causes
-// of the seat kMotion that follow the path act: a path knows neither time nor temperature.
+// of the seat kMotion that follow the path act: a path knows neither time nor temperature. Shapes:
+// 3 x points, as the path.
+// Failure: none.
+// Source: docs/extended-model.md; docs/correct.md.
 // Validity: the axis comes to the first point as it goes on from there.
 #pragma once
 
@@ -16,6 +19,7 @@
 
 namespace abbe::simulation {
 
+// Seat kMotion, and neither time nor temperature.
 bool ActsOnPath(const ModelledCause& cause);
 
 // Causes that do not act on a path add nothing.

@@ -6,7 +6,11 @@
 // Circle: once round in each sense, at constant feed. Gap steps: at some stations of a sweep the
 // two other axes step through 0, +45, 0, -45, 0 um, docs/recordings.md. Still: nothing moves,
 // samples 0.093 s apart. Lengths: places along an axis, with their uncertainty.
-// Units: SI; the columns those of a recording.
+// Frames: positions as the control counts.
+// Units: SI; the columns those of a recording. Shapes: one row a position, in the order of time.
+// Failure: none here; the kind refuses what it cannot plan.
+// Source: docs/recordings.md.
+// Validity: feeds are reached at once: the paths have no accelerations at their ends.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,6 +36,7 @@ struct HeaderAbout {
   std::string more = {};      // further keys, a line each
   std::string mounting = {};  // keys of the table [mounting]
 };
+// TOML, as at the head of a recording.
 std::string HeaderOf(const HeaderAbout& about);
 
 struct CirclePlan {
@@ -41,13 +46,17 @@ struct CirclePlan {
   double feed = 0.01;  // m/s
   int rows = 180;      // in a turn
 };
+// Counter-clockwise first.
 recording::Recording CirclePath(const CirclePlan& plan, const PathAbout& about);
 
+// `start`: positions of all axes; `stations` of `axis`.
 recording::Recording GapStepPath(char axis, const Eigen::Vector3d& start,
                                  const std::vector<double>& stations, const PathAbout& about);
 
+// At `at`; `axis` is that of the header.
 recording::Recording StillPath(char axis, const Eigen::Vector3d& at, const PathAbout& about);
 
+// Along `axis` over `travel`, the other axes at `middle`.
 recording::Recording LengthPath(char axis, const Eigen::Vector3d& middle,
                                 const machine::Travel& travel, const PathAbout& about);
 

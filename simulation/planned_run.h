@@ -7,9 +7,13 @@
 // its readings do not count. The gaps stand in the middle of the range, the angles close the
 // nominal linkage; both alternate by the noise of the machine file (+ + - -, which has no
 // correlation between neighbours), because the noise of a sweep is taken from its readings. Rows
-// with a place get flag 0. Units: those of a recording.
+// with a place get flag 0.
+// Frames: as the recording.
+// Units: those of a recording. Shapes: rows of the path.
 // Failure: InputError for a path without positions, a kind that cannot be planned, an instrument
 // that the machine file lacks; NumericalError for a pose out of the linkage's reach.
+// Validity: a perfect machine and nominal instruments; what the readings would be with a cause is
+// first order about that.
 #pragma once
 
 #include <cstddef>

@@ -6,8 +6,12 @@
 // space: x, y, z) are taken to be noise with a memory, in units of that one, the same for all
 // channels, and whitened once more (estimation/noise_memory.h): evidence then counts what is
 // independent in them. Shapes: `times` of the rows of the run in their order, some residuals for
-// each (x, y, z of one pose, then of the next). Units: s. Failure: none. Validity: channels
-// that turn into each other slowly against the memory, as the Cholesky factors of a pose do.
+// each (x, y, z of one pose, then of the next).
+// Units: s.
+// Failure: none.
+// Source: Kalman, J. Basic Engineering 82 (1960) for the filter.
+// Validity: channels that turn into each other slowly against the memory, as the Cholesky factors
+// of a pose do.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,6 +21,7 @@
 
 namespace abbe::simulation {
 
+// Chi-square then counts independent noise.
 SimulatedRun WithMemory(const SimulatedRun& run, const Eigen::VectorXd& times,
                         const estimation::NoiseMemory& noise);
 

@@ -2,8 +2,12 @@
 //
 // One reading of one sensor a row. The sensors look towards the axis of rotation. Angles are
 // counted in the sense in which the angle of the shaft grows, from the same zero: the point of the
-// rim that a sensor sees is the one at place - shaft of the rim's own angle. Units: m, rad. Shapes:
-// one entry per row.
+// rim that a sensor sees is the one at place - shaft of the rim's own angle.
+// Frames: angles round the axis of the shaft, from the zero of its encoder.
+// Units: m, rad. Shapes: one entry per row.
+// Failure: none; simulation/shaft/shaft_run.h fills it in.
+// Source: docs/shaft.md.
+// Validity: gaps small against the radius: a sensor sees one point of the rim.
 #pragma once
 
 #include <Eigen/Core>

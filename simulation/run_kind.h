@@ -6,11 +6,15 @@
 // To fit a run, a kind gives its simulation (simulated_run.h) and its trace (trace.h), in full
 // detail for a diagnosis (`Prepare`) or condensed for an error map (`ForMap`). It also knows how to
 // take causes out of a recording, which rows to hold out, what a planned run reads and which runs
-// could be made next. Whatever a kind does not override, it does not need.
-// A new kind is a folder with a RunKind and a line in kinds.h; the columns that its recordings must
-// have are a line in recording/check.cpp.
-// Units: SI; those of recordings as docs/recordings.md has them. Failure: InputError naming the
-// recording, for a run that contradicts itself, the machine file or its kind.
+// could be made next. A kind overrides only what it needs. A new kind is a folder with a RunKind
+// and a line in kinds.h; the columns that its recordings must have are a line in
+// recording/check.cpp.
+// Units: SI; those of recordings as docs/recordings.md has them. Shapes: rows of a run in their
+// order.
+// Failure: InputError naming the recording, for a run that contradicts itself, the machine file or
+// its kind.
+// Source: docs/recordings.md lists the kinds.
+// Validity: a kind judges a recording by its header and columns.
 #pragma once
 
 #include <functional>
@@ -44,6 +48,7 @@ struct PreparedRun {
   // What it is whitened with besides, in units of that (remembered_noise.h).
   std::optional<estimation::NoiseMemory> memory = {};
 
+  // Else the stated noise is believed.
   bool EstimatesNoise() const { return static_cast<bool>(with_excess); }
 };
 
@@ -97,10 +102,12 @@ class RunKind {
   virtual std::string_view name() const = 0;  // "sweep"
   // Judged by header and columns alone.
   virtual bool Takes(const recording::Recording& head) const = 0;
+  // A shaft needs none.
   virtual bool NeedsAxes() const { return true; }
 
   // An error map.
   virtual bool MakesMaps() const { return false; }
+  // One, or one for each set-up of a plate.
   virtual std::vector<SimulatedRun> ForMap(const RunSource& source,
                                            const machine::VolumetricModel& model,
                                            const Instruments& instruments) const;

@@ -8,8 +8,13 @@
 // the machine by all runs, the probes by all sweeps, the target by the sweeps of one mounting.
 // Each kind of run makes these (run_kind.h).
 //
-// A run that needs a first fit gives `condense`: called with its x, it makes the residual of the
-// final fit. So a run with too many rows for a fit starts with a sample of them.
+// A run that takes two fits (too many rows for one, or noise in the angles of a linkage) gives
+// `condense`: called with the x of the first fit, it returns the residual of the second.
+// Units: residuals in standard deviations; disturbances as their stage says. Shapes: as each member
+// says.
+// Failure: that of the kind that makes it.
+// Source: docs/theory-fusion.md has the residual of each kind.
+// Validity: a response is first order at its x.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,16 +33,16 @@ namespace abbe::simulation {
 // Huber threshold of single readings, in standard deviations; efficiency loss on normal data 0.1 %.
 inline constexpr double kHuberThreshold = 3.0;
 
-// What disturbances of the rows do to what is simulated, to first order at one x.
+// How disturbances of the rows change the simulated readings: to first order, at one x.
 class Response {
  public:
   virtual ~Response() = default;
 
   // Whitened, rows of the residual x disturbances: residual(with them) = residual - sum of columns.
   virtual Eigen::MatrixXd Columns(const std::vector<Disturbance>& disturbances) const = 0;
-  // What the instrument would show without noise, readings x rows of the run (gaps, m; angles,
-  // rad), when `left` is what the simulation leaves, whitened. A disturbance made of readings
-  // themselves would share their noise.
+  // What the instrument would show without noise: readings x rows of the run (gaps, m; angles,
+  // rad). `left`: the whitened residual. A cause that depends on the reading uses these; the
+  // recorded ones would give it their noise.
   virtual Eigen::MatrixXd Readings(const Eigen::VectorXd& left) const = 0;
   // The tilt of the face against each probe, rad, probes x rows of the run; empty without probes.
   virtual Eigen::MatrixXd Tilts() const { return {}; }
@@ -53,6 +58,7 @@ class Response {
 // A residual that also tells what a disturbance of its rows does.
 class Responsive : public estimation::Residual {
  public:
+  // Linearised at x.
   virtual std::shared_ptr<const Response> At(const Eigen::VectorXd& x) const = 0;
 };
 
@@ -65,13 +71,13 @@ struct SimulatedRun {
   std::shared_ptr<const Responsive> response = nullptr;  // `residual` itself, where it can tell
   std::function<std::shared_ptr<const estimation::Residual>(const Eigen::VectorXd& x)> condense =
       {};
-  // Whitened columns: what an instrument's form does that its noise contains already, of the size
-  // that the machine file states (target.form_nm); independent draws of one standard deviation.
-  // Empty: none is stated.
+  // Whitened columns of the form of the target, as large as the machine file states
+  // (target.form_nm): independent, each of one standard deviation. The noise of the run contains
+  // them already. Empty: none is stated.
   std::function<Eigen::MatrixXd()> form = {};
   double form_stated = 0.0;  // m
-  // The same run, the noise of two channels exchanged: it belongs to what is connected, not to the
-  // name. Empty: all channels have one noise.
+  // The same run with the noise of two channels exchanged: noise belongs to the sensor, not to the
+  // name of its channel. Empty: all channels have one noise.
   std::function<SimulatedRun(std::size_t one, std::size_t other)> noise_exchanged = {};
   // m: whitened rows as they are in space, one column for each pose; empty: rows are no places.
   std::function<Eigen::Matrix3Xd(const Eigen::VectorXd& whitened)> in_space = {};

@@ -5,8 +5,11 @@
 //
 // A stay is a sequence of good rows of two at least in which no axis goes on by more than a scale
 // trembles from one to the next, without a pause. What of them counts, the kind of the run says
-// (RunKind::StaysIn). Units: SI. Failure: InputError for a
-// value that is not finite. Empty for a recording without axes or good rows.
+// (RunKind::StaysIn).
+// Units: SI. Shapes: rows of each stay, ascending.
+// Failure: InputError for a value that is not finite. Empty for a recording without axes or good
+// rows.
+// Validity: a scale trembles by far less than an axis goes on in one row.
 #pragma once
 
 #include <cstddef>
@@ -20,6 +23,7 @@ namespace abbe::simulation {
 
 using Stays = std::vector<std::vector<std::size_t>>;  // rows of each
 
+// In the order of time.
 Stays StaysOf(const recording::Recording& recording);
 // Without the first `settle` seconds of each, in which an axis settles, and those outside passes.
 Stays SettledStays(const recording::Recording& recording, double settle);

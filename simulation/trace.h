@@ -5,10 +5,14 @@
 //   trace.heading(0, row);                               // which way the X axis last moved
 //
 // What only one instrument has is a part of its own that other runs lack.
+// Frames: axes as the control counts, in M; pivots in B.
 // Units: m, s, rad, K. Shapes: one column or entry per row of the run; an axis or a pivot that has
 // not moved yet has heading 0 and has last reversed `kLongAgo` metres ago. Temperatures are
 // differences from the first row of the recording with the earliest start (Origin).
 // Failure: InputError with the recording's name for a start that is no ISO 8601 time.
+// Source: own; a backlash element is the play of Krasnosel'skii and Pokrovskii, Systems with
+// Hysteresis (1989).
+// Validity: what happened between two rows is not known but where linkage_rows.h says so.
 #pragma once
 
 #include <Eigen/Core>
@@ -62,13 +66,16 @@ struct Trace {
 
   Eigen::Index rows() const { return time.size(); }
   Eigen::Index pivots() const { return linkage ? linkage->angles.rows() : 0; }
+  // Whether the tilt of the faces is known.
   bool HasTilt() const { return head && head->tilt.size() > 0; }
+  // Where the probes look at the target.
   bool HasSpots() const { return head && head->spots.size() > 0; }
 
   // Output minus input of a backlash element that an axis or a pivot drives, in units of its width:
   // -1/2 while it moves to +, 1/2 to -. Width 0: backlash that is taken up at once. Of a pivot
   // whose encoder is the output, and lags, the width is below 0.
   Eigen::RowVectorXd BacklashLag(int which, double width) const;
+  // The same of a pivot.
   Eigen::RowVectorXd PivotBacklashLag(int pivot, double width) const;
   // The way of the axes with all that follows from it; after time, pass and direction.
   void SetAxes(const Eigen::Matrix3Xd& path);
@@ -84,11 +91,13 @@ struct Origin {
   double started = 0.0;  // s since 1970
   std::map<std::string, double> temperature;
 };
+// The start of the earliest that states one.
 Origin OriginOf(const std::vector<const Trace*>& traces);
 
 // One clock and one zero of each temperature for the runs of a campaign.
 void CountFrom(const Origin& origin, Trace& trace);
 
+// As many rows, all zero.
 Disturbance NoDisturbance(const Trace& trace);
 
 // Which way something last moved: +1, -1 from the row on in which it has come back by more than

@@ -12,6 +12,9 @@
 //   - When the bus recovers, so does this participant, without intervention.
 //
 // A participant belongs to one thread. Classic CAN only (8 bytes of data).
+// Units: s on the clock of the measurement.
+// Failure: none is thrown for a fault of the bus; Fault() says it.
+// Source: ISO 11898-1, classic CAN; SocketCAN of Linux for the states.
 #pragma once
 
 #include <array>

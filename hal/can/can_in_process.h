@@ -11,6 +11,9 @@
 // thread of the sender, and may send from there; the others fetch from their queue with Receive(),
 // which waits by the clock (a HandClock then moves on by itself). Where there are several threads,
 // `hear` must be thread-safe, and its participant must be destroyed while no frame is sent.
+// Units: s of the clock.
+// Failure: none; what goes wrong is what was injected.
+// Validity: no arbitration: frames pass in the order in which they are sent.
 #pragma once
 
 #include <condition_variable>
@@ -53,9 +56,12 @@ class CanInProcess {
   explicit CanInProcess(Clock& clock, std::size_t queue = 4096);
   ~CanInProcess();
 
+  // Another participant; it must not outlive the bus.
   std::unique_ptr<CanBus> Join(Hear hear = {});
 
+  // Adds to the troubles before.
   void Inject(const CanTrouble& trouble);
+  // Ends all of them.
   void Heal();
   // For all participants. While the bus does not work nothing can be sent; what waits in the queues
   // is still received.

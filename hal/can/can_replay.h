@@ -1,8 +1,10 @@
 // A log of CAN traffic as if the bus carried it again: a bus on which one can only listen.
 //
-// The clock sets the pace, as with ReplaySource: a SteadyClock replays in real time, a HandClock
-// as fast as possible. Stamps are those of the log, counted from the clock's time at the first
-// frame.
+// The clock sets the pace, as with ReplaySource: a SteadyClock replays in real time, a HandClock as
+// fast as possible. Stamps are those of the log, counted from the clock's time at the first frame.
+// Units: s of the clock.
+// Failure: InputError for an interface that the log has not.
+// Source: hal/can/candump_log.h.
 #pragma once
 
 #include <string>
@@ -20,12 +22,16 @@ class CanReplay : public CanBus {
   // `clock` must outlive the bus.
   CanReplay(const CandumpLog& log, const std::string& interface, Clock& clock);
 
+  // Takes no frames.
   bool Send(const CanFrame&) override { return false; }
+  // The next of the log, when its time has come.
   std::optional<ReceivedFrame> Receive(double until_s) override;
   CanState state() const override { return CanState::kActive; }
+  // None, ever.
   std::string Fault() const override { return {}; }
   std::uint64_t lost() const override { return 0; }
   std::uint64_t errors() const override { return 0; }
+  // After the last frame.
   bool Ended() const override { return next_ == frames_.size(); }
   // The time of the next frame by the clock; after the last frame, its time.
   double NextTime() const;

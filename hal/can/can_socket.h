@@ -4,6 +4,10 @@
 // that have arrived, with their stamps; the age of a stamp converts it to the measurement's clock.
 // Error frames set state() and are not returned. An interface that is switched off or removed is
 // awaited: each call of Receive() checks whether it is back, at most every 50 ms.
+// Units: s of the clock.
+// Failure: none is thrown; state() and Fault() say it.
+// Source: SocketCAN of Linux.
+// Validity: stamps are as good as the kernel's, some microseconds.
 #pragma once
 
 #include <cstdint>
@@ -27,9 +31,12 @@ class CanSocket : public CanBus {
   CanSocket(const CanSocket&) = delete;
   CanSocket& operator=(const CanSocket&) = delete;
 
+  // False while the queue of the interface is full.
   bool Send(const CanFrame& frame) override;
+  // Waits in the kernel.
   std::optional<ReceivedFrame> Receive(double until_s) override;
   CanState state() const override { return state_; }
+  // With the name of the interface.
   std::string Fault() const override;
   std::uint64_t lost() const override { return lost_; }
   std::uint64_t errors() const override { return errors_; }

@@ -7,6 +7,9 @@
 //
 // The stamp is seconds since 1970, to the microsecond. A letter R or T behind the frame (candump
 // -x) is passed over; so are error frames and CAN FD frames (##), which are counted.
+// Units: s, microseconds where a name says so.
+// Failure: InputError with file and line.
+// Source: can-utils, candump.c and canplayer.c.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,8 @@
 // Logs of candump as recordings, and recordings as logs that canplayer sends again.
+// Units: rad, s. Shapes: one row a SYNC or round of PDOs.
+// Failure: InputError as each function says.
+// Source: hal/can/canopen_source.h judges the frames.
+// Validity: a log whose stamps are those of one clock.
 #pragma once
 
 #include "hal/can/candump_log.h"

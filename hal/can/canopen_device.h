@@ -1,4 +1,6 @@
 // The transport of CANopen: encoders on a CAN bus.
+// Failure: InputError with file, line and key from ReadCanopenDevice; DeviceError from Open.
+// Source: CiA 301, CiA 406.
 #pragma once
 
 #include <functional>
@@ -26,6 +28,7 @@ class CanopenDevice : public Device {
   const std::string& name() const override { return settings_.name; }
   std::vector<std::string> channels() const override;
   std::string_view channels_key() const override { return "node"; }
+  // Listens at once, sends nothing yet.
   std::unique_ptr<DeviceSource> Open(Clock& clock, double stale_s, const Log& log) const override;
 
  private:
@@ -33,6 +36,7 @@ class CanopenDevice : public Device {
   BusOf bus_of_;
 };
 
+// The table of one device.
 std::shared_ptr<const Device> ReadCanopenDevice(const settings::Table& device);
 
 }  // namespace abbe::hal

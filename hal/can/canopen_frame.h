@@ -4,8 +4,11 @@
 //   bus.Send(NmtFrame(NmtCommand::kStart, 2));
 //   if (const auto reply = SdoReplyOf(frame)) values[reply->node] = reply->value;
 //
-// Source: CiA 301 (object identifiers, NMT, SYNC, EMCY, SDO, heartbeat), CiA 406 (encoders).
-// All integers on the wire are little-endian. Node ids are 1 to 127.
+// Units: none; bits and bytes.
+// Failure: none; a frame of another kind gives nothing.
+// Source: CiA 301 (object identifiers, NMT, SYNC, EMCY, SDO, heartbeat), CiA 406 (encoders). All
+// integers on the wire are little-endian. Node ids are 1 to 127.
+// Validity: SDO replies of up to four bytes (expedited transfer).
 #pragma once
 
 #include <cstdint>
@@ -37,8 +40,11 @@ inline constexpr std::uint32_t kEmergencyBase = 0x080, kSdoReplyBase = 0x580, kS
 constexpr std::uint32_t TpdoId(int tpdo, int node) { return 0x080 + 0x100 * tpdo + node; }
 
 CanFrame NmtFrame(NmtCommand command, int node);  // node 0: all
+// Without a counter.
 CanFrame SyncFrame();
+// As a node sends it.
 CanFrame HeartbeatFrame(int node, NmtState state);
+// `code` 0: the error is over.
 CanFrame EmergencyFrame(int node, std::uint16_t code, std::uint8_t error_register);
 // Asks for an object of the node.
 CanFrame SdoReadFrame(int node, std::uint16_t index, std::uint8_t sub);
@@ -47,6 +53,7 @@ struct Heartbeat {
   int node;
   NmtState state;
 };
+// Nothing for another frame.
 std::optional<Heartbeat> HeartbeatOf(const CanFrame& frame);
 
 struct Emergency {
@@ -54,6 +61,7 @@ struct Emergency {
   std::uint16_t code;           // 0: the error is over
   std::uint8_t error_register;  // object 1001h
 };
+// Nothing for another frame.
 std::optional<Emergency> EmergencyOf(const CanFrame& frame);
 // "emergency 3110h (voltage), error register 04h".
 std::string EmergencyText(const Emergency& emergency);

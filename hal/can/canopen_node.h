@@ -5,6 +5,9 @@
 // restarts by itself (boot-up, or pre-operational after it was operational) its position reference
 // is lost: it is identified and started again, and its counts are invalid until the reference is
 // confirmed.
+// Units: s of the clock.
+// Failure: none is thrown; Fault() says it.
+// Source: CiA 301: NMT, heartbeat, identity object 1018h.
 #pragma once
 
 #include <array>

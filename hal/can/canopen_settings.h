@@ -3,6 +3,9 @@
 //
 // An encoder's number is a count that wraps at `range`. angle = sense * (count - zero) * Step().
 // CountOf() is the inverse.
+// Units: rad, rad/s, s.
+// Failure: InputError with file, line and key.
+// Source: CiA 406 for the count and its range.
 #pragma once
 
 #include <cstdint>

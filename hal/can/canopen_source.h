@@ -9,6 +9,11 @@
 //
 // A node that restarts has lost its reference: its samples are bad until ConfirmReference(). This
 // is the one fault from which a source does not recover by itself.
+// Units: rad, s of the clock.
+// Failure: DeviceError from Require; else a bad sample with its cause.
+// Source: CiA 301, CiA 406.
+// Validity: encoders latch at the SYNC; the stamp is off by the length of the SYNC frame, 0.05
+// ms at 1 Mbit/s.
 #pragma once
 
 #include <memory>
@@ -45,15 +50,20 @@ class CanopenSource : public DeviceSource {
   CanopenSource(const CanopenSettings& settings, double stale_s, std::unique_ptr<CanBus> bus,
                 Clock& clock, Log log = {}, Part part = Part::kMaster);
 
+  // DeviceError that names the node which does not answer as described.
   void Require() override;
+  // For the header of a recording.
   std::string Description() const override { return "canopen"; }
   // Ends a loss of reference: the next counts are taken as the angles nearest to zero. To be called
   // when a person has brought the linkage to a pose where they are.
   void ConfirmReference();
 
   const std::vector<Channel>& channels() const override { return channels_; }
+  // One SYNC and its answers.
   SampleSet Read() override;
+  // At the end of a log.
   bool Ended() const override { return bus_->Ended() && !ahead_; }
+  // With the name of the device.
   std::string Fault() const override;
 
   const CanopenCounts& counts() const { return counts_; }

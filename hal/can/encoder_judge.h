@@ -5,6 +5,9 @@
 // it was; three in a row that agree with each other mean that the encoder has another zero now (a
 // preset, a slip): the reference is lost, and stays so until it is confirmed. Knows no bus and no
 // clock.
+// Units: counts, rad, s.
+// Failure: none; a count that is no measurement is a bad sample.
+// Validity: the shaft turns by less than half of the range between two counts.
 #pragma once
 
 #include <optional>

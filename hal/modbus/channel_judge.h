@@ -5,6 +5,8 @@
 // than `stale`; the status register is ok; the raw number is no sentinel; the value is finite; it
 // lies within minimum..maximum; the registers have changed within `stale` (unless the channel may
 // freeze). Uses no device and no clock.
+// Units: that of the channel; s.
+// Failure: none; a reading that is no measurement is a bad sample with its cause.
 #pragma once
 
 #include <array>

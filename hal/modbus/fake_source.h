@@ -8,6 +8,9 @@
 //       channels, [](const std::string&, double t) { return 50 + std::sin(t); }, 1.0, clock);
 //   source.Inject({.kind = FakeFault::Kind::kFrozen,
 //                  .from_s = 10, .to_s = 20, .channel = "probe_c_um"});
+//
+// Units: that of each channel; s of the clock.
+// Failure: none; what goes wrong is what was injected.
 #pragma once
 
 #include <array>
@@ -49,11 +52,15 @@ class FakeSource : public SampleSource {
   FakeSource(std::vector<ChannelSettings> channels, Truth truth, double stale_s, Clock& clock,
              const std::string& name = "fake");
 
+  // Adds to the faults before.
   void Inject(const FakeFault& fault) { faults_.push_back(fault); }
+  // Ends all of them.
   void Heal() { faults_.clear(); }
 
   const std::vector<Channel>& channels() const override { return channels_; }
+  // At the time of the clock.
   SampleSet Read() override;
+  // As the last Read() left it.
   std::string Fault() const override { return fault_; }
 
  private:

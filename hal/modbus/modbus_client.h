@@ -9,6 +9,9 @@
 //
 // One client belongs to one thread. Several units of one TCP server or one serial line each have
 // their own client; on a serial line they must be called in turn, by one thread.
+// Units: s of the settings; deadlines in real time.
+// Failure: DeviceError for a host name that does not resolve; else a ModbusFault is returned.
+// Source: Modbus application protocol V1.1b3; libmodbus for the link.
 #pragma once
 
 #include <cstdint>
@@ -51,6 +54,7 @@ class ModbusClient {
   // after a fault `words` are unchanged. Returns at the latest at `deadline`.
   std::optional<ModbusFault> Read(RegisterTable table, int address, std::span<std::uint16_t> words,
                                   Time deadline);
+  // One holding register, function 6.
   std::optional<ModbusFault> Write(int address, std::uint16_t word, Time deadline);
   // The identification of the device, "vendor product revision"; empty when it has none. A device
   // that is disturbed by the question is given time to recover, its response time at most.

@@ -3,8 +3,11 @@
 // The library returns a TCP reply without checking its unit id, and its raw requests carry no
 // transaction number, so the client frames by itself and checks everything a reply must repeat:
 // transaction, protocol, length, unit, function, count (TCP); unit, function, count, CRC (serial).
+// Units: none; bytes.
+// Failure: none; ModbusReply::wrong says why a reply is none.
 // Source: Modbus application protocol V1.1b3, sections 6.3, 6.4, 6.6, 6.21 and 7; Modbus messaging
 // on TCP/IP V1.0b, section 3.1.3; Modbus over serial line V1.02, section 2.5.1.2 (CRC).
+// Validity: functions 3, 4, 6 and 43 only.
 #pragma once
 
 #include <array>
@@ -39,6 +42,7 @@ struct ModbusFrame {
   std::span<const std::uint8_t> view() const { return {bytes.data(), size}; }
 };
 
+// The bytes on the wire; `transaction` for TCP only.
 ModbusFrame Encode(const ModbusRequest& request, ModbusFraming framing, std::uint16_t transaction);
 
 // The length of a reply by its first bytes; more than `got.size()` while bytes are missing, never
@@ -58,12 +62,14 @@ ModbusReply CheckReply(const ModbusRequest& request, ModbusFraming framing,
 
 // "exception 2 (illegal data address)", and what to do about it.
 std::string ExceptionText(int exception);
+// What to do about it.
 std::string ExceptionRemedy(int exception);
 
 // The identification of a device (function 43, MEI type 14): its objects, "vendor product
 // revision", without characters that are not printable ASCII.
 std::string IdentityText(std::span<const std::uint8_t> objects);
 
+// Polynomial A001h, as section 2.5.1.2 has it.
 std::uint16_t Crc16(std::span<const std::uint8_t> bytes);
 
 }  // namespace abbe::hal

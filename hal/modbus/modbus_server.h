@@ -9,6 +9,10 @@
 // The bank is called on the server's own thread, one call at a time, at the moment of the request.
 // A client that sends half a request, or takes no reply, does not delay the others; its link is
 // closed.
+// Units: none; 16-bit words.
+// Failure: DeviceError where it cannot listen; a bad request gets an exception code or no answer.
+// Source: Modbus application protocol V1.1b3.
+// Validity: functions 3, 4, 6, 16 and 43.
 #pragma once
 
 #include <array>
@@ -60,6 +64,7 @@ class RegisterBank {
 // address, unknown units no such unit. Holding registers that exist can be written.
 class RegisterImage : public RegisterBank {
  public:
+  // Makes the registers address, address + 1, ... or changes them.
   void Set(int unit, RegisterTable table, int address, std::initializer_list<std::uint16_t> words);
   void Set(int unit, RegisterTable table, int address, std::span<const std::uint16_t> words);
   std::uint16_t Get(int unit, RegisterTable table, int address) const;  // 0 when unknown

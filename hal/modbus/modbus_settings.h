@@ -7,6 +7,9 @@
 //
 // The virtual rig encodes with the same channels: StoreValue() is the inverse of RawOf() and
 // ValueOf().
+// Units: s; values in the unit of the channel's name.
+// Failure: InputError with file, line and key.
+// Source: docs/devices.md.
 #pragma once
 
 #include <cstdint>
@@ -83,6 +86,7 @@ ModbusSettings ReadModbus(const settings::Table& device, ModbusFraming framing);
 
 // `block` holds the registers of the channel's block.
 double RawOf(const ChannelSettings& channel, std::span<const std::uint16_t> block);
+// raw * scale + offset.
 double ValueOf(const ChannelSettings& channel, double raw);
 // Stores the raw number nearest to `value`; beyond the ends of an integer type it stays at the end.
 void StoreValue(const ChannelSettings& channel, double value, std::span<std::uint16_t> block);

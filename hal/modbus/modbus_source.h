@@ -4,6 +4,9 @@
 // sample is stamped with the middle of its exchange, and was measured within half of the exchange
 // before or after it. A block that the device refuses (exception) is bad and the others are still
 // read; after any other fault all channels not yet read are bad, too.
+// Units: that of each channel; s of the clock.
+// Failure: DeviceError from the constructor, Require and StartCycle; else bad samples.
+// Source: hal/modbus/modbus_client.h.
 #pragma once
 
 #include <memory>
@@ -26,14 +29,18 @@ class ModbusSource : public DeviceSource {
 
   // A device that is busy is given two seconds to answer every block.
   void Require() override;
+  // "modbus", and what the device says of itself.
   std::string Description() const override;
 
+  // The file names a register for it.
   bool HasCycleStart() const override { return device_.cycle_start.has_value(); }
   // Writes `program` to the register that starts it. Exception 5, "acknowledge", is no refusal.
   void StartCycle(int program) override;
 
   const std::vector<Channel>& channels() const override { return channels_; }
+  // Every block once.
   SampleSet Read() override;
+  // As the last Read() left it.
   std::string Fault() const override;
 
   std::uint64_t failures() const { return failures_; }  // readings with a fault, so far

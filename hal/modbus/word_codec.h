@@ -7,6 +7,10 @@
 // bytes.
 //
 // Numbers here are raw: scale and offset belong to the channel (modbus_settings.h).
+// Units: raw numbers.
+// Failure: none; see the preconditions.
+// Source: Modbus application protocol V1.1b3, 4.2, for the order of bytes in a word; IEEE 754 for
+// float32.
 #pragma once
 
 #include <cstdint>

@@ -6,12 +6,16 @@
 // Outliers: the arm with the tolerances of its machine file, but joints that may err up to three
 // times per turn by kLenient, and by that a metre under weights, lest a cause make outliers, is
 // fitted; a pose whose gap is more than kFar times the usual one (from the median, as if normal) is
-// left out, and the rest fitted and looked at once more: further looks would take out what the model
-// lacks. Where more than a tenth would go they are no outliers: all stay.
-// The rest is fitted with the tolerances as they are.
-// What the fit leaves beyond the stated noise is excess noise (excess_noise.h).
-// Units: m, rad; gaps whitened with the stated noise. Failure: InputError where angles and places
-// do not go together; that of SolveLinkage.
+// left out, and the rest fitted and looked at once more: further looks would take out what the
+// model lacks. Where more than a tenth would go they are no outliers: all stay. The rest is fitted
+// with the tolerances as they are. What the fit leaves beyond the stated noise is excess noise
+// (excess_noise.h).
+// Frames: those of arm_run.h.
+// Units: m, rad; gaps whitened with the stated noise. Shapes: gaps 3 x poses.
+// Failure: InputError where angles and places do not go together; that of SolveLinkage.
+// Source: own.
+// Validity: fewer than a tenth of the poses are no readings of the arm, and the geometry is within
+// its tolerances.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,6 +43,7 @@ struct ArmBaseline {
 // `placed`: simulation/arm/arm_run.h, or as another run with the same base has it.
 ArmBaseline FitArm(const LinkageRun& run, const relm::LinkageSettings& placed);
 
+// Indices into `run`; empty: none.
 std::vector<Eigen::Index> FarOff(const LinkageRun& run, const ArmBaseline& baseline);
 
 // m, at the baseline.

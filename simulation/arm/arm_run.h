@@ -8,6 +8,10 @@
 //
 // Such a recording is of kind linkage, with ref_x_mm, ref_y_mm, ref_z_mm and without x_mm, y_mm,
 // z_mm. Its frame M is that of the instrument, whose place the machine file does not know.
+// Frames: M, that of the instrument; B, the base of the arm. Shapes: poses in columns; the Jacobian
+// as LinkageSimulation.
+// Source: docs/arms.md; geometry: relm/serial_chain.h.
+// Validity: the arm stands still in each pose, and its base does not move during a run.
 #pragma once
 
 #include <string>
@@ -22,6 +26,7 @@
 
 namespace abbe::simulation {
 
+// Judged by the columns alone.
 bool IsArm(const recording::Recording& recording);
 
 // Its poses, at most kMostDiagnosedPoses, with the noise of the instrument and of how the arm repeats.
@@ -34,6 +39,7 @@ LinkageRun ReadArmRun(const recording::Recording& recording, const relm::Linkage
 // the compliance of single links, which hangs on the points that are written.
 // Units: m, rad, rad/m. Failure: InputError for poses on one line, about which the turn is open.
 inline constexpr double kAnywhere = 0.5, kAnyTurn = 1.0, kTooNear = 20e-3, kLight = 20e-6;
+// `settings` with X_MB found, and the tolerances of a base that stands anywhere.
 relm::LinkageSettings Placed(relm::LinkageSettings settings, const LinkageRun& run);
 
 // Several balls or reflectors on one hand: the machine file states the first, the others have an

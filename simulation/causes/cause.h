@@ -9,14 +9,17 @@
 // have a shape besides (a period, a time constant, an order, an instant), which is searched over
 // `shapes`. Where what it does is not quite in proportion to its size (a play, a delay), the shape
 // is the size around which the column is taken, and none for a small one: Amount::kFollowsItsSize.
-// All coefficients are 0 when the cause is absent.
-// Some causes are already parameters of the simulation, within a tolerance (squareness, the
-// eccentricity of an encoder): these name the parameters that they set free in `relaxes` and have
-// no columns.
-// Keys: the names, units and signs by which files and reports know a cause; `tell` works them out
-// of coefficients and shape, `recall` goes back. Units: SI inside; CauseKey::unit is what one unit
-// of the key is in SI.
-// A new cause is one file here and one line in registry.h.
+// All coefficients are 0 when the cause is absent. Some causes are already parameters of the
+// simulation, within a tolerance (squareness, the eccentricity of an encoder): these name the
+// parameters that they set free in `relaxes` and have no columns. Keys: the names, units and signs
+// by which files and reports know a cause; `tell` works them out of coefficients and shape,
+// `recall` goes back.
+// Frames: those of the stage at which it acts (simulation/disturbance.h).
+// Units: SI inside; CauseKey::unit is what one unit of the key is in SI. A new cause is one file
+// here and one line in registry.h. Shapes: a column is one Disturbance; one a coefficient.
+// Failure: none; a cause that does not act on a run has no columns there.
+// Source: docs/causes.md, and the comment of each cause's file.
+// Validity: linear in the coefficients around SizeOf(shape); products of two causes are left out.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,10 +42,13 @@ struct Scene {
   double form_length = 0.0;  // m: correlation length of the form of the target; 0: not known
   Eigen::Vector3d first = Eigen::Vector3d::Zero();  // m: where the travels begin
 
+  // A trace with a head.
   bool HasSweeps() const;
+  // A linkage without a machine.
   bool HasArms() const;
   bool OnlyShafts() const;      // which say nothing of the axes
   Eigen::Index Pivots() const;  // 0 without a linkage
+  // Names of the recorded temperatures, each once.
   std::vector<std::string> Sensors() const;
 };
 
@@ -99,6 +105,7 @@ struct Wave {
 
   // Waves per unit of the variable, and back.
   double WavesOf(double of_shape) const;
+  // The inverse of WavesOf.
   double ShapeOf(double waves) const;
 };
 
@@ -141,22 +148,31 @@ struct Cause {
   Eigen::Index coefficients() const { return plausible.size(); }
   // All that are tried; one without numbers where it has no shape.
   std::vector<Eigen::VectorXd> ShapesFor(const Scene& scene, const Object& object) const;
+  // Its column depends on the size around which it is taken.
   bool FollowsItsSize() const { return amount == Amount::kFollowsItsSize; }
+  // There or not.
   bool IsBinary() const { return amount == Amount::kBinary; }
+  // Known by its standard deviation.
   bool IsRandomField() const { return amount == Amount::kRandomField; }
   // SI values in the order of the keys.
   Eigen::VectorXd ValuesOf(const Eigen::VectorXd& found, const Eigen::VectorXd& shape) const;
   // The way back.
   Recalled RecallFrom(const Eigen::VectorXd& values) const;
+  // Who deals with it at this object.
   CorrectedBy CorrectedAt(const Object& object) const;
 };
 
 // The objects that a scene offers: "X" ..., "XY" ..., "probe_a" ..., "pivot_1" ...
 std::vector<Object> AxesOf(const Scene& scene);
+// "XY", "XZ", "YZ"; none where all runs are of shafts.
 std::vector<Object> AxisPairsOf(const Scene& scene);
+// Where a sweep is among the runs.
 std::vector<Object> ProbesOf(const Scene& scene);
+// From the base on.
 std::vector<Object> PivotsOf(const Scene& scene);
+// The pivots, where an arm is among the runs.
 std::vector<Object> JointsOfArms(const Scene& scene);
+// "arm", where one is among the runs.
 std::vector<Object> ArmOf(const Scene& scene);
 
 // The stage of the positioning error of an axis: EXX, EYY, EZZ.
@@ -174,7 +190,9 @@ std::vector<Disturbance> WaveInStage(const Trace& trace, Eigen::Index stage,
 // Sine and cosine of 2 pi frequency t, t of `clock`, in the mean of the readings of each row.
 std::vector<Disturbance> LineInStage(const Trace& trace, Eigen::Index stage, double frequency,
                                      const Eigen::VectorXd& clock);
+// s sin + c cos as a sin(. + phase), rad.
 Eigen::Vector2d AmplitudeAndPhase(const Eigen::VectorXd& sine_cosine);
+// The way back.
 Eigen::Vector2d SineAndCosine(double amplitude, double phase);
 
 // One shape for each number.

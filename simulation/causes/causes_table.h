@@ -1,4 +1,7 @@
 // The catalogue of causes as a table of Markdown: docs/causes.md, `abbe causes`.
+// Units: those of the keys.
+// Failure: none.
+// Source: the words of each cause, simulation/causes/.
 #pragma once
 
 #include <string>

@@ -10,7 +10,10 @@
 //   "sensor_1"                    a gap sensor at a turning shaft
 //   "cap", "head", "shaft" ...    what a machine has one of
 // each with a blank and the name of a temperature sensor behind it, where one is meant.
+// Units: none.
 // Failure: none; a name of no such form is a thing known by name.
+// Source: own names; docs/causes.md lists them.
+// Validity: a name is enough to tell two objects apart.
 #pragma once
 
 #include <string>
@@ -42,6 +45,7 @@ class Object {
   std::string sensor() const { return sensor_; }
 
   Kind kind() const { return kind_; }
+  // One or two.
   bool IsOfAxes() const { return kind_ == Kind::kAxis || kind_ == Kind::kAxisPair; }
   // From 0: X, probe_a, pivot_1 and so on; the second of a pair. 0 of what is known by name.
   int first() const { return first_; }

@@ -1,6 +1,9 @@
 // All known causes, in the order in which reports list them.
 //
 // A new cause: one file that defines its function, and its line here.
+// Units: none.
+// Failure: InputError for an unknown name.
+// Source: docs/causes.md.
 #pragma once
 
 #include <algorithm>
@@ -67,6 +70,7 @@ namespace abbe::simulation {
 ABBE_CAUSES(ABBE_DECLARE_CAUSE)
 #undef ABBE_DECLARE_CAUSE
 
+// Made once.
 const std::vector<Cause>& Causes();
 
 // InputError that names the nearest known cause.

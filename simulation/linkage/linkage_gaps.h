@@ -6,8 +6,13 @@
 //
 // Rows: x, y, z of pose 0, then of pose 1, ..., in M, made white with GapNoise, so they have the
 // standard deviation 1. x: that of LinkageSimulation. Disturbances act at the stages tip and
-// encoder (simulation/disturbance.h): no machine is between. Units: m, rad. Failure: InputError of
-// GapNoise.
+// encoder (simulation/disturbance.h): no machine is between.
+// Frames: M.
+// Units: m, rad. Shapes: values 3 poses x 1; the Jacobian with LinkageSimulation::parameters()
+// columns.
+// Failure: InputError of GapNoise.
+// Source: linkage_simulation.h, the gap.
+// Validity: the reference is right to its stated deviation.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,9 +28,12 @@ class LinkageGaps : public Responsive {
   // `excess`: how many times larger than stated the noise is.
   LinkageGaps(LinkageSimulation simulation, LinkageRun run, double excess = 1.0);
 
+  // Three a pose.
   Eigen::Index Rows() const override { return 3 * run_.poses(); }
+  // Whitened.
   void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& values,
                 estimation::RowMatrix* jacobian) const override;
+  // At the stages tip and encoder.
   std::shared_ptr<const Response> At(const Eigen::VectorXd& x) const override;
 
   // What whitened rows are in space, one column for each pose.

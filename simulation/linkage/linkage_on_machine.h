@@ -15,10 +15,14 @@
 //
 // Errors in variables: the Jacobian is evaluated at noisy angles, which biases the scale by 3 N u^2
 // (N poses, u its standard uncertainty). `condense` removes the bias: it turns the angles until x
-// closes the gap, and keeps the gap as a constant.
-// Unknowns: those of the linkage and its base, then the machine's functions and squareness.
-// Units: m, rad. Failure: InputError for a position outside the travels, naming the row, and for a
-// ball that does not go where the chain takes it. Validity: exact.
+// closes the gap, and keeps the gap as a constant. Unknowns: those of the linkage and its base,
+// then the machine's functions and squareness.
+// Frames: M, B, T as LinkageSimulation.
+// Units: m, rad. Shapes: rows x, y, z of each pose or cell; columns as said.
+// Failure: InputError for a position outside the travels, naming the row, and for a ball that does
+// not go where the chain takes it.
+// Source: docs/theory-fusion.md, Long runs and Noise in the angles.
+// Validity: exact.
 #pragma once
 
 #include "machine/volumetric_model.h"
@@ -32,6 +36,7 @@ namespace abbe::simulation {
 SimulatedRun SimulateLinkage(const machine::VolumetricModel& model,
                              const Eigen::Vector3d& reference, const LinkageSimulation& linkage,
                              const LinkageParts& parts);
+// The same of a run that is read as a whole.
 SimulatedRun SimulateLinkage(const machine::VolumetricModel& model,
                              const Eigen::Vector3d& reference, const LinkageSimulation& linkage,
                              const LinkageRun& run);

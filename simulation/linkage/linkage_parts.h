@@ -7,7 +7,11 @@
 // The parts follow each other in the order of the rows; the means of the stays are taken, as by
 // MeansOfStays, also of those that begin in one block and end in the next. A stay of more rows than
 // a block is cut.
-// Failure: as ReadLinkageRun; InputError when no row is without a flag. Memory: that of a block.
+// Units: those of LinkageRun. Shapes: as LinkageRun, part by part.
+// Failure: as ReadLinkageRun; InputError when no row is without a flag.
+// Memory: that of a block.
+// Source: docs/theory-fusion.md, Long runs.
+// Validity: a stay that is cut counts as two poses, of fewer samples each.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,6 +25,7 @@ namespace abbe::simulation {
 
 using LinkageParts = std::function<void(const std::function<void(const LinkageRun& part)>& use)>;
 
+// Reads nothing yet.
 LinkageParts PartsOf(recording::Blocks blocks, relm::LinkageSettings settings);
 
 // All poses, or of more than `most` a sample of `count` drawn by the numbers of their rows: always
@@ -29,6 +34,7 @@ struct LinkageSample {
   LinkageRun run;
   Eigen::Index poses;
 };
+// Reads all parts once.
 LinkageSample SampleOf(const LinkageParts& parts, Eigen::Index most, Eigen::Index count);
 
 }  // namespace abbe::simulation

@@ -10,7 +10,11 @@
 // (fusion/calibration.h), with the priors of the machine file. The displacement form has no prior
 // for the base position. That is equivalent to differences from a first pose, without the noise of
 // that pose in all of them.
+// Units: m, rad; rows in standard deviations. Shapes: three rows a pose; ParametersOf as x of
+// LinkageSimulation.
 // Failure: InputError for no run or a run without poses.
+// Source: docs/theory-linkage.md for the models, estimation/problem.h for the fit.
+// Validity: every mounting stands still during its runs.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,6 +40,7 @@ estimation::Result SolveLinkage(const estimation::Problem& problem, int threads 
                                 bool weak_directions = true, double settled = 1e-4,
                                 double tolerated = 0.0);
 
+// Not solved; all blocks at the values of `simulation`.
 estimation::Problem MakeLinkageProblem(const LinkageSimulation& simulation,
                                        const std::vector<LinkageRun>& runs,
                                        const LinkageProblemOptions& options);

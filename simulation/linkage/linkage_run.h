@@ -6,14 +6,17 @@
 // tracker) gives them in the columns ref_x_mm, ref_y_mm, ref_z_mm; a direction without such a
 // column has the commanded position and `referenced` false. `reference_sd` is what is stated of
 // either in the machine file (linkage.noise), or the column ref_u_um; it is not averaged in a stay.
+// Frames: positions as the control counts.
 // Units: m, rad, s, K. Shapes: one column or entry per pose; `rows` tells the row of the recording,
 // or the first row of a stay, of the whole file also where the recording is a block of it. Rows
-// with a flag are left out. Failure: InputError with the recording's name for another kind of
-// recording, a missing column, or a number that is not finite in a row without a flag; see
-// relm/tip_path.h for the angles. Validity: a stay is a sequence of rows whose commanded position
-// keeps within `window` of that of its first row, in a recording that knows its times (the rows of
-// a table are poses of their own, however well a robot repeats them); its mean is as good as its
-// rows as long as the errors of the linkage do not change over the window.
+// with a flag are left out.
+// Failure: InputError with the recording's name for another kind of recording, a missing column, or
+// a number that is not finite in a row without a flag; see relm/tip_path.h for the angles.
+// Source: own.
+// Validity: a stay is a sequence of rows whose commanded position keeps within `window` of that of
+// its first row, in a recording that knows its times (the rows of a table are poses of their own,
+// however well a robot repeats them); its mean is as good as its rows as long as the errors of the
+// linkage do not change over the window.
 #pragma once
 
 #include <Eigen/Core>
@@ -44,11 +47,13 @@ struct LinkageRun {
   Eigen::Index poses() const { return commanded.cols(); }
 };
 
+// Row by row, without the flagged ones.
 LinkageRun ReadLinkageRun(const recording::Recording& recording,
                           const relm::LinkageSettings& settings);
 
 // The stays of a run, each as one pose.
 inline constexpr double kStayWindow = 5e-6;  // m
+// A row in no stay is one of its own.
 LinkageRun MeansOfStays(LinkageRun run, double window = kStayWindow);
 
 // Readings with a memory (linkage.noise) tell less in a mean than as many that have none: `samples`

@@ -15,13 +15,14 @@
 // Noise of the encoders reaches the gap through the pose, noise of the reference directly:
 // cov(gap) = R J_tip_q (s_encoder^2 / samples) J_tip_q' R' + diag(s_reference^2); GapNoise.
 //
-// Frames: M, the machine frame as the workpiece carries it; B, the linkage base; T, the ball.
-// X_MB = nominal pose, then shifted by [x y z] in M and turned by exp([a b c]) in B.
+// Frames: M, the machine frame as the workpiece carries it; B, the linkage base; T, the ball. X_MB
+// = nominal pose, then shifted by [x y z] in M and turned by exp([a b c]) in B.
 // Units: m, rad. Shapes: x is [base: x y z | base_turn: a b c | blocks of the model]; gaps 3 x
 // poses, the Jacobian has rows x, y, z of pose 0, then of pose 1, ...
 // Failure: InputError when x has the wrong size; Readings throws NumericalError with the run, the
-// row and the position of a pose that the linkage does not reach. Validity: exact kinematics; the
-// machine is as good as the stated deviation of the reference.
+// row and the position of a pose that the linkage does not reach.
+// Source: docs/theory-linkage.md; the loop is the project's.
+// Validity: exact kinematics; the machine is as good as the stated deviation of the reference.
 #pragma once
 
 #include <Eigen/Core>
@@ -50,6 +51,7 @@ void JacobianInMachine(const geometry::Transform<double>& nominal_X_MB, const Ei
 
 // Names of the blocks of the base of a mounting: position [x y z] in M, turn [a b c] in B.
 std::string BaseBlock(const std::string& mounting);
+// "base_turn", with the name of the mounting where it has one.
 std::string BaseTurnBlock(const std::string& mounting);
 
 // The blocks "base" [x y z] and "base_turn" [a b c] with the priors of the machine file.
@@ -70,6 +72,7 @@ class LinkageSimulation {
   // Where the reference says that the ball stands, p_MT.
   Eigen::Matrix3Xd Ball(const LinkageRun& run) const;
 
+  // 3 x poses; the Jacobian 3 poses x parameters.
   void Gap(const LinkageRun& run, const Eigen::VectorXd& x, Eigen::Matrix3Xd& gap,
            estimation::RowMatrix* J_gap_x = nullptr) const;
 

@@ -12,9 +12,13 @@
 // keeps all distances. Another ball sits elsewhere in the frame of the last link and goes round
 // with it: distances between two poses change by up to that. Held against each other are distances
 // of matching poses that follow each other; their median decides, so that gross readings do not.
-// Units: m, rad. Failure: InputError with both recordings and by how much. Validity: from kFewest
-// matching poses on (angles within kSameAngle); runs of other poses are taken as they are, and so
-// is a ball that moved along with a hand that never turns, which is a base that moved.
+// Frames: distances, in any frame.
+// Units: m, rad. Shapes: runs of any length.
+// Failure: InputError with both recordings and by how much.
+// Source: own; distances between places do not depend on the frame of an instrument.
+// Validity: from kFewest matching poses on (angles within kSameAngle); runs of other poses are
+// taken as they are, and so is a ball that moved along with a hand that never turns, which is a
+// base that moved.
 #pragma once
 
 #include <string>

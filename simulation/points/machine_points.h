@@ -2,9 +2,13 @@
 // length and plate, and the common part of their simulation.
 //
 // Tool point Q: header `tool_mm` = [x, y, z], where Q stands in M when all axes are at zero;
-// without it the machine's origin. Frames: M, the machine frame as the workpiece carries it. Units:
-// m. Failure: InputError with recording and row for a missing column, a number that is not finite,
-// a position outside the travels.
+// without it the machine's origin.
+// Frames: M, the machine frame as the workpiece carries it.
+// Units: m. Shapes: points in columns, 3 x N.
+// Failure: InputError with recording and row for a missing column, a number that is not finite, a
+// position outside the travels.
+// Source: machine/volumetric_error.h for p_MQ.
+// Validity: the tool point is rigid with the tool body.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,6 +35,7 @@ struct MachinePoints {
 std::optional<Eigen::Vector3d> HeaderPoint(const recording::Recording& recording,
                                            const std::string& key);
 
+// Rows without a flag.
 MachinePoints ReadMachinePoints(const recording::Recording& recording);
 
 // A column of the recording in the rows of `points`, SI.

@@ -12,20 +12,21 @@
 // with p_MQ of simulation/points/machine_points.h; u_probing_um stands in the header. The tool
 // point of set-up N is `tool_mm` of the header's table [setup.N], or `tool_mm` for all.
 // Frames: M, the machine frame as the workpiece carries it; P, the plate: u along plate_x, v along
-// plate_y. X_MP starts where the plate fits the axes best on a perfect machine.
-// Unknowns, in this order: the machine's functions and squareness; of the set-up "plate_place RUN"
-// [u v] and "plate_turn RUN" about w, of which nothing is known; "plate_scale PLATE", where the
-// header states u_scale_ppm; and where the column u_plate_um is there, "plate_hole PLATE N" [u v],
-// the form: the plate is the header's `plate`, and what is said of its hole N holds in all its
-// set-ups.
-// Units: m, rad. Failure: InputError with recording and row: no u_probing_um, a set-up without tool
-// or of less than three holes that span a plane, a hole in two places of the certificate, a hole
-// that is not where the plate says; that of simulation/points/machine_points.h.
-// No loss: a robust one follows a plate that slipped while it was measured for a hundred passes;
-// without one its set-up is named at once (fusion/run_consistency.h).
+// plate_y. X_MP starts where the plate fits the axes best on a perfect machine. Unknowns, in this
+// order: the machine's functions and squareness; of the set-up "plate_place RUN" [u v] and
+// "plate_turn RUN" about w, of which nothing is known; "plate_scale PLATE", where the header states
+// u_scale_ppm; and where the column u_plate_um is there, "plate_hole PLATE N" [u v], the form: the
+// plate is the header's `plate`, and what is said of its hole N holds in all its set-ups.
+// Units: m, rad. Shapes: two rows a hole, u and v.
+// Failure: InputError with recording and row: no u_probing_um, a set-up without tool or of less
+// than three holes that span a plane, a hole in two places of the certificate, a hole that is not
+// where the plate says; that of simulation/points/machine_points.h. No loss: a robust one follows a
+// plate that slipped while it was measured for a hundred passes; without one its set-up is named at
+// once (fusion/run_consistency.h).
 // Source: Ha and Khanh, "An application of neural network in calibration of coordinate measuring
-// machines" (2011), section 3. Validity: the other three numbers of the pose stay at the start, to
-// 1 mrad: 0.5 ppm of a length in the plate.
+// machines" (2011), section 3.
+// Validity: the other three numbers of the pose stay at the start, to 1 mrad: 0.5 ppm of a length
+// in the plate.
 #pragma once
 
 #include <Eigen/Core>

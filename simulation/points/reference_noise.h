@@ -9,9 +9,13 @@
 // by least squares: the error of the axis and its reversal are in the first, whatever drifts or
 // grows from one way of the axis to the next in the second and third. Only what is left counts,
 // over its degrees of freedom f; the variance is that of Student's distribution, f / (f - 2) times
-// as large, for a fit that takes it as known and normal. Units: m. Nothing for a run that is no
-// positioning test or leaves fewer than kLeastFreedom degrees. Validity: what changes the shape of
-// the error over position between cycles counts as noise.
+// as large, for a fit that takes it as known and normal.
+// Frames: each direction of the instrument for itself.
+// Units: m. Nothing for a run that is no positioning test or leaves fewer than kLeastFreedom
+// degrees. Shapes: one deviation a direction.
+// Failure: InputError where all readings repeat to their last digit.
+// Source: own; ISO 230-2 has the cycles and approaches.
+// Validity: what changes the shape of the error over position between cycles counts as noise.
 #pragma once
 
 #include <Eigen/Core>

@@ -7,13 +7,16 @@
 // the instrument does not show has `shown` false and place 0. `sd` is the standard deviation of
 // each place: the column ref_u_um, else `u_reference_um` of the header, else 0: not stated; it is
 // not averaged in a stay. A recording without time_s counts its rows; `timed` is then false, as
-// where the header says time = "order".
-// `tested`: the axis of a positioning test, the only one that moves, with the direction of the
-// approach to each target in the column `direction`; ' ' in other runs.
-// Units: m, s. Shapes: one column or entry per row; rows with a flag are left out. Failure: that of
-// simulation/points/machine_points.h; InputError without any ref column, for a deviation that is
-// not above 0. Validity: a stay is a sequence of rows of one pass and direction whose commanded
-// position keeps within kStayWindow of its first.
+// where the header says time = "order". `tested`: the axis of a positioning test, the only one that
+// moves, with the direction of the approach to each target in the column `direction`; ' ' in other
+// runs.
+// Frames: axis coordinates.
+// Units: m, s. Shapes: one column or entry per row; rows with a flag are left out.
+// Failure: that of simulation/points/machine_points.h; InputError without any ref column, for a
+// deviation that is not above 0.
+// Source: docs/recordings.md, kind reference.
+// Validity: a stay is a sequence of rows of one pass and direction whose commanded position keeps
+// within kStayWindow of its first.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,6 +41,7 @@ struct ReferenceRun {
   Eigen::Index rows() const { return points.count(); }
 };
 
+// Row by row.
 ReferenceRun ReadReferenceRun(const recording::Recording& recording);
 
 // A test of one axis says nothing of the others: they stood somewhere, which only moves the lever
@@ -46,6 +50,7 @@ ReferenceRun ReadReferenceRun(const recording::Recording& recording);
 recording::Recording WithAllAxes(recording::Recording recording,
                                  const std::array<machine::Travel, 3>& travels);
 
+// A row in no stay is one of its own.
 ReferenceRun MeansOfStays(const ReferenceRun& run);
 
 // At most so many rows, evenly from the whole run.

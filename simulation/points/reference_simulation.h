@@ -10,9 +10,13 @@
 //
 // Unknowns: "reference_place RUN" [x y z], of which nothing is known, "reference_turn RUN" [a b c],
 // known to 10 mrad; the machine's functions and squareness. Turn and squareness together stay as
-// well determined as two or three directions of the instrument allow.
-// Noise: that of the run; of a recording that states none, `sd` in each direction.
-// Units: m, rad. Failure: that of simulation/points/reference_run.h; InputError for no noise.
+// well determined as two or three directions of the instrument allow. Noise: that of the run; of a
+// recording that states none, `sd` in each direction.
+// Frames: axis coordinates of a perfect machine; the instrument stands at `place`, turned.
+// Units: m, rad. Shapes: rows of the shown directions of each point.
+// Failure: that of simulation/points/reference_run.h; InputError for no noise.
+// Source: docs/theory-fusion.md.
+// Validity: an instrument whose own scales and squareness are right.
 #pragma once
 
 #include "machine/volumetric_model.h"

@@ -5,8 +5,11 @@
 // back to a target from the other side; a play is taken up at each target. How far beyond its last
 // target it turned is not known, so it last reversed kLongAgo. In other runs the axes head as they
 // move. Of runs of lengths and plates nothing is known of the way to their rows, so no axis has a
-// heading. Without the column time_s a row counts as a second. Failure: InputError with the
-// recording's name for a start that is no time.
+// heading. Without the column time_s a row counts as a second.
+// Units: m, s. Shapes: one column a point.
+// Failure: InputError with the recording's name for a start that is no time.
+// Source: ISO 230-2 for the approaches of a positioning test.
+// Validity: the way between two rows is not recorded.
 #pragma once
 
 #include "recording/recording.h"
@@ -16,6 +19,7 @@
 
 namespace abbe::simulation {
 
+// A run with a reference instrument.
 Trace TraceOf(const recording::Recording& recording, const ReferenceRun& run);
 // For lengths and plates. Headings are those of the columns approach_x, approach_y, approach_z; 0
 // without one.

@@ -8,7 +8,12 @@
 //
 // Unknowns: "rim_zero RUN" [sensor_1 ...], of which nothing is known. Disturbances act at the
 // reading stages (simulation/disturbance.h), sensor_1 at the first; the machine has no part in it.
-// Units: m. Failure: InputError with the recording's name for a run without noise.
+// Frames: none; gaps along the look of each sensor.
+// Units: m. Shapes: one row a reading.
+// Failure: InputError with the recording's name for a run without noise.
+// Source: docs/shaft.md.
+// Validity: small against the radius; the shaft's own error motion and the rim's form are causes,
+// not parameters.
 #pragma once
 
 #include "recording/recording.h"
@@ -18,8 +23,10 @@
 
 namespace abbe::simulation {
 
+// Zeros only are free.
 SimulatedRun SimulateShaft(const ShaftRun& run);
 
+// With the part `rim`.
 Trace TraceOf(const recording::Recording& recording, const ShaftRun& run);
 
 }  // namespace abbe::simulation

@@ -5,11 +5,14 @@
 // Station means: one row is the mean of all dwells at one station and in one direction of approach,
 // with the covariance that white noise and drift leave (probes/sweep_stations.h): what a sweep of
 // any length says of the machine, kept in a few hundred numbers. Dwells: one row is one dwell, in
-// the order of time, to show what changes from pass to pass; the covariance is that
-// of the machine file's drift and the scatter within the dwells. Gap steps: at some stations the
-// axes that stand in a sweep step by a known way, which moves every gap. Units: m. Shapes: one
-// entry or column per row; covariance rows x rows for each probe. Failure: InputError for a
-// recording that is no sweep or has fewer than three stations.
+// the order of time, to show what changes from pass to pass; the covariance is that of the machine
+// file's drift and the scatter within the dwells. Gap steps: at some stations the axes that stand
+// in a sweep step by a known way, which moves every gap.
+// Frames: positions as the control counts; gaps of the probes.
+// Units: m. Shapes: one entry or column per row; covariance rows x rows for each probe.
+// Failure: InputError for a recording that is no sweep or has fewer than three stations.
+// Source: probes/sweep_stations.h for the means and their covariance.
+// Validity: a mean over passes hides what changes from pass to pass; dwells show it.
 #pragma once
 
 #include <Eigen/Core>
@@ -54,6 +57,7 @@ struct SweepRun {
   probes::PerProbe<Eigen::MatrixXd> covariance;                // m^2
 
   Eigen::Index rows() const { return position.size(); }
+  // [x y z] of all axes in a row.
   Eigen::Vector3d AxesAt(Eigen::Index row) const {
     Eigen::Vector3d axes = start;
     if (steps.cols() > 0) axes += steps.col(row);
@@ -62,6 +66,7 @@ struct SweepRun {
   }
 };
 
+// Station means of a whole recording.
 SweepRun ReadSweepRun(const recording::Recording& recording, const probes::HeadSettings& head,
                       const probes::ProbeNoise& noise);
 // For a run of any length: `recording` needs no rows.
@@ -70,12 +75,14 @@ SweepRun ReadSweepRun(const recording::Recording& recording, const recording::Bl
 // A recording that holds still (kind dwell): one row is one of the first kStillReadings readings,
 // then the mean of so many that at most kLaterBlocks rows hold all the others.
 inline constexpr std::size_t kStillReadings = 120, kLaterBlocks = 100;
+// Nothing steps and nothing sweeps.
 SweepRun ReadStillReadings(const recording::Recording& recording, const probes::ProbeNoise& noise);
 // Single readings of a sweep while it stands (stays.h), the first ones, each stay about a mean that
 // nobody knows: what they say of mains and vibration beyond the means of ReadSweepDwells.
 SweepRun ReadReadingsInStays(const recording::Recording& recording,
                              const std::vector<std::vector<std::size_t>>& stays,
                              const probes::ProbeNoise& noise);
+// Dwells, as above.
 SweepRun ReadSweepDwells(const recording::Recording& recording, const probes::HeadSettings& head,
                          const probes::ProbeNoise& noise);
 // Gap steps (kind gap-steps): one row is one standstill, whichever axis stepped to it. `slopes`:

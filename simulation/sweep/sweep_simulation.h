@@ -25,9 +25,13 @@
 // The form of the faces is a Gaussian process (target.form); where a probe sees it is nominal. It
 // correlates the readings of probes of one face, and is put into the covariance.
 //
-// Units: m, rad. Failure: InputError for a head without frame for the axis, and for a gap that no
-// electrode can read. Validity: errors of the axes that stand still during the sweep are constant
-// and go into the zeros; over gap steps they are straight lines.
+// Frames: M, W, T of machine/volumetric_error.h; H of probes/head_layout.h.
+// Units: m, rad. Shapes: rows probe by probe: all rows of a, then of b, ...
+// Failure: InputError for a head without frame for the axis, and for a gap that no electrode can
+// read.
+// Source: docs/theory-head.md for the readings, docs/theory-fusion.md for the whole.
+// Validity: errors of the axes that stand still during the sweep are constant and go into the
+// zeros; over gap steps they are straight lines.
 #pragma once
 
 #include "machine/volumetric_model.h"

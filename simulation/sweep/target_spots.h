@@ -7,6 +7,11 @@
 // In coordinates of the face that move with the target when it is shifted, or reversed about the
 // middle of what the head passes: the same spot has the same coordinates in all recordings of one
 // swept axis. Across: s of a top probe, n of a side probe.
+// Frames: the face of the target: u along the sweep, across it s or n.
+// Units: m. Shapes: 10 x rows: u and across of each probe.
+// Failure: none.
+// Source: own.
+// Validity: nominal spots: where the probes really sit in the fixture is not counted.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,6 +22,7 @@
 
 namespace abbe::simulation {
 
+// Two rows a probe.
 Eigen::MatrixXd SpotsOnTarget(const machine::Chain& chain, const probes::HeadSettings& head,
                               const SweepRun& run);
 

@@ -4,8 +4,8 @@
     header_contract.py SOURCE_FOLDER
 
 A header keeps a part when its comment has a paragraph or a sentence that says so: "Units: m, rad." A function has a
-line of its own when a comment stands above or behind its declaration. Prints the figures and exits with 1 when one is
-below the recorded one.
+line of its own when a comment stands above its declaration, a template line between or not, or behind it. Prints the
+figures and exits with 1 when one is below the recorded one.
 """
 import pathlib
 import re
@@ -42,7 +42,10 @@ def functions(text):
                 declaration.append(following)
                 if re.search(r"[;{]\s*(//.*)?$", following) or "}" in following:
                     break
-            above = lines[number - 1].strip()
+            first = number
+            while lines[first - 1].strip().startswith("template"):
+                first -= 1
+            above = lines[first - 1].strip()
             yield match[2], above.startswith("//") or any("//" in each for each in declaration)
 
 
