@@ -1,9 +1,16 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds abbe, measures the three axes of a virtual machine with the five-probe
 # head over Modbus TCP, calibrates its linkage, measures circles with it, fuses all into one error map, hides an
-# effect of the day in the machine and finds it, and writes the report. Can be run again at any time.
+# effect of the day in the machine and finds it, follows another machine over a month, and writes the report. Can be
+# run again at any time. `./demo.sh --live [PORT]` shows the sweeps on a page while they are measured (port 8080).
 set -euo pipefail
 cd "$(dirname "$0")"
+live=()
+case ${1:-} in
+  "") ;;
+  --live) live=(--live --live-port "${2:-8080}") ;;
+  *) echo "usage: ./demo.sh [--live [PORT]]" >&2; exit 2 ;;
+esac
 speed=20 # the virtual machine runs this many times faster than a real one
 out=out
 ./setup/install setup/build_packages
@@ -25,7 +32,8 @@ done
 sed "s/^port = .*/port = $(cat "$out/rig/port")/" machines/demo_mill.toml >"$out/machine.toml"
 
 for axis in X Y Z; do
-  "$abbe" sweep --axis "$axis" --machine "$out/machine.toml" --clock-speed "$speed" --mounting demo --out "$out"
+  "$abbe" sweep --axis "$axis" --machine "$out/machine.toml" --clock-speed "$speed" --mounting demo --out "$out" \
+    ${live[@]+"${live[@]}"}
 done
 
 # The linkage: a grid of places beside a grid encoder, then circles at two feeds.
@@ -66,6 +74,24 @@ rm "$out"/campaign/{19,2?,3?}_*
 "$abbe" diagnose "$out"/campaign/*.h5 --machine "$out/rig/no_drag.toml" -o "$out/causes.toml" --json "$out/diagnosis.json" --quiet
 # What such a campaign would show of other causes.
 "$abbe" diagnose --plan "$out"/campaign/*.h5 --machine "$out/rig/no_drag.toml" --json "$out/plan.json" --quiet
+
+# A month of another machine, whose backlash grows: a circle every three days, kept in a history.
+mkdir -p "$out/history"
+{ cat "$demo"; printf '\n[limits]\ncircularity_um = 8.0\n'; } >"$out/history/mill.toml"
+history() { "$abbe" history "$@" --store "$out/history/history.db" --quiet; }
+for day in $(seq 0 3 27); do
+  folder=$out/history/day_$day
+  mkdir -p "$folder"
+  width=$(LC_ALL=C awk "BEGIN { print 1 + 0.15 * $day }")
+  "$abbe" rig record --machine "$demo" --seed 7 --run $((day + 1)) --kind reference --course circle --passes 1 --rate 30 \
+    --hide "backlash:object=X:width_um=$width" --out "$folder/circle.csv" >"$out/rig/log"
+  "$abbe" circle "$folder/circle.csv" --filter 50 --out "$folder" --quiet
+  history add "$folder" --machine "$out/history/mill.toml" \
+    --measured "$(date -u -d "$((30 - day)) days ago" +%Y-%m-%dT08:00:00Z)"
+done
+history trend XY --json "$out/history_trend.json"
+history compare 1 latest --json "$out/history_compare.json"
+history check latest --machine "$out/history/mill.toml" --json "$out/history_check.json" || [ $? = 1 ]
 
 # What the rig knows: the same circle by a grid encoder without noise.
 sed 's/^reference_um = .*/reference_um = 0.0001/' "$demo" >"$out/rig/exact.toml"
