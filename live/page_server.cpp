@@ -74,7 +74,11 @@ class PageServer::Http {
   }
 
   ~Http() {
+    // Each stream ends properly within a sign of life; a browser that hangs is left.
     log_.Close();
+    for (int i = 0; i < 100 && browsers_ > 0; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
     server_.stop();
     if (thread_.joinable()) thread_.join();
   }
