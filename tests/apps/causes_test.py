@@ -90,16 +90,15 @@ class CausesTest(ProgramCase):
     def test_a_map_is_that_of_the_machine_without_its_play(self):
         course = ("--course", "cube", "--size", "58,58,58", "--points", "5,5,5", "--dwell", 0.1,
                   "--feed", 6000)
-        hidden, clean = self.pair("volume.csv", "backlash:object=X:width_um=6", *course)
-        others = [self.rig_record("line.csv", "--length", "X"),
-                  *(self.rig_record(f"{axis}.csv", "--axis", axis, "--mounting", "A", "--rate", 50)
-                    for axis in "XYZ")]
+        play = "backlash:object=X:width_um=6"
+        hidden, clean = zip(self.pair("volume.csv", play, *course), self.pair("line.csv", play, "--length", "X"))
+        others = [self.rig_record(f"{axis}.csv", "--axis", axis, "--mounting", "A", "--rate", 50) for axis in "XYZ"]
         model = self.model('[[cause]]\nid = "backlash"\nobject = "X"\nwidth_um = 6.0\n'
                            '[[cause]]\nid = "scale-error"\nobject = "Y"\ngain_ppm = 50.0\n')
         options = ("-o", self.path / "map.toml", "--fixed-smoothness")
-        wanted, _ = self.json_of("fuse", clean, *others, *options)
-        wrong, _ = self.json_of("fuse", hidden, *others, *options)
-        found, text = self.json_of("fuse", hidden, *others, *options, "--causes", model)
+        wanted, _ = self.json_of("fuse", *clean, *others, *options)
+        wrong, _ = self.json_of("fuse", *hidden, *others, *options)
+        found, text = self.json_of("fuse", *hidden, *others, *options, "--causes", model)
         error = lambda result: np.array(result["map"]["grid"]["error"])
         off = lambda result: np.sqrt(np.mean((error(result) - error(wanted)) ** 2))
         self.assertGreater(off(wrong), 4 * off(found))

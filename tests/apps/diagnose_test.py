@@ -13,6 +13,7 @@ from program_case import MACHINE, ProgramCase
 # What the keys of causes are called and measured in, written down by hand.
 UNITS = {
     "amplitude_um": ("amplitude", "um"), "amplitude_urad": ("amplitude", "urad"), "angle_urad": ("angle", "urad"),
+    "bow_um": ("bow", "um"), "change_um": ("change", "um"), "from_mm": ("from", "mm"), "to_mm": ("to", "mm"),
     "coefficient": ("coefficient", ""), "coefficient_nm_per_mm2": ("coefficient", "nm/mm^2"),
     "coefficient_ppm_per_c": ("coefficient", "ppm/degC"), "compliance_urad": ("compliance", "urad"),
     "cos_urad": ("cos", "urad"), "sin_urad": ("sin", "urad"), "decay_mm": ("decay", "mm"), "delay_ms": ("delay", "ms"),

@@ -58,7 +58,9 @@ void ExpectFound(const recording::Recording& recording, const std::string& name)
   EXPECT_THAT(campaign.notes(), testing::Not(testing::Contains(testing::HasSubstr("approach_x"))));
   const Diagnosis diagnosis = Diagnose(campaign);
   ASSERT_EQ(diagnosis.findings.size(), 1u);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
+  // One line through the volume: play of an angle, which is in no catalogue, would do the same.
+  EXPECT_GT(diagnosis.findings[0].probability, 0.95);
+  EXPECT_TRUE(diagnosis.leftovers.empty());
   EXPECT_EQ(diagnosis.findings[0].score.candidate.Name(), name);
   const Keys keys = KeysOf(diagnosis.findings[0].score);
   EXPECT_NEAR(keys.values[0], kWidth, 3.9 * keys.u[0]);

@@ -31,8 +31,8 @@ TEST(Coarseness, ScalesTheLengthsOfTheAxesOnly) {
   for (const Candidate& each : AllCandidates(scene, 20.0)) {
     if (each.cause->IsRandomField()) continue;  // as large as its shape says
     const std::string& id = each.cause->id;
-    const bool length = id == "backlash" || id == "leadscrew-cyclic" || id == "reversal-spike" ||
-                        id == "vibration" || id == "warm-up-drift";
+    const bool length = id == "backlash" || id == "varying-backlash" || id == "leadscrew-cyclic" ||
+                        id == "reversal-spike" || id == "vibration" || id == "warm-up-drift";
     const double factor = length && !each.object.name().starts_with("probe_") ? 20.0 : 1.0;
     EXPECT_EQ(each.Plausible(), factor * each.cause->plausible) << each.Name();
     lengths += factor > 1.0 ? 1 : 0;
