@@ -197,8 +197,10 @@ double Fit::FollowShapes() {
 // How many of the draws of a cause the data determine.
 double Fit::SeenOf(const Candidate& cause) const {
   const MatrixXd covariance = result_.Covariance(BlockOf(cause), BlockOf(cause));
-  const VectorXd known = 1.0 - (covariance.diagonal().array() / cause.Plausible().array().square());
-  return std::max(known.sum(), 1.0);
+  // What neither the data nor the priors determine has no variance.
+  const Eigen::ArrayXd known =
+      1.0 - covariance.diagonal().array() / cause.Plausible().array().square();
+  return std::max(known.isFinite().select(known, 0.0).sum(), 1.0);
 }
 
 void Fit::TakeRuns(const Problem& problem) {

@@ -248,12 +248,15 @@ Found Sharpened(const Fit& fit, Found found) {
   return found;
 }
 
-// Where it turns evenly, finer functions of time and tuned waves are the harmonics that causes make.
+// Where it turns evenly, tuned waves are the harmonics that causes make.
 bool IsAtShaft(const Found& found) { return found.structure.channel.instruments == kRim; }
 
-// A smooth function with as many terms as the data ask for.
+// A smooth function with as many terms as the data ask for. What a probe makes of its own gap has
+// no fine structure: along an axis the gap goes with the position, and many terms would do what two
+// swapped cables do.
 Found Finest(const Fit& fit, Found found) {
-  const Index most = IsAtShaft(found) ? 64 : 256;
+  constexpr Index kMostTerms = 64;
+  const Index most = IsGap(found.structure.variable) ? found.structure.terms : kMostTerms;
   for (Index terms = 2 * found.structure.terms; terms <= most; terms *= 2) {
     std::vector<Structure> finer(2, found.structure);
     for (Structure& each : finer) each.terms = terms;

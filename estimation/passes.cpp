@@ -58,6 +58,8 @@ class NormalEquations {
     return scale_.cwiseProduct(eigen_.eigenvectors() * step);
   }
 
+  // False where rounding leaves no step.
+  bool HasStep() const { return undamped_.allFinite(); }
   // Length of the undamped step in standard uncertainties.
   double Length() const { return std::sqrt(std::max(0.0, -gradient_.dot(undamped_))); }
 
@@ -177,8 +179,12 @@ Minimum FindMinimum(const Problem& problem, const Layout& layout, const SolveOpt
   std::string trouble;
   NormalEquations equations(now.at);
   // One pass at least: it solves a linear problem exactly, also where Ceres stopped early.
-  while (now.passes == 0 ||
+  while (now.passes == 0 || !equations.HasStep() ||
          equations.Length() > ConvergedLength(problem, now.at, options.settled)) {
+    if (!equations.HasStep()) {
+      RefuseUnconverged(problem, layout, now.at, now.passes,
+                        "the normal equations are singular to rounding");
+    }
     tolerable |= equations.Length() <= ConvergedLength(problem, now.at, options.tolerated);
     if (now.passes == options.max_iterations || damping > kMostDamping) {
       if (tolerable || equations.Length() < kNegligible) break;

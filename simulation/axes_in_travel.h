@@ -1,7 +1,8 @@
-// Recorded positions of the axes, held inside the travels.
+// Recorded positions of the axes, held inside the travels: where the errors of the machine are taken
+// from, not where the axes stand.
 //
-// A scale at the end of its travel shows some micrometres more or less; that far the end is meant.
-// The errors of a machine change by less than a nanometre over it. Units: m. Shapes: [x y z] in
+// A scale at the end of its travel shows some micrometres more or less; that far the errors of the
+// end are meant, which change by less than a nanometre over it. Units: m. Shapes: [x y z] in
 // columns. Failure: InputError with recording, row and axis for a position farther outside: nothing
 // is known of the machine there.
 #pragma once

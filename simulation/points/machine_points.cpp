@@ -49,11 +49,12 @@ PointsOnMachine::PointsOnMachine(machine::VolumetricModel model, const Vector3d&
       points_(std::move(points)),
       tool_(points_.tool - reference),
       nominal_(3, points_.count()) {
-  points_.axes = AxesInTravel(model_, points_.axes, points_.name, points_.rows);
   for (Index i = 0; i < points_.count(); ++i) {
     const Vector3d axes = points_.axes.col(i);
     nominal_.col(i) = machine::NominalToolInWork<double>(model_.chain(), axes, points_.tool);
   }
+  // The errors of the end of the travel, not its place.
+  points_.axes = AxesInTravel(model_, points_.axes, points_.name, points_.rows);
 }
 
 Matrix3Xd PointsOnMachine::Places(const Eigen::VectorXd& machine_parameters,

@@ -168,6 +168,28 @@ TEST_F(Response, OfLengthsIsThatOfItsParameters) {
   EXPECT_GE(weight, run.response->At(x)->Columns({second}).squaredNorm());
 }
 
+// A scale may show some micrometres beyond the end of its travel: a length is that of the places.
+TEST_F(Response, OfLengthsDoesNotHangOnTheEndOfTheTravel) {
+  const auto off_at = [&](double shift_mm) {
+    recording::Recording recording;
+    recording.name = "lengths";
+    recording.header = "kind = \"length\"\ntool_mm = [10.0, 20.0, -50.0]\n";
+    recording.columns = {{"x_mm", {shift_mm, 30.0 + shift_mm, 60.0 + shift_mm}},
+                         {"y_mm", {10.0, 10.0, 10.0}},
+                         {"z_mm", {20.0, 20.0, 20.0}},
+                         {"pass", {1.0, 1.0, 1.0}},
+                         {"length_mm", {0.0, 30.0, 60.0}},
+                         {"u_length_um", {0.1, 0.1, 0.1}}};
+    const SimulatedRun run = SimulateLengths(campaign.model, campaign.reference, recording);
+    VectorXd values(run.residual->Rows());
+    run.residual->Evaluate(VectorXd::Zero(StartOf(run).size()), values, nullptr);
+    return values;
+  };
+  for (const double shift_mm : {-0.003, 0.0, 0.003}) {
+    EXPECT_LT(off_at(shift_mm).cwiseAbs().maxCoeff(), 1e-6) << shift_mm;  // of 0.1 um
+  }
+}
+
 TEST_F(Response, OfAPlateIsThatOfItsParameters) {
   const auto recording = rig::RecordPlate(campaign.rig.world(), {.holes = 3});
   for (const PlateSetup& setup : ReadPlate(recording)) {
