@@ -238,6 +238,9 @@ Found Sharpened(const Fit& fit, Found found) {
       add({from - step, from});
       add({to, to + step});
     }
+    // On the way there and back the simulation sees differences: its mirror does nearly the same.
+    add({from - (to - from), from});
+    add({to, to + (to - from)});
     better = false;
     for (Found& other : Ask(fit, others)) {
       if (other.chi_square <= found.chi_square) continue;
