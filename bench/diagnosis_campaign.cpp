@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "diagnosis/diagnose.h"
+#include "estimation/linearization.h"
 #include "fusion/machine_problem.h"
 #include "machine/machine.h"
 #include "probes/head_settings.h"
