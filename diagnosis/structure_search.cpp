@@ -79,6 +79,8 @@ class SharedFunctions {
                   structure.variable,
                   structure.range.first,
                   structure.range.last,
+                  structure.second.first,
+                  structure.second.last,
                   structure.terms,
                   structure.from,
                   structure.is_rough};
@@ -88,7 +90,8 @@ class SharedFunctions {
   }
 
  private:
-  using Key = std::tuple<std::size_t, std::string, double, double, Index, Index, bool>;
+  using Key =
+      std::tuple<std::size_t, std::string, double, double, double, double, Index, Index, bool>;
 
   const Fit& fit_;
   std::map<Key, MatrixXd> known_;
@@ -114,7 +117,7 @@ std::vector<Found> Ask(const Fit& fit, const std::vector<Structure>& structures,
     Index first = 0;
     for (std::size_t s = 0; s < structures.size(); ++s) {
       const MatrixXd& own = shared.Of(run, structures[s]);
-      functions[run].middleRows(first, own.rows()) = own;
+      if (own.rows() > 0) functions[run].middleRows(first, own.rows()) = own;
       first += groups[s];
     }
   }
