@@ -29,7 +29,7 @@ struct MountingFile {
   std::map<char, AlignedAxis> aligned;
 };
 
-// Of a folder; nothing when it has none.
+// The set-up that `folder` states; none without the file.
 std::optional<MountingFile> ReadMounting(const std::filesystem::path& folder);
 void WriteMounting(const MountingFile& mounting, const std::filesystem::path& folder);
 

@@ -95,7 +95,7 @@ class Chords {
     return true;
   }
 
-  // Of the rows of runs, in units of their noise.
+  // Scatter of the rows of runs, in units of their noise.
   double ScatterAt(const FitSums& sums) const {
     double rows = 0.0;
     for (const estimation::Source& source : problem_.sources()) {

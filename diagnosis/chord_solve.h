@@ -18,7 +18,7 @@
 
 namespace abbe::diagnosis {
 
-// Of all rows at a minimum: those of runs, and of runs and priors together.
+// Normal equations at a minimum: `data` of the rows of runs alone, else with all priors.
 struct FitSums {
   Eigen::MatrixXd data_information, information;
   Eigen::VectorXd data_gradient, gradient;

@@ -83,7 +83,7 @@ class Fit {
   // What is left of a run, whitened.
   const Eigen::VectorXd& LeftOf(std::size_t run) const { return runs_[run].r; }
   std::size_t runs() const { return runs_.size(); }
-  // Of a cause with columns that was taken in, beside all others.
+  // For a cause with columns that was taken in, beside all others.
   Projection ProjectionOf(std::size_t taken_in) const;
   // For a cause that relaxes parameters.
   Projection ProjectParameters(const Candidate& candidate) const;

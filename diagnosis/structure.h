@@ -88,7 +88,7 @@ struct Structure {
   bool IsOfItself() const;
   // The number of those of which it was chosen as the strongest.
   double among() const;
-  // One row for each term, whatever the channel; no rows: the run does not have the variable.
+  // One row for each term, the same for all channels; no rows: the run lacks the variable.
   Eigen::MatrixXd FunctionsOf(const simulation::Trace& trace) const;
   std::vector<simulation::Disturbance> ColumnsOf(const simulation::Trace& trace) const;
 

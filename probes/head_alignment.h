@@ -94,7 +94,7 @@ class HeadAligner {
   // m of each screw for these turns.
   Eigen::VectorXd ScrewedBy(std::span<const ScrewTurn> turns) const;
 
-  // Of the last setting among `readings`; places with a NaN are left out.
+  // For the last setting among `readings`; places with a NaN are left out.
   HeadAlignment Evaluate(std::span<const GapsAt> readings) const;
 
  private:
