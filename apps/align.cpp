@@ -434,17 +434,11 @@ int Align(const AlignCommand& options) {
   const hal::SweepPlan& plan = file.SweepPlanOf(options.axis[0]);
   InterruptFlag();
   hal::SteadyClock clock(options.clock_speed);
-  bool opened = false;  // an earlier failure is thrown
-  const hal::OpenedDevices devices =
-      hal::OpenDevices(hal::WithoutEncoders(file.devices), clock, hal::Presence::kRequired,
-                       [&](const std::string& line) {
-                         if (opened) fmt::print(stderr, "abbe: {}\n", line);
-                       });
-  opened = true;
-  hal::PlausibleSource source(*devices.source, PlausibleChannels(file));
-  for (const std::string& warning : source.Require(kFirstReadings, clock, file.devices.rate)) {
-    fmt::print(stderr, "abbe: {}\n", warning);
-  }
+  const PlausibleDevices opened =
+      OpenPlausible(file, hal::WithoutEncoders(file.devices), kFirstReadings, clock);
+  const hal::OpenedDevices& devices = opened.devices;
+  hal::PlausibleSource& source = *opened.source;
+  for (const std::string& warning : opened.warnings) fmt::print(stderr, "abbe: {}\n", warning);
   std::filesystem::create_directories(options.out);
   const auto view =
       OpenLive(options.live, {.title = fmt::format("Setting up for the {} axis", options.axis),

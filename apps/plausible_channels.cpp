@@ -34,4 +34,20 @@ std::vector<hal::PlausibleChannel> PlausibleChannels(const MachineFile& file) {
   return channels;
 }
 
+PlausibleDevices OpenPlausible(const MachineFile& file, const hal::DevicesSettings& devices,
+                               int readings, hal::Clock& clock) {
+  const auto opened = std::make_shared<bool>(false);  // an earlier failure is thrown
+  PlausibleDevices plausible{hal::OpenDevices(devices, clock, hal::Presence::kRequired,
+                                              [opened](const std::string& line) {
+                                                if (*opened) fmt::print(stderr, "abbe: {}\n", line);
+                                              }),
+                             nullptr,
+                             {}};
+  *opened = true;
+  plausible.source =
+      std::make_unique<hal::PlausibleSource>(*plausible.devices.source, PlausibleChannels(file));
+  plausible.warnings = plausible.source->Require(readings, clock, file.devices.rate);
+  return plausible;
+}
+
 }  // namespace abbe::apps

@@ -72,14 +72,9 @@ void RequireForOptions(const RecordCommand& options, const hal::OpenedDevices& d
 hal::RecordOutcome RecordDevices(const RecordCommand& options, const MachineFile& file,
                                  LiveView* view) {
   hal::SteadyClock clock(options.clock_speed);
-  bool opened = false;  // an earlier failure is thrown
-  const hal::OpenedDevices devices =
-      hal::OpenDevices(file.devices, clock, hal::Presence::kRequired, [&](const std::string& line) {
-        if (opened) fmt::print(stderr, "abbe: {}\n", line);
-      });
-  opened = true;
-  hal::PlausibleSource source(*devices.source, PlausibleChannels(file));
-  source.Require(1, clock, file.devices.rate);
+  const PlausibleDevices opened = OpenPlausible(file, file.devices, 1, clock);
+  const hal::OpenedDevices& devices = opened.devices;
+  hal::PlausibleSource& source = *opened.source;
   const auto& channels = source.channels();
   RequireForOptions(options, devices);
   const auto columns = hal::RecordColumns(channels);

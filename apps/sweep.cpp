@@ -82,17 +82,11 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
                          LiveView* view) {
   hal::SteadyClock clock(options.clock_speed);
   const bool operator_asks = options.prompt;
-  bool opened = false;  // an earlier failure is thrown
-  const hal::OpenedDevices devices =
-      hal::OpenDevices(hal::WithoutEncoders(file.devices), clock, hal::Presence::kRequired,
-                       [&](const std::string& line) {
-                         if (opened) fmt::print(stderr, "abbe: {}\n", line);
-                       });
-  opened = true;
-  hal::PlausibleSource source(*devices.source, PlausibleChannels(file));
-  for (const std::string& warning : source.Require(kFirstReadings, clock, file.devices.rate)) {
-    fmt::print(stderr, "abbe: {}\n", warning);
-  }
+  const PlausibleDevices opened =
+      OpenPlausible(file, hal::WithoutEncoders(file.devices), kFirstReadings, clock);
+  const hal::OpenedDevices& devices = opened.devices;
+  hal::PlausibleSource& source = *opened.source;
+  for (const std::string& warning : opened.warnings) fmt::print(stderr, "abbe: {}\n", warning);
   // An alignment into the same folder says the set-up, unless another is named.
   const MountingFile aligned = ReadMounting(options.out).value_or(MountingFile{});
   const bool as_aligned = options.mounting.empty() || options.mounting == aligned.id;
