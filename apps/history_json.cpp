@@ -113,6 +113,7 @@ ordered_json TrendJson(const history::Trend& trend) {
                    {"rate_per_day", kDay * fit.rate},
                    {"U95_rate_per_day", kDay * fit.U95_rate},
                    {"excess_scatter", fit.excess},
+                   {"memory", fit.memory},
                    {"coverage", fit.coverage},
                    {"drifts", fit.drifts}};
     json["line"] = LineJson(trend);

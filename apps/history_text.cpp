@@ -186,6 +186,9 @@ std::string DriftText(const Trend& trend) {
   if (fit.excess > 0.0) {
     text += fmt::format("; beyond their uncertainty the campaigns scatter by {:.2g} {} rms",
                         fit.excess, unit);
+    if (fit.memory > 0.0) {
+      text += fmt::format(", correlated by {:.2g} from one to the next", fit.memory);
+    }
   }
   if (!trend.limit) return text;
   if (!trend.reached) {

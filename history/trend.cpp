@@ -115,12 +115,47 @@ double ExcessOf(const std::vector<TrendPoint>& points) {
   return high;
 }
 
+// Correlation of the scatter from one campaign to the next, in the order of time, corrected for the
+// line that was taken out; 0 for too few campaigns to estimate it.
+double MemoryOf(std::vector<TrendPoint> points, const Line& line, double excess) {
+  constexpr std::size_t kFewestForMemory = 8;
+  constexpr double kMostMemory = 0.95;
+  if (points.size() < kFewestForMemory) return 0.0;
+  std::ranges::sort(points, {}, [](const TrendPoint& each) { return each.point.measured; });
+  double products = 0.0, squares = 0.0, before = 0.0;
+  for (const TrendPoint& each : points) {
+    const double left =
+        (each.point.figure.value - line.value - line.rate * (each.point.measured - line.at)) /
+        std::sqrt(each.u_own * each.u_own + excess);
+    products += left * before;
+    squares += left * left;
+    before = left;
+  }
+  if (squares == 0.0) return 0.0;
+  const auto n = static_cast<double>(points.size());
+  return std::clamp((n * products / squares + 3.0) / (n - 4.0), 0.0, kMostMemory);
+}
+
+// By how much the variances of level and rate are larger than of as many scatters apart.
+double InflationOf(const std::vector<TrendPoint>& points, double excess, double memory) {
+  double share = 0.0;  // of the excess in the variance of the points
+  for (const TrendPoint& each : points) share += excess / (each.u_own * each.u_own + excess);
+  share /= static_cast<double>(points.size());
+  return 1.0 + share * ((1.0 + memory) / (1.0 - memory) - 1.0);
+}
+
 TrendFit Fit(const std::vector<TrendPoint>& points, double u_common) {
   const double excess = ExcessOf(points);
   // Without any uncertainty a perfect line leaves no scatter, and no weights.
   const bool exact = StatesNone(points) && excess == 0.0;
-  const Line line = FitLine(points, exact ? 1.0 : excess);
+  Line line = FitLine(points, exact ? 1.0 : excess);
   TrendFit fit;
+  if (excess > 0.0) {
+    fit.memory = MemoryOf(points, line, excess);
+    const double inflation = InflationOf(points, excess, fit.memory);
+    line.variance_value *= inflation;
+    line.variance_rate *= inflation;
+  }
   fit.at = line.at;
   fit.value = line.value;
   fit.rate = line.rate;

@@ -10,6 +10,10 @@
 // is 0 where they scatter less. t_0 is the weighted mean instant. Points without a stated
 // uncertainty take the median of the others; without any, the fit is ordinary least squares.
 //
+// A scatter that goes on from one campaign to the next (the room, the season) leaves fewer scatters
+// than points: its part of the variances grows by (1 + r) / (1 - r), r its correlation from one to
+// the next, corrected for the line by (n r + 3) / (n - 4), of 8 points and more.
+//
 // Coverage by Student's t with n - 2 degrees of freedom. The limit: where |a + b (t - t_0)| meets
 // it, by Fieller's theorem; without a significant rate only the earliest instant is given.
 //
@@ -17,7 +21,8 @@
 // second, values in that of the figure. Failure: none is thrown; `notes` say what is wrong with the
 // points. Source: R. C. Paule and J. Mandel, J. Res. NBS 87 (1982) 377-385, for the excess; G.
 // Knapp and J. Hartung, Stat. Med. 22 (2003) 2693-2710, for the coverage; E. C. Fieller, J. R.
-// Stat. Soc. B 16 (1954) 175-185. Validity: a steady drift. Wear and collisions do not keep to a
+// Stat. Soc. B 16 (1954) 175-185. Validity: a steady drift; a scatter whose memory is shorter than
+// the campaigns together (a random walk still looks like a drift in one of four). Wear and collisions do not keep to a
 // line; the excess scatter then grows.
 #pragma once
 
@@ -52,6 +57,7 @@ struct TrendFit {
   double rate = 0.0, U95_rate = 0.0;
   double u_value = 0.0, u_rate = 0.0, u_common = 0.0;
   double excess = 0.0;    // s
+  double memory = 0.0;    // correlation of the excess scatter from one campaign to the next
   double coverage = 0.0;  // of Student
   bool drifts = false;    // the rate is beyond its U95
 

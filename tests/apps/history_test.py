@@ -204,6 +204,13 @@ class Judged(HistoryCase):
 
         tau2 = optimize.brentq(lambda t: fit(t)[2] - 13, 0, 10, xtol=1e-15)
         beta, cov, _ = fit(tau2)
+        # A scatter that goes on from one campaign to the next.
+        weight = 1 / (u**2 + tau2)
+        left = (y - x @ beta) * weight**0.5
+        memory = numpy.clip((15 * (left[1:] @ left[:-1]) / (left @ left) + 3) / 11, 0, 0.95)
+        share = numpy.mean(tau2 * weight)
+        cov = cov * (1 + share * (2 * memory / (1 - memory)))
+        self.assertAlmostEqual(series["fit"]["memory"], memory, places=6)
         k = stats.t.ppf(0.975, 13)
         self.assertAlmostEqual(series["fit"]["excess_scatter"], tau2**0.5, places=7)
         self.assertAlmostEqual(series["fit"]["rate_per_day"], beta[1], places=9)
