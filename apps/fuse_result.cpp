@@ -74,6 +74,18 @@ std::string MachineFileNotes(const fusion::FuseReport& report) {
   return text;
 }
 
+std::string ReversalLines(const fusion::FuseReport& report) {
+  std::string text;
+  for (const auto& each : report.reversals) {
+    text += fmt::format(
+        "\nREVERSAL: {} is {:+.3g} +- {:.2g} {} different going forward from going backward; the map "
+        "is the mean of both\n",
+        each.name, each.value / settings::kMicro, 2.0 * each.u / settings::kMicro,
+        each.rotates ? "urad" : "um");
+  }
+  return text;
+}
+
 const char* WordsOf(fusion::Suspect suspect) {
   switch (suspect) {
     case fusion::Suspect::kMounting:
@@ -143,7 +155,7 @@ std::string RunsText(const fusion::FuseReport& report) {
   return ScaleText(report.scale) +
          fmt::format("Correlation length of the error functions: {:.1f} mm\n",
                      1e3 * report.chosen_smoothness) +
-         MachineFileNotes(report) + RunTable(report);
+         ReversalLines(report) + MachineFileNotes(report) + RunTable(report);
 }
 
 ordered_json FuseJson(const fusion::FuseReport& report) {
@@ -162,6 +174,13 @@ ordered_json FuseJson(const fusion::FuseReport& report) {
                                                    {"seen", line.seen / line.unit},
                                                    {"u_log", line.u_log},
                                                    {"refuted", line.Refuted()}};
+  }
+  json["reversals"] = ordered_json::array();
+  for (const auto& each : report.reversals) {
+    json["reversals"].push_back({{"error", each.name},
+                                 {"value", each.value / settings::kMicro},
+                                 {"u", each.u / settings::kMicro},
+                                 {"unit", each.rotates ? "urad" : "um"}});
   }
   for (const auto& function : report.functions) {
     json["observability"][function.name] = {

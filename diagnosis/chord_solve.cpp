@@ -7,6 +7,7 @@
 
 #include "diagnosis/extended_run.h"
 #include "diagnosis/remembering_run.h"
+#include "estimation/extended_residual.h"
 #include "estimation/weak_directions.h"
 #include "failure/failure.h"
 
@@ -28,14 +29,14 @@ VectorXd InputsOf(const estimation::Term& term, const VectorXd& x) {
 // A term of a run, taken apart: a run that knows its derivatives, and columns of causes.
 struct KnownTerm {
   const KnownRows* run = nullptr;  // null: it does not
-  const ExtendedRows* extended = nullptr;
+  const estimation::ExtendedResidual* extended = nullptr;
 
   Index causes() const { return extended == nullptr ? 0 : extended->columns().cols(); }
 };
 
 KnownTerm PartsOf(const estimation::Term& term) {
   KnownTerm known;
-  known.extended = dynamic_cast<const ExtendedRows*>(term.residual.get());
+  known.extended = dynamic_cast<const estimation::ExtendedResidual*>(term.residual.get());
   const auto* base = known.extended == nullptr ? term.residual.get() : known.extended->base().get();
   known.run = dynamic_cast<const KnownRows*>(base);
   if (term.standard_deviation.size() != 1 || term.standard_deviation[0] != 1.0) {

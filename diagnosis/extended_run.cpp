@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "estimation/extended_residual.h"
 #include "simulation/causes/registry.h"
 
 namespace abbe::diagnosis {
@@ -16,36 +17,6 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 using simulation::SimulatedRun;
-
-class ExtendedResidual : public ExtendedRows {
- public:
-  ExtendedResidual(std::shared_ptr<const estimation::Residual> base, VectorXd always,
-                   MatrixXd columns)
-      : base_(std::move(base)), always_(std::move(always)), columns_(std::move(columns)) {}
-
-  Index Rows() const override { return base_->Rows(); }
-  const std::shared_ptr<const estimation::Residual>& base() const override { return base_; }
-  const MatrixXd& columns() const override { return columns_; }
-
-  void Evaluate(const VectorXd& x, VectorXd& values,
-                estimation::RowMatrix* jacobian) const override {
-    const Index own = x.size() - columns_.cols();
-    if (jacobian == nullptr) {
-      base_->Evaluate(x.head(own), values, nullptr);
-    } else {
-      estimation::RowMatrix J(Rows(), own);
-      base_->Evaluate(x.head(own), values, &J);
-      jacobian->leftCols(own) = J;
-      jacobian->rightCols(columns_.cols()) = -columns_;
-    }
-    values -= always_ + columns_ * x.tail(columns_.cols());
-  }
-
- private:
-  std::shared_ptr<const estimation::Residual> base_;
-  VectorXd always_;
-  MatrixXd columns_;
-};
 
 void RelaxPriors(const Candidate& cause, std::vector<estimation::ParameterBlock>& blocks) {
   const std::vector<std::string> patterns = cause.cause->relaxes(cause.object);
@@ -245,7 +216,7 @@ simulation::SimulatedRun Extend(const PreparedRun& run, const LinearRun& at,
   }
   if (columns.cols() == 0 && always.isZero(0.0)) return extended;
   extended.residual =
-      std::make_shared<ExtendedResidual>(known, std::move(always), std::move(columns));
+      std::make_shared<estimation::ExtendedResidual>(known, std::move(always), std::move(columns));
   return extended;
 }
 

@@ -37,14 +37,7 @@ struct LinearRun {
 LinearRun LinearAt(const PreparedRun& run, const Eigen::VectorXd& x, const Eigen::VectorXd& left,
                    const std::vector<Candidate>& causes = {});
 
-// Its residual: base - always - columns * (the last of x).
-class ExtendedRows : public estimation::Residual {
- public:
-  virtual const std::shared_ptr<const estimation::Residual>& base() const = 0;
-  virtual const Eigen::MatrixXd& columns() const = 0;
-};
-
-// With one block more for each cause.
+// With one block more for each cause; its residual is an estimation::ExtendedResidual.
 simulation::SimulatedRun Extend(const PreparedRun& run, const LinearRun& at,
                                 const std::vector<Candidate>& causes);
 

@@ -9,6 +9,7 @@
 
 #include "estimation/linearization.h"
 #include "fusion/plate_form.h"
+#include "fusion/reversals.h"
 #include "fusion/target_form.h"
 #include "settings/unit.h"
 #include "simulation/linkage/linkage_problem.h"
@@ -71,6 +72,7 @@ class FuseJob {
         noise_(runs_.size(), 1.0) {
     const double apart = 0.5 * machine.population.smoothness;
     knots_ = {apart, apart, apart};
+    AllowReversals();
     if (options_.choose_smoothness) AllowForm();
   }
 
@@ -78,10 +80,11 @@ class FuseJob {
     Fitted now = Fit({}, options_.choose_smoothness);
     for (int fits = 1; fits < kFits; ++fits) {
       Change change = Change::kNone;
-      if (options_.choose_smoothness) change = Estimate(now);
+      if (JudgeReversals(machine_, now.fit, runs_)) change = Change::kNoise;
+      if (options_.choose_smoothness) change = std::max(change, Estimate(now));
       // Runs on new knots have nothing to be replaced by yet.
       const bool condensed = change != Change::kKnots && Condense(now.fit);
-      if (!options_.choose_smoothness && !condensed) break;
+      if (!options_.choose_smoothness && !condensed && change == Change::kNone) break;
       const bool last = change == Change::kNone || fits + 1 == kFits;
       now = Fit(now.fit.blocks, !last);
       if (last) break;
@@ -109,6 +112,10 @@ class FuseJob {
     return fitted;
   }
 
+  void AllowReversals() {
+    for (SimulatedRun& run : runs_) WithReversals(machine_, run);
+  }
+
   void AllowForm() {
     for (SimulatedRun& run : runs_) {
       WithForm(run);
@@ -130,7 +137,7 @@ class FuseJob {
     return any;
   }
 
-  // What of a fit has to be settled by another.
+  // What of a fit has to be settled by another, the least first.
   enum class Change { kNone, kNoise, kKnots };
 
   // Sizes, smoothness and noise from a fit.
@@ -205,6 +212,7 @@ class FuseJob {
     model_ = UnknownMachine(machine_, knots_);
     runs_ = options_.runs_on(model_);
     SetPlateForm(holes_, 1.0, runs_);
+    AllowReversals();
     AllowForm();
     return true;
   }
@@ -223,6 +231,7 @@ class FuseJob {
     report.chosen_smoothness = SmoothnessSeen();
     report.statements = std::move(statements_);
     report.noise = noise_;
+    report.reversals = ReversalsOf(now.fit);
     for (const SimulatedRun& run : runs_) report.kinds.push_back(run.kind);
     report.runs = CheckRuns(now.problem, now.at);
     report.contradicting = Contradicting(report.runs);
@@ -271,6 +280,7 @@ class FuseJob {
   }
 
   bool Belongs(const estimation::ParameterBlock& block, Suspect suspect) const {
+    if (IsReversal(block)) return false;  // the machine's
     for (const auto& of_machine : model_.Blocks()) {
       if (of_machine.name == block.name) return false;
     }

@@ -8,8 +8,8 @@
 //
 // One estimation, not an average of maps: the functions of the machine, the linkage and its base,
 // the head, its target and every offset of a run are free together, under the priors of the machine
-// file. How large and how smooth the errors are, and how noisy each run is, is estimated too
-// (population_estimate.h); where a function is rougher than the knots of its spline can follow,
+// file. How large and how smooth the errors are, how noisy each run is and by how much the two
+// directions of an axis differ is estimated too (population_estimate.h, reversals.h); where a function is rougher than the knots of its spline can follow,
 // the runs are simulated on finer ones.
 //
 // Frames: those of map/error_map.h. Shapes: lists in the order of the runs or of the 21 errors.
@@ -28,6 +28,7 @@
 #include "fusion/machine_problem.h"
 #include "fusion/map_doubt.h"
 #include "fusion/population_estimate.h"
+#include "fusion/reversals.h"
 #include "fusion/run_consistency.h"
 #include "fusion/seen_errors.h"
 #include "map/error_map.h"
@@ -55,6 +56,7 @@ struct FuseReport {
   ScaleSeen scale = {};
   std::vector<Statement> statements = {};  // of the machine file; empty where they are not judged
   std::vector<double> noise = {};          // of each run: its noise over the stated one
+  std::vector<Reversal> reversals = {};    // the map is the mean of both directions
   double chosen_smoothness = 0.0;          // m: of all functions together
   std::vector<std::string> kinds = {};     // of each run
   std::vector<RunConsistency> runs = {};

@@ -69,6 +69,9 @@ struct SimulatedRun {
   std::shared_ptr<const estimation::Residual> residual;
   estimation::RobustLoss loss = estimation::RobustLoss::None();
   std::shared_ptr<const Responsive> response = nullptr;  // `residual` itself, where it can tell
+  // Which way each axis last moved in each row: +1, -1, 0 where nobody knows; 3 x rows of the run.
+  // Empty: not known.
+  Eigen::Matrix3Xd heading = {};
   std::function<std::shared_ptr<const estimation::Residual>(const Eigen::VectorXd& x)> condense =
       {};
   // Whitened columns of the form of the target, as large as the machine file states

@@ -79,6 +79,14 @@ RowVectorXd HeadingOf(const RowVectorXd& position, double band) {
   return heading;
 }
 
+Eigen::Matrix3Xd HeadingsOf(const Eigen::Matrix3Xd& path) {
+  Eigen::Matrix3Xd headings(3, path.cols());
+  for (Index axis = 0; axis < 3; ++axis) {
+    headings.row(axis) = HeadingOf(path.row(axis), kAxisBand);
+  }
+  return headings;
+}
+
 RowVectorXd HeadingOfAxis(const Trace& trace, Index axis) {
   RowVectorXd heading = HeadingOf(trace.axes.row(axis), kAxisBand);
   for (Index row = 0; row < heading.size(); ++row) {

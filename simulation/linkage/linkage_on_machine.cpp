@@ -16,6 +16,7 @@
 #include "simulation/axes_in_travel.h"
 #include "simulation/linkage/gap_response.h"
 #include "simulation/linkage/linkage_cells.h"
+#include "simulation/trace_motion.h"
 
 namespace abbe::simulation {
 namespace {
@@ -252,6 +253,7 @@ SimulatedRun SimulateLinkage(const machine::VolumetricModel& model, const Vector
   const auto residual =
       std::make_shared<LinkageOnMachine>(model, -reference, linkage, fitted, seated);
   simulated.residual = simulated.response = residual;
+  if (all == fitted.poses()) simulated.heading = HeadingsOf(fitted.commanded);
   simulated.condense = [=, gathers = all > fitted.poses()](const VectorXd& x) {
     if (gathers) return Gather(model, -reference, linkage, parts, seated, x);
     auto recentred = std::make_shared<LinkageOnMachine>(*residual);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "failure/failure.h"
+#include "simulation/points/reference_trace.h"
 #include "simulation/stage_response.h"
 
 namespace abbe::simulation {
@@ -169,6 +170,7 @@ SimulatedRun SimulateLengths(const machine::VolumetricModel& model, const Vector
                                 {"ppm", 1e-6},
                                 {{.name = "scale", .prior_sd = u_scale}}});
   }
+  simulated.heading = TraceOf(recording, points).heading;
   const auto residual = std::make_shared<LengthResidual>(model, reference, std::move(points),
                                                          std::move(lengths), u_scale > 0.0);
   simulated.residual = simulated.response = residual;

@@ -11,6 +11,8 @@
 #include "simulation/points/machine_points.h"
 #include "simulation/points/reference_noise.h"
 #include "simulation/stage_response.h"
+#include "simulation/trace_columns.h"
+#include "simulation/trace_motion.h"
 
 namespace abbe::simulation {
 namespace {
@@ -145,6 +147,8 @@ SimulatedRun SimulateReference(const machine::VolumetricModel& model, const Vect
   for (auto& block : model.Blocks()) simulated.blocks.push_back(std::move(block));
   const auto residual = std::make_shared<ReferenceResidual>(model, reference, run);
   simulated.residual = simulated.response = residual;
+  simulated.heading = HeadingsOf(run.points.axes);
+  if (run.tested != ' ') simulated.heading.row(run.tested - 'X') = ApproachOf(run.direction);
   return simulated;
 }
 

@@ -14,6 +14,7 @@
 #include "simulation/axes_in_travel.h"
 #include "simulation/sweep/sweep_reading.h"
 #include "simulation/sweep/sweep_response.h"
+#include "simulation/trace_columns.h"
 
 namespace abbe::simulation {
 namespace {
@@ -334,6 +335,8 @@ SimulatedRun SimulateSweep(const machine::VolumetricModel& model, const Vector3d
   }
   const auto residual = std::make_shared<SweepResidual>(model, plan, instrument, within);
   simulated.residual = simulated.response = residual;
+  simulated.heading = Eigen::Matrix3Xd::Zero(3, run.rows());
+  simulated.heading.row(run.axis - 'X') = ApproachOf(run.direction);
   if (instrument.target.form > 0.0) {
     simulated.form = [=] { return residual->FormOfTarget(instrument); };
     simulated.form_stated = instrument.target.form;
