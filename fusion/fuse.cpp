@@ -81,7 +81,7 @@ class FuseJob {
     for (int fits = 1; fits < kFits; ++fits) {
       Change change = Change::kNone;
       if (JudgeReversals(machine_, now.fit, runs_)) change = Change::kNoise;
-      if (options_.choose_smoothness) change = std::max(change, Estimate(now));
+      if (options_.choose_smoothness) change = std::max(change, Estimate(now, fits + 1 < kFits));
       // Runs on new knots have nothing to be replaced by yet.
       const bool condensed = change != Change::kKnots && Condense(now.fit);
       if (!options_.choose_smoothness && !condensed && change == Change::kNone) break;
@@ -140,8 +140,8 @@ class FuseJob {
   // What of a fit has to be settled by another, the least first.
   enum class Change { kNone, kNoise, kKnots };
 
-  // Sizes, smoothness and noise from a fit.
-  Change Estimate(const Fitted& now) {
+  // Sizes, smoothness and noise from a fit. After knots have changed all of it is estimated anew.
+  Change Estimate(const Fitted& now, bool may_refine) {
     const estimation::Layout layout(now.problem);
     std::vector<estimation::ParameterBlock> forms;
     LinearRuns runs{.prior = now.at.prior,
@@ -179,7 +179,7 @@ class FuseJob {
     statements_ = std::move(seen.statements);
     if (SetHoles(now.fit)) noise = true;
     by_theta_ = std::move(seen.by_theta);
-    if (Refine()) return Change::kKnots;
+    if (may_refine && Refine()) return Change::kKnots;
     return noise ? Change::kNoise : Change::kNone;
   }
 
