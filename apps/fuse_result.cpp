@@ -126,8 +126,9 @@ std::string RunTable(const fusion::FuseReport& report) {
   if (report.contradicting >= 0) {
     const auto& run = report.runs[report.contradicting];
     text += fmt::format(
-        "\nCONTRADICTION: {} disagrees with all other runs (chi-square {:.1f} of {}); {}\n",
-        run.name, run.statistic, run.directions, WordsOf(report.suspect));
+        "\nCONTRADICTION: {} disagrees with all other runs (chi-square {:.1f} of {}); {} Until then "
+        "every U95 of the map is stated {:.1f} times as large.\n",
+        run.name, run.statistic, run.directions, WordsOf(report.suspect), report.widened);
   }
   return text;
 }
@@ -212,6 +213,7 @@ ordered_json FuseJson(const fusion::FuseReport& report) {
   json["contradictions"] = ordered_json::array();
   if (report.contradicting >= 0) {
     json["contradictions"].push_back(report.runs[report.contradicting].name);
+    json["widened"] = report.widened;
   }
   json["parameters"] = ParametersJson(report.fit);
   json["map"] = MapJson(report.map);

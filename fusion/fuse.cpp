@@ -53,6 +53,17 @@ map::Source SourceOf(const std::string& kind) {
   return static_cast<map::Source>(found - map::kSourceNames.begin());
 }
 
+// By how much the disagreement of a run exceeds what its uncertainty and that of the others allow.
+double BirgeRatio(const RunConsistency& run) {
+  return std::sqrt(std::max(1.0, run.statistic / static_cast<double>(run.directions)));
+}
+
+void Widen(double times, SeenErrors& seen) {
+  seen.covariance *= times * times;
+  for (FunctionSeen& function : seen.functions) function.u *= times;
+  seen.scale.u *= times;
+}
+
 // A problem with its solution and the information of every source there.
 struct Fitted {
   Problem problem;
@@ -223,6 +234,10 @@ class FuseJob {
     SeenErrors seen =
         SeeErrors(machine_, found, runs_,
                   ColumnsOf(estimation::Layout(now.problem), model_.Blocks()), now.at);
+    std::vector<RunConsistency> consistency = CheckRuns(now.problem, now.at);
+    const int contradicting = Contradicting(consistency);
+    const double widened = contradicting < 0 ? 1.0 : BirgeRatio(consistency[contradicting]);
+    Widen(widened, seen);
     if (by_theta_.size() > 0) seen.covariance += by_theta_ * by_theta_.transpose();
     AddDoubt(options_.doubt, found, -machine_.reference, seen.covariance);
     FuseReport report{.map = MapOf(found, seen)};
@@ -233,11 +248,10 @@ class FuseJob {
     report.noise = noise_;
     report.reversals = ReversalsOf(now.fit);
     for (const SimulatedRun& run : runs_) report.kinds.push_back(run.kind);
-    report.runs = CheckRuns(now.problem, now.at);
-    report.contradicting = Contradicting(report.runs);
-    if (report.contradicting >= 0) {
-      report.suspect = SuspectOf(report.contradicting, now.fit);
-    }
+    report.runs = std::move(consistency);
+    report.contradicting = contradicting;
+    report.widened = widened;
+    if (contradicting >= 0) report.suspect = SuspectOf(contradicting, now.fit);
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       report.follows.push_back(Follows(now, r));
     }

@@ -13,7 +13,8 @@
 // the runs are simulated on finer ones.
 //
 // Frames: those of map/error_map.h. Shapes: lists in the order of the runs or of the 21 errors.
-// Source: Rasmussen and Williams (2006), 5.4.1 for the marginal likelihood.
+// Source: Rasmussen and Williams (2006), 5.4.1 for the marginal likelihood; Birge, Phys. Rev. 40
+// (1932) for uncertainties under a contradiction.
 // Units: SI.
 // Failure: InputError for no run; NumericalError when the estimate does not converge.
 // Validity: to first order at the estimate; errors that do not change between the runs.
@@ -61,6 +62,7 @@ struct FuseReport {
   std::vector<std::string> kinds = {};     // of each run
   std::vector<RunConsistency> runs = {};
   int contradicting = -1;              // index into `runs`; -1: none
+  double widened = 1.0;                // all uncertainties for it, by its Birge ratio
   Suspect suspect = Suspect::kNone;    // of that contradiction
   std::vector<double> follows = {};    // of each run: correlation of its residuals from row to row
   std::vector<HeldOut> held_out = {};  // one for each run; empty when not asked for

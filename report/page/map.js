@@ -54,8 +54,18 @@ function mapWarnings(result) {
       const size = agreement ? ` (chi-square ${significant(agreement.statistic)} of ${
                                    agreement.directions}, p = ${probabilityText(agreement.p)})` :
                                '';
+      const widened = isNumber(result.widened) ?
+          ` Until then every U\u2089\u2085 here is ${fixed(result.widened, 1)} times as large.` :
+          '';
       return `CONTRADICTION: ${shortName(run)} disagrees with all other runs${size}. ` +
-          'Look at its set-up, or leave it out and fuse again.';
+          'Look at its set-up, or leave it out and fuse again; if that is right, diagnose all ' +
+          `recordings together.${widened}`;
+    }),
+    ...(result.reversals ?? []).map((each) => {
+      const {value, U} = rounded(each.value, 2 * each.u);
+      return `REVERSAL: ${each.error} is ${value} \u00b1 ${U}\u00a0${
+                 each.unit.replace('u', '\u00b5')} different going forward from going ` +
+          'backward; the map is the mean of both.';
     }),
     isScaleOpen(result) ?
         'SCALE: PRIOR ONLY. No calibrated length went into this map: all lengths may be wrong in ' +

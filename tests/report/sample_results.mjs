@@ -438,6 +438,8 @@ export function fuseResult() {
     ])),
     chi2: [run('a/sweep_X.csv', 'sweep', 1e-5), run('volume.csv', 'linkage', 0.4)],
     contradictions: ['a/sweep_X.csv'],
+    widened: 1.83,
+    reversals: [{error: 'EBX', value: -13.21, u: 0.06, unit: 'urad'}],
     parameters: [
       {
         name: 'EXX.c0', unit: 'um', value: 1, uncertainty: 0.1, nominal: 0, prior: 2,

@@ -10,6 +10,7 @@ import unittest
 
 import numpy as np
 
+import judge
 import run
 from effects import EFFECTS
 from instruments import Head, Linkage, Target
@@ -92,6 +93,44 @@ class DiagnosisOfStrangers(unittest.TestCase):
                 found = self.diagnosed(seed, effect)
                 self.assertNotEqual(found["verdict"], "refused", found)
                 self.assertEqual(found["wrong"], [], found)
+
+
+class MapsOfStrangers(unittest.TestCase):
+    def fused(self, seed, effect):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            world = World(seed, run.MACHINE, EFFECTS.get(effect))
+            files = [f for f in world.write_all(folder) if any(word in f.name for word in run.MAPPED)]
+            result, message, code, _ = run.abbe(PROGRAM, "fuse", *files, "--machine", run.MACHINE,
+                                                "-o", folder / "map.toml")
+            self.assertEqual(code, 0, message)
+            return result, world
+
+    def test_a_yaw_that_reverses_is_stated_and_the_map_is_the_mean_of_both_directions(self):
+        result, world = self.fused(91000, "angular_play")  # EBX jumps by 13.2 urad
+        self.assertEqual(result["contradictions"] + result["misfits"], [])
+        (found,) = result["reversals"]
+        self.assertEqual((found["error"], found["unit"]), ("EBX", "urad"))
+        self.assertLess(abs(found["value"] - 13.2), 0.05 + 3 * found["u"])
+        volume = judge.volume_error(result, world)
+        self.assertLess(volume["rms"], 2 * volume["u"])
+        self.assertGreater(judge.coverage(sum(judge.map_pulls(result, world.machine).values(), [])), 0.9)
+
+    def test_nothing_reverses_where_nothing_does(self):
+        self.assertEqual(self.fused(91000, "clean")[0]["reversals"], [])
+
+    def test_a_contradiction_widens_every_uncertainty(self):
+        result, world = self.fused(91043, "beyond_threshold")
+        self.assertEqual(len(result["contradictions"]), 1)
+        told = next(c["agreement"] for c in result["chi2"] if c["run"] == result["contradictions"][0])
+        self.assertAlmostEqual(result["widened"] ** 2, told["statistic"] / told["directions"], places=6)
+        volume = judge.volume_error(result, world)
+        self.assertLess(volume["rms"], 2 * volume["u"])
+
+    def test_a_sharp_bend_in_the_rotations_ends_with_a_map(self):
+        result, _ = self.fused(91006, "beyond_threshold")  # its knots change until the last fit
+        for error in result["map"]["errors"].values():
+            self.assertTrue(np.all(np.isfinite(error["u"])) and np.all(np.asarray(error["u"]) >= 0))
 
 
 if __name__ == "__main__":
