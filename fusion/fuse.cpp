@@ -97,7 +97,7 @@ class FuseJob {
       const bool condensed = change != Change::kKnots && Condense(now.fit);
       if (!options_.choose_smoothness && !condensed && change == Change::kNone) break;
       const bool last = change == Change::kNone || fits + 1 == kFits;
-      now = Fit(now.fit.blocks, !last);
+      now = Fit(now.fit.blocks, options_.choose_smoothness && !last);
       if (last) break;
     }
     return Report(std::move(now));
@@ -113,7 +113,9 @@ class FuseJob {
       });
       if (from == start.end()) continue;
       auto& entries = fitted.problem.Block(fitted.problem.Find(known.name)).entries;
-      for (std::size_t i = 0; i < entries.size(); ++i) entries[i].value = from->entries[i].value;
+      for (std::size_t i = 0; i < entries.size(); ++i) {
+        if (!entries[i].held) entries[i].value = from->entries[i].value;
+      }
     }
     fitted.fit =
         simulation::SolveLinkage(fitted.problem, options_.threads, false,
@@ -246,7 +248,7 @@ class FuseJob {
     report.chosen_smoothness = SmoothnessSeen();
     report.statements = std::move(statements_);
     report.noise = noise_;
-    report.reversals = ReversalsOf(now.fit);
+    report.reversals = ReversalsOf(now.fit, widened);
     for (const SimulatedRun& run : runs_) report.kinds.push_back(run.kind);
     report.runs = std::move(consistency);
     report.contradicting = contradicting;

@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 using estimation::ParameterBlock;
 using simulation::SimulatedRun;
 
-constexpr double kWide = 10.0;      // of the errors of the machine file
+constexpr double kAtFirst = 0.3;    // of the errors of the machine file
 constexpr double kLeastOdds = 7.0;  // logarithm: 1000 : 1
 constexpr double kBeyondChance = 3.5;
 constexpr int kFinest = -5, kLargest = 8;  // powers of two of the errors of the machine file
@@ -156,7 +156,7 @@ void WithReversals(const machine::Machine& machine, SimulatedRun& run) {
     const MatrixXd own = ColumnsOf(run, *response, axis);
     columns.conservativeResize(own.rows(), columns.cols() + own.cols());
     columns.rightCols(own.cols()) = own;
-    const VectorXd deviations = kWide * DeviationsOf(machine, axis);
+    const VectorXd deviations = kAtFirst * DeviationsOf(machine, axis);
     const auto names = BlocksOf(axis);
     for (int i = 0; i < 2; ++i) {
       ParameterBlock block(
@@ -204,14 +204,14 @@ bool JudgeReversals(const machine::Machine& machine, const estimation::Result& f
   return changed;
 }
 
-std::vector<Reversal> ReversalsOf(const estimation::Result& fit) {
+std::vector<Reversal> ReversalsOf(const estimation::Result& fit, double widened) {
   std::vector<Reversal> reversals;
   for (const ParameterBlock& block : fit.blocks) {
     if (!IsReversal(block)) continue;
     for (const auto& entry : block.entries) {
-      if (entry.held || !(std::abs(entry.value) > kBeyondChance * entry.uncertainty)) continue;
-      reversals.push_back(
-          {entry.name, entry.value, entry.uncertainty, block.name.starts_with("reversal_turn")});
+      const double u = widened * entry.uncertainty;
+      if (entry.held || !(std::abs(entry.value) > kBeyondChance * u)) continue;
+      reversals.push_back({entry.name, entry.value, u, block.name.starts_with("reversal_turn")});
     }
   }
   return reversals;

@@ -2,7 +2,7 @@
 //
 //   for (SimulatedRun& run : runs) WithReversals(machine, run);   // blocks "reversal X", ...
 //   JudgeReversals(machine, fit, runs);      // as large as the runs say, or held at nothing
-//   ReversalsOf(fit);                        // {"EBX", -13.2e-6, 0.1e-6, true}
+//   ReversalsOf(fit, 1.0);                   // {"EBX", -13.2e-6, 0.1e-6, true}
 //
 // The map is the mean of both directions (ISO 230-1: bidirectional mean): an axis that reverses by
 // r has half of it more going forward (+) and half less going backward. Each axis that moves both
@@ -25,7 +25,7 @@
 
 namespace abbe::fusion {
 
-// Free, ten times as large as the errors of the machine file.
+// As large as a third of the errors of the machine file, to be judged after a first fit.
 void WithReversals(const machine::Machine& machine, simulation::SimulatedRun& run);
 
 // Whether anything changed, so that the runs must be fitted again.
@@ -37,8 +37,8 @@ struct Reversal {
   double value, u;   // forward minus backward, m or rad; standard uncertainty
   bool rotates;
 };
-// Those beyond chance (0.05 % each).
-std::vector<Reversal> ReversalsOf(const estimation::Result& fit);
+// Those beyond chance (0.05 % each). `widened`: times, every uncertainty (fuse.h).
+std::vector<Reversal> ReversalsOf(const estimation::Result& fit, double widened);
 
 bool IsReversal(const estimation::ParameterBlock& block);
 
