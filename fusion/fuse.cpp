@@ -90,12 +90,12 @@ class FuseJob {
   FuseReport Run() {
     Fitted now = Fit({}, options_.choose_smoothness);
     for (int fits = 1; fits < kFits; ++fits) {
-      Change change = Change::kNone;
-      if (JudgeReversals(machine_, now.fit, runs_)) change = Change::kNoise;
+      const Judged reversals = JudgeReversals(machine_, now.fit, runs_);
+      Change change = reversals == Judged::kOtherSize ? Change::kNoise : Change::kNone;
       if (options_.choose_smoothness) change = std::max(change, Estimate(now, fits + 1 < kFits));
       // Runs on new knots have nothing to be replaced by yet.
       const bool condensed = change != Change::kKnots && Condense(now.fit);
-      if (!options_.choose_smoothness && !condensed && change == Change::kNone) break;
+      if (!options_.choose_smoothness && !condensed && reversals == Judged::kAsBefore) break;
       const bool last = change == Change::kNone || fits + 1 == kFits;
       now = Fit(now.fit.blocks, options_.choose_smoothness && !last);
       if (last) break;

@@ -125,21 +125,20 @@ double SizeOf(const Told& told) {
   return size;
 }
 
-// Whether it changed anything.
-bool Set(const VectorXd& deviations, ParameterBlock& block) {
-  bool changed = false;
+Judged Set(const VectorXd& deviations, ParameterBlock& block) {
+  Judged judged = Judged::kAsBefore;
   for (Index i = 0; i < block.size(); ++i) {
     auto& entry = block.entries[static_cast<std::size_t>(i)];
     if (deviations[i] > 0.0) {
-      changed = changed || entry.prior_sd != deviations[i];
+      if (entry.prior_sd != deviations[i]) judged = Judged::kOtherSize;
       entry.prior_sd = deviations[i];
     } else {
-      changed = changed || !entry.held;
+      if (!entry.held) judged = Judged::kNone;
       entry.held = true;
       entry.value = 0.0;
     }
   }
-  return changed;
+  return judged;
 }
 
 }  // namespace
@@ -183,9 +182,9 @@ void WithReversals(const machine::Machine& machine, SimulatedRun& run) {
   for (ParameterBlock& block : blocks) run.blocks.push_back(std::move(block));
 }
 
-bool JudgeReversals(const machine::Machine& machine, const estimation::Result& fit,
-                    std::vector<SimulatedRun>& runs) {
-  bool changed = false;
+Judged JudgeReversals(const machine::Machine& machine, const estimation::Result& fit,
+                      std::vector<SimulatedRun>& runs) {
+  Judged judged = Judged::kAsBefore;
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     const auto names = BlocksOf(axis);
     if (!IsIn(fit, names[0]) || fit.Block(names[0]).entries[0].held) continue;
@@ -195,13 +194,13 @@ bool JudgeReversals(const machine::Machine& machine, const estimation::Result& f
       for (ParameterBlock& block : run.blocks) {
         for (std::size_t i = 0; i < names.size(); ++i) {
           if (block.name != names[i]) continue;
-          const bool own = Set(found.segment(static_cast<Index>(i) * kShifts, kShifts), block);
-          changed = changed || own;
+          judged =
+              std::max(judged, Set(found.segment(static_cast<Index>(i) * kShifts, kShifts), block));
         }
       }
     }
   }
-  return changed;
+  return judged;
 }
 
 std::vector<Reversal> ReversalsOf(const estimation::Result& fit, double widened) {

@@ -28,9 +28,11 @@ namespace abbe::fusion {
 // As large as a third of the errors of the machine file, to be judged after a first fit.
 void WithReversals(const machine::Machine& machine, simulation::SimulatedRun& run);
 
-// Whether anything changed, so that the runs must be fitted again.
-bool JudgeReversals(const machine::Machine& machine, const estimation::Result& fit,
-                    std::vector<simulation::SimulatedRun>& runs);
+// What became of those of the fit, the least change first; kNone: they were hardly there, and are
+// held at nothing.
+enum class Judged { kAsBefore, kNone, kOtherSize };
+Judged JudgeReversals(const machine::Machine& machine, const estimation::Result& fit,
+                      std::vector<simulation::SimulatedRun>& runs);
 
 struct Reversal {
   std::string name;  // "EBX"
