@@ -9,6 +9,7 @@
 
 #include "apps/map_json.h"
 #include "apps/parameters_json.h"
+#include "apps/rounded.h"
 #include "fusion/plate_form.h"
 #include "settings/unit.h"
 
@@ -78,9 +79,8 @@ std::string ReversalLines(const fusion::FuseReport& report) {
   std::string text;
   for (const auto& each : report.reversals) {
     text += fmt::format(
-        "\nREVERSAL: {} is {:+.3g} +- {:.2g} {} different going forward from going backward; the map "
-        "is the mean of both\n",
-        each.name, each.value / settings::kMicro, 2.0 * each.u / settings::kMicro,
+        "\nREVERSAL: {} forward minus backward {} {} (95 %); the map is the mean of both directions\n",
+        each.name, PlusMinus(each.value / settings::kMicro, 2.0 * each.u / settings::kMicro),
         each.rotates ? "urad" : "um");
   }
   return text;

@@ -63,9 +63,8 @@ function mapWarnings(result) {
     }),
     ...(result.reversals ?? []).map((each) => {
       const {value, U} = rounded(each.value, 2 * each.u);
-      return `REVERSAL: ${each.error} is ${value} \u00b1 ${U}\u00a0${
-                 each.unit.replace('u', '\u00b5')} different going forward from going ` +
-          'backward; the map is the mean of both.';
+      return `REVERSAL: ${each.error} forward minus backward ${value} \u00b1 ${U}\u00a0${
+          each.unit.replace('u', '\u00b5')}; the map is the mean of both directions.`;
     }),
     isScaleOpen(result) ?
         'SCALE: PRIOR ONLY. No calibrated length went into this map: all lengths may be wrong in ' +
