@@ -15,6 +15,7 @@
 #include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/commands.h"
+#include "apps/conditions.h"
 #include "apps/fuse_result.h"
 #include "apps/instruments.h"
 #include "apps/machine_recording.h"
@@ -147,9 +148,15 @@ int Fuse(const FuseArguments& arguments) {
   const auto corrected = [&](const RunSource& source) {
     return causes.Active() ? simulation::SourceOf(causes.Take(source.whole())) : source;
   };
-  const fusion::FuseReport report = FuseSources(
-      sources, corrected, instruments,
-      {.choose_smoothness = choose, .holdout = arguments.holdout, .doubt = DoubtOf(causes, other)});
+  const track::Conditions conditions = MeanConditions(sources);
+  fusion::FuseOptions options{.choose_smoothness = choose,
+                              .holdout = arguments.holdout,
+                              .doubt = DoubtOf(causes, other),
+                              .measured = conditions.time};
+  for (const auto& [sensor, mean] : conditions.temperature) {
+    options.sensors.push_back({sensor, 0.0, mean, mean});
+  }
+  const fusion::FuseReport report = FuseSources(sources, corrected, instruments, options);
   map::WriteMap(report.map, arguments.out);
   auto json = FuseJson(report);
   for (const RunSource& source : sources) AddProtocol(source.head, json);
