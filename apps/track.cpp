@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSecondsOfDay = 86400.0;
+constexpr double kDayOfTracking = 86400.0;
 constexpr double kUsualWalk = 0.05;  // of [population], after a day, before anything is learned
 
 struct TrackArguments {
@@ -63,7 +63,8 @@ std::map<std::string, double> TemperaturesOf(const std::string& option,
       read = 0;
     }
     if (equals == 0 || equals == std::string::npos || read != each.size() - equals - 1) {
-      throw InputError(fmt::format("{} {}: must be NAME=DEGREES, such as table=24.1", option, each));
+      throw InputError(
+          fmt::format("{} {}: must be NAME=DEGREES, such as table=24.1", option, each));
     }
     temperatures[each.substr(0, equals)] = value;
   }
@@ -98,8 +99,8 @@ class Tracking {
     TrackReport report;
     if (arguments_.learn) tracked = Learned(tracked, tests, report);
     for (const Test& test : tests) Take(test, tracked, report);
-    const double now = arguments_.time.empty() ? LastOrNow(tracked, tests)
-                                               : InstantOf("--time", arguments_.time);
+    const double now =
+        arguments_.time.empty() ? LastOrNow(tracked, tests) : InstantOf("--time", arguments_.time);
     tracked.Follow({now, given_});
     report.watched = track::Watch(tracked, limits_);
     if (!arguments_.next.empty()) report.choice = NextOf(tracked, report);
@@ -160,7 +161,8 @@ class Tracking {
           test.recording.name, recording::InstantText(test.began),
           recording::InstantText(tracked.time())));
     }
-    for (const auto& each : ConditionsIn(test.recording, tracked.sensors(), given_)) tracked.Follow(each);
+    for (const auto& each : ConditionsIn(test.recording, tracked.sensors(), given_))
+      tracked.Follow(each);
     TestReport one{.name = test.recording.name,
                    .kind = std::string(simulation::KindOf(test.recording).name()),
                    .began = test.began,
@@ -196,8 +198,8 @@ class Tracking {
       lags.push_back(stated == drift_.sensors.end() || !stated->lag);
     }
     const track::Learned learned = track::Learn(start, history, lags);
-    report.learned = LearnedReport{learned.factor, learned.gain, learned.map.walk(),
-                                   learned.map.sensors()};
+    report.learned =
+        LearnedReport{learned.factor, learned.gain, learned.map.walk(), learned.map.sensors()};
     return learned.map;
   }
 
@@ -229,7 +231,7 @@ class Tracking {
                             tracked.Test(RunsOf(test.recording)).test});
     }
     return track::NextTest(tracked, std::move(candidates), limits_,
-                           arguments_.days * kSecondsOfDay);
+                           arguments_.days * kDayOfTracking);
   }
 
   const TrackArguments& arguments_;
@@ -255,8 +257,7 @@ void AddTrack(CLI::App& program, int& exit_code) {
   command->add_option("--time", arguments->time, "When: 2026-11-28T09:00:00Z (now)");
   command->add_option("--temperature", arguments->temperatures,
                       "NAME=DEGREES of a sensor then (as it was last)");
-  command
-      ->add_option("--at", arguments->at_mm, "x,y,z in mm: the error there with its U95")
+  command->add_option("--at", arguments->at_mm, "x,y,z in mm: the error there with its U95")
       ->delimiter(',')
       ->expected(3);
   command->add_option("--next", arguments->next,
@@ -268,7 +269,8 @@ void AddTrack(CLI::App& program, int& exit_code) {
   command->add_option("--then", arguments->then, "NAME=DEGREES of a sensor at that time");
   command->add_option("--json", arguments->json, "File for the result as data");
   command->add_flag("--quiet", arguments->quiet, "No tables");
-  command->footer("Example: abbe track mill.map.toml sweep_X.csv --machine mill.toml -o today.toml");
+  command->footer(
+      "Example: abbe track mill.map.toml sweep_X.csv --machine mill.toml -o today.toml");
   command->callback([arguments, &exit_code] { exit_code = Tracking(*arguments).Run(); });
 }
 

@@ -21,11 +21,9 @@ using settings::kMicro;
 using standards::kCoverage;
 
 constexpr int kStations = 61;
-constexpr double kDay = 86400.0;
+constexpr double kDayOfResult = 86400.0;
 
-bool IsLength(int error) {
-  return error < map::kErrors - 3 && error % machine::kMotions < 3;
-}
+bool IsLength(int error) { return error < map::kErrors - 3 && error % machine::kMotions < 3; }
 
 // Largest amount over the travel, and largest U95, um or urad.
 struct Extent {
@@ -44,9 +42,8 @@ Extent ExtentOf(const map::ErrorMap& map, int error) {
 
 std::string TestsText(const std::vector<TestReport>& tests) {
   if (tests.empty()) return {};
-  std::string text =
-      fmt::format("{:<24}{:<11}{:<22}{:>6}{:>8}{:>10}{:>16}\n", "test", "kind", "began", "min",
-                  "noise", "p", "U95 um");
+  std::string text = fmt::format("{:<24}{:<11}{:<22}{:>6}{:>8}{:>10}{:>16}\n", "test", "kind",
+                                 "began", "min", "noise", "p", "U95 um");
   for (const TestReport& each : tests) {
     text += fmt::format("{:<24}{:<11}{:<22}{:>6.1f}", each.name, each.kind,
                         recording::InstantText(each.began), each.minutes);
@@ -58,8 +55,9 @@ std::string TestsText(const std::vector<TestReport>& tests) {
     }
     text += '\n';
   }
-  return text + "noise: over the stated one; p: of the agreement with the map before it;\n"
-                "U95: the largest over the volume, before and after it\n\n";
+  return text +
+         "noise: over the stated one; p: of the agreement with the map before it;\n"
+         "U95: the largest over the volume, before and after it\n\n";
 }
 
 std::string LearnedText(const LearnedReport& learned) {
@@ -97,7 +95,7 @@ std::string WatchedText(const std::vector<track::Watched>& watched, double now) 
         : *each.exceeded <= now
             ? "now"
             : fmt::format("{} ({:.1f} days)", recording::InstantText(*each.exceeded),
-                          (*each.exceeded - now) / kDay);
+                          (*each.exceeded - now) / kDayOfResult);
     text += fmt::format("{:<28}{:>10.4g}{:>10.3g}  {}\n", each.name, each.limit, each.U95, when);
   }
   return text;
@@ -115,10 +113,10 @@ std::string ChoiceText(const track::Choice& choice, double days) {
     return fmt::format("\nnext: {}, {:.1f} min, keeps every U95 below its limit for {:g} days\n",
                        tests, choice.minutes, days);
   }
-  const auto worst = std::max_element(
-      choice.after.begin(), choice.after.end(), [](const auto& one, const auto& other) {
-        return one.U95 / one.limit < other.U95 / other.limit;
-      });
+  const auto worst = std::max_element(choice.after.begin(), choice.after.end(),
+                                      [](const auto& one, const auto& other) {
+                                        return one.U95 / one.limit < other.U95 / other.limit;
+                                      });
   return fmt::format(
       "\nnone of these tests keeps every limit for {:g} days; best are {}, {:.1f} min, with {} at "
       "{:.3g} of {:.4g}\n",
@@ -152,8 +150,8 @@ double LargestU95(const map::ErrorMap& map) {
       const double share = corner == 8 ? 0.5 : static_cast<double>((corner >> axis) & 1);
       place[axis] = travels[axis].first + share * (travels[axis].last - travels[axis].first);
     }
-    largest = std::max(largest,
-                       kCoverage * map.StandardUncertainty(place, map.origin().tool).maxCoeff());
+    largest =
+        std::max(largest, kCoverage * map.StandardUncertainty(place, map.origin().tool).maxCoeff());
   }
   return largest;
 }
@@ -198,9 +196,10 @@ ordered_json TrackJson(const map::ErrorMap& map, const TrackReport& report) {
   if (report.at) {
     const Vector3d error = map.Error(*report.at, map.origin().tool);
     const Vector3d u = map.StandardUncertainty(*report.at, map.origin().tool);
-    json["at"] = {{"position_mm", {1e3 * report.at->x(), 1e3 * report.at->y(), 1e3 * report.at->z()}},
-                  {"error_um", {1e6 * error.x(), 1e6 * error.y(), 1e6 * error.z()}},
-                  {"U95_um", {2e6 * u.x(), 2e6 * u.y(), 2e6 * u.z()}}};
+    json["at"] = {
+        {"position_mm", {1e3 * report.at->x(), 1e3 * report.at->y(), 1e3 * report.at->z()}},
+        {"error_um", {1e6 * error.x(), 1e6 * error.y(), 1e6 * error.z()}},
+        {"U95_um", {2e6 * u.x(), 2e6 * u.y(), 2e6 * u.z()}}};
   }
   json["map"] = MapJson(map);
   return json;
@@ -211,8 +210,8 @@ std::string TrackText(const map::ErrorMap& map, const TrackReport& report) {
   std::string text;
   if (report.learned) text += LearnedText(*report.learned);
   text += TestsText(report.tests);
-  text += fmt::format("the map of {} at {}", map.origin().machine,
-                      recording::InstantText(state.time));
+  text +=
+      fmt::format("the map of {} at {}", map.origin().machine, recording::InstantText(state.time));
   for (const map::Warmth& each : state.sensors) {
     text += fmt::format(", {} {:.2f} degC", each.sensor, each.temperature);
   }
@@ -223,7 +222,8 @@ std::string TrackText(const map::ErrorMap& map, const TrackReport& report) {
     text += fmt::format("error at X {:g} Y {:g} Z {:g} mm:", 1e3 * report.at->x(),
                         1e3 * report.at->y(), 1e3 * report.at->z());
     for (int k = 0; k < 3; ++k) {
-      text += fmt::format(" {:c} {} um", 'X' + k, PlusMinus(1e6 * error[k], kCoverage * 1e6 * u[k]));
+      text +=
+          fmt::format(" {:c} {} um", 'X' + k, PlusMinus(1e6 * error[k], kCoverage * 1e6 * u[k]));
     }
     text += "\n";
   } else {

@@ -23,9 +23,9 @@ std::uint64_t SeedOfStep(std::uint64_t seed, std::uint64_t step) {
 }
 
 ErrorPopulation Times(ErrorPopulation population, double factor) {
-  for (double* size : {&population.positioning, &population.straightness, &population.roll,
-                       &population.pitch, &population.yaw, &population.squareness,
-                       &population.scale}) {
+  for (double* size :
+       {&population.positioning, &population.straightness, &population.roll, &population.pitch,
+        &population.yaw, &population.squareness, &population.scale}) {
     *size *= factor;
   }
   return population;
@@ -41,7 +41,8 @@ Ageing::Ageing(const RigSettings& settings, std::uint64_t seed) : settings_(sett
 
 void Ageing::RefuseOutside(double day) {
   if (day >= 0.0 && day <= kLastDay) return;
-  throw InputError(fmt::format("the rig ages from day 0 to day {:.0f}, not to {:g}", kLastDay, day));
+  throw InputError(
+      fmt::format("the rig ages from day 0 to day {:.0f}, not to {:g}", kLastDay, day));
 }
 
 void Ageing::ReachHour(std::size_t hour) const {
@@ -50,10 +51,8 @@ void Ageing::ReachHour(std::size_t hour) const {
   const double keep = 1.0 - kForgets;
   while (room_.size() <= hour) {
     const std::size_t next = room_.size();
-    wander_ = keep * wander_ +
-              ageing.wander * std::sqrt(1.0 - keep * keep) * random.Normal(next);
-    const double angle =
-        1.0 + 2.0 * std::numbers::pi * static_cast<double>(next) / kHoursOfDay;
+    wander_ = keep * wander_ + ageing.wander * std::sqrt(1.0 - keep * keep) * random.Normal(next);
+    const double angle = 1.0 + 2.0 * std::numbers::pi * static_cast<double>(next) / kHoursOfDay;
     const double before = room_.back();
     room_.push_back(settings_.temperature + ageing.swing * std::sin(angle) + wander_);
     // The exact response to a straight line over the hour.
@@ -97,7 +96,8 @@ World Ageing::WorldAt(double day, const HiddenEffects& hidden, const Mounting& m
     const double share = std::min(1.0, steps - static_cast<double>(step));
     world.Wander(walking, SeedOfStep(seed_, step), share);
   }
-  const double warmer = LaggedAt(day) - settings_.temperature - settings_.ageing.swing * std::sin(1.0);
+  const double warmer =
+      LaggedAt(day) - settings_.temperature - settings_.ageing.swing * std::sin(1.0);
   world.Warm(settings_.ageing.by_kelvin, warmer);
   return world;
 }

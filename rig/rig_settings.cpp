@@ -186,8 +186,8 @@ ErrorPopulation ReadSizes(const Table& table) {
   const auto size = [&](const char* key) {
     return table.Quantity(key, {.fallback = 0.0, .at_least = 0.0});
   };
-  return {size("positioning_um"),  size("straightness_um"), size("roll_urad"), size("pitch_urad"),
-          size("yaw_urad"),        size("squareness_urad"), size("scale_ppm"), 0.0};
+  return {size("positioning_um"), size("straightness_um"), size("roll_urad"), size("pitch_urad"),
+          size("yaw_urad"),       size("squareness_urad"), size("scale_ppm"), 0.0};
 }
 
 AgeingSettings ReadAgeing(const Table& table) {

@@ -41,8 +41,8 @@ struct ErrorPopulation {
 
 // How the machine changes over days: ageing.h. Without the table it does not.
 struct AgeingSettings {
-  ErrorPopulation walk;                        // after a day
-  ErrorPopulation by_kelvin;                   // scale: growth; the others over the travel
+  ErrorPopulation walk;                         // after a day
+  ErrorPopulation by_kelvin;                    // scale: growth; the others over the travel
   double lag = 0.0, swing = 0.0, wander = 0.0;  // s, K, K
 };
 

@@ -53,9 +53,9 @@ MatrixXd WalkRoot(const machine::Machine& machine, const machine::VolumetricMode
       const auto& form = model.Function(axis, motion).form();
       if (form == nullptr || (form->Name() == "b-spline" && form->Shape().at("degree")[0] == 5.0))
         continue;
-      throw InputError(fmt::format(
-          "{} of the map is no spline of abbe fuse; only a fused map can be kept true",
-          machine::MotionName(axis, motion)));
+      throw InputError(
+          fmt::format("{} of the map is no spline of abbe fuse; only a fused map can be kept true",
+                      machine::MotionName(axis, motion)));
     }
   }
   const fusion::MachinePrior prior(walking, model, fusion::PopulationOf(walking));

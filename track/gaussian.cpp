@@ -81,8 +81,7 @@ Agreement AgreementOf(const LinearTest& test, const Gaussian& state) {
   }
   if (agreement.directions > 0) {
     const boost::math::chi_squared chi(agreement.directions);
-    agreement.probability =
-        boost::math::cdf(boost::math::complement(chi, agreement.statistic));
+    agreement.probability = boost::math::cdf(boost::math::complement(chi, agreement.statistic));
   }
   return agreement;
 }

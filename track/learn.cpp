@@ -78,9 +78,9 @@ class Learning {
 Learned Learn(const TrackedMap& start, const std::vector<HistoryStep>& history,
               const std::vector<bool>& lags) {
   if (history.size() < kFewest) {
-    throw InputError(fmt::format(
-        "{} short tests tell no walk: --learn takes at least {}, on different days", history.size(),
-        kFewest));
+    throw InputError(
+        fmt::format("{} short tests tell no walk: --learn takes at least {}, on different days",
+                    history.size(), kFewest));
   }
   const Learning learning(start, history, lags);
   const auto count = 1 + std::count(lags.begin(), lags.end(), true);
@@ -91,9 +91,8 @@ Learned Learn(const TrackedMap& start, const std::vector<HistoryStep>& history,
   first[0] = 0.0;
   low[0] = std::log(kLeastFactor);
   high[0] = std::log(kLargestFactor);
-  const VectorXd theta =
-      Maximum([&](const VectorXd& at) { return learning.LogLikelihood(at); }, first, low, high,
-              count > 1 ? kRounds : 1);
+  const VectorXd theta = Maximum([&](const VectorXd& at) { return learning.LogLikelihood(at); },
+                                 first, low, high, count > 1 ? kRounds : 1);
   Learned learned{.factor = std::exp(theta[0]),
                   .lags = {},
                   .gain = learning.LogLikelihood(theta) - learning.LogLikelihood(first),

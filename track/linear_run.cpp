@@ -49,9 +49,8 @@ class Fit {
     for (const SimulatedRun& run : runs) {
       std::vector<estimation::Input> inputs;
       for (const ParameterBlock& block : run.blocks) inputs.emplace_back(known.at(block.name));
-      const auto source =
-          problem_.AddSource(fmt::format("{} ({})", run.name, problem_.sources().size() + 1),
-                             {.loss = run.loss});
+      const auto source = problem_.AddSource(
+          fmt::format("{} ({})", run.name, problem_.sources().size() + 1), {.loss = run.loss});
       problem_.Add(source, run.residual, inputs, 1.0);
     }
     AddState(state);
@@ -69,8 +68,8 @@ class Fit {
 
   LinearRun Linear(std::size_t runs) const {
     const estimation::Layout layout(problem_);
-    const auto at = estimation::Linearize(
-        problem_, layout, fusion::ValuesFound(fit_, fit_.blocks), 0);
+    const auto at =
+        estimation::Linearize(problem_, layout, fusion::ValuesFound(fit_, fit_.blocks), 0);
     if (!at.trouble.empty()) throw NumericalError(at.trouble);
     LinearRun linear;
     fusion::Score all{at.prior.information, at.prior.gradient};
@@ -141,9 +140,8 @@ class Fit {
     const Eigen::LLT<MatrixXd> factor(P);
     const MatrixXd W = factor.matrixL().solve(MatrixXd(inverse.asDiagonal()));
     const auto source = problem_.AddSource(kStateSource, {.is_prior = true});
-    problem_.Add(source,
-                 std::make_shared<estimation::LinearResidual>(W, W * state.mean(entries)), inputs,
-                 1.0);
+    problem_.Add(source, std::make_shared<estimation::LinearResidual>(W, W * state.mean(entries)),
+                 inputs, 1.0);
   }
 
   static double NoiseOf(const estimation::SourceResult& source) {

@@ -21,15 +21,15 @@ using Eigen::VectorXd;
 constexpr Index kFewestRows = 12;
 constexpr double kGross = 50.0;  // times the usual change
 constexpr double kHour = 3600.0;
-constexpr double kShortestLag = 1.0;      // s
-constexpr double kLeastSize = 1e-3;       // of walk and noise, of the usual change
-constexpr int kRounds = 3;
+constexpr double kLeastLag = 1.0;    // s
+constexpr double kLeastSize = 1e-3;  // of walk and noise, of the usual change
+constexpr int kSeriesRounds = 3;
 
 // Of the changes from row to row: the median, but not less than the least one that is not 0.
 double UsualChange(const VectorXd& value) {
   VectorXd change = (value.tail(value.size() - 1) - value.head(value.size() - 1)).cwiseAbs();
   std::sort(change.begin(), change.end());
-  const auto* const first = std::upper_bound(change.begin(), change.end(), 0.0);
+  const auto first = std::upper_bound(change.begin(), change.end(), 0.0);
   const double least = first == change.end() ? 1.0 : *first;
   return std::max(change[change.size() / 2], least);
 }
@@ -80,7 +80,7 @@ class SeriesFilter {
   }
   VectorXd Low() const {
     VectorXd theta(sensors() + 2);
-    theta.head(sensors()).setConstant(std::log(kShortestLag));
+    theta.head(sensors()).setConstant(std::log(kLeastLag));
     theta.tail<2>().setConstant(std::log(kLeastSize * usual_));
     return theta;
   }
@@ -153,16 +153,16 @@ class SeriesFilter {
           move(0, 1 + s) = lagged[s] - before;
         }
         state.mean = move * state.mean;
-        state.root = RootOfSum(
-            move * state.root, VectorXd::Unit(n, 0) * walk * std::sqrt(seconds / kHour));
+        state.root =
+            RootOfSum(move * state.root, VectorXd::Unit(n, 0) * walk * std::sqrt(seconds / kHour));
       }
       Step step;
       if (steps != nullptr) step = {move, state.Covariance(), {}, state.mean, {}};
       if (held_out_.empty() || !held_out_[row]) {
         const double weight = 1.0 / (noise * noise);
         const double off = series_.value[row] - series_.value[0];
-        log += Measure(
-            {{0}, MatrixXd::Constant(1, 1, weight), VectorXd::Constant(1, weight * off)}, state);
+        log += Measure({{0}, MatrixXd::Constant(1, 1, weight), VectorXd::Constant(1, weight * off)},
+                       state);
         // What Measure leaves out.
         log -= 0.5 * weight * off * off + std::log(noise);
       }
@@ -184,9 +184,8 @@ class SeriesFilter {
 SeriesResponse LearnResponse(const Series& series, const std::vector<bool>& held_out) {
   RefuseBad(series);
   const SeriesFilter filter(series, held_out);
-  const VectorXd theta =
-      Maximum([&](const VectorXd& at) { return filter.LogLikelihood(at); }, filter.Start(),
-              filter.Low(), filter.High(), kRounds);
+  const VectorXd theta = Maximum([&](const VectorXd& at) { return filter.LogLikelihood(at); },
+                                 filter.Start(), filter.Low(), filter.High(), kSeriesRounds);
   return filter.Smooth(theta);
 }
 

@@ -20,7 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kDay = 86400.0;
+constexpr double kSecondsOfDay = 86400.0;
 constexpr double kClockSlack = 1.0;  // s: instants in files are whole seconds
 
 // No response without one of its own is stated for a sensor that only the map names.
@@ -134,10 +134,10 @@ void TrackedMap::Follow(const Conditions& conditions) {
     if (known == sensors_.end()) {
       std::vector<std::string> all;
       for (const map::Warmth& each : sensors_) all.push_back(each.sensor);
-      throw InputError(fmt::format(
-          "the map knows no temperature \"{}\"; it follows {}", name,
-          all.empty() ? "none: state [drift.temperature.NAME] in the machine file"
-                      : fmt::format("{}", fmt::join(all, ", "))));
+      throw InputError(fmt::format("the map knows no temperature \"{}\"; it follows {}", name,
+                                   all.empty()
+                                       ? "none: state [drift.temperature.NAME] in the machine file"
+                                       : fmt::format("{}", fmt::join(all, ", "))));
     }
     if (!std::isfinite(value)) {
       throw InputError(fmt::format("the temperature of \"{}\" is not a number", name));
@@ -171,7 +171,7 @@ void TrackedMap::Move() {
     state_.mean.head(parameters) += warmer * shapes_[s] * state_.mean.segment(gains_[s], count);
     moved.topRows(parameters) += warmer * shapes_[s] * moved.middleRows(gains_[s], count);
   }
-  const double days = (time_ - moved_) / kDay;
+  const double days = (time_ - moved_) / kSecondsOfDay;
   moved_ = time_;
   MatrixXd walked = MatrixXd::Zero(moved.rows(), parameters);
   walked.topRows(parameters) = std::sqrt(days) * day_;

@@ -44,8 +44,8 @@ struct Conditions {
 struct Taken {
   double noise = 1.0;  // of the test, over the stated one
   Agreement agreement = {};
-  double log = 0.0;    // of the marginal likelihood
-  LinearTest test;     // entries as State() has them
+  double log = 0.0;  // of the marginal likelihood
+  LinearTest test;   // entries as State() has them
 };
 
 // Agreement below which a test contradicts the map.
@@ -55,8 +55,8 @@ class TrackedMap {
  public:
   // What the map states already, sensors and walk, is that of `drift` where that states it too. A
   // map without a state begins with the conditions `begin`.
-  TrackedMap(const machine::Machine& machine, const map::ErrorMap& map,
-             const machine::Drift& drift, const Conditions& begin = {});
+  TrackedMap(const machine::Machine& machine, const map::ErrorMap& map, const machine::Drift& drift,
+             const Conditions& begin = {});
 
   double time() const { return time_; }
   const std::vector<map::Warmth>& sensors() const { return sensors_; }

@@ -29,7 +29,8 @@ std::string GeneralName(const std::string& path) {
   name = std::regex_replace(name, std::regex("^limits\\.\\[\\]\\."), "limits.OBJECT.");
   name = std::regex_replace(name, std::regex("^limits\\.(?!OBJECT)\\w+?((_u95)?_[a-z]+)$"),
                             "limits.QUANTITY$1");
-  name = std::regex_replace(name, std::regex("^drift\\.temperature\\.\\[\\]"), "drift.temperature.NAME");
+  name = std::regex_replace(name, std::regex("^drift\\.temperature\\.\\[\\]"),
+                            "drift.temperature.NAME");
   return std::regex_replace(name, std::regex("\\.\\[\\]"), "");
 }
 

@@ -89,8 +89,9 @@ HeldOut Judge(const Series& series) {
   }
   judged.rms = std::sqrt(judged.rms / count);
   judged.inside /= count;
-  fmt::print("  walk {:.2f} um after an hour, noise {:.2f} um; held out {:.2f} um, {:.1f} % in U95\n",
-             response.walk, response.noise, judged.rms, 100.0 * judged.inside);
+  fmt::print(
+      "  walk {:.2f} um after an hour, noise {:.2f} um; held out {:.2f} um, {:.1f} % in U95\n",
+      response.walk, response.noise, judged.rms, 100.0 * judged.inside);
   return judged;
 }
 

@@ -26,14 +26,17 @@ Series Made() {
                 .value = Eigen::VectorXd(kRows),
                 .sensors = {"frame"},
                 .temperature = Eigen::MatrixXd(1, kRows)};
-  const auto room = [](double t) { return 20.0 + 10.0 * (1.0 - std::exp(-t / 1500.0)) + std::sin(t / 300.0); };
+  const auto room = [](double t) {
+    return 20.0 + 10.0 * (1.0 - std::exp(-t / 1500.0)) + std::sin(t / 300.0);
+  };
   double lagged = room(0.0);
   for (Index row = 0; row < kRows; ++row) {
     const double t = series.time[row];
     series.temperature(0, row) = room(t);
     series.value[row] = kGain * lagged + kNoise * random.Normal(static_cast<std::uint64_t>(row));
     constexpr int kSub = 3000;
-    for (int i = 0; i < kSub; ++i) lagged += kStep / kSub / kLag * (room(t + kStep * i / kSub) - lagged);
+    for (int i = 0; i < kSub; ++i)
+      lagged += kStep / kSub / kLag * (room(t + kStep * i / kSub) - lagged);
   }
   return series;
 }

@@ -1,6 +1,8 @@
 // A map that is kept true on machines of the virtual rig that drift and warm for thirty days: is it
 // as uncertain as it says at all times, how good is it beside a recalibration each day, and does it
 // stay as good where nothing drifts?
+#include "track/tracked_map.h"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +20,6 @@
 #include "tests/pull_statistics.h"
 #include "tests/seeds.h"
 #include "track/learn.h"
-#include "track/tracked_map.h"
 
 namespace abbe::track {
 namespace tracked_map_test {
@@ -203,9 +204,8 @@ TEST(TrackedMap, IsAsUncertainAsItSaysOnMachinesThatDrift) {
       tracked_square.Add(SquareOff(now, mill, seed));
       stale_square.Add(SquareOff(stale, mill, seed));
       if (day % 10 == 0) {
-        full_square.Add(
-            SquareOff(mill.Fused(mill.FullSet(static_cast<std::uint64_t>(200 + day))).map, mill,
-                      seed));
+        full_square.Add(SquareOff(
+            mill.Fused(mill.FullSet(static_cast<std::uint64_t>(200 + day))).map, mill, seed));
       }
     }
     coverage.Add(of_machine.inside.mean());
@@ -273,8 +273,9 @@ TEST(TrackedMap, LearnsTheWalkFromItsTests) {
            {"scale_ppm = 1.0", "scale_ppm = 0.33"}}) {
     text.replace(text.find(from), from.size(), to);
   }
-  text += "[rig.ageing]\npositioning_um = 0.1\nstraightness_um = 0.05\nroll_urad = 1.0\n"
-          "pitch_urad = 1.0\nyaw_urad = 1.0\nsquareness_urad = 1.5\nscale_ppm = 1.0\n";
+  text +=
+      "[rig.ageing]\npositioning_um = 0.1\nstraightness_um = 0.05\nroll_urad = 1.0\n"
+      "pitch_urad = 1.0\nyaw_urad = 1.0\nsquareness_urad = 1.5\nscale_ppm = 1.0\n";
   const settings::Document document = Machine(text);
   OldMachine mill(document, 4);
   mill.GoTo(0.0);
@@ -284,9 +285,8 @@ TEST(TrackedMap, LearnsTheWalkFromItsTests) {
   for (int day = 2; day <= 12; day += 2) {
     mill.GoTo(day);
     for (const Recording& each : mill.ShortTest(day / 2, static_cast<std::uint64_t>(100 + day))) {
-      history.push_back({{{.time = mill.TimeAt(day)}},
-                         mill.Runs({each}, first.model()),
-                         mill.TimeAt(day)});
+      history.push_back(
+          {{{.time = mill.TimeAt(day)}}, mill.Runs({each}, first.model()), mill.TimeAt(day)});
     }
   }
   const Learned learned = Learn(start, history, {});
