@@ -1,7 +1,7 @@
 // How the parameters of a map change: the covariance of their walk, and the shapes in which they
 // follow a temperature.
 //
-//   const Eigen::MatrixXd walked = WalkRoot(mill, map.model(), *drift.walk);   // of a day
+//   const Eigen::MatrixXd walked = WalkRoot(mill, map.model(), *drift.walk);  // of a day
 //   const Response response = ResponseOf("table", map.model(), by_kelvin);
 //   parameters += response.shapes * gains * kelvin;
 //

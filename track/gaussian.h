@@ -1,7 +1,7 @@
 // A Gaussian state in square-root form, and what linear tests say of it: a Kalman filter.
 //
 //   Gaussian state = MakeGaussian(mean, covariance);
-//   Move(moved, walked, state);              // x -> F x + w: F S and a factor of the noise
+//   state.root = RootOfSum(moved, walked);   // x -> F x + w: F S and a root of the noise
 //   const double log = Measure(test, state);
 //
 // A test is the information about some entries of the state, nuisance parameters eliminated:

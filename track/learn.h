@@ -1,10 +1,10 @@
 // The walk of a machine, and the lags with which it follows its sensors, from a history of short
 // tests, by marginal likelihood.
 //
-//   History history;
+//   std::vector<HistoryStep> history;
 //   history.push_back({followed, runs, began});            // of each recording, in their order
 //   const Learned learned = Learn(tracked, history, {true});
-//   tracked = learned.map;                                  // behind all tests
+//   tracked = learned.map;                                 // before all tests
 //
 // The walk keeps its shape, that of [drift] or, without one, a twentieth of [population] a day; its
 // size is one factor of all. Lags that the machine file states stay.

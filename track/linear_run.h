@@ -1,7 +1,7 @@
 // A recording as a linear test of a state: its runs fitted from the state on, linearised there, and
 // all that belongs to them alone eliminated.
 //
-//   const LinearRun run = Linearize(runs, names, state, {});
+//   const LinearRun run = Linearize(runs, names, state);
 //   Measure(run.test, state);
 //
 // The fit is that of fusion/machine_problem.h with the state in the place of the priors of what it

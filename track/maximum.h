@@ -1,6 +1,6 @@
 // The maximum of a function of a few bounded variables, one after the other by Brent's method.
 //
-//   const Eigen::VectorXd best = Maximum(log_likelihood, start, low, high);
+//   const Eigen::VectorXd best = Maximum(log_likelihood, start, low, high, 2);
 //
 // Shapes: n each. Failure: none; a value that is not finite counts as the least. Source: Brent,
 // Algorithms for Minimization without Derivatives (1973), by Boost.Math. Validity: one maximum along

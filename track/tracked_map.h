@@ -3,7 +3,7 @@
 //   TrackedMap tracked(mill, map, machine::ReadDrift(document.Root()));
 //   tracked.Follow({.time = began, .temperature = {{"table", 22.5}}});
 //   const Taken taken = tracked.Take(runs, began);         // runs of one recording
-//   map::WriteMap(tracked.Map(), "mill.map.toml");
+//   const map::ErrorMap now = tracked.Map();
 //
 // State: the parameters of the map at the present time and temperatures, their gains by each sensor
 // (drift_model.h), the parameters of instruments and named mountings that its runs shared. From one
@@ -13,7 +13,7 @@
 //
 // y_s the temperature of sensor s behind its lag (first_order_lag.h), V the walk of a day. A test
 // updates everything with the full covariance (linear_run.h, gaussian.h).
-// Frames: error_map.h. Units: SI, degC, s since 1970. Shapes: as MapState.
+// Frames: map/error_map.h. Units: SI, degC, s since 1970. Shapes: as MapState.
 // Failure: InputError for a map without covariance, for a walk that neither the machine file nor the
 // map states, for a time before the present one, for a temperature that the map does not know or
 // lacks, and for a test that contradicts the map: p below 1e-3, the state stays as it was.
