@@ -132,6 +132,12 @@ int Fuse(const FuseArguments& arguments) {
   RefuseTwice(arguments.recordings);
   const MachineFile file = ReadMachineFile(arguments.machine);
   const machine::Machine& machine = file.sweep_setup.machine;
+  if (machine.population.squareness == 0.0) {
+    throw file.document.Root()
+        .Child("population")
+        .Error("squareness_urad",
+               "must be above 0: a map estimates it; state how well it is known");
+  }
   CauseCorrection causes(arguments.causes, file, kForMaps);
   const simulation::Instruments instruments = InstrumentsOf(file);
   std::vector<RunSource> sources;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/conditions.h"
+#include "apps/history_options.h"
 #include "apps/instruments.h"
 #include "apps/machine_recording.h"
 #include "apps/map_option.h"
@@ -20,6 +22,7 @@
 #include "apps/track_result.h"
 #include "history/limits.h"
 #include "map/map_file.h"
+#include "recording/file_hash.h"
 #include "recording/instant.h"
 #include "simulation/kinds.h"
 #include "track/learn.h"
@@ -40,7 +43,8 @@ struct TrackArguments {
   std::string time, measured;
   std::vector<double> at_mm;
   double days = 7.0;
-  bool learn = false, quiet = false;
+  std::string store;
+  bool learn = false, history = false, quiet = false;
 };
 
 double InstantOf(const std::string& option, const std::string& text) {
@@ -95,7 +99,8 @@ class Tracking {
 
   int Run() {
     track::TrackedMap tracked = Begin();
-    const std::vector<Test> tests = TestsIn(arguments_.tests);
+    std::vector<Test> tests = TestsIn(arguments_.tests);
+    if (arguments_.history) AddHistory(tracked.time(), tests);
     TrackReport report;
     if (arguments_.learn) tracked = Learned(tracked, tests, report);
     for (const Test& test : tests) Take(test, tracked, report);
@@ -149,21 +154,52 @@ class Tracking {
     return tests;
   }
 
+  // The recordings of the machine that the history holds since then, as they were added.
+  void AddHistory(double since, std::vector<Test>& tests) const {
+    HistoryOptions options;
+    options.store = arguments_.store;
+    options.quiet = true;
+    const history::Store store = OpenStore(options, history::Store::Missing::kRefuse);
+    std::vector<fs::path> paths;
+    for (const history::CampaignHead& campaign : store.List(instruments_.machine.name)) {
+      for (const history::RecordingFile& file : store.Read(campaign.id).recordings) {
+        const auto started = recording::SecondsOf(file.started);
+        if (!started || *started <= since) continue;
+        if (!fs::exists(file.path) || recording::Sha256OfFile(file.path) != file.sha256) {
+          throw InputError(fmt::format(
+              "{}: is no longer the recording that campaign {} of the history holds; bring it back, "
+              "or name the tests instead of --history",
+              file.path, campaign.id));
+        }
+        paths.emplace_back(file.path);
+      }
+    }
+    std::vector<Test> kept = TestsIn(paths);
+    std::erase_if(kept, [](const Test& test) { return !test.makes_maps; });
+    if (kept.empty()) {
+      throw InputError(fmt::format("the history holds no test of {} since {}",
+                                   instruments_.machine.name, recording::InstantText(since)));
+    }
+    std::move(kept.begin(), kept.end(), std::back_inserter(tests));
+    std::stable_sort(tests.begin(), tests.end(),
+                     [](const Test& one, const Test& other) { return one.began < other.began; });
+  }
+
   std::vector<simulation::SimulatedRun> RunsOf(const recording::Recording& recording) const {
     return simulation::SimulateForMap(simulation::SourceOf(recording), map_.model(), instruments_);
   }
 
   void Take(const Test& test, track::TrackedMap& tracked, TrackReport& report) const {
-    if (test.began < tracked.time() - 1.0) {
+    if (test.began <= tracked.time()) {
       throw InputError(fmt::format(
-          "{}: began at {}, before {}, where the map stands already: a clock jumped back, or the "
-          "test is part of the map",
+          "{}: began at {}, and the map stands at {}: a clock jumped back, or the test is part of the "
+          "map",
           test.recording.name, recording::InstantText(test.began),
           recording::InstantText(tracked.time())));
     }
     for (const auto& each : ConditionsIn(test.recording, tracked.sensors(), given_))
       tracked.Follow(each);
-    TestReport one{.name = test.recording.name,
+    TestReport one{.name = fs::path(test.recording.name).filename().string(),
                    .kind = std::string(simulation::KindOf(test.recording).name()),
                    .began = test.began,
                    .minutes = MinutesOf(test.recording)};
@@ -227,8 +263,8 @@ class Tracking {
     }
     std::vector<track::Candidate> candidates;
     for (const Test& test : tests) {
-      candidates.push_back({test.recording.name, MinutesOf(test.recording),
-                            tracked.Test(RunsOf(test.recording)).test});
+      candidates.push_back({fs::path(test.recording.name).filename().string(),
+                            MinutesOf(test.recording), tracked.Test(RunsOf(test.recording)).test});
     }
     return track::NextTest(tracked, std::move(candidates), limits_,
                            arguments_.days * kDayOfTracking);
@@ -263,6 +299,9 @@ void AddTrack(CLI::App& program, int& exit_code) {
   command->add_option("--next", arguments->next,
                       "Tests as they were made before: which of them keeps the limits");
   command->add_option("--days", arguments->days, "For so long (7)")->check(CLI::PositiveNumber);
+  command->add_flag("--history", arguments->history,
+                    "Take the tests from the history of the machine, all since the map");
+  command->add_option("--store", arguments->store, "The history (that of abbe history)");
   command->add_flag("--learn", arguments->learn,
                     "Learn the walk, and lags that are not stated, from the tests");
   command->add_option("--measured", arguments->measured, "When a map without a state was measured");

@@ -20,7 +20,7 @@ using nlohmann::ordered_json;
 using settings::kMicro;
 using standards::kCoverage;
 
-constexpr int kStations = 61;
+constexpr int kTrackedStations = 61;
 constexpr double kDayOfResult = 86400.0;
 
 bool IsLength(int error) { return error < map::kErrors - 3 && error % machine::kMotions < 3; }
@@ -34,7 +34,7 @@ Extent ExtentOf(const map::ErrorMap& map, int error) {
   Eigen::VectorXd stations = Eigen::VectorXd::Zero(1);
   if (error < map::kErrors - 3) {
     const auto& travel = map.model().travels()[error / machine::kMotions];
-    stations = Eigen::VectorXd::LinSpaced(kStations, travel.first, travel.last);
+    stations = Eigen::VectorXd::LinSpaced(kTrackedStations, travel.first, travel.last);
   }
   const auto curve = map.CurveOf(error, stations);
   return {curve.value.cwiseAbs().maxCoeff() / kMicro, kCoverage * curve.u.maxCoeff() / kMicro};

@@ -20,7 +20,7 @@ struct TestReport {
   std::string name, kind;
   double began = 0.0, minutes = 0.0;
   double noise = 1.0;                // over the stated one
-  track::Agreement agreement;        // no directions: a recording of temperatures
+  track::Agreement agreement = {};   // no directions: a recording of temperatures
   double before = 0.0, after = 0.0;  // m: largest U95 over the volume
 };
 

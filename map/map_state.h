@@ -34,7 +34,7 @@ struct Warmth {
 
 struct MapState {
   double time = 0.0;
-  std::optional<machine::Population> walk = {};  // standard deviations after one day
+  std::optional<machine::Population> walk = {};  // learned; standard deviations after a day
   std::vector<Warmth> sensors = {};
   std::vector<std::string> names = {};
   Eigen::VectorXd values = {};

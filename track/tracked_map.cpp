@@ -63,7 +63,8 @@ TrackedMap::TrackedMap(const machine::Machine& machine, const map::ErrorMap& map
         "nothing says how much the machine changes from day to day: state [drift] in the machine "
         "file, or learn it with --learn from a history of short tests");
   }
-  SetWalk(drift.walk ? *drift.walk : *before.walk);
+  SetWalk(before.walk ? *before.walk : *drift.walk);
+  learned_ = before.walk.has_value();
 }
 
 void TrackedMap::AddSensors(const machine::Drift& drift, const Conditions& begin) {
@@ -122,6 +123,7 @@ void TrackedMap::AddParameters(const std::vector<std::string>& names, const Vect
 
 void TrackedMap::SetWalk(const machine::Population& walk) {
   walk_ = walk;
+  learned_ = true;
   day_ = WalkRoot(machine_, model_, walk);
 }
 
@@ -222,6 +224,12 @@ Taken TrackedMap::Take(const std::vector<simulation::SimulatedRun>& runs, double
               .agreement = AgreementOf(linear.test, state_),
               .log = 0.0,
               .test = std::move(linear.test)};
+  if (taken.noise > kDoesNotFit) {
+    throw InputError(fmt::format(
+        "{}: its rows scatter {:.1f} times the noise that is stated: it is no measurement of this "
+        "machine as the map has it; diagnose it, or state its noise",
+        runs.front().name, taken.noise));
+  }
   if (taken.agreement.probability < kContradiction) {
     throw InputError(fmt::format(
         "{}: contradicts the map (chi-square {:.0f} for {} directions, p = {:.2g}): more than "
@@ -247,7 +255,7 @@ map::ErrorMap TrackedMap::Map() const {
   machine::VolumetricModel model = model_;
   model.SetParameters(now.state_.mean.head(parameters));
   map::MapState state{.time = time_,
-                      .walk = walk_,
+                      .walk = learned_ ? std::optional(walk_) : std::nullopt,
                       .sensors = sensors_,
                       .names = {names_.begin() + parameters, names_.end()},
                       .values = now.state_.mean.tail(more),

@@ -16,7 +16,8 @@
 // Frames: map/error_map.h. Units: SI, degC, s since 1970. Shapes: as MapState.
 // Failure: InputError for a map without covariance, for a walk that neither the machine file nor the
 // map states, for a time before the present one, for a temperature that the map does not know or
-// lacks, and for a test that contradicts the map: p below 1e-3, the state stays as it was.
+// lacks, for a test whose rows do not fit, and for one that contradicts the map: p below 1e-3. The
+// state stays as it was.
 // Source: Kalman (1960); Anderson and Moore (1979), 6.5.
 // Validity: errors that change slowly against the length of a test; a temperature is a straight line
 // between its readings; gains and lags are constant.
@@ -50,11 +51,13 @@ struct Taken {
 
 // Agreement below which a test contradicts the map.
 inline constexpr double kContradiction = 1e-3;
+// Noise over the stated one above which the rows of a test do not fit, as chi-square above 9.
+inline constexpr double kDoesNotFit = 3.0;
 
 class TrackedMap {
  public:
-  // What the map states already, sensors and walk, is that of `drift` where that states it too. A
-  // map without a state begins with the conditions `begin`.
+  // A walk that the map has learned stands before that of `drift`, a lag that `drift` states before
+  // one that was learned. A map without a state begins with the conditions `begin`.
   TrackedMap(const machine::Machine& machine, const map::ErrorMap& map, const machine::Drift& drift,
              const Conditions& begin = {});
 
@@ -98,7 +101,8 @@ class TrackedMap {
   std::vector<Eigen::MatrixXd> shapes_;
   std::vector<Eigen::Index> gains_;  // where those of a sensor begin
   machine::Population walk_;
-  Eigen::MatrixXd day_;  // root of V
+  bool learned_ = false;  // the walk; else that of the machine file
+  Eigen::MatrixXd day_;   // root of V
 };
 
 }  // namespace abbe::track

@@ -4,6 +4,7 @@
     ABBE=path/to/abbe ABBE_MACHINE=machine.toml track_test.py
 """
 import json
+import math
 import pathlib
 import re
 import unittest
@@ -67,7 +68,7 @@ class TrackTest(ProgramCase):
         self.assertIn("[state]", before)
         result = self.result(self.map, test, "--machine", self.machine, "-o", self.map)
         self.assertNotEqual(before, self.map.read_text())
-        self.assertEqual([one["test"] for one in result["tests"]], [str(test)])
+        self.assertEqual([one["test"] for one in result["tests"]], [test.name])
         one = result["tests"][0]
         self.assertGreater(one["agreement"]["p"], 1e-3)
         self.assertLess(one["U95_after_um"], one["U95_before_um"])
@@ -85,6 +86,33 @@ class TrackTest(ProgramCase):
         (folder / "track.json").write_text((self.path / "result.json").read_text())
         self.done(folder, command="report")
 
+    def test_a_circle_and_three_lengths_are_a_short_test(self):
+        circle = self.record("circle.csv", "--course", "circle", "--feed", 600, "--after-days", 3)
+        lines = [self.record(f"line_{axis}.csv", "--length", axis, "--after-days", 4 + "XYZ".index(axis)) for axis in "XYZ"]
+        result = self.result(self.map, circle, *lines, "--machine", self.machine, "--temperature", "column=20",
+                             "-o", self.path / "later.map.toml")
+        self.assertEqual([one["kind"] for one in result["tests"]], ["linkage", "length", "length", "length"])
+        for one in result["tests"]:
+            self.assertLessEqual(one["U95_after_um"], one["U95_before_um"] * 1.001, one)
+        # Without a length of Y and Z their scales were those of the population: 20 ppm of 60 mm.
+        self.assertLess(result["tests"][-1]["U95_after_um"], 0.7 * result["tests"][0]["U95_before_um"])
+
+    def test_the_walk_is_learned_from_the_history(self):
+        folder = self.path / "weeks"
+        folder.mkdir()
+        for week in range(1, 5):
+            self.later(7 * week).rename(folder / f"week_{week}.csv")
+        store = self.path / "history.db"
+        self.done(folder, "--machine", self.machine, "--store", store, command="history add")
+        learned = self.path / "learned.map.toml"
+        text = self.done(self.map, "--machine", self.machine, "--learn", "--history", "--store", store, "-o", learned)
+        self.assertIn("learned from the tests", text)
+        self.assertIn("week_4.csv", text)
+        self.assertIn("walk = [", learned.read_text())
+        (folder / "week_2.csv").unlink()
+        self.refuse(self.map, "--machine", self.machine, "--learn", "--history", "--store", store,
+                    saying=["week_2.csv", "is no longer the recording"])
+
     def test_time_widens_and_a_temperature_moves(self):
         started = re.search(r'time = "(\d{4})', self.map.read_text())[1]
         at = ["--machine", self.machine, "--at", "30,20,10"]
@@ -94,10 +122,11 @@ class TrackTest(ProgramCase):
         for k in range(3):
             self.assertGreater(late["at"]["U95_um"][k], soon["at"]["U95_um"][k])
             self.assertGreaterEqual(warm["at"]["U95_um"][k], soon["at"]["U95_um"][k])
-        # Growth is not known yet: 12 ppm per kelvin of 5 K over 30 mm is in the U95 of X.
-        grown = (warm["at"]["U95_um"][0] ** 2 - soon["at"]["U95_um"][0] ** 2) ** 0.5
-        self.assertGreater(grown, 0.9 * 2 * 12e-6 * 4.9 * 30e3)
-        # The walk of straightness is 0.05 um a day: variances grow by its square for each day.
+        # Growth is not known yet: 12 ppm for each kelvin over 30 mm is in the U95 of X, and little else.
+        first = float(re.search(r"lagged_c = ([\d.]+)", self.map.read_text())[1])
+        grown = warm["at"]["U95_um"][0] ** 2 - soon["at"]["U95_um"][0] ** 2
+        expected = (2 * 12e-6 * 30e3) ** 2 * ((25 - first) ** 2 - (20 - first) ** 2)
+        self.assertAlmostEqual(grown / expected, 1.0, delta=0.1)
         self.assertEqual(warm["tests"], [])
 
     def test_next_names_the_shortest_test_that_keeps_the_limits(self):
@@ -145,19 +174,31 @@ class TrackTest(ProgramCase):
         self.refuse(self.map, shorn, *machine, saying=["no column temp_column_c", "--temperature column=DEGREES"])
         self.refuse(self.map, test, *machine, "--learn", saying=["--learn takes at least 4"])
 
-    def test_a_collision_is_no_drift(self):
-        test = self.later(7)
+    def changed(self, test, name, probes, change):
+        """The recording with `change(x)` um in the gaps of some probes."""
         lines = test.read_text().splitlines()
         head = max(i for i, line in enumerate(lines) if line.startswith("#")) + 1
         names = lines[head].split(",")
-        x, probe = names.index("x_mm"), names.index("probe_a_um")
+        x = names.index("x_mm")
         for i in range(head + 1, len(lines)):
             cells = lines[i].split(",")
-            if float(cells[x]) > 30.0:
-                cells[probe] = str(float(cells[probe]) + 20.0)
-                lines[i] = ",".join(cells)
-        test.write_text("\n".join(lines) + "\n")
-        self.refuse(self.map, test, "--machine", self.machine, saying=["contradicts the map", "collision"])
+            for probe in probes:
+                at = names.index(f"probe_{probe}_um")
+                cells[at] = str(float(cells[at]) + change(float(cells[x])))
+            lines[i] = ",".join(cells)
+        changed = self.path / name
+        changed.write_text("\n".join(lines) + "\n")
+        return changed
+
+    def test_a_collision_is_no_drift(self):
+        test = self.later(7)
+        # A bow of EZX by 3 um, where a week of drift makes 0.13 um.
+        bow = self.changed(test, "bow.csv", "abc", lambda x: 3.0 * math.sin(math.pi * x / 60.0) ** 2)
+        self.refuse(self.map, bow, "--machine", self.machine, saying=["bow.csv", "contradicts the map", "collision"])
+        # One probe that steps: no motion of the machine does that.
+        step = self.changed(test, "step.csv", "a", lambda x: 20.0 if x > 30.0 else 0.0)
+        self.refuse(self.map, step, "--machine", self.machine, saying=["step.csv", "times the noise", "diagnose"])
+        self.done(self.map, test, "--machine", self.machine)
 
 
 if __name__ == "__main__":
