@@ -75,8 +75,20 @@ function largestErrors(sections) {
       .slice(0, LARGEST_SHOWN);
 }
 
+// "EYX" -> "straightness of X along Y"
+function errorWords(name) {
+  const square = {A0Z: 'Y and Z', B0Z: 'X and Z', C0Y: 'X and Y'}[name];
+  if (square) return `squareness of ${square}`;
+  const [, what, axis] = /^E([XYZABC])([XYZ])$/.exec(name) ?? [];
+  if (!axis) return '';
+  if (what === axis) return `positioning of ${axis}`;
+  if ('XYZ'.includes(what)) return `straightness of ${axis} along ${what}`;
+  const about = 'XYZ'['ABC'.indexOf(what)];
+  return about === axis ? `roll of ${axis}` : `tilt of ${axis} about ${about}`;
+}
+
 const errorLine = ({name, section, angle, size, U, longest, effect}) => element(
-    'li', {}, linkTo(section, name), ' ', quantity(1e6 * size, 1e6 * U, angle ? '\u00b5rad' : '\u00b5m'),
+    'li', {}, linkTo(section, name), ` ${errorWords(name)} `, quantity(1e6 * size, 1e6 * U, angle ? '\u00b5rad' : '\u00b5m'),
     angle && longest > 0 ?
         element('span', {class: 'aside'},
                 ` ${significant(1e6 * effect, 2)}\u00a0\u00b5m over ${positionText(1e3 * longest)}\u00a0mm`) :

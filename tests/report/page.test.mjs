@@ -440,6 +440,7 @@ test(
       });
       assert.deepEqual(
           await errors.locator('a').allTextContents(), effects.slice(0, 3).map(([name]) => name));
+      assert.match(await errors.textContent(), /EXX positioning of X 6\.0\u00b11\.2/);
       assert.match(await todo.textContent(), /What to do.+:/);
       assert.match(await next.textContent(), /What to measure next.*volumetric.*not measured yet/);
       // On the first screen, whole.
@@ -458,6 +459,8 @@ for (const [name, options] of [['phone', {viewport: PHONE, hasTouch: true, isMob
          await page.evaluate(() => window.scrollTo(0, 0));
          assert.ok(await page.locator('#one-minute .minute-verdict').isVisible());
          assert.ok(await overflow(page) <= 0);
+         const verdict = await page.locator('#one-minute .minute-verdict').boundingBox();
+         assert.ok(verdict.y + verdict.height < 0.6 * page.viewportSize().height, JSON.stringify(verdict));
          await page.screenshot({path: join(screenshots, `one_minute_${name}.png`)});
        }));
 }
