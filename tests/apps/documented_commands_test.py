@@ -145,6 +145,17 @@ BARE = 'name = "{}"\nchain = "[w X Y b Z t]"\n' + "".join(f"axis.{a}.travel_mm =
     'axis.X.positive = "carriage"\naxis.Y.positive = "carriage"\n')
 
 
+def warm_up():
+    """A gap that follows a column by -2 um for each kelvin, 300 s later."""
+    draw, lines, lagged = random.Random(8), ['# kind = "dwell"', "time_s,probe_a_um,temp_column_c"], 20.0
+    for second in range(0, 7200):
+        column = 20.0 + 6.0 * (1.0 - math.exp(-second / 1500)) + 0.5 * math.sin(second / 200)
+        lagged += (column - lagged) / 300
+        if second % 30 == 0:
+            lines.append(f"{second},{100 - 2 * lagged + draw.gauss(0, 0.05):.4f},{column:.4f}")
+    return "\n".join(lines) + "\n"
+
+
 DRIFT = """[drift]
 straightness_um = 0.05
 scale_ppm = 1.0
@@ -190,6 +201,7 @@ class DocumentedCommands(unittest.TestCase):
         cube = ("--course", "cube", "--dwell", 0.1, "--feed", 6000)
         for week in range(1, 5):
             record(f"week_{week}.csv", "--axis", "XYZX"[week - 1], "--mounting", "A", "--rate", 50, "--after-days", 7 * week)
+        (cls.data / "warm_up.csv").write_text(warm_up())
         record("cube.csv", *cube, "--size", 45, "--points", "4,4,4", "--reference")
         record("volume.csv", *cube, "--size", 57, "--points", "5,5,5")
         for name, feed in (("circle", 600), ("slow", 300), ("fast", 2000)):

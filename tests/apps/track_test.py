@@ -6,6 +6,7 @@
 import json
 import math
 import pathlib
+import random
 import re
 import unittest
 
@@ -199,6 +200,38 @@ class TrackTest(ProgramCase):
         step = self.changed(test, "step.csv", "a", lambda x: 20.0 if x > 30.0 else 0.0)
         self.refuse(self.map, step, "--machine", self.machine, saying=["step.csv", "times the noise", "diagnose"])
         self.done(self.map, test, "--machine", self.machine)
+
+
+class FollowTest(ProgramCase):
+    command = "follow"
+
+    def series(self, change=lambda row, value: value):
+        """A gap that follows a column by -2 um for each kelvin, 300 s later."""
+        draw, lines, lagged = random.Random(8), ['# kind = "dwell"', "time_s,probe_a_um,temp_column_c"], 20.0
+        for second in range(0, 7200):
+            column = 20.0 + 6.0 * (1.0 - math.exp(-second / 1500)) + 0.5 * math.sin(second / 200)
+            lagged += (column - lagged) / 300
+            if second % 30 == 0:
+                value = change(second // 30, 100 - 2 * lagged + draw.gauss(0, 0.05))
+                lines.append(f"{second},{value:.4f},{column:.4f}")
+        path = self.path / "warm_up.csv"
+        path.write_text("\n".join(lines) + "\n")
+        return path
+
+    def test_gain_and_lag_are_found(self):
+        result = self.result(self.series(), "--value", "probe_a_um")
+        column = result["sensors"][0]
+        self.assertAlmostEqual(column["gain_per_c"], -2.0, delta=2 * column["U95_per_c"])
+        self.assertLess(column["U95_per_c"], 0.1)
+        self.assertAlmostEqual(column["lag_s"] / 300, 1.0, delta=0.1)
+        self.assertLess(result["held_out"]["rms"], 0.1)
+        self.assertGreater(result["held_out"]["within_U95"], 0.88)
+
+    def test_bad_input(self):
+        self.refuse(self.series(lambda row, value: value + (500 if row > 100 else 0)), "--value", "probe_a_um",
+                    saying=["warm_up.csv", "row 102", "jumps by", "lost steps"])
+        self.refuse(self.series(), "--value", "probe_z_um", saying=["warm_up.csv", "probe_z_um"])
+        self.refuse(self.series(), "--value", "probe_a_um", "--sensor", "room", saying=["temp_room_c"])
 
 
 if __name__ == "__main__":
