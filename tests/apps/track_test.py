@@ -207,7 +207,7 @@ class FollowTest(ProgramCase):
 
     def series(self, change=lambda row, value: value):
         """A gap that follows a column by -2 um for each kelvin, 300 s later."""
-        draw, lines, lagged = random.Random(8), ['# kind = "dwell"', "time_s,probe_a_um,temp_column_c"], 20.0
+        draw, lines, lagged = random.Random(8), ['# abbe-recording = 1', '# kind = "dwell"', "time_s,probe_a_um,temp_column_c"], 20.0
         for second in range(0, 7200):
             column = 20.0 + 6.0 * (1.0 - math.exp(-second / 1500)) + 0.5 * math.sin(second / 200)
             lagged += (column - lagged) / 300

@@ -107,7 +107,7 @@ TEST(MapFile, RefusesAStateThatIsNone) {
   ExpectHas(refusal("rows = [\n", "rows = [ 1.0,\n"), "state.rows");
   ExpectHas(refusal("lag_s = 1800.0", "lag_s = -1.0"), "lag_s");
   ExpectHas(refusal("walk = [", "walk = [ 1.0, "), "walk");
-  ExpectHas(refusal("1e-08, \n]", "-1e-08, \n]"), "variance");
+  ExpectHas(refusal("1e-08,\n]", "-1e-08,\n]"), "variance");
 }
 
 TEST(MapFile, AMapWithoutUncertaintyStaysOne) {
