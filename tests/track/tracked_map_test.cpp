@@ -47,9 +47,11 @@ const char* const kDrifts =
     "pitch_urad = 1.0\nyaw_urad = 1.0\nsquareness_urad = 1.0\nscale_ppm = 10.0\n";
 const char* const kStill = "[drift]\npositioning_um = 0.0\nsmoothness_mm = 30.0\n";
 
-settings::Document Machine(const std::string& drift) {
+// `form_nm`: of the target. A state does not hold it: each sweep takes it for new noise.
+settings::Document Machine(const std::string& drift, const std::string& form_nm = "10.0") {
   return fusion::CampaignMachine({{"smoothness_mm = 15.0", "smoothness_mm = 30.0"},
                                   {"step_mm = 4.0", "step_mm = 6.0"},
+                                  {"form_nm = 10.0", "form_nm = " + form_nm},
                                   {"\\[noise\\]", drift + "[noise]"}});
 }
 
@@ -158,8 +160,9 @@ void FollowLog(const OldMachine& mill, double from, double to, TrackedMap& track
 
 double Root(const Mean& mean) { return 1e6 * std::sqrt(mean.mean()); }
 
-TEST(TrackedMap, IsAsUncertainAsItSaysOnMachinesThatDrift) {
-  const settings::Document document = Machine(kDrifts);
+// The share of U95 over a month of one machine after the other.
+Mean RunMonths(const std::string& form_nm) {
+  const settings::Document document = Machine(kDrifts, form_nm);
   const machine::Drift drift = machine::ReadDrift(document.Root());
   const Seeds seeds = SeedsFromEnvironment();
   Pulls before, after, between;
@@ -226,13 +229,25 @@ TEST(TrackedMap, IsAsUncertainAsItSaysOnMachinesThatDrift) {
              Root(tracked_square), Root(full_square), Root(stale_square));
   fmt::print("minutes a day: {:.2f} of {:.2f}\n", short_minutes / (kDays * coverage.count),
              full_minutes / (kDays * coverage.count));
-  // The checks of one machine depend on each other: the scatter from machine to machine counts.
-  const double u = coverage.count > 2.0 ? k99 * coverage.error() : 0.05;
-  EXPECT_NEAR(coverage.mean(), 0.95, 0.01 + u);
   EXPECT_LE(short_minutes, 0.5 * full_minutes);
   EXPECT_LT(tracked_square.mean(), 1.1 * 1.1 * full_square.mean());
   EXPECT_LT(tracked_square.mean(), stale_square.mean());
   EXPECT_LE(refused, 2 + static_cast<int>(0.005 * 3 * kDays * coverage.count));
+  return coverage;
+}
+
+// The checks of one machine depend on each other: the scatter from machine to machine counts.
+double BandOf(const Mean& coverage) { return coverage.count > 2.0 ? k99 * coverage.error() : 0.05; }
+
+TEST(TrackedMap, IsAsUncertainAsItSaysOnMachinesThatDrift) {
+  const Mean coverage = RunMonths("0.5");
+  EXPECT_NEAR(coverage.mean(), 0.95, 0.01 + BandOf(coverage));
+}
+
+// What the form of the target costs (docs/track.md, what it cannot do).
+TEST(TrackedMap, LosesLittleByTheFormOfItsTarget) {
+  const Mean coverage = RunMonths("10.0");
+  EXPECT_GT(coverage.mean() + BandOf(coverage), 0.92);
 }
 
 TEST(TrackedMap, IsNoStepBackWhereNothingDrifts) {
@@ -240,6 +255,7 @@ TEST(TrackedMap, IsNoStepBackWhereNothingDrifts) {
   const machine::Drift drift = machine::ReadDrift(document.Root());
   const Seeds seeds = SeedsFromEnvironment();
   Mean tracked_square, first_square;
+  int refused = 0;
   for (std::uint64_t seed = seeds.first; seed <= seeds.last; seed += seeds.step) {
     OldMachine mill(document, seed);
     mill.GoTo(0.0);
@@ -248,7 +264,11 @@ TEST(TrackedMap, IsNoStepBackWhereNothingDrifts) {
     for (int day = 1; day <= 6; ++day) {
       tracked.Follow({.time = mill.TimeAt(day)});
       for (const Recording& each : mill.ShortTest(day, static_cast<std::uint64_t>(100 + day))) {
-        tracked.Take(mill.Runs({each}, first.model()), mill.TimeAt(day));
+        try {
+          tracked.Take(mill.Runs({each}, first.model()), mill.TimeAt(day));
+        } catch (const InputError&) {
+          ++refused;  // p below 1e-3 happens by chance
+        }
       }
     }
     tracked_square.Add(SquareOff(tracked.Map(), mill, seed));
@@ -257,6 +277,7 @@ TEST(TrackedMap, IsNoStepBackWhereNothingDrifts) {
   fmt::print("rms um: the first map {:.3f}, after six short tests {:.3f}\n", Root(first_square),
              Root(tracked_square));
   EXPECT_LT(tracked_square.mean(), first_square.mean());
+  EXPECT_LE(refused, 1 + static_cast<int>(0.005 * 18 * first_square.count));
 }
 
 TEST(TrackedMap, LearnsTheWalkFromItsTests) {
