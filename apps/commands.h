@@ -17,6 +17,8 @@ void AddPath(CLI::App& program, int& exit_code);
 void AddCalibrate(CLI::App& program, int& exit_code);
 void AddPlate(CLI::App& program, int& exit_code);
 void AddFuse(CLI::App& program, int& exit_code);
+void AddTrack(CLI::App& program, int& exit_code);
+void AddFollow(CLI::App& program, int& exit_code);
 void AddDiagnose(CLI::App& program, int& exit_code);
 void AddCauses(CLI::App& program, int& exit_code);
 void AddHarmonics(CLI::App& program, int& exit_code);
@@ -30,8 +32,9 @@ void AddLive(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands = std::to_array<AddCommand>(
-    {AddRig,     AddAlign,     AddSweep,   AddRecord,      AddReduce,   AddCalibrate, AddCircle,
-     AddPath,    AddHarmonics, AddPlate,   AddFuse,        AddDiagnose, AddCauses,    AddExport,
-     AddCorrect, AddSimulate,  AddConvert, AddSensitivity, AddHistory,  AddReport,    AddLive});
+    {AddRig,     AddAlign,       AddSweep,     AddRecord, AddReduce,  AddCalibrate,
+     AddCircle,  AddPath,        AddHarmonics, AddPlate,  AddFuse,    AddTrack,
+     AddFollow,  AddDiagnose,    AddCauses,    AddExport, AddCorrect, AddSimulate,
+     AddConvert, AddSensitivity, AddHistory,   AddReport, AddLive});
 
 }  // namespace abbe::apps

@@ -15,6 +15,7 @@
 #include "apps/causes_option.h"
 #include "apps/command.h"
 #include "apps/commands.h"
+#include "apps/conditions.h"
 #include "apps/fuse_result.h"
 #include "apps/instruments.h"
 #include "apps/machine_recording.h"
@@ -131,6 +132,12 @@ int Fuse(const FuseArguments& arguments) {
   RefuseTwice(arguments.recordings);
   const MachineFile file = ReadMachineFile(arguments.machine);
   const machine::Machine& machine = file.sweep_setup.machine;
+  if (machine.population.squareness == 0.0) {
+    throw file.document.Root()
+        .Child("population")
+        .Error("squareness_urad",
+               "must be above 0: a map estimates it; state how well it is known");
+  }
   CauseCorrection causes(arguments.causes, file, kForMaps);
   const simulation::Instruments instruments = InstrumentsOf(file);
   std::vector<RunSource> sources;
@@ -147,9 +154,15 @@ int Fuse(const FuseArguments& arguments) {
   const auto corrected = [&](const RunSource& source) {
     return causes.Active() ? simulation::SourceOf(causes.Take(source.whole())) : source;
   };
-  const fusion::FuseReport report = FuseSources(
-      sources, corrected, instruments,
-      {.choose_smoothness = choose, .holdout = arguments.holdout, .doubt = DoubtOf(causes, other)});
+  const track::Conditions conditions = MeanConditions(sources);
+  fusion::FuseOptions options{.choose_smoothness = choose,
+                              .holdout = arguments.holdout,
+                              .doubt = DoubtOf(causes, other),
+                              .measured = conditions.time};
+  for (const auto& [sensor, mean] : conditions.temperature) {
+    options.sensors.push_back({sensor, 0.0, mean, mean});
+  }
+  const fusion::FuseReport report = FuseSources(sources, corrected, instruments, options);
   map::WriteMap(report.map, arguments.out);
   auto json = FuseJson(report);
   for (const RunSource& source : sources) AddProtocol(source.head, json);

@@ -119,10 +119,9 @@ int Harmonics(const HarmonicsArguments& arguments) {
   const recording::Recording recording = ReadWithWarnings(arguments.recording);
   std::vector<int> orders(arguments.orders);
   std::iota(orders.begin(), orders.end(), 1);
-  ordered_json result{{"kind", "harmonics"},
-                      {"recording", recording.name},
-                      {"angle", arguments.angle},
-                      {"channels", ordered_json::array()}};
+  ordered_json result{{"abbe", ABBE_VERSION},     {"command", "harmonics"},
+                      {"kind", "harmonics"},      {"recording", recording.name},
+                      {"angle", arguments.angle}, {"channels", ordered_json::array()}};
   for (const std::string& column : arguments.columns) {
     const auto shaft = paths::ReadShaft(recording, arguments.angle, column);
     result["channels"].push_back(ChannelJson(column, shaft, orders));

@@ -13,6 +13,9 @@
 namespace abbe::apps {
 namespace {
 
+// A chance that underflows is not 0.
+std::string ChanceText(double p) { return p > 0.0 ? fmt::format("{:.2g}", p) : "< 1e-300"; }
+
 using history::Judged;
 using history::Trend;
 using history::Verdict;
@@ -153,11 +156,11 @@ std::string ComparisonText(const history::Comparison& comparison) {
                       "change", "U95", "p", "in common");
   for (const auto& each : differences) {
     const Decimals shown(each.U95.value_or(0.0));
-    text += fmt::format(
-        "{:<48}{:>12}{:>12}{:>12}{:>10}{:>10}  {}\n", WithConditions(each.Name(), each.conditions),
-        shown(each.before), shown(each.after), shown(each.change) + (each.significant ? "*" : ""),
-        each.U95 ? shown(*each.U95) : "-", each.p ? fmt::format("{:.2g}", *each.p) : "-",
-        fmt::join(each.shared, ", "));
+    text += fmt::format("{:<48}{:>12}{:>12}{:>12}{:>10}{:>10}  {}\n",
+                        WithConditions(each.Name(), each.conditions), shown(each.before),
+                        shown(each.after), shown(each.change) + (each.significant ? "*" : ""),
+                        each.U95 ? shown(*each.U95) : "-", each.p ? ChanceText(*each.p) : "-",
+                        fmt::join(each.shared, ", "));
   }
   const auto list = [&](const char* what, const auto& names) {
     if (!names.empty()) text += fmt::format("{}: {}\n", what, fmt::join(names, ", "));

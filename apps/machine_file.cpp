@@ -4,6 +4,7 @@
 
 #include "apps/protocol.h"
 #include "history/limits.h"
+#include "machine/drift.h"
 #include "rig/rig_settings.h"
 
 namespace abbe::apps {
@@ -54,6 +55,7 @@ MachineFile ReadMachineFile(const std::filesystem::path& path) {
   rig::ReadRigSettings(root);
   ReadProtocol(root);
   history::ReadLimits(root);
+  machine::ReadDrift(root);
   root.RefuseUnknown();
   return file;
 }
@@ -64,6 +66,7 @@ machine::Machine ReadMachineOf(const std::filesystem::path& path) {
   machine::Machine machine = machine::ReadMachine(document.Root());
   ReadProtocol(document.Root());
   history::ReadLimits(document.Root());
+  machine::ReadDrift(document.Root());
   document.Root().RefuseUnknown();
   return machine;
 }
@@ -75,6 +78,7 @@ MachineAlone ReadMachineAlone(const settings::Document& document) {
   if (root.Has("linkage")) alone.linkage = relm::ReadLinkageSettings(root);
   ReadProtocol(root);
   history::ReadLimits(root);
+  machine::ReadDrift(root);
   root.RefuseUnknown();
   return alone;
 }

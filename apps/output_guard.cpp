@@ -29,6 +29,11 @@ bool IsOutput(const CLI::Option& option) {
   });
 }
 
+// An input that its own command may write anew.
+bool MayReplace(const CLI::App& command, const CLI::Option& option) {
+  return command.get_name() == "track" && option.get_name() == "map";
+}
+
 struct Places {
   std::vector<fs::path> inputs, outputs;
 };
@@ -39,6 +44,7 @@ void Gather(const CLI::App& command, Places& places) {
     for (const std::string& word : option->results()) {
       std::error_code error;
       if (!fs::is_regular_file(word, error)) continue;
+      if (MayReplace(command, *option)) continue;
       (IsOutput(*option) ? places.outputs : places.inputs).emplace_back(word);
     }
   }

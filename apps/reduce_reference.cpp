@@ -136,9 +136,13 @@ ordered_json ReduceReference(const Recording& recording) {
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", recording.name, error.what()));
   }
-  return {{"kind", "reference"},
-          {"axis", std::string(1, static_cast<char>(axis - 'a' + 'A'))},
-          {"iso230_2", std::move(iso230_2)}};
+  ordered_json result{{"abbe", ABBE_VERSION}, {"command", "reduce"}, {"kind", "reference"}};
+  for (const char* const key : {"machine", "started"}) {
+    if (const auto text = recording.HeaderText(key)) result[key] = *text;
+  }
+  result["axis"] = std::string(1, static_cast<char>(axis - 'a' + 'A'));
+  result["iso230_2"] = std::move(iso230_2);
+  return result;
 }
 
 std::string ReferenceTable(const ordered_json& result) {

@@ -22,6 +22,7 @@
 #include "hal/sweep_recorder.h"
 #include "recording/instant.h"
 #include "recording/recording_file.h"
+#include "rig/ageing.h"
 #include "rig/campaign.h"
 #include "rig/encoder_server.h"
 #include "rig/record_course.h"
@@ -49,6 +50,7 @@ struct RigOptions {
   CourseRequest course;
   bool plate = false, both_ways = false;
   double rate = 200.0;
+  double after_days = 0.0;
   std::filesystem::path truth_to_compare;
   std::vector<std::filesystem::path> results;
 };
@@ -58,7 +60,8 @@ struct Rig {
   explicit Rig(const RigOptions& options)
       : document(settings::Document::Read(options.machine)),
         machine(rig::ReadCampaignMachine(document.Root())),
-        world(machine.rig, options.seed, Hidden(machine, options)),
+        world(rig::Ageing(machine.rig, options.seed)
+                  .WorldAt(options.after_days, Hidden(machine, options))),
         devices(hal::ReadDevices(document.Root().Child("devices"))) {
     if (machine.linkage) {
       linkage.emplace(world, rig::Linkage(*machine.linkage, options.seed, world.hidden()));
@@ -216,10 +219,21 @@ int Serve(const RigOptions& options) {
   return kDone;
 }
 
+// Now, or as many days later as the machine is older.
+std::string StartOf(const RigOptions& options) {
+  constexpr double kSecondsOfDay = 86400.0;
+  const auto now = recording::SecondsOf(recording::UtcNow());
+  return recording::InstantText(now.value_or(0.0) + options.after_days * kSecondsOfDay);
+}
+
 // An interferometer over the whole travel of an axis, the other axes in the middle.
-recording::Recording RecordLine(const Rig& rig, char axis, bool both_ways) {
+recording::Recording RecordLine(const Rig& rig, char axis, const RigOptions& options) {
   constexpr int kSteps = 12;
-  rig::LengthProgram program{.axis = axis, .count = kSteps, .both_ways = both_ways};
+  rig::LengthProgram program{.axis = axis,
+                             .count = kSteps,
+                             .both_ways = options.both_ways,
+                             .started = StartOf(options),
+                             .sensors = rig.machine.sensors.columns};
   const rig::RigSettings& machine = rig.world.settings();
   for (int i = 0; i < rig::kAxes; ++i) {
     program.at[i] = (machine.travels[i].first + machine.travels[i].last) / 2;
@@ -233,7 +247,7 @@ recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
   if (!options.axis.empty()) {
     return rig::RecordSweep(
         rig.world, options.axis.front(), rig::ChannelsOf(rig.devices),
-        {.rate = options.rate, .mounting = options.mounting, .started = recording::UtcNow()});
+        {.rate = options.rate, .mounting = options.mounting, .started = StartOf(options)});
   }
   if (options.plate) {
     return rig::RecordPlate(rig.world,
@@ -243,8 +257,8 @@ recording::Recording Recorded(const Rig& rig, const RigOptions& options) {
     throw InputError(
         fmt::format("{} has no linkage to record with; add a table [linkage]", options.machine));
   }
-  if (!options.length.empty()) return RecordLine(rig, options.length.front(), options.both_ways);
-  return RecordCourse(*rig.linkage, options.course, options.rate, recording::UtcNow());
+  if (!options.length.empty()) return RecordLine(rig, options.length.front(), options);
+  return RecordCourse(*rig.linkage, options.course, options.rate, StartOf(options));
 }
 
 int RecordTheCampaign(const RigOptions& options) {
@@ -352,6 +366,8 @@ void AddRig(CLI::App& program, int& exit_code) {
   record->add_option("--out", options->out, "Recording (.csv, .h5), or the campaign's folder")
       ->required();
   record->add_option("--rate", options->rate, "Rows per second")->capture_default_str();
+  record->add_option("--after-days", options->after_days,
+                     "So many days later: the machine has aged by [rig.ageing]");
   record->footer(
       "Example: abbe rig record --machine machines/demo_mill.toml --axis X --out x.csv\n"
       "Example: abbe rig record --machine machines/demo_mill.toml --course circle --reference "

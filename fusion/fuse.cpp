@@ -4,10 +4,14 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "estimation/linearization.h"
+#include "fusion/marginal.h"
 #include "fusion/plate_form.h"
 #include "fusion/reversals.h"
 #include "fusion/target_form.h"
@@ -18,6 +22,7 @@ namespace abbe::fusion {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using estimation::Linearization;
 using estimation::Problem;
@@ -28,6 +33,7 @@ using simulation::SimulatedRun;
 constexpr double kCoarse = 0.6, kFine = 0.4;
 constexpr double kFinest = 1.0 / 12.0;  // of the correlation length of the machine file
 constexpr std::array kMounted{"target_tilt", "head_turn", "head_place", "base"};
+constexpr double kUnknown = std::numeric_limits<double>::infinity();  // of an uncertainty
 constexpr Index kFewRows = 50;          // too few to tell a correlation
 constexpr int kFits = 5;                // at most, until noise and knots have settled
 constexpr double kNoiseSettled = 0.05;  // of its logarithm
@@ -242,7 +248,7 @@ class FuseJob {
     Widen(widened, seen);
     if (by_theta_.size() > 0) seen.covariance += by_theta_ * by_theta_.transpose();
     AddDoubt(options_.doubt, found, -machine_.reference, seen.covariance);
-    FuseReport report{.map = MapOf(found, seen)};
+    FuseReport report{.map = MapOf(found, seen, StateOf(now, seen.covariance))};
     report.functions = std::move(seen.functions);
     report.scale = seen.scale;
     report.chosen_smoothness = SmoothnessSeen();
@@ -334,7 +340,38 @@ class FuseJob {
     return machine_.population.smoothness;
   }
 
-  map::ErrorMap MapOf(const machine::VolumetricModel& found, const SeenErrors& seen) const {
+  // The instruments and mountings, whose errors those of the map depend on.
+  std::optional<map::MapState> StateOf(const Fitted& now, const MatrixXd& of_map) const {
+    if (!(options_.measured > 0.0)) return {};
+    const estimation::Layout layout(now.problem);
+    map::MapState state{.time = options_.measured, .sensors = options_.sensors};
+    std::vector<double> values;
+    std::vector<int> columns = ColumnsOf(layout, model_.Blocks());
+    const std::set<int> machine(columns.begin(), columns.end());
+    for (const auto& block : now.fit.blocks) {
+      if (IsForm(block) || !OutlivesRuns(block, runs_)) continue;
+      for (std::size_t i = 0; i < block.entries.size(); ++i) {
+        const auto at = std::find(layout.names.begin(), layout.names.end(), block.FullName(i));
+        const int column = static_cast<int>(at - layout.names.begin());
+        const double u = block.entries[i].uncertainty;
+        if (at == layout.names.end() || machine.contains(column) || !(u > 0.0 && u < kUnknown))
+          continue;
+        columns.push_back(column);
+        state.names.push_back(*at);
+        values.push_back(block.entries[i].value);
+      }
+    }
+    MatrixXd all = now.at.prior.information;
+    for (const auto& source : now.at.sources) all += source.information;
+    state.values = Eigen::Map<const VectorXd>(values.data(), std::ssize(values));
+    state.covariance = MarginalCovariance(all, columns);
+    // Sizes that are not certain, and doubt, are in the part of the map alone.
+    state.covariance.topLeftCorner(of_map.rows(), of_map.cols()) = of_map;
+    return state;
+  }
+
+  map::ErrorMap MapOf(const machine::VolumetricModel& found, const SeenErrors& seen,
+                      std::optional<map::MapState> state) const {
     map::MapOrigin origin;
     origin.machine = machine_.name;
     origin.reference = machine_.reference;
@@ -345,7 +382,7 @@ class FuseJob {
       const auto& by = seen.functions[error].determined_by;
       if (!by.empty()) origin.sources[error] = SourceOf(by.front());
     }
-    return {origin, found, seen.covariance};
+    return {origin, found, seen.covariance, std::move(state)};
   }
 
   const machine::Machine& machine_;

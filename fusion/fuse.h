@@ -48,6 +48,10 @@ struct FuseOptions {
   int holdout = 0;  // every n-th block of rows of each run; 0: none
   int threads = 0;
   Doubt doubt = {};  // widens the covariance of the map
+  // When the runs were made, s since 1970, and how warm it was: the map then has a state
+  // (map/map_state.h) with the instruments. 0: it has none.
+  double measured = 0.0;
+  std::vector<map::Warmth> sensors = {};
 };
 
 struct FuseReport {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "failure/failure.h"
+#include "simulation/linkage/linkage_simulation.h"
 
 namespace abbe::fusion {
 namespace {
@@ -84,6 +85,15 @@ Eigen::VectorXd ValuesFound(const estimation::Result& fit,
     for (const auto& entry : fit.Block(block.name).entries) values.push_back(entry.value);
   }
   return Eigen::Map<Eigen::VectorXd>(values.data(), values.size());
+}
+
+bool OutlivesRuns(const ParameterBlock& block, const std::vector<simulation::SimulatedRun>& runs) {
+  if (block.name == simulation::BaseBlock("") || block.name == simulation::BaseTurnBlock("")) {
+    return false;
+  }
+  return std::none_of(runs.begin(), runs.end(), [&](const simulation::SimulatedRun& run) {
+    return block.name.ends_with(" " + run.name);
+  });
 }
 
 }  // namespace abbe::fusion

@@ -33,4 +33,9 @@ estimation::Problem MakeMachineProblem(const machine::Machine& machine,
 Eigen::VectorXd ValuesFound(const estimation::Result& fit,
                             const std::vector<estimation::ParameterBlock>& blocks);
 
+// Whether a block may return in a later run: of the machine, an instrument, or a mounting with a
+// name; not a base without one, nor what a run has for itself.
+bool OutlivesRuns(const estimation::ParameterBlock& block,
+                  const std::vector<simulation::SimulatedRun>& runs);
+
 }  // namespace abbe::fusion

@@ -1,6 +1,7 @@
 #include "fusion/marginal.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 
 #include "estimation/weak_directions.h"
 
@@ -8,6 +9,7 @@ namespace abbe::fusion {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 MatrixXd MarginalFactor(const MatrixXd& information, const std::vector<int>& columns) {
   std::vector<bool> asked(information.rows(), false);
@@ -21,6 +23,17 @@ MatrixXd MarginalFactor(const MatrixXd& information, const std::vector<int>& col
   if (columns.empty() || whole.info() != Eigen::Success) return {};
   const Index n = columns.size();
   return whole.matrixLLT().bottomRightCorner(n, n).triangularView<Eigen::Lower>();
+}
+
+Score WithoutNuisance(const Score& all, const std::vector<int>& kept,
+                      const std::vector<int>& nuisance) {
+  Score left{all.information(kept, kept), all.score(kept)};
+  if (nuisance.empty()) return left;
+  const MatrixXd cross = all.information(nuisance, kept);
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> inner(all.information(nuisance, nuisance));
+  left.information -= cross.transpose() * inner.solve(cross);
+  left.score -= cross.transpose() * inner.solve(VectorXd(all.score(nuisance)));
+  return left;
 }
 
 MatrixXd MarginalCovariance(const MatrixXd& information, const std::vector<int>& columns) {

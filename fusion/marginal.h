@@ -16,6 +16,15 @@ namespace abbe::fusion {
 
 Eigen::MatrixXd MarginalFactor(const Eigen::MatrixXd& information, const std::vector<int>& columns);
 
+// What runs say of some parameters, J'WJ and J'Wr, with others eliminated as nuisance parameters. A
+// nuisance parameter without information is left out.
+struct Score {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd score;
+};
+Score WithoutNuisance(const Score& all, const std::vector<int>& kept,
+                      const std::vector<int>& nuisance);
+
 // C itself. When MarginalFactor fails, undetermined directions contribute no variance.
 Eigen::MatrixXd MarginalCovariance(const Eigen::MatrixXd& information,
                                    const std::vector<int>& columns);

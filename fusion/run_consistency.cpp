@@ -18,23 +18,6 @@ constexpr double kSeen = 0.5;           // lambda
 constexpr double kSignificance = 0.01;  // of the whole set
 constexpr double kLeastShare = 1e-12;   // least share of the others in a parameter's information
 
-struct Quadratic {
-  MatrixXd information;
-  VectorXd score;
-};
-
-// The same with the parameters of `own` eliminated.
-Quadratic Eliminate(const Quadratic& all, const std::vector<int>& others,
-                    const std::vector<int>& own) {
-  Quadratic left{all.information(others, others), all.score(others)};
-  if (own.empty()) return left;
-  const MatrixXd cross = all.information(own, others);
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> inner(all.information(own, own));
-  left.information -= cross.transpose() * inner.solve(cross);
-  left.score -= cross.transpose() * inner.solve(VectorXd(all.score(own)));
-  return left;
-}
-
 RunConsistency Check(const std::string& name, const estimation::SourceSums& run,
                      const MatrixXd& all) {
   const MatrixXd rest = all - run.information;
@@ -42,7 +25,7 @@ RunConsistency Check(const std::string& name, const estimation::SourceSums& run,
   for (int i = 0; i < all.rows(); ++i) {
     (rest(i, i) > kLeastShare * all(i, i) ? others : own).push_back(i);
   }
-  const Quadratic seen = Eliminate({run.information, run.gradient}, others, own);
+  const Score seen = WithoutNuisance({run.information, run.gradient}, others, own);
   RunConsistency check{.name = name};
   std::vector<int> touched;
   for (int i = 0; i < std::ssize(others); ++i) {

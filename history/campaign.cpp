@@ -139,7 +139,7 @@ class Gathering {
     bool taken = false;
     if (extension == ".json") taken = TakeResult(path);
     if (extension == ".csv" || extension == ".h5" || extension == ".hdf5")
-      taken = TakeRecording(path);
+      taken = TakeRecording(path, was_named);
     if (extension == ".toml") taken = TakeMap(path);
     if (!taken && was_named) {
       throw InputError(fmt::format("{}: is no result, recording or error map of abbe; leave it out",
@@ -180,12 +180,15 @@ class Gathering {
     return true;
   }
 
-  bool TakeRecording(const fs::path& path) {
+  bool TakeRecording(const fs::path& path, bool was_named) {
     recording::Recording head;
     try {
       head = recording::ReadHead(path);
-    } catch (const InputError&) {
-      return false;  // another table
+    } catch (const InputError& error) {
+      if (path.extension() == ".csv") return false;  // another table
+      if (was_named) throw;
+      campaign_.notes.push_back(fmt::format("left out: {}", error.what()));
+      return false;
     }
     const std::string started = head.HeaderText("started").value_or("");
     campaign_.recordings.push_back({fs::absolute(path).lexically_normal().string(),

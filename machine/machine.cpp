@@ -8,6 +8,7 @@
 
 #include "failure/failure.h"
 #include "machine/configurations.h"
+#include "machine/drift.h"
 
 namespace abbe::machine {
 namespace {
@@ -59,19 +60,15 @@ Positive ReadPositive(const settings::Table& axis, char letter, const Chain& cha
 }
 
 Population ReadPopulation(const settings::Table& table) {
-  const auto tolerance = [&](std::string_view key, double fallback) {
-    return table.Quantity(key, {.fallback = fallback, .at_least = 0.0});
-  };
-  const Population population{
-      .positioning = tolerance("positioning_um", 2.0),
-      .straightness = tolerance("straightness_um", 1.0),
-      .roll = tolerance("roll_urad", 20.0),
-      .pitch = tolerance("pitch_urad", 20.0),
-      .yaw = tolerance("yaw_urad", 20.0),
-      .squareness = tolerance("squareness_urad", 30.0),
-      .scale = tolerance("scale_ppm", 20.0),
-      .smoothness = table.Quantity("smoothness_mm", {.fallback = 15.0, .above = 0.0}),
-  };
+  Population population = ReadSizes(table, {.positioning = 2.0,
+                                            .straightness = 1.0,
+                                            .roll = 20.0,
+                                            .pitch = 20.0,
+                                            .yaw = 20.0,
+                                            .squareness = 30.0,
+                                            .scale = 20.0,
+                                            .smoothness = 0.0});
+  population.smoothness = table.Quantity("smoothness_mm", {.fallback = 15.0, .above = 0.0});
   table.RefuseUnknown();
   return population;
 }

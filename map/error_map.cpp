@@ -31,6 +31,23 @@ void RefuseBadCovariance(const Eigen::MatrixXd& cov, const std::vector<std::stri
   }
 }
 
+void RefuseBadState(const MapState& state, const ErrorMap& map) {
+  std::vector<std::string> names = map.ParameterNames();
+  names.insert(names.end(), state.names.begin(), state.names.end());
+  if (!map.StatesUncertainty()) {
+    throw InputError("the map of " + map.origin().machine + " has a state and no covariance");
+  }
+  if (state.values.size() != std::ssize(state.names) || !state.values.allFinite() ||
+      !std::isfinite(state.time)) {
+    throw InputError("the state of the map needs a finite value for each of its names");
+  }
+  for (const Warmth& each : state.sensors) {
+    if (each.lag >= 0.0 && std::isfinite(each.lag + each.temperature + each.lagged)) continue;
+    throw InputError("the state of the map holds no temperature of " + each.sensor);
+  }
+  RefuseBadCovariance(state.covariance, names);
+}
+
 }  // namespace
 
 std::string ErrorName(int error) {
@@ -50,13 +67,18 @@ int ErrorNamed(std::string_view name) {
   return error;
 }
 
-ErrorMap::ErrorMap(MapOrigin origin, machine::VolumetricModel model, Eigen::MatrixXd cov_pp)
-    : origin_(std::move(origin)), model_(std::move(model)), cov_pp_(std::move(cov_pp)) {
+ErrorMap::ErrorMap(MapOrigin origin, machine::VolumetricModel model, Eigen::MatrixXd cov_pp,
+                   std::optional<MapState> state)
+    : origin_(std::move(origin)),
+      model_(std::move(model)),
+      cov_pp_(std::move(cov_pp)),
+      state_(std::move(state)) {
   if (!model_.Parameters().allFinite() || !origin_.reference.allFinite() ||
       !origin_.tool.allFinite() || !std::isfinite(origin_.temperature)) {
     throw InputError("the map of " + origin_.machine + " holds a number that is not finite");
   }
   if (StatesUncertainty()) RefuseBadCovariance(cov_pp_, ParameterNames());
+  if (state_) RefuseBadState(*state_, *this);
 }
 
 std::vector<std::string> ErrorMap::ParameterNames() const {

@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "machine/volumetric_model.h"
+#include "map/map_state.h"
 
 namespace abbe::map {
 
@@ -56,11 +57,14 @@ struct MapOrigin {
 
 class ErrorMap {
  public:
-  ErrorMap(MapOrigin origin, machine::VolumetricModel model, Eigen::MatrixXd cov_pp);
+  ErrorMap(MapOrigin origin, machine::VolumetricModel model, Eigen::MatrixXd cov_pp,
+           std::optional<MapState> state = {});
 
   const MapOrigin& origin() const { return origin_; }
   const machine::VolumetricModel& model() const { return model_; }
   const Eigen::MatrixXd& cov_pp() const { return cov_pp_; }
+  // Of a map that is kept true (map_state.h); none: it was made once.
+  const std::optional<MapState>& state() const { return state_; }
   // An imported map does not.
   bool StatesUncertainty() const { return cov_pp_.size() > 0; }
   // "EXX.c0" ... "squareness.C0Y", in the order of the parameters.
@@ -92,6 +96,7 @@ class ErrorMap {
   MapOrigin origin_;
   machine::VolumetricModel model_;
   Eigen::MatrixXd cov_pp_;
+  std::optional<MapState> state_;
 };
 
 }  // namespace abbe::map

@@ -10,6 +10,7 @@
 #include "failure/failure.h"
 #include "machine/form_of_shape.h"
 #include "map/text_file.h"
+#include "recording/instant.h"
 #include "settings/document.h"
 #include "settings/toml_text.h"
 
@@ -26,6 +27,11 @@ using settings::Table;
 
 constexpr std::int64_t kFormat = 1;
 constexpr std::array kTravelKeys{"x", "y", "z"};
+
+std::array<double, 8> SizesOf(const machine::Population& p) {
+  return {p.positioning, p.straightness, p.roll,  p.pitch,
+          p.yaw,         p.squareness,   p.scale, p.smoothness};
+}
 
 std::string_view NameOf(Source source) { return kSourceNames[static_cast<std::size_t>(source)]; }
 
@@ -79,6 +85,25 @@ std::string CovarianceText(const ErrorMap& map) {
     text.back() = '\n';
   }
   return text + "]\n";
+}
+
+std::string StateText(const MapState& state, Index parameters) {
+  std::string text =
+      fmt::format("\n[state]\ntime = {}\n", Quoted(recording::InstantText(state.time)));
+  if (state.walk) text += fmt::format("walk = {}\n", Floats(SizesOf(*state.walk)));
+  text += fmt::format("names = {}\nvalues = {}\nrows = [\n", QuotedList(state.names),
+                      Floats(state.values));
+  for (Index i = parameters; i < state.covariance.rows(); ++i) {
+    for (Index j = 0; j <= i; ++j) text += Float(state.covariance(i, j)) + ", ";
+    text.back() = '\n';
+  }
+  text += "]\n";
+  for (const Warmth& each : state.sensors) {
+    text += fmt::format(
+        "\n[[state.sensor]]\nname = {}\nlag_s = {}\ntemperature_c = {}\nlagged_c = {}\n",
+        Quoted(each.sensor), Float(each.lag), Float(each.temperature), Float(each.lagged));
+  }
+  return text;
 }
 
 Eigen::Vector3d Vector(const Table& table, const char* key) {
@@ -185,6 +210,43 @@ Eigen::MatrixXd ReadCovariance(const Table& table, const std::vector<std::string
   return cov;
 }
 
+// `cov_pp`: the part of it that is the map's.
+MapState ReadState(const Table& table, const Eigen::MatrixXd& cov_pp) {
+  MapState state;
+  const auto time = recording::SecondsOf(table.Text("time"));
+  if (!time) throw table.Error("time", "is no instant; write it like 2026-11-21T09:00:00Z");
+  state.time = *time;
+  if (table.Has("walk")) {
+    const auto w = table.Quantities("walk", 8);
+    if (!(*std::min_element(w.begin(), w.end()) >= 0.0) || !(w[7] > 0.0)) {
+      throw table.Error("walk", "holds a size below 0, or a length that is not above it");
+    }
+    state.walk = {w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7]};
+  }
+  state.names = table.Texts("names", 0);
+  const Index before = cov_pp.rows(), n = state.names.size();
+  const auto values = table.Quantities("values", 0);
+  if (std::ssize(values) != n) throw table.Error("values", "must be one for each name");
+  state.values = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
+  const auto rows = table.Quantities("rows", 0);
+  if (std::ssize(rows) != n * before + n * (n + 1) / 2) {
+    throw table.Error("rows", "are not those of the names below the covariance of the map");
+  }
+  state.covariance.resize(before + n, before + n);
+  state.covariance.topLeftCorner(before, before) = cov_pp;
+  std::size_t at = 0;
+  for (Index i = before; i < before + n; ++i) {
+    for (Index j = 0; j <= i; ++j) state.covariance(i, j) = state.covariance(j, i) = rows[at++];
+  }
+  for (const Table& sensor : table.Children("sensor")) {
+    state.sensors.push_back({sensor.Text("name"), sensor.Number("lag_s", {.at_least = 0.0}),
+                             sensor.Number("temperature_c"), sensor.Number("lagged_c")});
+    sensor.RefuseUnknown();
+  }
+  table.RefuseUnknown();
+  return state;
+}
+
 }  // namespace
 
 void WriteMap(const ErrorMap& map, const std::filesystem::path& path) {
@@ -196,6 +258,7 @@ void WriteMap(const ErrorMap& map, const std::filesystem::path& path) {
     text += FunctionText(ErrorName(error), map.origin().sources[error], function);
   }
   if (map.StatesUncertainty()) text += CovarianceText(map);
+  if (map.state()) text += StateText(*map.state(), map.cov_pp().rows());
   WriteWhole(text, path);
 }
 
@@ -216,8 +279,16 @@ ErrorMap ReadMap(const std::filesystem::path& path) {
     const ErrorMap bare(origin, model, {});
     cov = ReadCovariance(root.Child("covariance"), bare.ParameterNames());
   }
+  std::optional<MapState> state;
+  if (root.Has("state")) {
+    if (cov.size() == 0) throw root.Error("state", "needs [covariance]; fuse the runs again");
+    state = ReadState(root.Child("state"), cov);
+  }
   root.RefuseUnknown();
-  return {std::move(origin), std::move(model), std::move(cov)};
+  if (!state) return {std::move(origin), std::move(model), std::move(cov)};
+  return Located(root, "state", [&] {
+    return ErrorMap(std::move(origin), std::move(model), std::move(cov), std::move(state));
+  });
 }
 
 }  // namespace abbe::map

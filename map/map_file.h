@@ -25,6 +25,17 @@
 //   [covariance]                                # absent: a map without uncertainty
 //   names = ["EXX.c0", ...]
 //   rows = [...]                                # the lower triangle, row after row, SI
+//   [state]                                     # of a map that is kept true (map_state.h), or absent
+//   time = "2026-11-21T09:00:00Z"
+//   walk = [...]                                # 8 sizes of [population] after a day, SI, or absent
+//   names = ["response table EXX.linear", "probe_gain.a", ...]
+//   values = [...]
+//   rows = [...]                                # rows of the covariance below those of the map
+//   [[state.sensor]]
+//   name = "table"
+//   lag_s = 1800.0
+//   temperature_c = 21.5
+//   lagged_c = 21.3
 //
 // All numbers are SI and in the shortest form that reads back the same, so a map is the same bit
 // for bit after writing and reading.

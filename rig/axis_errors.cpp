@@ -66,8 +66,36 @@ Motions AxisErrors::At(double position) const {
     errors[motion] =
         functions_[motion].At(window) - offsets_[motion] - slopes_[motion] * (place - low_);
   }
+  if (high_ > low_) {
+    const double s = (place - low_) / (high_ - low_);
+    errors += bends_ * Eigen::Vector3d(s, s * s, s * s * s);
+  }
   errors[axis_] *= sense_;
   return errors;
+}
+
+void AxisErrors::Add(const AxisErrors& more, double share) {
+  for (int motion = 0; motion < kMotions; ++motion) {
+    functions_[motion].Add(more.functions_[motion], share);
+  }
+  offsets_ += share * more.offsets_;
+  slopes_ += share * more.slopes_;
+  scale_ += share * more.scale_;
+}
+
+void AxisErrors::Warm(const ErrorPopulation& by_kelvin, std::uint64_t seed, double warmer) {
+  const random::CounterRandom random(seed, kResponseStream);
+  for (int motion = 0; motion < kMotions; ++motion) {
+    const auto index = static_cast<std::uint64_t>(12 * axis_ + 2 * motion);
+    const double size = DeviationOf(by_kelvin, axis_, motion);
+    const double first = warmer * random.Normal(index), second = warmer * random.Normal(index + 1);
+    if (IsStraightness(axis_, motion)) {
+      bends_.row(motion) += size * Eigen::RowVector3d(-first - 0.9 * second, first, second);
+    } else {
+      const double growth = motion == axis_ ? by_kelvin.scale * (high_ - low_) : size;
+      bends_.row(motion) += Eigen::RowVector3d(growth * first, size * second, 0.0);
+    }
+  }
 }
 
 Squareness Squareness::Draw(const RigSettings& settings, std::uint64_t seed) {

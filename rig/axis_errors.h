@@ -44,6 +44,11 @@ class AxisErrors {
   Motions At(double position) const;
   double scale() const { return scale_; }
 
+  // Adds the errors of another axis of the same travel and correlation length.
+  void Add(const AxisErrors& more, double share);
+  // Adds what each kelvin does (ageing.h); gains by `seed`.
+  void Warm(const ErrorPopulation& by_kelvin, std::uint64_t seed, double warmer);
+
  private:
   int axis_;
   double sense_;
@@ -53,6 +58,8 @@ class AxisErrors {
   std::vector<GaussianProcess> functions_;
   Motions offsets_ = Motions::Zero();  // value of the processes at the reference
   Motions slopes_ = Motions::Zero();   // subtracted
+  // Of s, s^2 and s^3, s from 0 to 1 along the travel.
+  Eigen::Matrix<double, kMotions, 3> bends_ = Eigen::Matrix<double, kMotions, 3>::Zero();
 };
 
 struct Squareness {

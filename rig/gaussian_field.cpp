@@ -54,8 +54,8 @@ GaussianProcess::GaussianProcess(const random::CounterRandom& random, double sd,
     : random_(random),
       amplitude_(sd * UnitAmplitude()),
       length_(length),
-      first_(NodeAt(low, length) - BellWindow::kReach) {
-  const std::int64_t end = NodeAt(high, length) + BellWindow::kReach + 1;
+      first_(NodeAt(low, length) - BellWindow::kReach - 1) {
+  const std::int64_t end = NodeAt(high, length) + BellWindow::kReach + 2;
   for (std::int64_t node = first_; node < end; ++node) {
     weights_.push_back(random_.Normal(node));
   }
@@ -73,6 +73,17 @@ double GaussianProcess::At(const BellWindow& window) const {
     }
   }
   return amplitude_ * sum;
+}
+
+void GaussianProcess::Add(const GaussianProcess& more, double share) {
+  if (more.amplitude_ == 0.0) return;
+  if (amplitude_ == 0.0) {  // none so far
+    amplitude_ = more.amplitude_;
+    std::fill(weights_.begin(), weights_.end(), 0.0);
+  }
+  for (std::size_t i = 0; i < weights_.size(); ++i) {
+    weights_[i] += share * more.amplitude_ / amplitude_ * more.weights_[i];
+  }
 }
 
 GaussianSurface::GaussianSurface(const random::CounterRandom& random, double sd, double length,

@@ -39,6 +39,8 @@ class GaussianProcess {
   double operator()(double coordinate) const { return At(BellWindow(coordinate, length_)); }
   // For several processes of one length at one coordinate.
   double At(const BellWindow& window) const;
+  // Adds `share` of another process of the same length, for the coordinates that both keep.
+  void Add(const GaussianProcess& more, double share);
 
  private:
   random::CounterRandom random_;

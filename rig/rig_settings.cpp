@@ -182,6 +182,25 @@ void ReadOwn(const Table& own, RigSettings& rig) {
   own.RefuseUnknown();
 }
 
+ErrorPopulation ReadSizes(const Table& table) {
+  const auto size = [&](const char* key) {
+    return table.Quantity(key, {.fallback = 0.0, .at_least = 0.0});
+  };
+  return {size("positioning_um"), size("straightness_um"), size("roll_urad"), size("pitch_urad"),
+          size("yaw_urad"),       size("squareness_urad"), size("scale_ppm"), 0.0};
+}
+
+AgeingSettings ReadAgeing(const Table& table) {
+  const auto number = [&](const char* key) {
+    return table.Quantity(key, {.fallback = 0.0, .at_least = 0.0});
+  };
+  AgeingSettings ageing{ReadSizes(table), ReadSizes(table.Child("by_kelvin")), number("lag_s"),
+                        number("swing_c"), number("wander_c")};
+  table.Child("by_kelvin").RefuseUnknown();
+  table.RefuseUnknown();
+  return ageing;
+}
+
 }  // namespace
 
 RigSettings ReadRigSettings(const Table& root) {
@@ -195,6 +214,7 @@ RigSettings ReadRigSettings(const Table& root) {
   }
   ReadNoise(root.Child("target"), root.Child("noise"), rig);
   ReadScrews(root.Child("align").Child("screw"), rig);
+  rig.ageing = ReadAgeing(root.Child("rig").Child("ageing"));
   ReadOwn(root.Child("rig"), rig);
   return rig;
 }

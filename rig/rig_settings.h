@@ -8,7 +8,8 @@
 // (100), gap_setting_um (10), electrode_mm (0: no tilt response), temperature_c (20),
 // temperature_drift_c (0.1), cap_um (1: lag of the ball in its cap at high feed), cap_feed_mm_min
 // (10: the feed of half of that), cap_force_n (8.5: the force for which cap_um holds),
-// encoder_counts (4194304 a turn). InputError with file, line and key; keys of shared tables that
+// encoder_counts (4194304 a turn). [rig.ageing]: the keys of [population] for what a day adds,
+// [rig.ageing.by_kelvin] those for each kelvin; lag_s, swing_c, wander_c; all 0 unless stated. InputError with file, line and key; keys of shared tables that
 // the rig does not use are not checked.
 #pragma once
 
@@ -36,6 +37,13 @@ struct AxisTravel {
 struct ErrorPopulation {
   double positioning, straightness, roll, pitch, yaw, squareness, scale;
   double smoothness;  // m, correlation length
+};
+
+// How the machine changes over days: ageing.h. Without the table it does not.
+struct AgeingSettings {
+  ErrorPopulation walk;                         // after a day
+  ErrorPopulation by_kelvin;                    // scale: growth; the others over the travel
+  double lag = 0.0, swing = 0.0, wander = 0.0;  // s, K, K
 };
 
 struct ProbePlace {
@@ -90,6 +98,8 @@ struct RigSettings {
 
   double cap, cap_feed, cap_force;  // m, m/s, N
   double encoder_counts;            // a turn
+
+  AgeingSettings ageing = {};
 
   bool CarriesTarget(int axis) const;
   // Direction of the tool in the workpiece as the controller's position increases: +1 or -1.

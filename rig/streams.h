@@ -14,6 +14,8 @@ enum Stream : std::uint64_t {
   kInstallationStream = 0x201,    // index: 8 * axis + three angles, three offsets, two gap settings
   kTargetStream = 0x300,          // index: three angles, three squarenesses
   kFaceStream = 0x310,            // + face: -x +x -y +y -z +z
+  kRoomStream = 0x130,            // index: hour
+  kResponseStream = 0x131,        // index: 12 * axis + 2 * motion, and 36 + squareness
   kLinkageStream = 0x400,         // + pivot, and one for the links, the ball and the base
   kHiddenStream = 0x500,          // the beginning of the streams of hidden effects
   kHiddenFormStream = 0x510,      // + face, as kFaceStream

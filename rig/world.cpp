@@ -5,6 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "random/counter_random.h"
+#include "rig/streams.h"
+
 namespace abbe::rig {
 namespace {
 
@@ -45,6 +48,25 @@ World::World(const RigSettings& settings, std::uint64_t seed, HiddenEffects hidd
   settings_.electrode = parts_.electrode;
   for (int axis = 0; axis < kAxes; ++axis) errors_.emplace_back(settings_, axis, seed);
   for (int axis = 0; axis < kAxes; ++axis) heads_.push_back(Install(axis));
+}
+
+void World::Wander(const RigSettings& population, std::uint64_t seed, double share) {
+  for (int axis = 0; axis < kAxes; ++axis) {
+    errors_[axis].Add(AxisErrors(population, axis, seed), share);
+  }
+  const Squareness more = Squareness::Draw(population, seed);
+  parts_.squareness.a0z += share * more.a0z;
+  parts_.squareness.b0z += share * more.b0z;
+  parts_.squareness.c0y += share * more.c0y;
+}
+
+void World::Warm(const ErrorPopulation& by_kelvin, double warmer) {
+  for (int axis = 0; axis < kAxes; ++axis) errors_[axis].Warm(by_kelvin, seed_, warmer);
+  const random::CounterRandom random(seed_, kResponseStream);
+  const double size = by_kelvin.squareness * warmer;
+  parts_.squareness.a0z += size * random.Normal(36);
+  parts_.squareness.b0z += size * random.Normal(37);
+  parts_.squareness.c0y += size * random.Normal(38);
 }
 
 Eigen::Vector3d World::CornerOf(int axis) const {

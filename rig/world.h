@@ -59,6 +59,11 @@ class World {
   const TargetMounting& target() const { return mounting_; }
   const HeadInstallation& InstallationOf(int axis) const { return heads_[axis].installation; }
 
+  // Over days (ageing.h): adds the errors of another machine of `population`, drawn by `seed`; and
+  // what it does when it is warmer.
+  void Wander(const RigSettings& population, std::uint64_t seed, double share);
+  void Warm(const ErrorPopulation& by_kelvin, double warmer);
+
   Displacement PoseOfTarget(const Eigen::Vector3d& command) const;
   Displacement PoseOfHead(const Eigen::Vector3d& command) const;
 

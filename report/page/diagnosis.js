@@ -254,6 +254,7 @@ function gainTable(result) {
 
 registerSection({
   command: 'diagnose',
+  weight: 1,
   title: () => 'Diagnosis: what the simulation lacks',
   short: () => 'Diagnosis',
   summary: diagnosisSummary,

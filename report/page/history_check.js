@@ -47,6 +47,7 @@ function checkSummary(result) {
 registerSection({
   command: 'history',
   kind: 'check',
+  weight: 3,
   title: (result) => `Limits: ${result.of}`,
   short: () => 'Limits',
   summary: checkSummary,

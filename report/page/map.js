@@ -119,6 +119,7 @@ const millimetres = (list) => list?.map((at) => positionText(at * 1e3)).join(', 
 
 registerSection({
   command: 'fuse',
+  weight: 2,
   title: () => 'Error map',
   short: () => 'Error map',
   summary: mapSummary,

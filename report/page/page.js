@@ -1,9 +1,9 @@
 // Reads the results in the page, builds the sections and the table of contents, draws the figures.
 
-// Results in the order of the kinds, then of axis, start and file.
+// What matters most first, the others in the order of the kinds, then of axis, start and file.
 function orderedSections(results) {
   const order = (kind) => (sectionKinds.indexOf(kind) + 1) || sectionKinds.length + 1;
-  const key = ({kind, result, file}) => [String(order(kind)).padStart(3, '0'), result.axis ?? '',
+  const key = ({kind, result, file}) => [kind.weight ?? 9, String(order(kind)).padStart(3, '0'), result.axis ?? '',
                                          result.started ?? '', file]
                                             .join('\n');
   return results.map(({file, result}) => ({file, result, kind: sectionKindOf(result)}))
@@ -39,7 +39,8 @@ function contentsList(sections) {
   const repeated = (text) =>
       sections.filter(({kind, result}) => kind.short(result) === text).length > 1;
   return element(
-      'ol', {}, entry('overview', 'Overview'), sections.map(({id, kind, result, file}) => {
+      'ol', {}, document.getElementById('one-minute') ? entry('one-minute', 'In a minute') : null,
+      entry('overview', 'Overview'), sections.map(({id, kind, result, file}) => {
         const text = kind.short(result);
         return entry(id, repeated(text) ? `${text}, ${file}` : text);
       }));
@@ -104,11 +105,12 @@ async function showReport() {
   if (content.live) {
     startLive(content);
   } else {
+    document.getElementById('content').append(
+        ...[oneMinuteSection(sections), overviewSection(sections, notes)].filter(Boolean),
+        ...sections.map(safeSection));
     contents.append(
         element('p', {class: 'contents-title', 'aria-hidden': 'true'}, 'Contents'),
         contentsList(sections));
-    document.getElementById('content').append(
-        overviewSection(sections, notes), ...sections.map(safeSection));
   }
   connectThemeButton(document.getElementById('theme'), redrawFigures);
   connectPrinting();

@@ -4,6 +4,7 @@
 //    summary(result),                     one sentence for a machinist
 //    facts(result),                       [[name, text]] in addition to the common ones
 //    body(result),                        elements: tables and figure groups
+//    weight?,                             place among the sections: 1 to 3, all others after them
 //    overview?: {title, columns, row(result) or rows(result), onTop?}}
 // and is registered with registerSection in a file of its own.
 

@@ -54,6 +54,13 @@ class FuseTest(ProgramCase):
         self.refuse(*runs, "--machine", MACHINE, "-o", self.path / "map.toml",
                     saying=["cube_2.csv", 'mounting.ball is "2", and "1" in', "one ball at a time"])
 
+    def test_a_squareness_without_a_prior_is_refused_with_its_line(self):
+        machine = self.path / "square.toml"
+        machine.write_text(pathlib.Path(MACHINE).read_text().replace("squareness_urad = 30.0", "squareness_urad = 0.0", 1))
+        line = machine.read_text().splitlines().index("squareness_urad = 0.0") + 1
+        sweep = self.rig_record("X.csv", "--axis", "X", "--rate", 20)
+        self.refuse(sweep, "--machine", machine, saying=[f"square.toml:{line}: population.squareness_urad", "above 0"])
+
     def test_a_campaign_becomes_a_map(self):
         runs = self.record()
         map_file = self.path / "map.toml"

@@ -152,6 +152,19 @@ class Kept(HistoryCase):
         self.assertIn(f"store: {home}/abbe/history.db", run.stdout)
         self.assertTrue((home / "abbe/history.db").exists())
 
+    def test_a_truncated_recording_is_called_so(self):
+        whole = self.rig_record("sweep_X.h5", "--axis", "X", "--rate", 20)
+        cut = self.path / "cut.h5"
+        cut.write_bytes(whole.read_bytes()[:20000])
+        self.refused("add", cut, "--machine", MACHINE, saying=["cut.h5", "truncated", "use an intact copy"])
+        folder = self.folder("measured")
+        for path in (whole, cut):
+            path.rename(folder / path.name)
+        run = self.run_program(folder, "--machine", MACHINE, "--store", self.store, command="history add")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("left out: " + str(folder / "cut.h5"), run.stderr)
+        self.assertIn("1 recordings", run.stdout)
+
     def test_bad_campaigns_have_one_clear_line(self):
         self.refused("add", self.folder("two", sweep(0, 1e-6), sweep(0, 1e-6, machine="lathe")),
                      saying=["others are of", "add them one by one"])
@@ -251,6 +264,9 @@ class Judged(HistoryCase):
         self.assertFalse(changed["circularity_um"]["significant"])
         self.assertAlmostEqual(changed["straightness_um"]["U95"], 2 * 2**0.5 * 0.1)
         self.assertEqual(changed["curve_um"]["at_mm"], 10.0)
+        # A chance that underflows is not printed as 0.
+        self.history("add", self.folder("c", circle(2, 4000.0, 0.2)))
+        self.assertRegex(self.history("compare", 1, 3), r"circularity.* < 1e-300 ")
 
     def test_check_has_three_verdicts(self):
         folder = self.folder("a", sweep(0, 2e-6), circle(0, 4.0, 0.2))

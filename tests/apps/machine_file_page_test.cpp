@@ -29,6 +29,8 @@ std::string GeneralName(const std::string& path) {
   name = std::regex_replace(name, std::regex("^limits\\.\\[\\]\\."), "limits.OBJECT.");
   name = std::regex_replace(name, std::regex("^limits\\.(?!OBJECT)\\w+?((_u95)?_[a-z]+)$"),
                             "limits.QUANTITY$1");
+  name = std::regex_replace(name, std::regex("^drift\\.temperature\\.\\[\\]"),
+                            "drift.temperature.NAME");
   return std::regex_replace(name, std::regex("\\.\\[\\]"), "");
 }
 
@@ -55,6 +57,8 @@ constexpr char kMore[] = R"(
 EYX = { straightness_um = 3 }
 EAX = { range_urad = 30 }
 C0Y = { urad = 30 }
+[drift.temperature.table]
+scale_ppm = 12
 [devices.more]
 transport = "modbus-rtu"
 serial = { device = "/dev/ttyUSB0" }

@@ -57,6 +57,59 @@ TEST(MapFile, KeepsTheCountTheLimitsAndTheGauge) {
   EXPECT_EQ(RandomMap(1).Limits()[1].last, 0.06 + machine::kBeyondTravel);
 }
 
+// A map with a response, an instrument, a sensor and a walk.
+ErrorMap TrackedMap() {
+  const ErrorMap map = RandomMap(1);
+  const Eigen::Index before = map.cov_pp().rows();
+  MapState state{.time = 1795248000.0,
+                 .walk = machine::Population{1e-7, 5e-8, 1e-6, 1e-6, 1e-6, 1e-6, 1e-6, 0.015},
+                 .sensors = {{"table", 1800.0, 21.5, 21.25}},
+                 .names = {"response table EXX.linear", "probe_gain.a"},
+                 .values = Eigen::Vector2d(7e-7, 1.0003),
+                 .covariance = Eigen::MatrixXd::Zero(before + 2, before + 2)};
+  state.covariance.topLeftCorner(before, before) = map.cov_pp();
+  state.covariance.bottomRightCorner(2, 2) << 4e-14, 1e-12, 1e-12, 1e-8;
+  state.covariance(before, 3) = state.covariance(3, before) = 1e-17;
+  return {map.origin(), map.model(), map.cov_pp(), state};
+}
+
+TEST(MapFile, KeepsTheStateBitForBit) {
+  const Folder folder;
+  const ErrorMap map = TrackedMap();
+  WriteMap(map, folder / "map.toml");
+  const ErrorMap read = ReadMap(folder / "map.toml");
+  ExpectSame(map, read);
+  ASSERT_TRUE(read.state());
+  EXPECT_EQ(read.state()->time, map.state()->time);
+  EXPECT_EQ(read.state()->names, map.state()->names);
+  EXPECT_EQ(read.state()->values, map.state()->values);
+  EXPECT_EQ(read.state()->covariance, map.state()->covariance);
+  EXPECT_EQ(read.state()->sensors.front().lagged, 21.25);
+  EXPECT_EQ(read.state()->walk->smoothness, 0.015);
+  WriteMap(read, folder / "again.toml");
+  EXPECT_EQ(ReadWhole(folder / "map.toml"), ReadWhole(folder / "again.toml"));
+  EXPECT_FALSE(RandomMap(1).state());
+}
+
+TEST(MapFile, RefusesAStateThatIsNone) {
+  const Folder folder;
+  WriteMap(TrackedMap(), folder / "map.toml");
+  const std::string text = ReadWhole(folder / "map.toml");
+  const auto refusal = [&](const std::string& from, const std::string& to) {
+    std::string broken = text;
+    const auto at = broken.rfind(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    WriteWhole(broken.replace(at, from.size(), to), folder / "bad.toml");
+    return MessageOf<InputError>([&] { ReadMap(folder / "bad.toml"); });
+  };
+  ExpectHas(refusal("time = \"2026", "time = \"never"), "time");
+  ExpectHas(refusal("names = [\"response table EXX.linear\", ", "names = ["), "values");
+  ExpectHas(refusal("rows = [\n", "rows = [ 1.0,\n"), "state.rows");
+  ExpectHas(refusal("lag_s = 1800.0", "lag_s = -1.0"), "lag_s");
+  ExpectHas(refusal("walk = [", "walk = [ 1.0, "), "walk");
+  ExpectHas(refusal("1e-08,\n]", "-1e-08,\n]"), "variance");
+}
+
 TEST(MapFile, AMapWithoutUncertaintyStaysOne) {
   const Folder folder;
   const ErrorMap full = RandomMap(1);

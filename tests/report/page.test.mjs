@@ -78,17 +78,17 @@ test(
       const titles = await page.locator('main section.result > h2').allTextContents();
       assert.equal(titles.length, sample_names.length);
       assert.deepEqual(titles, [
+        'Diagnosis: what the simulation lacks', 'Diagnosis: what the simulation lacks', 'Error map',
+        'Limits: <img src=x onerror="window.escaped = true">',
         'X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning', 'Circular test, XY plane',
-        'Square path', 'Calibration of the linkage', 'Error map',
+        'Square path', 'Calibration of the linkage',
         'Performance simulation: circle', 'Corrected program: part_corrected.ngc', 'Export: isg',
-        'Diagnosis: what the simulation lacks', 'Diagnosis: what the simulation lacks',
-        'Plan: what these runs would show',
-        'Limits: <img src=x onerror="window.escaped = true">', 'Trend: EYX and C0Y',
+        'Plan: what these runs would show', 'Trend: EYX and C0Y',
         'What changed: campaign 1 to 5',
         'rig-compare \u00b7 X'
       ]);
       assert.equal(await page.title(), 'Geometric errors of demo-mill');
-      assert.equal(await page.locator('nav a').count(), sample_names.length + 1);
+      assert.equal(await page.locator('nav a').count(), sample_names.length + 2);
       await page.screenshot({path: join(screenshots, 'desktop_light.png'), fullPage: true});
     }));
 
@@ -143,11 +143,11 @@ test(
     () => withPage({}, async (page) => {
       // The bow of X in Z: 1.5 um by each line, u = 0.035 um, so U95 = 0.070 um gives three
       // decimals.
-      const row = page.locator('#result-2 table.cards tr', {hasText: 'EZX'});
+      const row = page.locator('#result-6 table.cards tr', {hasText: 'EZX'});
       const text = await row.textContent();
       assert.equal(text.split('1.500\u00b10.070').length - 1, 3, text);
       assert.equal(
-          await page.locator('#result-2 table.cards tr', {hasText: 'EAX'})
+          await page.locator('#result-6 table.cards tr', {hasText: 'EAX'})
               .locator('td')
               .nth(-1)
               .textContent(),
@@ -157,7 +157,7 @@ test(
 test(
     'the minimum zone is as wide as the bow is high',
     () => withPage({}, async (page) => {
-      const plot = page.locator('#result-2 .plot[aria-label*="EZX"][aria-label*="minimum zone"]');
+      const plot = page.locator('#result-6 .plot[aria-label*="EZX"][aria-label*="minimum zone"]');
       const zone =
           await plot.evaluate((div) => div.data.find((trace) => trace.name === 'Minimum zone'));
       const width = Math.abs(zone.y[0] - zone.y.at(-1));
@@ -167,7 +167,7 @@ test(
 test(
     'the line through the end points meets the ends of the curve',
     () => withPage({}, async (page) => {
-      const plot = page.locator('#result-2 .plot[aria-label*="EYX"][aria-label*="minimum zone"]');
+      const plot = page.locator('#result-6 .plot[aria-label*="EYX"][aria-label*="minimum zone"]');
       const [ends, measured] = await plot.evaluate(
           (div) => ['End points', 'measured'].map(
               (name) => div.data.find((trace) => trace.name === name).y));
@@ -422,6 +422,52 @@ test(
     }));
 
 test(
+    'the first screen says pass or fail, the largest errors, what to do, what to measure',
+    () => withPage({}, async (page) => {
+      const minute = page.locator('#one-minute');
+      assert.match(
+          await minute.locator('.minute-verdict').textContent(),
+          /fail\s*1 of 3 limits: XY circularity/);
+      const [errors, todo, next] = await minute.locator('.minute-part').all();
+      assert.equal(await errors.locator('li').count(), 3);
+      // What each does over the longest travel decides: angles times it, lengths as they are.
+      const effects = await page.evaluate(() => {
+        const {map} = JSON.parse(document.getElementById('results').textContent)
+                          .results.find(({result}) => result.command === 'fuse').result;
+        const spans = ['x', 'y', 'z'].map((axis) => map.grid[axis].at(-1) - map.grid[axis][0]);
+        return Object.entries(map.errors)
+            .map(([name, {unit, value}]) => [name, Math.max(...[value].flat().map(Math.abs)) *
+                                                       (unit === 'rad' ? Math.max(...spans) : 1)])
+            .sort((one, other) => other[1] - one[1]);
+      });
+      assert.deepEqual(
+          await errors.locator('a').allTextContents(), effects.slice(0, 3).map(([name]) => name));
+      assert.match(await errors.textContent(), /EXX positioning of X 6\.0\u00b11\.2/);
+      assert.match(await todo.textContent(), /What to do.+:/);
+      assert.match(await next.textContent(), /What to measure next.*volumetric.*not measured yet/);
+      // On the first screen, whole.
+      await page.evaluate(() => window.scrollTo(0, 0));
+      const box = await minute.boundingBox();
+      assert.ok(box.y + box.height <= DESKTOP.height, JSON.stringify(box));
+      for (const link of await minute.locator('a').all()) {
+        const target = (await link.getAttribute('href')).slice(1);
+        assert.equal(await page.locator(`section[id="${target}"]`).count(), 1, target);
+      }
+      await page.screenshot({path: join(screenshots, 'one_minute_wide.png')});
+    }));
+
+for (const [name, options] of [['phone', {viewport: PHONE, hasTouch: true, isMobile: true}], ['dark', {colorScheme: 'dark'}]]) {
+  test(`the first screen on a ${name} page`, () => withPage(options, async (page) => {
+         await page.evaluate(() => window.scrollTo(0, 0));
+         assert.ok(await page.locator('#one-minute .minute-verdict').isVisible());
+         assert.ok(await overflow(page) <= 0);
+         const verdict = await page.locator('#one-minute .minute-verdict').boundingBox();
+         assert.ok(verdict.y + verdict.height < 0.6 * page.viewportSize().height, JSON.stringify(verdict));
+         await page.screenshot({path: join(screenshots, `one_minute_${name}.png`)});
+       }));
+}
+
+test(
     'pass and fail stand on top of the page, what fails first',
     () => withPage({}, async (page) => {
       const first = page.locator('#overview table').first();
@@ -497,7 +543,7 @@ test(
 test(
     'the values of a figure can be read as a table',
     () => withPage({}, async (page) => {
-      const first = page.locator('#result-2 figure').first();
+      const first = page.locator('#result-6 figure').first();
       await first.locator('summary').click();
       await first.locator('tbody tr').first().waitFor();
       assert.equal(await first.locator('tbody tr').count(), 61);
@@ -570,8 +616,8 @@ test(
       }
       assert.equal(reached.size, expected);
 
-      const forward = page.locator('#result-2').getByRole('button', {name: 'Forward'}).first();
-      const plot = page.locator('#result-2 .plot').first();
+      const forward = page.locator('#result-6').getByRole('button', {name: 'Forward'}).first();
+      const plot = page.locator('#result-6 .plot').first();
       const traces = () => plot.evaluate((div) => div.data.length);
       const few = await traces();
       await forward.focus();
