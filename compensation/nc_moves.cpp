@@ -1,0 +1,372 @@
+#include "compensation/nc_moves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "compensation/nc_cycles.h"
+
+namespace abbe::compensation {
+namespace {
+
+using Eigen::Vector3d;
+
+bool ActsAfterTheMove(const NcWord& word) {
+  if (word.letter != 'M') return false;
+  const int code = CodeTimes10(word);
+  return code == 0 || code == 10 || code == 20 || code == 300 || code == 600;
+}
+
+bool IsLineComment(const NcWord& word) { return word.text.starts_with(';'); }
+
+bool IsPosition(char letter) { return letter >= 'X' && letter <= 'Z'; }
+
+// Words that the corrected move replaces.
+bool IsReplaced(const NcWord& word, bool with_values) {
+  if (IsPosition(word.letter) || (word.letter >= 'I' && word.letter <= 'K')) return true;
+  if (word.letter == 'R' || word.letter == '@' || word.letter == '^') return true;
+  if (with_values && (word.letter == 'P' || word.letter == 'Q' || word.letter == 'L')) return true;
+  if (word.letter != 'G') return false;
+  const int code = CodeTimes10(word);
+  return code == 0 || code == 10 || code == 20 || code == 30 || code == 800 || code == 530 ||
+         code == 280 || code == 300 || IsCycle(code);
+}
+
+bool IsArc(int motion) { return motion == 20 || motion == 30; }
+
+}  // namespace
+
+void NcMoves::MustReach(const Vector3d& wanted) const {
+  static_cast<void>(corrector_.Command(state_.wanted.ToMachine(wanted)));
+}
+
+void NcMoves::Assume(bool needs_plane) {
+  const auto assume = [this](bool& is_assumed, NcGroup group, const char* what) {
+    if (is_assumed || state_.words.contains(group)) return;
+    counts_.assumed.push_back({what, line_number_});
+    is_assumed = true;
+  };
+  assume(assumed_.units, NcGroup::kUnits, "millimetres (G21)");
+  assume(assumed_.distances, NcGroup::kDistance, "absolute positions (G90)");
+  if (needs_plane) assume(assumed_.plane, NcGroup::kPlane, "arcs in XY (G17)");
+}
+
+Vector3d NcMoves::Target(const NcMeaning& meaning) {
+  const double unit = state_.Unit();
+  const auto length = [&](int k) {
+    return unit * *meaning.axes[k] / (k == 0 && state_.is_diameter ? 2.0 : 1.0);
+  };
+  Vector3d target = state_.place;
+  if (meaning.is_g53) {
+    Vector3d machine = state_.wanted.ToMachine(target);
+    for (int k = 0; k < 3; ++k) {
+      if (meaning.axes[k]) machine[k] = length(k);
+    }
+    return state_.wanted.ToProgram(machine);
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (!meaning.axes[k]) continue;
+    target[k] = length(k) + (state_.is_relative ? state_.place[k] : 0.0);
+  }
+  if (!meaning.polar_radius && !meaning.polar_angle) return target;
+  if (!state_.is_known[0] || !state_.is_known[1]) {
+    Refuse("a polar position (@ ^) while the place in X and Y is unknown; begin with G0 X and Y");
+  }
+  if (state_.plane != 17) Refuse("a polar position (@ ^) outside the plane XY (G17)");
+  const double angle = std::atan2(state_.place.y(), state_.place.x());
+  const double radius = std::hypot(state_.place.x(), state_.place.y());
+  if (!meaning.polar_angle && radius == 0.0) Refuse("@ without ^ from the origin");
+  constexpr double kDegrees = std::numbers::pi / 180.0;
+  const double to_radius = meaning.polar_radius ? unit * *meaning.polar_radius : 0.0;
+  const double to_angle = meaning.polar_angle ? kDegrees * *meaning.polar_angle : 0.0;
+  const bool adds = state_.is_relative;
+  const double r = meaning.polar_radius ? to_radius + (adds ? radius : 0.0) : radius;
+  const double a = meaning.polar_angle ? to_angle + (adds ? angle : 0.0) : angle;
+  target.head<2>() = Eigen::Vector2d(r * std::cos(a), r * std::sin(a));
+  return target;
+}
+
+Arc NcMoves::ArcOf(const NcMeaning& meaning) const {
+  const double unit = state_.Unit();
+  Arc arc{state_.plane, state_.motion == 20, state_.place, {}};
+  const auto [u, v, w] = AxesOfPlane(state_.plane);
+  if (meaning.centre[w]) {
+    Refuse(fmt::format("{} does not belong to an arc in G{}", "IJK"[w], state_.plane));
+  }
+  const bool has_centre = meaning.centre[u] || meaning.centre[v];
+  if (has_centre == meaning.radius.has_value()) Refuse("an arc takes either I, J, K or R");
+  if (meaning.p) {
+    arc.turns = *meaning.p;
+    if (!(arc.turns >= 1.0 && arc.turns < kMostLines) || arc.turns != std::round(arc.turns)) {
+      Refuse(fmt::format("P {:.9g} is no number of turns of an arc", arc.turns));
+    }
+  }
+  if (meaning.radius) {
+    arc.radius = unit * *meaning.radius;
+    return arc;
+  }
+  for (const int k : {u, v}) {
+    const auto& given = meaning.centre[k];
+    if (state_.centre_is_absolute && !given) {
+      Refuse("an arc in G90.1 takes both coordinates of its centre");
+    }
+    if (given) arc.centre[k] = unit * *given + (state_.centre_is_absolute ? 0.0 : state_.place[k]);
+  }
+  return arc;
+}
+
+// Ends and extremes are checked before a path is divided: a wrong unit would make a thousand times
+// as many points.
+void NcMoves::Divide(const NcMeaning& meaning, const Vector3d& target) {
+  points_.clear();
+  if (state_.motion == 0) {
+    points_.push_back(target);
+  } else if (state_.motion == 10) {
+    if (!((target - state_.place).norm() <= options_.limits.length)) MustReach(target);
+    AddLine(state_.place, target, options_.limits, line_number_, points_);
+  } else {
+    const Arc arc = ArcOf(meaning);
+    for (const Vector3d& point : Extremes(state_.place, target, arc, line_number_)) {
+      MustReach(point);
+    }
+    AddArc(state_.place, target, arc, options_.limits, line_number_, points_);
+  }
+}
+
+void NcMoves::WriteWords(const NcBlock& block) {
+  const bool has_values = IsArc(state_.motion) || IsCycle(state_.motion);
+  for (const NcWord& word : block.words) {
+    if (IsReplaced(word, has_values) || ActsAfterTheMove(word) || IsLineComment(word)) continue;
+    writer_.Word(TextOf(word, line_number_));
+  }
+}
+
+void NcMoves::WriteStops(const NcBlock& block) {
+  for (const NcWord& word : block.words) {
+    if (ActsAfterTheMove(word) || IsLineComment(word)) writer_.Word(word.text);
+  }
+  writer_.EndLine();
+}
+
+// All but the end of the last line.
+void NcMoves::WritePath(int motion) {
+  writer_.Motion(motion);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (i > 0) writer_.EndLine();
+    writer_.Position(state_.wanted.ToMachine(points_[i]));
+  }
+}
+
+void NcMoves::CopyUncorrected(const NcBlock& block, bool is_rapid, const char* why) {
+  const auto& known = counts_.uncorrected;
+  const bool is_new = std::none_of(known.begin(), known.end(),
+                                   [&](const NcAssumption& one) { return one.what == why; });
+  if (is_new) counts_.uncorrected.push_back({why, line_number_});
+  ++counts_.copied_moves;
+  const bool has_motion = std::any_of(block.words.begin(), block.words.end(), [](const auto& word) {
+    return word.letter == 'G' && CodeTimes10(word) == 0;
+  });
+  bool needs_motion = is_rapid && !has_motion;
+  for (const NcWord& word : block.words) {
+    if (word.letter != 'N' && needs_motion) {
+      writer_.Motion(0);
+      needs_motion = false;
+    }
+    writer_.Word(TextOf(word, line_number_));
+  }
+  writer_.EndLine();
+}
+
+// A rapid to some axes while the others are not known: it is copied, and makes its own axes known.
+void NcMoves::Approach(const NcBlock& block, const NcMeaning& meaning) {
+  const NcOffsets& offsets = state_.wanted;
+  const Vector3d target = Target(meaning);
+  const Vector3d machine = offsets.ToMachine(target);
+  Vector3d at = writer_.at();
+  for (int k = 0; k < 3; ++k) {
+    if (!meaning.axes[k]) continue;
+    state_.place[k] = target[k];
+    state_.is_known[k] = true;
+    at[k] = machine[k];
+  }
+  CopyUncorrected(block, true, "G0 before the place of X, Y and Z is known");
+  writer_.StandAt(at);
+  writer_.InForce(0);
+}
+
+NcCycle NcMoves::CycleOf(const NcMeaning& meaning) {
+  const auto [u, v, w] = AxesOfPlane(state_.plane);
+  NcCycle cycle;
+  cycle.code = state_.motion / 10;
+  cycle.plane = state_.plane;
+  cycle.is_relative = state_.is_relative;
+  cycle.retracts_to_r = state_.retracts_to_r;
+  const auto keep = [](const NcMeaning::Value& given, double& kept) {
+    if (given) kept = *given;
+    return kept;
+  };
+  const double unit = state_.Unit(), half = state_.is_diameter ? 0.5 : 1.0;
+  const auto factor = [&](int k) { return k == 0 ? half : 1.0; };
+  cycle.r = keep(meaning.radius, state_.cycle_r);
+  cycle.bottom = factor(w) * keep(meaning.axes[w], state_.cycle_bottom);
+  cycle.peck = keep(meaning.q, state_.cycle_peck);
+  cycle.dwell = keep(meaning.p, state_.cycle_dwell);
+  if (std::isnan(cycle.r)) Refuse("the cycle has no R");
+  if (std::isnan(cycle.bottom)) Refuse(fmt::format("the cycle has no {}", "XYZ"[w]));
+  const bool dwells = cycle.code == 82 || cycle.code == 86 || cycle.code == 89;
+  if (dwells && std::isnan(cycle.dwell)) Refuse("the cycle has no P");
+  if (meaning.l) cycle.repeats = *meaning.l;
+  if (state_.is_inch) cycle.gap = 0.010;
+  const auto where = [&](int k) {
+    if (meaning.axes[k]) return factor(k) * *meaning.axes[k];
+    return cycle.is_relative ? 0.0 : state_.place[k] / unit;
+  };
+  cycle.first = where(u);
+  cycle.second = where(v);
+  if (meaning.polar_radius || meaning.polar_angle) {
+    if (state_.is_relative) Refuse("a polar position (@ ^) of a cycle in G91");
+    const Vector3d to = Target(meaning);
+    cycle.first = to[u] / unit;
+    cycle.second = to[v] / unit;
+  }
+  return cycle;
+}
+
+void NcMoves::WriteCycle(const NcBlock& block, const NcMeaning& meaning) {
+  const NcCycle cycle = CycleOf(meaning);
+  const double unit = state_.Unit();
+  if (cycle.code == 86) {
+    const auto spindle = state_.words.find(NcGroup::kSpindle);
+    if (spindle == state_.words.end() || spindle->second == "M5") {
+      Refuse("G86 stops the spindle and starts it again, but it does not turn; set M3 or M4");
+    }
+  }
+  WriteWords(block);
+  bool is_first = true;
+  for (const NcCycleStep& step : StepsOf(cycle, state_.place / unit, line_number_)) {
+    if (!is_first) writer_.EndLine();
+    is_first = false;
+    switch (step.step) {
+      case NcStep::kDwell:
+        writer_.Word(fmt::format("G4 P{:.6g}", cycle.dwell));
+        continue;
+      case NcStep::kSpindleStop:
+        writer_.Word("M5");
+        continue;
+      case NcStep::kSpindleStart:
+        writer_.Word(state_.words.at(NcGroup::kSpindle));
+        continue;
+      default:
+        break;
+    }
+    const Vector3d to = unit * step.to;
+    points_.clear();
+    if (step.step == NcStep::kRapid) {
+      points_.push_back(to);
+    } else {
+      MustReach(to);
+      AddLine(state_.place, to, options_.limits, line_number_, points_);
+    }
+    WritePath(step.step == NcStep::kRapid ? 0 : 10);
+    state_.place = to;
+  }
+}
+
+void NcMoves::Move(const NcBlock& block, const NcMeaning& meaning, std::size_t line_number) {
+  line_number_ = line_number;
+  const int motion = state_.motion;
+  if (motion == kNoMotion) Refuse("axis words without G0, G1, G2 or G3 in force");
+  if (meaning.is_g53 && motion != 0 && motion != 10) Refuse("G53 belongs to G0 and G1");
+  if ((meaning.HasCentre() && !IsArc(motion)) ||
+      (meaning.radius && !IsArc(motion) && !IsCycle(motion))) {
+    Refuse("I, J, K and R belong to an arc");
+  }
+  const bool has_path_mode = std::find(meaning.modes.begin(), meaning.modes.end(), 640) !=
+                             meaning.modes.end();
+  if (meaning.p && has_path_mode && motion > 10) {
+    Refuse("P belongs to G64 or to the move; write them in two lines");
+  }
+  const bool is_plain = motion == 0 || motion == 10;
+  if ((meaning.l || (meaning.q && !has_path_mode)) && !IsCycle(motion)) {
+    Refuse("L and Q belong to a cycle");
+  }
+  if (meaning.p && is_plain && !has_path_mode) Refuse("P is not supported here");
+  std::array<bool, 3> known = state_.is_known;
+  for (int k = 0; k < 3; ++k) {
+    if (meaning.axes[k] && (!state_.is_relative || meaning.is_g53)) known[k] = true;
+  }
+  const bool was_known = state_.KnowsPlace(), is_known = known[0] && known[1] && known[2];
+  const bool adds_to_unknown =
+      state_.is_relative && !meaning.is_g53 &&
+      ((meaning.axes[0] && !known[0]) || (meaning.axes[1] && !known[1]) ||
+       (meaning.axes[2] && !known[2]));
+  if ((!was_known && motion != 0) || adds_to_unknown || (!is_known && state_.wanted.IsTurned())) {
+    Refuse(
+        "moves while the position of the machine is unknown; begin with G0 to X, Y and Z in G90, "
+        "or give the start with --start x,y,z");
+  }
+  Assume(IsArc(motion) || IsCycle(motion));
+  if (!is_known) {
+    Approach(block, meaning);
+    ++counts_.moves;
+    return;
+  }
+  if (IsCycle(motion)) {
+    WriteCycle(block, meaning);
+  } else {
+    const Vector3d target = Target(meaning);
+    Divide(meaning, target);
+    state_.place = target;
+    WriteWords(block);
+    WritePath(motion == 0 ? 0 : 10);
+  }
+  state_.is_known = known;
+  WriteStops(block);
+  ++counts_.moves;
+}
+
+void NcMoves::GoHome(const NcBlock& block, const NcMeaning& meaning, int home,
+                     std::size_t line_number) {
+  line_number_ = line_number;
+  if (meaning.HasCentre() || meaning.radius) Refuse("I, J, K and R belong to an arc");
+  NcOffsets& offsets = state_.wanted;
+  std::array<bool, 3> goes;
+  for (int k = 0; k < 3; ++k) goes[k] = !meaning.HasAxes() || meaning.axes[k].has_value();
+  Assume(false);
+  ++counts_.moves;
+  const bool is_known = offsets.home_is_known[home];
+  if (!is_known || !state_.KnowsPlace()) {
+    CopyUncorrected(block, false,
+                    is_known ? "G28 or G30 from a place that is not known"
+                             : "G28 or G30 to a place that only the control knows (--parameters)");
+    const bool is_all = goes[0] && goes[1] && goes[2];
+    Vector3d machine = offsets.ToMachine(state_.place), at = writer_.at();
+    for (int k = 0; k < 3; ++k) {
+      if (!goes[k]) {
+        if (offsets.IsTurned()) state_.is_known[k] = false;
+        continue;
+      }
+      state_.is_known[k] = is_known && (is_all || !offsets.IsTurned());
+      machine[k] = at[k] = offsets.homes[home][k];
+    }
+    state_.place = offsets.ToProgram(machine);
+    writer_.StandAt(at);
+    writer_.InForce(kNoMotion);
+    return;
+  }
+  points_.clear();
+  if (meaning.HasAxes()) points_.push_back(Target(meaning));
+  Vector3d machine = offsets.ToMachine(points_.empty() ? state_.place : points_.back());
+  for (int k = 0; k < 3; ++k) {
+    if (goes[k]) machine[k] = offsets.homes[home][k];
+  }
+  points_.push_back(offsets.ToProgram(machine));
+  state_.place = points_.back();
+  WriteWords(block);
+  WritePath(0);
+  WriteStops(block);
+}
+
+}  // namespace abbe::compensation
