@@ -42,7 +42,7 @@ struct CorrectCommand {
   bool quiet = false;
   // What a program leaves to its control.
   std::filesystem::path tools, parameters;
-  std::string control_units = "mm", block_delete;
+  std::string control_units = "mm", block_delete, rotary;
   std::vector<std::filesystem::path> subroutines;
   std::vector<std::string> copied;
 };
@@ -237,7 +237,8 @@ void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
   nc.tables = TablesOf(options);
   if (!options.map.tool_mm.empty()) nc.p_TQ_gauge = VectorOf(options.map.tool_mm);
   if (!options.block_delete.empty()) nc.deletes_blocks = options.block_delete == "on";
-  nc.copied = CopiedCodes(options.copied);
+  nc.allowed.copied = CopiedCodes(options.copied);
+  nc.allowed.rotary = !options.rotary.empty();
   const compensation::NcCounts counts = StreamProgram(options, corrector, nc);
   Warn(options, counts);
   if (!options.json.empty()) {
@@ -310,6 +311,10 @@ void AddCorrect(CLI::App& program, int& exit_code) {
       ->add_option("--block-delete", options->block_delete,
                    "Programs: blocks that begin with / are left out (on) or run (off)")
       ->check(CLI::IsMember({"on", "off"}));
+  command
+      ->add_option("--rotary", options->rotary,
+                   "Programs: table: A, B, C carry the workpiece, which follows the corrected axes")
+      ->check(CLI::IsMember({"table"}));
   command->add_option("--copy", options->copied,
                       "Programs: M codes of the machine's own that do not move it (M110)");
   command

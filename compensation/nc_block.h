@@ -18,7 +18,7 @@
 namespace abbe::compensation {
 
 struct NcWord {
-  char letter;              // upper case; '(' for a comment; '@' and '^' of polar positions
+  char letter;              // upper case; '(' for a comment; '@' '^' polar, '$' spindle
   double value;             // 0 for a comment
   std::string_view text;    // as written
   bool is_literal = true;   // a number as written, not a parameter or an expression

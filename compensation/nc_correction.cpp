@@ -20,6 +20,29 @@ namespace {
 
 using Eigen::Vector3d;
 
+// #5599: whether the control shows (debug, ...) comments; it stays in the program.
+constexpr int kDebugComments = 5599;
+
+constexpr int kShownDecimals = 6;
+
+// "%d", "%f", "%lf" and "%.3f" in a comment that shows values: their decimals. What was taken.
+std::size_t TakeFormat(std::string_view text, int& decimals) {
+  if (text.starts_with("%d")) {
+    decimals = 0;
+    return 2;
+  }
+  for (const std::string_view plain : {"%f", "%lf"}) {
+    if (!text.starts_with(plain)) continue;
+    decimals = kShownDecimals;
+    return plain.size();
+  }
+  constexpr std::size_t kSize = 4;  // "%.3f"
+  if (text.size() < kSize || !text.starts_with("%.") || text[3] != 'f') return 0;
+  if (text[2] < '0' || text[2] > '9') return 0;
+  decimals = text[2] - '0';
+  return kSize;
+}
+
 // The comment "(debug, depth #1)" with the value of its parameters; others as they are.
 std::string CommentText(std::string_view text, std::size_t line_number,
                         const NcParameters& parameters) {
@@ -37,7 +60,12 @@ std::string CommentText(std::string_view text, std::size_t line_number,
     return std::string(text);
   }
   std::string out;
+  int decimals = kShownDecimals;
   for (std::size_t i = 0; i < text.size();) {
+    if (const std::size_t taken = TakeFormat(text.substr(i), decimals); taken > 0) {
+      i += taken;
+      continue;
+    }
     NcCursor cursor(text.substr(i), line_number, parameters);
     if (text[i] != '#') {
       out += text[i++];
@@ -45,7 +73,9 @@ std::string CommentText(std::string_view text, std::size_t line_number,
     }
     try {
       const double value = cursor.Value();
-      out += std::isnan(value) ? std::string("######") : fmt::format("{:.6f}", value);
+      // What only the control knows, it also shows.
+      out += std::isnan(value) ? std::string(text.substr(i, cursor.at()))
+                               : fmt::format("{:.{}f}", value, decimals);
       i += cursor.at();
     } catch (const InputError&) {
       out += text[i++];  // no parameter: a sign
@@ -102,6 +132,15 @@ class ProgramCorrection : public NcHost {
     }
   }
 
+  bool Deletes(std::size_t line_number) override {
+    if (!options_.deletes_blocks) {
+      RefuseLine(line_number,
+                 "a block that the control may leave out (/); say which with --block-delete on or "
+                 "off");
+    }
+    return *options_.deletes_blocks;
+  }
+
   void Enter() override { levels_.push_back({}); }
 
   void Leave(std::size_t line_number) override {
@@ -123,19 +162,13 @@ class ProgramCorrection : public NcHost {
 
   // The block of `line`; false at the end of the program.
   bool Act(std::string_view line) {
-    if (block_.is_deletable) {
-      if (!options_.deletes_blocks) {
-        Refuse("a block that the control may leave out (/); say which with --block-delete on or "
-               "off");
-      }
-      if (*options_.deletes_blocks) return true;
-    }
+    if (block_.is_deletable && Deletes(line_number_)) return true;
     const bool is_percent = IsPercent(line);
     if (is_percent && !has_begun_) is_open_ = true;
     if (is_percent && has_begun_) counts_.has_end = true;
     if (is_percent && has_begun_ && is_open_) ended_by_percent_ = true;
     has_begun_ = has_begun_ || line.find_first_not_of(" \t\r") != std::string_view::npos;
-    const NcMeaning meaning = MeaningOf(block_, line_number_, options_.copied);
+    const NcMeaning meaning = MeaningOf(block_, line_number_, options_.allowed);
     has_acted_ = has_acted_ || (meaning.acts && !meaning.is_end) || !block_.settings.empty();
     if (meaning.context != kNoMotion) {
       ActOnContext(meaning);
@@ -143,7 +176,10 @@ class ProgramCorrection : public NcHost {
       ActOnModes(meaning);
       ActOnMotion(line, meaning);
     }
-    for (const NcSetting& setting : block_.settings) Set(setting);
+    for (const NcSetting& setting : block_.settings) {
+      if (setting.parameter.number == kDebugComments) continue;
+      Set(setting);
+    }
     counts_.has_end = counts_.has_end || meaning.is_end;
     if (meaning.is_end) line_of_end_ = line_number_;
     return !meaning.is_end && !(is_percent && ended_by_percent_);
@@ -188,12 +224,12 @@ class ProgramCorrection : public NcHost {
 
   void ActOnModes(const NcMeaning& meaning) {
     TakeTool(meaning);
-    const bool was_diameter = state_.is_diameter;
     for (const int code : meaning.modes) TakeMode(code, meaning);
-    if (was_diameter != state_.is_diameter && IsCycle(state_.motion)) Refuse("G7 or G8 in a cycle");
     KeepModalWords(block_, line_number_, state_);
     if (meaning.motion == kNoMotion) return;
-    if (!IsCycle(meaning.motion) || !IsCycle(state_.motion)) state_.cycle_r = kRuntime;
+    if (!IsCycle(meaning.motion) || !IsCycle(state_.motion)) {
+      state_.cycle_r = state_.cycle_initial = kRuntime;
+    }
     if (meaning.motion != state_.motion) {
       state_.cycle_bottom = state_.cycle_peck = state_.cycle_dwell = kRuntime;
     }
@@ -348,14 +384,15 @@ class ProgramCorrection : public NcHost {
       }
     }
     state_.place = state_.wanted.ToProgram(machine);
+    state_.rotary.fill(kRuntime);
   }
 
   void TakeG10(const NcMeaning& meaning) {
-    if (!meaning.l || !meaning.p) Refuse("G10 takes L and P");
-    if (*meaning.l != 2.0 && *meaning.l != 20.0) {
-      Refuse("G10 L1, L10 and L11 change the tool table of the control; set it there and name it "
-             "with --tools");
+    if (meaning.l && *meaning.l != 2.0 && *meaning.l != 20.0) {
+      Refuse("G10 L0, L1, L10 and L11 change the tool table of the control; set it there and name "
+             "it with --tools");
     }
+    if (!meaning.l || !meaning.p) Refuse("G10 takes L and P");
     const double p = *meaning.p;
     if (!(p >= 0.0 && p <= kSystems) || p != std::round(p)) {
       Refuse(fmt::format("G10 P{:.9g}: coordinate systems are P1 to P9, P0 the active one", p));
@@ -380,14 +417,16 @@ class ProgramCorrection : public NcHost {
     }
     if (state_.wanted.IsTurned() && !state_.KnowsPlace()) state_.is_known.fill(false);
     state_.place = state_.wanted.ToProgram(machine);
+    state_.rotary.fill(kRuntime);
   }
 
   void ActOnMotion(std::string_view line, const NcMeaning& meaning) {
-    const bool takes_axes = meaning.nonmodal != kNoMotion && meaning.nonmodal != 40;
+    constexpr int kDwell = 40;
+    const bool takes_axes = meaning.nonmodal != kNoMotion && meaning.nonmodal != kDwell;
     const bool is_dynamic_length =
         std::find(meaning.modes.begin(), meaning.modes.end(), 431) != meaning.modes.end();
     const bool is_arc = state_.motion == 20 || state_.motion == 30;
-    const bool moves = (meaning.HasAxes() || (is_arc && meaning.HasCentre())) && !takes_axes &&
+    const bool moves = (meaning.HasAxes() || meaning.HasRotary() || (is_arc && meaning.HasCentre())) && !takes_axes &&
                        !is_dynamic_length;
     if (moves) return moves_.Move(block_, meaning, line_number_);
     if (meaning.is_g53) Refuse("G53 without X, Y or Z");
@@ -445,6 +484,11 @@ class ProgramCorrection : public NcHost {
       return;
     }
     bool is_empty = true;
+    for (const NcSetting& setting : block_.settings) {
+      if (setting.parameter.number != kDebugComments) continue;
+      writer_.Word(fmt::format("#{}={:g}", kDebugComments, setting.value));
+      is_empty = false;
+    }
     for (const NcWord& word : block_.words) {
       writer_.Word(word.letter == '(' ? CommentText(word.text, line_number_, parameters_)
                                       : TextOf(word, line_number_));

@@ -24,11 +24,11 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "compensation/corrector.h"
+#include "compensation/nc_meaning.h"
 #include "compensation/nc_path.h"
 #include "compensation/nc_source.h"
 #include "compensation/nc_tables.h"
@@ -44,7 +44,7 @@ struct NcOptions {
   // The tool point of a tool whose length offset is 0; tools with G43 need it.
   std::optional<Eigen::Vector3d> p_TQ_gauge = {};
   std::optional<bool> deletes_blocks = {};  // whether the control leaves out blocks with /
-  std::set<int> copied = {};           // M codes that do not move the machine
+  NcAllowed allowed = {};
   std::size_t most_steps = 20'000'000;
   double most_lines = 2e8;
 };

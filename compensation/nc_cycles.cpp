@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -84,31 +85,20 @@ bool IsCycle(int code_times_10) {
 
 std::vector<NcCycleStep> StepsOf(const NcCycle& cycle, const Vector3d& from,
                                  std::size_t line_number) {
-  const auto [u, v, w] = AxesOfPlane(cycle.plane);
-  const double start = from[w];
-  const double r = cycle.is_relative ? start + cycle.r : cycle.r;
-  const double bottom = cycle.is_relative ? r + cycle.bottom : cycle.bottom;
-  if (r < bottom) {
-    RefuseLine(line_number, fmt::format("the cycle begins at R {:.9g}, below its bottom {:.9g}", r,
-                                        bottom));
+  if (cycle.r < cycle.bottom) {
+    RefuseLine(line_number, fmt::format("the cycle begins at R {:.9g}, below its bottom {:.9g}",
+                                        cycle.r, cycle.bottom));
   }
   if ((cycle.code == 73 || cycle.code == 83) && !(cycle.peck > 0.0)) {
     RefuseLine(line_number, "a cycle with pecks takes Q above 0");
   }
-  if (!(cycle.repeats >= 1.0 && cycle.repeats <= kMostLines)) {
-    RefuseLine(line_number, fmt::format("L {:.9g} is no number of holes from 1 to {:.0e}",
-                                        cycle.repeats, kMostLines));
-  }
   CycleMoves moves(cycle, from, line_number);
-  if (start < r) moves.To(NcStep::kRapid, r);
-  const double clear = cycle.retracts_to_r ? r : moves.Normal();
-  double first = cycle.is_relative ? from[u] : cycle.first;
-  double second = cycle.is_relative ? from[v] : cycle.second;
-  for (double left = cycle.repeats; left >= 1.0; --left) {
-    if (cycle.is_relative) first += cycle.first, second += cycle.second;
-    moves.Over(first, second);
-    if (moves.Normal() != r) moves.To(NcStep::kRapid, r);
-    moves.Hole(r, bottom, clear);
+  if (cycle.initial < cycle.r) moves.To(NcStep::kRapid, cycle.r);
+  const double clear = cycle.retracts_to_r ? cycle.r : std::max(cycle.initial, cycle.r);
+  for (const Eigen::Vector2d& hole : cycle.holes) {
+    moves.Over(hole.x(), hole.y());
+    if (moves.Normal() != cycle.r) moves.To(NcStep::kRapid, cycle.r);
+    moves.Hole(cycle.r, cycle.bottom, clear);
   }
   return moves.Take();
 }

@@ -6,11 +6,10 @@
 //   G85   bore              feed in and out;  G89: with a dwell at the bottom
 //   G86   bore              as G82 with the spindle stopped at the bottom, started above
 //
-// Out is to R with G99, to the start with G98 where that is above R.
+// Out is to R with G99, to where the first cycle of a row began with G98 if that is above R.
 // Frames: program coordinates. Units: those of the program, throughout.
 // Failure: InputError with the line for R below the bottom, Q that is not above 0, more than
-// kMostLines moves. Source: RS 274/NGC (NIST IR 6556), 3.5.16; LinuxCNC 2.9 (0.010 in; in G91, R is
-// counted from the start and the bottom from R). Validity: G74 and G84 tap: their feed is geared to the
+// kMostLines moves. Source: RS 274/NGC (NIST IR 6556), 3.5.16; LinuxCNC 2.9 (0.010 in). Validity: G74 and G84 tap: their feed is geared to the
 // spindle; G76, G87 and G88 depend on the control.
 #pragma once
 
@@ -23,10 +22,10 @@ namespace abbe::compensation {
 struct NcCycle {
   int code = 81;
   int plane = 17;
-  bool is_relative = false, retracts_to_r = false;
-  double first = 0.0, second = 0.0;  // in the plane: where to, or how far with G91
+  bool retracts_to_r = false;
+  std::vector<Eigen::Vector2d> holes;  // in the plane
+  double initial = 0.0;  // where the first cycle of a row began, along the normal
   double r = 0.0, bottom = 0.0, peck = 0.0, dwell = 0.0;
-  double repeats = 1.0;
   double gap = 0.254;  // before the bottom of the hole after a peck
 };
 

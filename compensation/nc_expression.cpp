@@ -112,12 +112,12 @@ bool NcCursor::Take(char c) {
 }
 
 bool NcCursor::TakeWord(std::string_view word) {
-  Peek();
-  if (text_.size() - at_ < word.size()) return false;
-  for (std::size_t i = 0; i < word.size(); ++i) {
-    if (UpperCase(text_[at_ + i]) != word[i]) return false;
+  const std::size_t start = at_;
+  for (const char c : word) {  // blanks may stand within a word
+    if (Take(c)) continue;
+    at_ = start;
+    return false;
   }
-  at_ += word.size();
   return true;
 }
 

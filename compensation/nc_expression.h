@@ -27,7 +27,7 @@ class NcCursor {
   char Peek();
   // Takes it if it is `c`.
   bool Take(char c);
-  // Takes a word of letters if it is `word` (upper case).
+  // Takes a word of letters if it is `word` (upper case), with blanks or without.
   bool TakeWord(std::string_view word);
   // Whether a value can begin here.
   bool IsAtValue();

@@ -24,6 +24,8 @@ class NcHost {
   virtual ~NcHost() = default;
   // The next line that acts; false: the program has ended.
   virtual bool Take(std::string_view line, std::size_t line_number) = 0;
+  // Whether a block that begins with / is left out; InputError where that is not known.
+  virtual bool Deletes(std::size_t /*line_number*/) { return false; }
   // A subroutine begins and ends.
   virtual void Enter() {}
   virtual void Leave(std::size_t /*line_number*/) {}

@@ -34,7 +34,7 @@ int GroupOf(int code) {
   if (IsOneOf(code, {430, 431, 432, 490})) return 8;
   if (IsOneOf(code, {980, 990})) return 10;
   if (IsOneOf(code, {540, 550, 560, 570, 580, 590, 591, 592, 593})) return 12;
-  if (IsOneOf(code, {940, 950})) return 5;
+  if (IsOneOf(code, {930, 940, 950})) return 5;
   if (IsOneOf(code, {960, 970})) return 14;
   if (IsOneOf(code, {610, 611, 640})) return 13;
   if (IsOneOf(code, {70, 80})) return 15;
@@ -50,8 +50,6 @@ std::string_view WhyNot(int code) {
     case 421:
       return "cutter compensation moves the tool off the programmed path; let the CAM system write "
              "tool centre paths";
-    case 930:
-      return "inverse time feed depends on the length of the line, which is split; use G94";
     case 330:
     case 331:
     case 760:
@@ -96,8 +94,8 @@ bool IsKnownM(int code) {
 
 class Meaning {
  public:
-  Meaning(std::size_t line_number, const std::set<int>& copied)
-      : line_number_(line_number), copied_(copied) {}
+  Meaning(std::size_t line_number, const NcAllowed& allowed)
+      : line_number_(line_number), allowed_(allowed) {}
 
   NcMeaning Of(const NcBlock& block) {
     for (const NcWord& word : block.words) Take(word);
@@ -146,7 +144,7 @@ class Meaning {
 
   void TakeM(const NcWord& word) {
     const int code = CodeTimes10(word);
-    if (code >= 0 && code % 10 == 0 && copied_.contains(code / 10)) {
+    if (code >= 0 && code % 10 == 0 && allowed_.copied.contains(code / 10)) {
       takes_p_ = takes_q_ = true;
       return;
     }
@@ -170,9 +168,12 @@ class Meaning {
     switch (word.letter) {
       case '(':
       case 'N':
-      case 'F':
       case 'S':
       case 'T':
+      case '$':
+        return;
+      case 'F':
+        meaning_.feed = word.value;
         return;
       case 'G':
         return TakeG(word);
@@ -210,9 +211,13 @@ class Meaning {
       case 'A':
       case 'B':
       case 'C':
-        Refuse(fmt::format("{} is not supported: it moves a rotary axis, of which the map says "
-                           "nothing; correct the parts between its moves",
-                           word.text));
+        if (!allowed_.rotary) {
+          Refuse(fmt::format("{} is not supported: it moves a rotary axis, which is not in the map; "
+                             "if it carries the workpiece, --rotary table corrects X, Y and Z and "
+                             "leaves it as it is",
+                             word.text));
+        }
+        return Give(meaning_.rotary[word.letter - 'A'], word, "an axis is given twice");
       default:
         Refuse(fmt::format("{} is not supported: it cannot be corrected; remove it", word.text));
     }
@@ -225,7 +230,7 @@ class Meaning {
     if (meaning_.d && !takes_d_) Refuse("D is not supported here");
     if (has_late_p_ && !takes_p_) Refuse("P is known only at the control");
     if (meaning_.p && meaning_.nonmodal != 40 && meaning_.nonmodal != 100 && !takes_p_ &&
-        !meaning_.HasAxes() && !meaning_.HasCentre()) {
+        !meaning_.HasAxes() && !meaning_.HasCentre() && !meaning_.HasRotary()) {
       Refuse("P is not supported here");
     }
     if (meaning_.q && !takes_q_ && !meaning_.HasAxes() && meaning_.nonmodal != 100) {
@@ -234,8 +239,9 @@ class Meaning {
     if (meaning_.l && !takes_l_ && !meaning_.HasAxes() && meaning_.nonmodal != 100) {
       Refuse("L is not supported here");
     }
-    if (meaning_.nonmodal == 40 && (meaning_.HasAxes() || meaning_.HasCentre())) {
-      Refuse("a dwell together with a move");
+    if (meaning_.nonmodal == 40 && meaning_.HasCentre()) Refuse("a dwell together with an arc");
+    if (meaning_.HasRotary() && (meaning_.is_g53 || meaning_.nonmodal != kNoMotion)) {
+      Refuse("A, B and C belong to a move in program coordinates");
     }
     if (meaning_.motion == 800 && meaning_.HasAxes() && meaning_.nonmodal == kNoMotion) {
       Refuse("axis words without G0, G1, G2 or G3 in force (G80)");
@@ -250,7 +256,7 @@ class Meaning {
   }
 
   std::size_t line_number_;
-  const std::set<int>& copied_;
+  const NcAllowed& allowed_;
   NcMeaning meaning_;
   std::set<int> groups_;
   bool takes_p_ = false, takes_q_ = false, takes_l_ = false, takes_e_ = false, takes_d_ = false,
@@ -302,8 +308,8 @@ std::optional<NcGroup> ModalGroup(const NcWord& word) {
 
 }  // namespace
 
-NcMeaning MeaningOf(const NcBlock& block, std::size_t line_number, const std::set<int>& copied) {
-  return Meaning(line_number, copied).Of(block);
+NcMeaning MeaningOf(const NcBlock& block, std::size_t line_number, const NcAllowed& allowed) {
+  return Meaning(line_number, allowed).Of(block);
 }
 
 std::string TextOf(const NcWord& word, std::size_t line_number) {

@@ -1,6 +1,6 @@
 // What the words of one block mean: its codes by group, its values, what it must be refused for.
 //
-//   const NcMeaning meaning = MeaningOf(block, 12, copied);
+//   const NcMeaning meaning = MeaningOf(block, 12, allowed);
 //   meaning.motion                     // 20 in a block with G2: ten times the code
 //
 // Units: values as written. Failure: InputError with the line and a way out for a code or word that
@@ -29,8 +29,8 @@ struct NcMeaning {
   int nonmodal = kNoMotion;  // G4 G10 G28 G28.1 G30 G30.1 G92 to G92.3
   bool is_g53 = false;
   std::vector<int> modes;  // the other G codes, ten times
-  std::array<Value, 3> axes, centre;
-  Value radius, p, q, l, h, d, polar_radius, polar_angle;
+  std::array<Value, 3> axes, centre, rotary;  // XYZ, IJK, ABC
+  Value feed, radius, p, q, l, h, d, polar_radius, polar_angle;
   bool is_end = false;      // M2, M30
   int context = kNoMotion;  // M70 to M73
   bool changes_tool = false;
@@ -38,12 +38,16 @@ struct NcMeaning {
   bool acts = false;
 
   bool HasAxes() const { return axes[0] || axes[1] || axes[2] || polar_radius || polar_angle; }
+  bool HasRotary() const { return rotary[0] || rotary[1] || rotary[2]; }
   bool HasCentre() const { return centre[0] || centre[1] || centre[2]; }
 };
 
-// `copied`: M codes, such as "M110", that are kept because they do not move the machine.
-NcMeaning MeaningOf(const NcBlock& block, std::size_t line_number,
-                    const std::set<int>& copied);
+struct NcAllowed {
+  std::set<int> copied;  // M codes that are kept because they do not move the machine
+  bool rotary = false;   // A, B, C: axes that carry the workpiece
+};
+
+NcMeaning MeaningOf(const NcBlock& block, std::size_t line_number, const NcAllowed& allowed);
 
 // The word as it stands in the corrected program: as written, or with the value of its expression.
 std::string TextOf(const NcWord& word, std::size_t line_number);

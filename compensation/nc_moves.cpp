@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "compensation/nc_cycles.h"
@@ -21,7 +22,9 @@ bool ActsAfterTheMove(const NcWord& word) {
 
 bool IsLineComment(const NcWord& word) { return word.text.starts_with(';'); }
 
-bool IsPosition(char letter) { return letter >= 'X' && letter <= 'Z'; }
+bool IsPosition(char letter) {
+  return (letter >= 'X' && letter <= 'Z') || (letter >= 'A' && letter <= 'C');
+}
 
 // Words that the corrected move replaces.
 bool IsReplaced(const NcWord& word, bool with_values) {
@@ -50,7 +53,10 @@ void NcMoves::Assume(bool needs_plane) {
   };
   assume(assumed_.units, NcGroup::kUnits, "millimetres (G21)");
   assume(assumed_.distances, NcGroup::kDistance, "absolute positions (G90)");
-  if (needs_plane) assume(assumed_.plane, NcGroup::kPlane, "arcs in XY (G17)");
+  if (needs_plane) assume(assumed_.plane, NcGroup::kPlane, "arcs and cycles in XY (G17)");
+  if (IsCycle(state_.motion)) {
+    assume(assumed_.retract, NcGroup::kRetract, "cycles that end at R (G99)");
+  }
 }
 
 Vector3d NcMoves::Target(const NcMeaning& meaning) {
@@ -139,6 +145,7 @@ void NcMoves::WriteWords(const NcBlock& block) {
   const bool has_values = IsArc(state_.motion) || IsCycle(state_.motion);
   for (const NcWord& word : block.words) {
     if (IsReplaced(word, has_values) || ActsAfterTheMove(word) || IsLineComment(word)) continue;
+    if (word.letter == 'F' && state_.HasInverseFeed() && state_.motion != 0) continue;
     writer_.Word(TextOf(word, line_number_));
   }
 }
@@ -156,6 +163,45 @@ void NcMoves::WritePath(int motion) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (i > 0) writer_.EndLine();
     writer_.Position(state_.wanted.ToMachine(points_[i]));
+    WriteAngles(i);
+    if (state_.HasInverseFeed() && motion != 0) {  // a line is a part of the time
+      writer_.Word(fmt::format("F{:.6g}", inverse_feed_ * static_cast<double>(points_.size())));
+    }
+  }
+}
+
+// The rotary axes turn evenly along the points.
+void NcMoves::WriteAngles(std::size_t index) {
+  const double count = static_cast<double>(points_.size());
+  for (int k = 0; k < 3; ++k) {
+    if (!turns_[k]) continue;
+    const auto millionths = [&](double part) {
+      return std::llround(1e6 * (turn_from_[k] + part * (*turns_[k] - turn_from_[k])));
+    };
+    const double index_of = static_cast<double>(index);
+    const std::int64_t to = millionths((index_of + 1.0) / count);
+    const std::int64_t from = state_.is_relative ? millionths(index_of / count) : 0;
+    writer_.Angle("ABC"[k], to - from);
+  }
+}
+
+// Takes the rotary axes of a block whose points are known.
+void NcMoves::TakeAngles(const NcMeaning& meaning) {
+  turns_ = meaning.rotary;
+  for (int k = 0; k < 3; ++k) {
+    if (!turns_[k]) continue;
+    turn_from_[k] = state_.is_relative ? 0.0 : state_.rotary[k];
+    constexpr double kMostDegrees = 1e9;
+    if (!(std::abs(*turns_[k]) < kMostDegrees)) Refuse("a rotary axis turns too far");
+    if (std::isnan(turn_from_[k])) {
+      if (points_.size() > 1) {
+        Refuse(fmt::format("the move is divided, but where {} stands is not known; write {} in a G0 "
+                           "before it",
+                           "ABC"[k], "ABC"[k]));
+      }
+      turn_from_[k] = *turns_[k];
+    }
+    state_.rotary[k] = *turns_[k] + (state_.is_relative ? state_.rotary[k] : 0.0);
   }
 }
 
@@ -186,6 +232,7 @@ void NcMoves::Approach(const NcBlock& block, const NcMeaning& meaning) {
   const Vector3d machine = offsets.ToMachine(target);
   Vector3d at = writer_.at();
   for (int k = 0; k < 3; ++k) {
+    if (meaning.rotary[k]) state_.rotary[k] = state_.is_relative ? kRuntime : *meaning.rotary[k];
     if (!meaning.axes[k]) continue;
     state_.place[k] = target[k];
     state_.is_known[k] = true;
@@ -201,36 +248,43 @@ NcCycle NcMoves::CycleOf(const NcMeaning& meaning) {
   NcCycle cycle;
   cycle.code = state_.motion / 10;
   cycle.plane = state_.plane;
-  cycle.is_relative = state_.is_relative;
   cycle.retracts_to_r = state_.retracts_to_r;
-  const auto keep = [](const NcMeaning::Value& given, double& kept) {
-    if (given) kept = *given;
+  const auto keep = [](const NcMeaning::Value& given, double& kept, double times = 1.0) {
+    if (given) kept = times * *given;
     return kept;
   };
   const double unit = state_.Unit(), half = state_.is_diameter ? 0.5 : 1.0;
   const auto factor = [&](int k) { return k == 0 ? half : 1.0; };
   cycle.r = keep(meaning.radius, state_.cycle_r);
-  cycle.bottom = factor(w) * keep(meaning.axes[w], state_.cycle_bottom);
+  cycle.bottom = keep(meaning.axes[w], state_.cycle_bottom, factor(w));
   cycle.peck = keep(meaning.q, state_.cycle_peck);
   cycle.dwell = keep(meaning.p, state_.cycle_dwell);
   if (std::isnan(cycle.r)) Refuse("the cycle has no R");
   if (std::isnan(cycle.bottom)) Refuse(fmt::format("the cycle has no {}", "XYZ"[w]));
   const bool dwells = cycle.code == 82 || cycle.code == 86 || cycle.code == 89;
   if (dwells && std::isnan(cycle.dwell)) Refuse("the cycle has no P");
-  if (meaning.l) cycle.repeats = *meaning.l;
+  if (std::isnan(state_.cycle_initial)) state_.cycle_initial = state_.place[w] / unit;
+  cycle.initial = state_.cycle_initial;
+  if (state_.is_relative) cycle.r += cycle.initial;  // counted from there; the bottom from R
+  if (state_.is_relative) cycle.bottom += cycle.r;
   if (state_.is_inch) cycle.gap = 0.010;
-  const auto where = [&](int k) {
-    if (meaning.axes[k]) return factor(k) * *meaning.axes[k];
-    return cycle.is_relative ? 0.0 : state_.place[k] / unit;
-  };
-  cycle.first = where(u);
-  cycle.second = where(v);
-  if (meaning.polar_radius || meaning.polar_angle) {
-    if (state_.is_relative) Refuse("a polar position (@ ^) of a cycle in G91");
-    const Vector3d to = Target(meaning);
-    cycle.first = to[u] / unit;
-    cycle.second = to[v] / unit;
+  const double holes = meaning.l.value_or(1.0);
+  if (!(holes >= 1.0 && holes <= kMostLines) || holes != std::round(holes)) {
+    Refuse(fmt::format("L {:.9g} is no number of holes from 1 to {:.0e}", holes, kMostLines));
   }
+  const Vector3d before = state_.place;
+  for (double i = 0.0; i < holes; ++i) {
+    const Vector3d to = Target(meaning);
+    state_.place[u] = to[u];
+    state_.place[v] = to[v];
+    // As written where it is: without rounding by the unit.
+    const auto where = [&](int k) {
+      if (meaning.axes[k] && !state_.is_relative) return factor(k) * *meaning.axes[k];
+      return to[k] / unit;
+    };
+    cycle.holes.emplace_back(where(u), where(v));
+  }
+  state_.place = before;
   return cycle;
 }
 
@@ -285,14 +339,21 @@ void NcMoves::Move(const NcBlock& block, const NcMeaning& meaning, std::size_t l
   }
   const bool has_path_mode = std::find(meaning.modes.begin(), meaning.modes.end(), 640) !=
                              meaning.modes.end();
-  if (meaning.p && has_path_mode && motion > 10) {
-    Refuse("P belongs to G64 or to the move; write them in two lines");
+  constexpr int kDwell = 40;
+  if (meaning.nonmodal == kDwell) {
+    // LinuxCNC moves only where the block says how.
+    if (meaning.motion == kNoMotion) Refuse("a dwell together with a move without its G0 or G1");
+    writer_.InForce(kNoMotion);
+  }
+  const bool has_own_p = has_path_mode || meaning.nonmodal != kNoMotion;
+  if (meaning.p && has_own_p && motion > 10) {
+    Refuse("P belongs to G64, G4 or to the move; write them in two lines");
   }
   const bool is_plain = motion == 0 || motion == 10;
   if ((meaning.l || (meaning.q && !has_path_mode)) && !IsCycle(motion)) {
     Refuse("L and Q belong to a cycle");
   }
-  if (meaning.p && is_plain && !has_path_mode) Refuse("P is not supported here");
+  if (meaning.p && is_plain && !has_own_p) Refuse("P is not supported here");
   std::array<bool, 3> known = state_.is_known;
   for (int k = 0; k < 3; ++k) {
     if (meaning.axes[k] && (!state_.is_relative || meaning.is_g53)) known[k] = true;
@@ -313,11 +374,19 @@ void NcMoves::Move(const NcBlock& block, const NcMeaning& meaning, std::size_t l
     ++counts_.moves;
     return;
   }
+  if (state_.HasInverseFeed() && motion != 0) {
+    if (IsCycle(motion)) Refuse("a cycle in G93");
+    if (!meaning.feed || !(*meaning.feed > 0.0)) Refuse("a move in G93 takes F above 0");
+    inverse_feed_ = *meaning.feed;
+  }
+  turns_ = {};
   if (IsCycle(motion)) {
+    if (meaning.HasRotary()) Refuse("a rotary axis in a cycle");
     WriteCycle(block, meaning);
   } else {
     const Vector3d target = Target(meaning);
     Divide(meaning, target);
+    TakeAngles(meaning);
     state_.place = target;
     WriteWords(block);
     WritePath(motion == 0 ? 0 : 10);
@@ -356,6 +425,8 @@ void NcMoves::GoHome(const NcBlock& block, const NcMeaning& meaning, int home,
     writer_.InForce(kNoMotion);
     return;
   }
+  turns_ = {};
+  state_.rotary.fill(kRuntime);
   points_.clear();
   if (meaning.HasAxes()) points_.push_back(Target(meaning));
   Vector3d machine = offsets.ToMachine(points_.empty() ? state_.place : points_.back());

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -42,6 +43,8 @@ class NcMoves {
   void WriteWords(const NcBlock& block);
   void WriteStops(const NcBlock& block);
   void WritePath(int motion);
+  void WriteAngles(std::size_t index);
+  void TakeAngles(const NcMeaning& meaning);
   [[noreturn]] void Refuse(const std::string& what) const { RefuseLine(line_number_, what); }
 
   const Corrector& corrector_;
@@ -51,8 +54,11 @@ class NcMoves {
   NcCounts& counts_;
   std::size_t line_number_ = 0;
   std::vector<Eigen::Vector3d> points_;  // program coordinates
+  std::array<NcMeaning::Value, 3> turns_;  // where A, B, C turn in this block
+  std::array<double, 3> turn_from_{};
+  double inverse_feed_ = 0.0;
   struct {
-    bool units = false, distances = false, plane = false;
+    bool units = false, distances = false, plane = false, retract = false;
   } assumed_;
 };
 

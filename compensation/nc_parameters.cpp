@@ -54,6 +54,8 @@ std::optional<double> NcParameters::Named(const std::string& name) const {
   const auto& names = IsGlobal(name) ? names_ : levels_.back().names;
   const auto found = names.find(name);
   if (found != names.end()) return found->second;
+  if (name == "_call_level") return static_cast<double>(level());
+  if (name == "_remap_level") return 0.0;
   return IsGlobal(name) && live_.name ? live_.name(name) : std::nullopt;
 }
 

@@ -54,8 +54,7 @@ std::optional<NcControlLine> ControlIn(std::string_view text, std::size_t index)
     cursor.Value();
   }
   if (!cursor.Take('O')) return std::nullopt;
-  if (is_deletable) cursor.Refuse("an O word that may be deleted (/); write an if");
-  NcControlLine control{index, NcControl::kSub, {}, {}};
+  NcControlLine control{index, NcControl::kSub, is_deletable, {}, {}};
   const char first = cursor.Peek();
   if (first == '#' || first == '[') {
     cursor.Refuse("the name of a subroutine is computed; write the call of each out, with ifs");

@@ -48,6 +48,7 @@ enum class NcControl {
 struct NcControlLine {
   std::size_t line;  // index
   NcControl control;
+  bool is_deletable;  // behind /
   std::string name;
   std::string_view rest;  // behind the word: conditions, arguments
   // Indices into NcFile::controls: the next branch of an if, the other end of a loop, the loop of

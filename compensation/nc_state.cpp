@@ -36,7 +36,7 @@ std::optional<double> Stored(const NcState& state, const NcTables& tables, int n
 
 std::optional<double> Coordinate(const NcState& state, int axis) {
   if (!state.is_known[axis]) return std::nullopt;
-  return state.place[axis] / state.Unit() * (axis == 0 && state.is_diameter ? 2.0 : 1.0);
+  return state.place[axis] / state.Unit();
 }
 
 std::optional<double> LiveNumber(const NcState& state, const NcTables& tables, int number) {
@@ -67,7 +67,7 @@ std::optional<double> LiveName(const NcState& state, const std::string& name) {
   if (name == "_retract_r_plane") return state.retracts_to_r;
   if (name == "_retract_old_z") return !state.retracts_to_r;
   if (name == "_plane") return 10.0 * state.plane;
-  if (name == "_motion_mode") return state.motion;
+  if (name == "_motion_mode") return state.motion == kNoMotion ? 800.0 : state.motion;
   if (name == "_coord_system") {
     constexpr int kLastWhole = 6;
     const int active = state.wanted.active;
@@ -103,7 +103,7 @@ std::optional<double> LiveName(const NcState& state, const std::string& name) {
   if (name == "_selected_tool") return state.selected ? *state.selected : kRuntime;
   for (const std::string_view known :
        {"_vmajor", "_vminor", "_line", "_current_pocket", "_selected_pocket", "_speed_override",
-        "_feed_override", "_adaptive_feed", "_feed_hold", "_call_level", "_remap_level", "_a", "_b",
+        "_feed_override", "_adaptive_feed", "_feed_hold", "_a", "_b",
         "_c", "_u", "_v", "_w", "_abs_a", "_abs_b", "_abs_c", "_abs_u", "_abs_v", "_abs_w"}) {
     if (name == known) return kRuntime;
   }
@@ -128,7 +128,7 @@ std::string_view Default(NcGroup group) {
     case NcGroup::kSpindleMode:
       return "G97";
     case NcGroup::kRetract:
-      return "G98";
+      return "G99";
     case NcGroup::kSystem:
       return "G54";
     case NcGroup::kToolLength:
@@ -146,6 +146,8 @@ std::string_view Default(NcGroup group) {
 }
 
 }  // namespace
+
+bool NcState::HasInverseFeed() const { return Has(*this, NcGroup::kFeedMode, "G93"); }
 
 double NcState::Unit() const { return is_inch ? kInchInMetres : settings::kMillimetre; }
 

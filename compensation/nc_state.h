@@ -47,18 +47,22 @@ struct NcState {
   int motion = kNoMotion;  // ten times its code
   int plane = 17;
   bool is_inch = false, is_relative = false, centre_is_absolute = false, is_diameter = false;
-  bool retracts_to_r = false;
+  bool retracts_to_r = true;  // as LinuxCNC starts
   NcModalWords words;  // as written
   NcOffsets wanted, control;
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   std::array<bool, 3> is_known{};
+  // A, B, C in program coordinates, degrees; kRuntime where not known.
+  std::array<double, 3> rotary{kRuntime, kRuntime, kRuntime};
   // Values that a cycle keeps from block to block, as written.
   double cycle_r = kRuntime, cycle_bottom = kRuntime, cycle_peck = kRuntime, cycle_dwell = kRuntime;
+  double cycle_initial = kRuntime;  // where the first cycle of a row began, along the normal
   double feed = 0.0, speed = 0.0;
   std::optional<int> tool, selected;  // numbers
   double tool_diameter = 0.0;
 
   double Unit() const;  // of lengths in the program, m
+  bool HasInverseFeed() const;
   bool KnowsPlace() const { return is_known[0] && is_known[1] && is_known[2]; }
   // Changes an offset; the axes stay.
   template <typename Change>
@@ -67,6 +71,7 @@ struct NcState {
     change(wanted);
     change(control);
     place = wanted.ToProgram(machine);
+    rotary.fill(kRuntime);
   }
 };
 

@@ -68,6 +68,14 @@ void NcWriter::Motion(int motion) {
   motion_ = motion;
 }
 
+void NcWriter::Angle(char letter, std::int64_t millionths) {
+  constexpr int kDecimals = 6;
+  if (!is_at_start_) text_ += ' ';
+  is_at_start_ = false;
+  text_ += letter;
+  AppendFixed(millionths, kDecimals, text_);
+}
+
 void NcWriter::Position(const Eigen::Vector3d& machine) {
   const Eigen::Vector3d command = corrector_.Command(machine);
   largest_ = std::max(largest_, (command - machine).norm());

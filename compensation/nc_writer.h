@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -34,6 +35,8 @@ class NcWriter {
   void InForce(int motion) { motion_ = motion; }
   // The three words of a position of the axes.
   void Position(const Eigen::Vector3d& machine);
+  // "A12.5": degrees, to 1e-6.
+  void Angle(char letter, std::int64_t millionths);
   // The control stands here.
   void StandAt(const Eigen::Vector3d& machine) { at_ = machine; }
   const Eigen::Vector3d& at() const { return at_; }

@@ -188,7 +188,7 @@ class CorrectTest(unittest.TestCase):
         done = self.correct(machine, "a.ngc", "--json", self.folder / "a.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         for words in ("millimetres (G21) from line 1 on", "absolute positions (G90) from line 1 on",
-                      "arcs in XY (G17) from line 2 on", "ends with neither M2, M30 nor %"):
+                      "arcs and cycles in XY (G17) from line 2 on", "ends with neither M2, M30 nor %"):
             self.assertIn(words, done.stderr)
         self.assertEqual(len(json.loads((self.folder / "a.json").read_text())["assumed"]), 3)
         (self.folder / "b.ngc").write_text("G21 G90 G17\nG0 X10 Y20 Z30\nG2 X14 I2 F100\nM30\n")

@@ -22,6 +22,7 @@ class Move:
     tool: np.ndarray      # offset of the tool, mm
     digit: float          # mm, of what rs274 prints
     turns: float = 0.0    # rad, of an arc
+    rotary: tuple = ()    # A, B, C at the end, deg
 
 
 class Canon:
@@ -38,9 +39,9 @@ class Canon:
         turned = np.stack([c * p[:, 0] - s * p[:, 1], s * p[:, 0] + c * p[:, 1], p[:, 2]], axis=1)
         return turned + self.g5x + self.tool
 
-    def add(self, kind, points, turns=0.0):
+    def add(self, kind, points, turns=0.0, rotary=()):
         line = np.vstack([self.at, self.machine(points)])
-        self.moves.append(Move(kind, line, self.tool.copy(), self.unit * 1e-4, turns))
+        self.moves.append(Move(kind, line, self.tool.copy(), self.unit * 1e-4, turns, rotary))
         self.at = line[-1]
 
     def program(self):
@@ -77,7 +78,7 @@ class Canon:
         points[:, [u]], points[:, [v]] = centre[0] + r * np.cos(angle), centre[1] + r * np.sin(angle)
         points[:, [w]] = start[w] + part * (stop[w] - start[w])
         points[-1] = stop
-        self.add("feed", points, sweep)
+        self.add("feed", points, sweep, numbers[6:9])
 
     def take(self, name, text):
         if name == "USE_LENGTH_UNITS":
@@ -87,7 +88,8 @@ class Canon:
             self.plane = PLANES[text.strip()]
         numbers = [float(n) for n in re.findall(r"-?\d+(?:\.\d+)?", text)]
         if name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
-            self.add("rapid" if name == "STRAIGHT_TRAVERSE" else "feed", self.unit * np.array(numbers[:3]))
+            self.add("rapid" if name == "STRAIGHT_TRAVERSE" else "feed", self.unit * np.array(numbers[:3]),
+                     rotary=numbers[3:6])
         elif name == "ARC_FEED":
             self.arc(numbers)
         elif name == "SET_G5X_OFFSET":
@@ -129,26 +131,32 @@ def distances(point_rows, line):
     return np.linalg.norm(point_rows[:, None] - (a + part[..., None] * along), axis=2).min(axis=1)
 
 
-def follows(asked, kinds, made, tolerance_mm):
-    """Nothing if the places `made` (rows, with their kinds) go along the moves `asked` in order, each end made and
-    nothing beside; what is wrong otherwise."""
+def follows(asked, commanded, made, tolerance_mm):
+    """Nothing if the places `made` (rows) by the moves `commanded` go along the moves `asked` in order, each end made
+    and nothing beside; what is wrong otherwise."""
     at = 0
     for number, move in enumerate(asked):
         tolerance = tolerance_mm + 2.0 * move.digit
         end, begin = move.line[-1], at
-        swept = 0.0
+        is_still = move.line.ptp(axis=0).max() == 0.0  # "G0" alone: the control moves to where it is
         while True:
             if at == len(made):
                 return f"move {number} to {end} is not made"
-            if kinds[at] != move.kind:
-                return f"move {number} to {end}: a {kinds[at]} instead of a {move.kind}"
-            at += 1
-            if np.abs(made[at - 1] - end).max() > tolerance:
-                continue
-            swept = at - begin
-            # The end of a full circle is its start: at least a point for every third of a turn.
-            if abs(move.turns) < 6.0 or swept >= abs(move.turns) / 2.1 or move.line.ptp(axis=0).max() < 10 * tolerance:
+            is_there = np.abs(made[at] - end).max() <= tolerance
+            if is_still and not (is_there and commanded[at].kind == move.kind):
+                at += commanded[at].line.ptp(axis=0).max() == 0.0  # of the uncorrected start
                 break
+            if commanded[at].kind != move.kind:
+                return f"move {number} to {end}: a {commanded[at].kind} instead of a {move.kind}"
+            at += 1
+            # The end of a full circle is its start: at least a point for every third of a turn.
+            is_short = abs(move.turns) < 6.0 or move.line.ptp(axis=0).max() < 10 * tolerance
+            if is_there and (is_short or at - begin >= abs(move.turns) / 2.1):
+                break
+        if is_still:
+            continue
+        if not np.allclose(commanded[at - 1].rotary, move.rotary, atol=2e-4):
+            return f"move {number} to {end}: A, B, C {commanded[at - 1].rotary} instead of {move.rotary}"
         away = distances(made[begin:at], move.line).max()
         if away > tolerance:
             return f"move {number} to {end}: {1e3 * away:.1f} um beside the path"

@@ -162,7 +162,7 @@ TEST(NcCorrection, WhatItCannotCorrectIsRefusedWithItsLine) {
   map::ExpectHas(Refusal("G0 X1\nG41 D1\n"), "line 2: G41 is not supported: cutter compensation");
   map::ExpectHas(Refusal("G43 H1\n"), "line 1: a tool length offset depends on the tool table");
   for (const char* const word :
-       {"G81 Z-3", "G81 X1 Z-3 R-4", "G93", "G10 L2", "G10 L1 P1 X1", "G5", "G33", "G38.2 Z1",
+       {"G81 Z-3", "G81 X1 Z-3 R-4", "G93 G1 X1", "G10 L2", "G10 L1 P1 X1", "G5", "G33", "G38.2 Z1",
         "G2.1", "G55", "M98", "M110", "A10", "U1", "E3", "H1", "G80 X1", "G1 G0 X1", "G30.1 A1"}) {
     map::ExpectHas(Refusal(std::string("G0 X1\n") + word + "\n"), "line 2: ");
   }
@@ -241,7 +241,7 @@ std::vector<std::string> Assumed(std::string_view program) {
 TEST(NcCorrection, TellsWhatAProgramLeavesToItsControl) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(Assumed("M3\nG0 X1\nX2\nG2 X4 I1\n"),
-            (Names{"millimetres (G21) 2", "absolute positions (G90) 2", "arcs in XY (G17) 4"}));
+            (Names{"millimetres (G21) 2", "absolute positions (G90) 2", "arcs and cycles in XY (G17) 4"}));
   EXPECT_EQ(Assumed("G20\nG0 X1 G91\n"), Names());
   EXPECT_EQ(Assumed("G0 X1 G21\nG90\n"), Names{"absolute positions (G90) 1"});
   EXPECT_EQ(Assumed("G17 G21 G90\nG0 X1\nG2 X4 I1.5\n"), Names());
