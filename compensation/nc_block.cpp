@@ -24,7 +24,9 @@ NcWord ReadComment(NcCursor& cursor, char first) {
   return {'(', 0.0, rest.substr(0, end + 1)};
 }
 
-bool IsWordLetter(char c) { return (c >= 'A' && c <= 'Z' && c != 'O') || c == '@' || c == '^' || c == '$'; }
+bool IsWordLetter(char c) {
+  return (c >= 'A' && c <= 'Z' && c != 'O') || c == '@' || c == '^' || c == '$';
+}
 
 }  // namespace
 

@@ -18,10 +18,10 @@
 namespace abbe::compensation {
 
 struct NcWord {
-  char letter;              // upper case; '(' for a comment; '@' '^' polar, '$' spindle
-  double value;             // 0 for a comment
-  std::string_view text;    // as written
-  bool is_literal = true;   // a number as written, not a parameter or an expression
+  char letter;             // upper case; '(' for a comment; '@' '^' polar, '$' spindle
+  double value;            // 0 for a comment
+  std::string_view text;   // as written
+  bool is_literal = true;  // a number as written, not a parameter or an expression
 };
 
 struct NcSetting {

@@ -52,8 +52,7 @@ std::string CommentText(std::string_view text, std::size_t line_number,
   }
   const bool is_abort = start.starts_with("(abort,");
   if (is_abort) {
-    RefuseLine(line_number,
-               fmt::format("the program ends itself here: {}", text.substr(0, 60)));
+    RefuseLine(line_number, fmt::format("the program ends itself here: {}", text.substr(0, 60)));
   }
   if (!start.starts_with("(debug,") && !start.starts_with("(print,") &&
       !start.starts_with("(log,")) {
@@ -204,7 +203,8 @@ class ProgramCorrection : public NcHost {
         std::all_of(block_.words.begin(), block_.words.end(), [](const NcWord& word) {
           return word.letter == 'M' || word.letter == 'N' || word.letter == '(';
         });
-    if (!is_alone) Refuse("M70 to M73 together with other words; write them in a line of their own");
+    if (!is_alone)
+      Refuse("M70 to M73 together with other words; write them in a line of their own");
     Level& level = levels_.back();
     constexpr int kForget = 71, kRestore = 72;
     if (meaning.context == kRestore) {
@@ -276,9 +276,10 @@ class ProgramCorrection : public NcHost {
     if (code >= kG54 && code <= kG59 + 3) {
       const int system = code <= kG59 ? (code - kG54) / 10 : code - kG59 + 5;
       if (!state_.wanted.is_known[system]) {
-        Refuse(fmt::format("the offset of G{:g} is known only at the control; name its parameter "
-                           "file with --parameters",
-                           code / 10.0));
+        Refuse(
+            fmt::format("the offset of G{:g} is known only at the control; name its parameter "
+                        "file with --parameters",
+                        code / 10.0));
       }
       state_.ChangeOffsets([&](NcOffsets& offsets) { offsets.active = system; });
     }
@@ -362,9 +363,10 @@ class ProgramCorrection : public NcHost {
     for (int k = 0; k < 3; ++k) {
       const bool needs = meaning.axes[k] || state_.wanted.IsTurned();
       if (needs && !state_.is_known[k]) {
-        Refuse(fmt::format("an offset from the place in {}, which is not known; begin with G0 to X, "
-                           "Y and Z in G90, or give the start with --start x,y,z",
-                           "XYZ"[k]));
+        Refuse(
+            fmt::format("an offset from the place in {}, which is not known; begin with G0 to X, "
+                        "Y and Z in G90, or give the start with --start x,y,z",
+                        "XYZ"[k]));
       }
     }
   }
@@ -389,8 +391,9 @@ class ProgramCorrection : public NcHost {
 
   void TakeG10(const NcMeaning& meaning) {
     if (meaning.l && *meaning.l != 2.0 && *meaning.l != 20.0) {
-      Refuse("G10 L0, L1, L10 and L11 change the tool table of the control; set it there and name "
-             "it with --tools");
+      Refuse(
+          "G10 L0, L1, L10 and L11 change the tool table of the control; set it there and name "
+          "it with --tools");
     }
     if (!meaning.l || !meaning.p) Refuse("G10 takes L and P");
     const double p = *meaning.p;
@@ -426,8 +429,9 @@ class ProgramCorrection : public NcHost {
     const bool is_dynamic_length =
         std::find(meaning.modes.begin(), meaning.modes.end(), 431) != meaning.modes.end();
     const bool is_arc = state_.motion == 20 || state_.motion == 30;
-    const bool moves = (meaning.HasAxes() || meaning.HasRotary() || (is_arc && meaning.HasCentre())) && !takes_axes &&
-                       !is_dynamic_length;
+    const bool moves =
+        (meaning.HasAxes() || meaning.HasRotary() || (is_arc && meaning.HasCentre())) &&
+        !takes_axes && !is_dynamic_length;
     if (moves) return moves_.Move(block_, meaning, line_number_);
     if (meaning.is_g53) Refuse("G53 without X, Y or Z");
     if (IsCycle(meaning.motion)) Refuse("a cycle without X, Y or Z");

@@ -59,9 +59,9 @@ struct NcCounts {
               corrected = 0;  // lines read; moves; lines written for the moves
   double largest = 0.0;       // largest correction, m
   std::vector<NcAssumption> assumed;
-  std::size_t copied_moves = 0;             // moves that are not corrected
-  std::vector<NcAssumption> uncorrected;    // why, and the first line
-  bool has_end = false;  // M2, M30 or a % after the first line
+  std::size_t copied_moves = 0;           // moves that are not corrected
+  std::vector<NcAssumption> uncorrected;  // why, and the first line
+  bool has_end = false;                   // M2, M30 or a % after the first line
 };
 
 // Hands the corrected program to `write` in pieces.

@@ -24,7 +24,7 @@ struct NcCycle {
   int plane = 17;
   bool retracts_to_r = false;
   std::vector<Eigen::Vector2d> holes;  // in the plane
-  double initial = 0.0;  // where the first cycle of a row began, along the normal
+  double initial = 0.0;                // where the first cycle of a row began, along the normal
   double r = 0.0, bottom = 0.0, peck = 0.0, dwell = 0.0;
   double gap = 0.254;  // before the bottom of the hole after a peck
 };

@@ -44,9 +44,9 @@ constexpr std::array<Operator, 15> kOperators{{{"**", 5},
                                                {"XOR", 1},
                                                {"OR", 1}}};
 
-constexpr std::array<std::string_view, 14> kFunctions{
-    "ABS", "ACOS", "ASIN", "ATAN", "COS",   "EXISTS", "EXP",
-    "FIX", "FUP",  "LN",   "SIN",  "ROUND", "SQRT",   "TAN"};
+constexpr std::array<std::string_view, 14> kFunctions{"ABS",    "ACOS",  "ASIN", "ATAN", "COS",
+                                                      "EXISTS", "EXP",   "FIX",  "FUP",  "LN",
+                                                      "SIN",    "ROUND", "SQRT", "TAN"};
 
 double Applied(std::string_view word, double a, double b) {
   const bool is_equal = std::abs(a - b) < kEqual;

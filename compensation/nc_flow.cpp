@@ -111,10 +111,9 @@ class Flow {
   void Follow(int index) {
     const NcControlLine& control = At(index);
     if (control.is_deletable && host_.Deletes(control.line + 1)) {
-      const bool is_single = control.control == NcControl::kCall ||
-                             control.control == NcControl::kReturn ||
-                             control.control == NcControl::kBreak ||
-                             control.control == NcControl::kContinue;
+      const bool is_single =
+          control.control == NcControl::kCall || control.control == NcControl::kReturn ||
+          control.control == NcControl::kBreak || control.control == NcControl::kContinue;
       if (is_single) return;
       RefuseLine(control.line + 1, "part of a loop, a branch or a subroutine is left out (/)");
     }

@@ -15,9 +15,7 @@ bool IsOneOf(int code, std::initializer_list<int> codes) {
   return std::find(codes.begin(), codes.end(), code) != codes.end();
 }
 
-bool IsMotion(int code) {
-  return IsOneOf(code, {0, 10, 20, 30, 800}) || IsCycle(code);
-}
+bool IsMotion(int code) { return IsOneOf(code, {0, 10, 20, 30, 800}) || IsCycle(code); }
 
 bool IsNonmodal(int code) {
   return IsOneOf(code, {40, 100, 280, 281, 300, 301, 920, 921, 922, 923});
@@ -88,8 +86,8 @@ std::string_view WhyNot(int code) {
 
 bool IsKnownM(int code) {
   return code >= 0 && code % 10 == 0 &&
-         (code <= 90 || IsOneOf(code / 10, {19, 30, 48, 49, 50, 51, 52, 53, 60, 61, 62, 63, 64, 65,
-                                            66, 67, 68, 70, 71, 72, 73}));
+         (code <= 90 || IsOneOf(code / 10, {19, 30, 48, 49, 50, 51, 52, 53, 60, 61, 62,
+                                            63, 64, 65, 66, 67, 68, 70, 71, 72, 73}));
 }
 
 class Meaning {
@@ -109,10 +107,11 @@ class Meaning {
   void Give(NcMeaning::Value& value, const NcWord& word, const char* twice) {
     if (value) Refuse(twice);
     if (std::isnan(word.value)) {
-      Refuse(fmt::format("{} depends on a value that is known only at the control (a probe, an "
-                         "input, a parameter without a value); set it in the program, or name the "
-                         "control's parameters with --parameters",
-                         word.text));
+      Refuse(
+          fmt::format("{} depends on a value that is known only at the control (a probe, an "
+                      "input, a parameter without a value); set it in the program, or name the "
+                      "control's parameters with --parameters",
+                      word.text));
     }
     value = word.value;
   }
@@ -149,9 +148,10 @@ class Meaning {
       return;
     }
     if (!IsKnownM(code)) {
-      Refuse(fmt::format("{} is not supported: its effect on the machine is unknown; remove it, or "
-                         "keep it with --copy {} if it does not move the machine",
-                         word.text, word.text));
+      Refuse(
+          fmt::format("{} is not supported: its effect on the machine is unknown; remove it, or "
+                      "keep it with --copy {} if it does not move the machine",
+                      word.text, word.text));
     }
     meaning_.is_end = meaning_.is_end || code == 20 || code == 300;
     meaning_.changes_tool = meaning_.changes_tool || code == 60;
@@ -212,10 +212,11 @@ class Meaning {
       case 'B':
       case 'C':
         if (!allowed_.rotary) {
-          Refuse(fmt::format("{} is not supported: it moves a rotary axis, which is not in the map; "
-                             "if it carries the workpiece, --rotary table corrects X, Y and Z and "
-                             "leaves it as it is",
-                             word.text));
+          Refuse(
+              fmt::format("{} is not supported: it moves a rotary axis, which is not in the map; "
+                          "if it carries the workpiece, --rotary table corrects X, Y and Z and "
+                          "leaves it as it is",
+                          word.text));
         }
         return Give(meaning_.rotary[word.letter - 'A'], word, "an axis is given twice");
       default:

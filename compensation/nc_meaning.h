@@ -28,7 +28,7 @@ struct NcMeaning {
   int motion = kNoMotion;    // G0 to G3, G80 (800), cycles
   int nonmodal = kNoMotion;  // G4 G10 G28 G28.1 G30 G30.1 G92 to G92.3
   bool is_g53 = false;
-  std::vector<int> modes;  // the other G codes, ten times
+  std::vector<int> modes;                     // the other G codes, ten times
   std::array<Value, 3> axes, centre, rotary;  // XYZ, IJK, ABC
   Value feed, radius, p, q, l, h, d, polar_radius, polar_angle;
   bool is_end = false;      // M2, M30

@@ -195,9 +195,10 @@ void NcMoves::TakeAngles(const NcMeaning& meaning) {
     if (!(std::abs(*turns_[k]) < kMostDegrees)) Refuse("a rotary axis turns too far");
     if (std::isnan(turn_from_[k])) {
       if (points_.size() > 1) {
-        Refuse(fmt::format("the move is divided, but where {} stands is not known; write {} in a G0 "
-                           "before it",
-                           "ABC"[k], "ABC"[k]));
+        Refuse(
+            fmt::format("the move is divided, but where {} stands is not known; write {} in a G0 "
+                        "before it",
+                        "ABC"[k], "ABC"[k]));
       }
       turn_from_[k] = *turns_[k];
     }
@@ -337,8 +338,8 @@ void NcMoves::Move(const NcBlock& block, const NcMeaning& meaning, std::size_t l
       (meaning.radius && !IsArc(motion) && !IsCycle(motion))) {
     Refuse("I, J, K and R belong to an arc");
   }
-  const bool has_path_mode = std::find(meaning.modes.begin(), meaning.modes.end(), 640) !=
-                             meaning.modes.end();
+  const bool has_path_mode =
+      std::find(meaning.modes.begin(), meaning.modes.end(), 640) != meaning.modes.end();
   constexpr int kDwell = 40;
   if (meaning.nonmodal == kDwell) {
     // LinuxCNC moves only where the block says how.
@@ -359,10 +360,9 @@ void NcMoves::Move(const NcBlock& block, const NcMeaning& meaning, std::size_t l
     if (meaning.axes[k] && (!state_.is_relative || meaning.is_g53)) known[k] = true;
   }
   const bool was_known = state_.KnowsPlace(), is_known = known[0] && known[1] && known[2];
-  const bool adds_to_unknown =
-      state_.is_relative && !meaning.is_g53 &&
-      ((meaning.axes[0] && !known[0]) || (meaning.axes[1] && !known[1]) ||
-       (meaning.axes[2] && !known[2]));
+  const bool adds_to_unknown = state_.is_relative && !meaning.is_g53 &&
+                               ((meaning.axes[0] && !known[0]) || (meaning.axes[1] && !known[1]) ||
+                                (meaning.axes[2] && !known[2]));
   if ((!was_known && motion != 0) || adds_to_unknown || (!is_known && state_.wanted.IsTurned())) {
     Refuse(
         "moves while the position of the machine is unknown; begin with G0 to X, Y and Z in G90, "

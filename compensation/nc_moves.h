@@ -21,8 +21,7 @@ class NcMoves {
  public:
   NcMoves(const Corrector& corrector, const NcOptions& options, NcState& state, NcWriter& writer,
           NcCounts& counts)
-      : corrector_(corrector), options_(options), state_(state), writer_(writer),
-        counts_(counts) {}
+      : corrector_(corrector), options_(options), state_(state), writer_(writer), counts_(counts) {}
 
   // The move of a block whose modes are in force.
   void Move(const NcBlock& block, const NcMeaning& meaning, std::size_t line_number);
@@ -53,7 +52,7 @@ class NcMoves {
   NcWriter& writer_;
   NcCounts& counts_;
   std::size_t line_number_ = 0;
-  std::vector<Eigen::Vector3d> points_;  // program coordinates
+  std::vector<Eigen::Vector3d> points_;    // program coordinates
   std::array<NcMeaning::Value, 3> turns_;  // where A, B, C turn in this block
   std::array<double, 3> turn_from_{};
   double inverse_feed_ = 0.0;

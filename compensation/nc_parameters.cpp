@@ -24,8 +24,8 @@ NcParameters::NcParameters(NcLive live, Stored stored)
 
 double NcParameters::Number(int number) const {
   if (number < 1 || number > kLastParameter) {
-    throw InputError(fmt::format("there is no parameter #{}; they go from #1 to #{}", number,
-                                 kLastParameter));
+    throw InputError(
+        fmt::format("there is no parameter #{}; they go from #1 to #{}", number, kLastParameter));
   }
   if (number <= kArguments) return levels_.back().arguments[number - 1];
   if (number > kLastOfProgram) {

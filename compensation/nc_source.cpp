@@ -76,9 +76,10 @@ std::optional<NcControlLine> ControlIn(std::string_view text, std::size_t index)
   }
   const char next = cursor.Peek();
   if (first != '<' && (next == '\0' || next == '(' || next == ';')) return std::nullopt;
-  cursor.Refuse(fmt::format("\"{}\" after an O word; known are sub, call, return, if, while, do, "
-                            "repeat, break, continue and their ends",
-                            cursor.Rest().substr(0, 12)));
+  cursor.Refuse(
+      fmt::format("\"{}\" after an O word; known are sub, call, return, if, while, do, "
+                  "repeat, break, continue and their ends",
+                  cursor.Rest().substr(0, 12)));
 }
 
 std::string_view Opener(NcControl end) {
@@ -120,9 +121,8 @@ class Structure {
 
   void Close(NcControlLine& line, int index, NcControl opener) {
     if (!TopIs(opener, line.name)) {
-      RefuseLine(line.line + 1,
-                 fmt::format("O{} ends a {} that does not stand right before it", line.name,
-                             Opener(line.control)));
+      RefuseLine(line.line + 1, fmt::format("O{} ends a {} that does not stand right before it",
+                                            line.name, Opener(line.control)));
     }
     line.next = open_.back();
     At(open_.back()).end = At(open_.back()).next = index;
@@ -131,9 +131,9 @@ class Structure {
 
   // A branch of an if replaces the branch before it as the open one.
   void Branch(NcControlLine& line, int index, bool is_last) {
-    const bool is_of_if =
-        TopIs(NcControl::kIf, line.name) || TopIs(NcControl::kElseIf, line.name) ||
-        (is_last && TopIs(NcControl::kElse, line.name));
+    const bool is_of_if = TopIs(NcControl::kIf, line.name) ||
+                          TopIs(NcControl::kElseIf, line.name) ||
+                          (is_last && TopIs(NcControl::kElse, line.name));
     if (!is_of_if) {
       RefuseLine(line.line + 1, fmt::format("O{} belongs to no if", line.name));
     }

@@ -101,10 +101,27 @@ std::optional<double> LiveName(const NcState& state, const std::string& name) {
   }
   if (name == "_current_tool") return state.tool ? *state.tool : kRuntime;
   if (name == "_selected_tool") return state.selected ? *state.selected : kRuntime;
-  for (const std::string_view known :
-       {"_vmajor", "_vminor", "_line", "_current_pocket", "_selected_pocket", "_speed_override",
-        "_feed_override", "_adaptive_feed", "_feed_hold", "_a", "_b",
-        "_c", "_u", "_v", "_w", "_abs_a", "_abs_b", "_abs_c", "_abs_u", "_abs_v", "_abs_w"}) {
+  for (const std::string_view known : {"_vmajor",
+                                       "_vminor",
+                                       "_line",
+                                       "_current_pocket",
+                                       "_selected_pocket",
+                                       "_speed_override",
+                                       "_feed_override",
+                                       "_adaptive_feed",
+                                       "_feed_hold",
+                                       "_a",
+                                       "_b",
+                                       "_c",
+                                       "_u",
+                                       "_v",
+                                       "_w",
+                                       "_abs_a",
+                                       "_abs_b",
+                                       "_abs_c",
+                                       "_abs_u",
+                                       "_abs_v",
+                                       "_abs_w"}) {
     if (name == known) return kRuntime;
   }
   return std::nullopt;

@@ -48,7 +48,7 @@ struct NcState {
   int plane = 17;
   bool is_inch = false, is_relative = false, centre_is_absolute = false, is_diameter = false;
   bool retracts_to_r = true;  // as LinuxCNC starts
-  NcModalWords words;  // as written
+  NcModalWords words;         // as written
   NcOffsets wanted, control;
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   std::array<bool, 3> is_known{};

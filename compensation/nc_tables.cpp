@@ -109,8 +109,8 @@ NcOffsets OffsetsOf(const NcTables& tables) {
   };
   for (int i = 0; i < kSystems; ++i) {
     offsets.systems[i] = vector(kFirstSystem + i * kSystemStep);
-    offsets.rotations[i] = value(kFirstSystem + i * kSystemStep + kRotationBehind) *
-                           std::numbers::pi / 180.0;
+    offsets.rotations[i] =
+        value(kFirstSystem + i * kSystemStep + kRotationBehind) * std::numbers::pi / 180.0;
   }
   offsets.is_known.fill(true);
   const double active = value(kActive);

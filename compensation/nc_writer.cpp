@@ -50,9 +50,10 @@ void NcWriter::EndLine() {
   text_ += '\n';
   is_at_start_ = true;
   if (static_cast<double>(++lines_) > most_lines_) {
-    throw InputError(fmt::format("the corrected program would have more than {:.0e} lines; allow "
-                                 "longer ones, or larger chords, or correct it in parts",
-                                 most_lines_));
+    throw InputError(
+        fmt::format("the corrected program would have more than {:.0e} lines; allow "
+                    "longer ones, or larger chords, or correct it in parts",
+                    most_lines_));
   }
   if (text_.size() >= kPiece) Flush();
 }

@@ -42,8 +42,8 @@ std::vector<Vector3d> Commands(const Corrector& corrector, const std::vector<Vec
   std::string program, text;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Vector3d mm = 1e3 * path[i];
-    program += fmt::format("{} X{:.6f} Y{:.6f} Z{:.6f}\n", i == 0 ? "G0" : "G1", mm.x(), mm.y(),
-                           mm.z());
+    program +=
+        fmt::format("{} X{:.6f} Y{:.6f} Z{:.6f}\n", i == 0 ? "G0" : "G1", mm.x(), mm.y(), mm.z());
   }
   NcSource source("", program);
   CorrectProgram(corrector, options, source, [&](std::string_view piece) { text += piece; });

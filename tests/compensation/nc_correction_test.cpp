@@ -166,9 +166,8 @@ TEST(NcCorrection, WhatItCannotCorrectIsRefusedWithItsLine) {
         "G2.1", "G55", "M98", "M110", "A10", "U1", "E3", "H1", "G80 X1", "G1 G0 X1", "G30.1 A1"}) {
     map::ExpectHas(Refusal(std::string("G0 X1\n") + word + "\n"), "line 2: ");
   }
-  for (const char* const word :
-       {"#5221=3", "X[1+2", "X[1/0]", "X#7", "X#<depth>", "O100 sub", "O1 endif", "O1 call", "/G0 X1",
-        "G1 X", "(open", "X1 X2"}) {
+  for (const char* const word : {"#5221=3", "X[1+2", "X[1/0]", "X#7", "X#<depth>", "O100 sub",
+                                 "O1 endif", "O1 call", "/G0 X1", "G1 X", "(open", "X1 X2"}) {
     map::ExpectHas(Refusal(std::string("G1\n") + word + "\n"), "line 2: ");
   }
   map::ExpectHas(Refusal("G80\nX1\n"), "line 2: axis words without");
@@ -241,7 +240,8 @@ std::vector<std::string> Assumed(std::string_view program) {
 TEST(NcCorrection, TellsWhatAProgramLeavesToItsControl) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(Assumed("M3\nG0 X1\nX2\nG2 X4 I1\n"),
-            (Names{"millimetres (G21) 2", "absolute positions (G90) 2", "arcs and cycles in XY (G17) 4"}));
+            (Names{"millimetres (G21) 2", "absolute positions (G90) 2",
+                   "arcs and cycles in XY (G17) 4"}));
   EXPECT_EQ(Assumed("G20\nG0 X1 G91\n"), Names());
   EXPECT_EQ(Assumed("G0 X1 G21\nG90\n"), Names{"absolute positions (G90) 1"});
   EXPECT_EQ(Assumed("G17 G21 G90\nG0 X1\nG2 X4 I1.5\n"), Names());

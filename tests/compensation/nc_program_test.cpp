@@ -69,8 +69,9 @@ TEST(NcExpression, OperatorsBindAsLinuxcncSays) {
 }
 
 TEST(NcExpression, WhatHasNoValueIsRefused) {
-  for (const char* const text : {"[1/0]", "[5 mod 0]", "sqrt[-1]", "ln[0]", "acos[2]", "[1 +",
-                                 "[-8 ** 0.5]", "#<none>", "#9999", "#0", "sin 3", "[1 2]", "exp[999]"}) {
+  for (const char* const text :
+       {"[1/0]", "[5 mod 0]", "sqrt[-1]", "ln[0]", "acos[2]", "[1 +", "[-8 ** 0.5]", "#<none>",
+        "#9999", "#0", "sin 3", "[1 2]", "exp[999]"}) {
     SCOPED_TRACE(text);
     EXPECT_THROW(ValueOf(text), InputError);
   }
@@ -154,8 +155,7 @@ TEST(NcProgram, TheControlTakesItsOwnPlaceForAnOffset) {
   const Corrector corrector(map, Vector3d(0.01, 0.0, -0.05));
   NcOptions options = Options();
   options.start = Vector3d(0.030, 0.030, 0.030);
-  const std::string plain =
-      WrittenOut("G0 X20 Y10 Z15\nG1 X25 Y15 Z10\n", options, corrector);
+  const std::string plain = WrittenOut("G0 X20 Y10 Z15\nG1 X25 Y15 Z10\n", options, corrector);
   const std::string shifted =
       WrittenOut("G0 X20 Y10 Z15\nG92 X0 Y0 Z0\nG1 X5 Y5 Z-5\n", options, corrector);
   const auto last = [](const std::string& text) {
@@ -230,8 +230,8 @@ TEST(NcProgram, WhatCannotBeCorrectedYetIsCopiedAndCounted) {
   options.start.reset();
   NcSource source("", "G0 Z5\nX1 Y2\nG1 X2 F100\nG91 G28 Z0\nM30\n");
   std::string out;
-  const NcCounts counts = CorrectProgram(NoErrors(), options, source,
-                                         [&](std::string_view piece) { out += piece; });
+  const NcCounts counts =
+      CorrectProgram(NoErrors(), options, source, [&](std::string_view piece) { out += piece; });
   EXPECT_EQ(out, "G0 Z5\nX1 Y2 Z5\nF100 G1 X2 Y2 Z5\nG91 G28 Z0\nM30\n");
   EXPECT_EQ(counts.copied_moves, 2U);
   ASSERT_EQ(counts.uncorrected.size(), 2U);
