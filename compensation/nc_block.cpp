@@ -70,6 +70,7 @@ void ReadBlock(std::string_view line, std::size_t line_number, const NcParameter
     }
     const double value = cursor.Value();
     const std::string_view text = rest.substr(0, cursor.at() - start);
+    if (std::isinf(value)) RefuseLine(line_number, fmt::format("\"{}\" is too large", text));
     const bool is_literal = text.find_first_of("#[") == std::string_view::npos;
     block.words.push_back({first, value, text, is_literal});
   }

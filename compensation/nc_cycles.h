@@ -7,7 +7,7 @@
 //   G86   bore              as G82 with the spindle stopped at the bottom, started above
 //
 // Out is to R with G99, to where the first cycle of a row began with G98 if that is above R.
-// Frames: program coordinates. Units: those of the program, throughout.
+// Frames: program coordinates. Shapes: positions X, Y, Z. Units: those of the program, throughout.
 // Failure: InputError with the line for R below the bottom, Q that is not above 0, more than
 // kMostLines moves. Source: RS 274/NGC (NIST IR 6556), 3.5.16; LinuxCNC 2.9 (0.010 in). Validity: G74 and G84 tap: their feed is geared to the
 // spindle; G76, G87 and G88 depend on the control.
@@ -36,8 +36,10 @@ struct NcCycleStep {
   Eigen::Vector3d to;  // of kRapid and kFeed
 };
 
+// Whether a G word, ten times its code, is a cycle of this file.
 bool IsCycle(int code_times_10);
 
+// The moves of a cycle that begins at `from`.
 std::vector<NcCycleStep> StepsOf(const NcCycle& cycle, const Eigen::Vector3d& from,
                                  std::size_t line_number);
 

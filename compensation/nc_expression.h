@@ -31,6 +31,7 @@ class NcCursor {
   bool TakeWord(std::string_view word);
   // Whether a value can begin here.
   bool IsAtValue();
+  // Takes a number, a parameter, an expression or a function.
   double Value();
   // After #: the name of <...>, or the number of anything else as text.
   struct Parameter {
@@ -40,8 +41,11 @@ class NcCursor {
   Parameter ParameterName();
 
   std::size_t at() const { return at_; }
+  // What was not taken.
   std::string_view Rest() const { return text_.substr(at_); }
+  // Takes `count` characters.
   void Skip(std::size_t count) { at_ += count; }
+  // InputError with the line.
   [[noreturn]] void Refuse(const std::string& what) const;
 
  private:

@@ -6,7 +6,7 @@
 // calls, as in LinuxCNC, and NcHost::MostSteps() lines in all, after which a loop is taken for
 // endless. Failure: InputError with the line (and the file, for a subroutine of another one), also
 // for a branch that depends on a value that is known only at the control.
-// Source: LinuxCNC 2.9, O codes. Units: conditions as the program writes them.
+// Source: LinuxCNC 2.9, O codes. Validity: branches by known values. Units: conditions as the program writes them.
 #pragma once
 
 #include <cstddef>
@@ -28,10 +28,13 @@ class NcHost {
   virtual bool Deletes(std::size_t /*line_number*/) { return false; }
   // A subroutine begins and ends.
   virtual void Enter() {}
+  // The end of it, with the line of its return.
   virtual void Leave(std::size_t /*line_number*/) {}
+  // Lines in all, after which a loop is taken for endless.
   virtual std::size_t MostSteps() const { return 20'000'000; }
 };
 
+// Hands the lines of `source` to `host` in the order in which they act.
 void RunProgram(NcSource& source, NcParameters& parameters, NcHost& host);
 
 }  // namespace abbe::compensation

@@ -15,6 +15,8 @@ bool IsOneOf(int code, std::initializer_list<int> codes) {
   return std::find(codes.begin(), codes.end(), code) != codes.end();
 }
 
+constexpr double kMostDegrees = 1e9;
+
 bool IsMotion(int code) { return IsOneOf(code, {0, 10, 20, 30, 800}) || IsCycle(code); }
 
 bool IsNonmodal(int code) {
@@ -218,6 +220,7 @@ class Meaning {
                           "leaves it as it is",
                           word.text));
         }
+        if (std::abs(word.value) > kMostDegrees) Refuse("a rotary axis turns too far");
         return Give(meaning_.rotary[word.letter - 'A'], word, "an axis is given twice");
       default:
         Refuse(fmt::format("{} is not supported: it cannot be corrected; remove it", word.text));
@@ -241,8 +244,8 @@ class Meaning {
       Refuse("L is not supported here");
     }
     if (meaning_.nonmodal == 40 && meaning_.HasCentre()) Refuse("a dwell together with an arc");
-    if (meaning_.HasRotary() && (meaning_.is_g53 || meaning_.nonmodal != kNoMotion)) {
-      Refuse("A, B and C belong to a move in program coordinates");
+    if (meaning_.HasRotary() && meaning_.nonmodal != kNoMotion) {
+      Refuse("A, B and C belong to a move");
     }
     if (meaning_.motion == 800 && meaning_.HasAxes() && meaning_.nonmodal == kNoMotion) {
       Refuse("axis words without G0, G1, G2 or G3 in force (G80)");

@@ -1,7 +1,7 @@
 // What the words of one block mean: its codes by group, its values, what it must be refused for.
 //
 //   const NcMeaning meaning = MeaningOf(block, 12, allowed);
-//   meaning.motion                     // 20 in a block with G2: ten times the code
+//   meaning.motion;                    // 20 in a block with G2: ten times the code
 //
 // Units: values as written. Failure: InputError with the line and a way out for a code or word that
 // cannot be corrected, two codes of one group, a value that is known only at the control where it
@@ -37,8 +37,11 @@ struct NcMeaning {
   // Whether anything but comments and a line number stands in the block.
   bool acts = false;
 
+  // X, Y, Z or polar.
   bool HasAxes() const { return axes[0] || axes[1] || axes[2] || polar_radius || polar_angle; }
+  // A, B or C.
   bool HasRotary() const { return rotary[0] || rotary[1] || rotary[2]; }
+  // I, J or K.
   bool HasCentre() const { return centre[0] || centre[1] || centre[2]; }
 };
 
@@ -47,6 +50,7 @@ struct NcAllowed {
   bool rotary = false;   // A, B, C: axes that carry the workpiece
 };
 
+// What a block says; modes that are in force from earlier blocks play no part.
 NcMeaning MeaningOf(const NcBlock& block, std::size_t line_number, const NcAllowed& allowed);
 
 // The word as it stands in the corrected program: as written, or with the value of its expression.

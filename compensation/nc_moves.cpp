@@ -185,14 +185,27 @@ void NcMoves::WriteAngles(std::size_t index) {
   }
 }
 
+// A line with G53, since the offsets of rotary axes are the control's.
+void NcMoves::WriteInMachine(const NcMeaning& meaning) {
+  if (points_.size() > 1) {
+    Refuse(
+        "the move in machine coordinates (G53) is divided; turn A, B and C in a line of their own");
+  }
+  writer_.Word("G53");
+  writer_.Motion(state_.motion);
+  writer_.Position(state_.wanted.ToMachine(points_.front()), true);
+  for (int k = 0; k < 3; ++k) {
+    if (meaning.rotary[k]) writer_.Angle("ABC"[k], std::llround(1e6 * *meaning.rotary[k]));
+    state_.rotary[k] = kRuntime;
+  }
+}
+
 // Takes the rotary axes of a block whose points are known.
 void NcMoves::TakeAngles(const NcMeaning& meaning) {
   turns_ = meaning.rotary;
   for (int k = 0; k < 3; ++k) {
     if (!turns_[k]) continue;
     turn_from_[k] = state_.is_relative ? 0.0 : state_.rotary[k];
-    constexpr double kMostDegrees = 1e9;
-    if (!(std::abs(*turns_[k]) < kMostDegrees)) Refuse("a rotary axis turns too far");
     if (std::isnan(turn_from_[k])) {
       if (points_.size() > 1) {
         Refuse(
@@ -386,10 +399,11 @@ void NcMoves::Move(const NcBlock& block, const NcMeaning& meaning, std::size_t l
   } else {
     const Vector3d target = Target(meaning);
     Divide(meaning, target);
-    TakeAngles(meaning);
+    const bool turns_in_machine = meaning.is_g53 && meaning.HasRotary();
+    if (!turns_in_machine) TakeAngles(meaning);
     state_.place = target;
     WriteWords(block);
-    WritePath(motion == 0 ? 0 : 10);
+    turns_in_machine ? WriteInMachine(meaning) : WritePath(motion == 0 ? 0 : 10);
   }
   state_.is_known = known;
   WriteStops(block);

@@ -43,6 +43,7 @@ class NcMoves {
   void WriteStops(const NcBlock& block);
   void WritePath(int motion);
   void WriteAngles(std::size_t index);
+  void WriteInMachine(const NcMeaning& meaning);
   void TakeAngles(const NcMeaning& meaning);
   [[noreturn]] void Refuse(const std::string& what) const { RefuseLine(line_number_, what); }
 

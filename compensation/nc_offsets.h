@@ -3,7 +3,7 @@
 //   p_machine = tool + system + turn(rotation) (p_program + g92)
 //
 // Frames: program coordinates, and the positions of the axes (machine coordinates).
-// Units: m, rad. Source: LinuxCNC 2.9 (order of the offsets; the turn of G10 R in XY).
+// Shapes: X, Y, Z. Units: m, rad. Failure: none. Validity: linear axes. Source: LinuxCNC 2.9 (order of the offsets; the turn of G10 R in XY).
 #pragma once
 
 #include <Eigen/Core>
@@ -26,8 +26,11 @@ struct NcOffsets {
   std::array<bool, 2> home_is_known{};
 
   NcOffsets();
+  // Positions of the axes from program coordinates.
   Eigen::Vector3d ToMachine(const Eigen::Vector3d& program) const;
+  // The inverse.
   Eigen::Vector3d ToProgram(const Eigen::Vector3d& machine) const;
+  // Whether X and Y of the program are turned (G10 R).
   bool IsTurned() const { return rotations[active] != 0.0; }
   // G92: the machine position becomes `program` where that is given (not a NaN).
   void SetG92(const Eigen::Vector3d& machine, const Eigen::Vector3d& program);

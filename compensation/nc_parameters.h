@@ -40,13 +40,18 @@ class NcParameters {
 
   explicit NcParameters(NcLive live = {}, Stored stored = {});
 
+  // #number; InputError for one that there is not.
   double Number(int number) const;
+  // InputError for one of the control's.
   void SetNumber(int number, double value);
   // Nothing if there is no such parameter. `name` in lower case without blanks.
   std::optional<double> Named(const std::string& name) const;
+  // Makes it if it is new.
   void SetNamed(const std::string& name, double value);
 
+  // A level of calls with its own #1 to #30.
   void Enter(const std::vector<double>& arguments);
+  // Back to the level before.
   void Leave();
   std::size_t level() const { return levels_.size() - 1; }
 

@@ -62,6 +62,7 @@ struct NcFile {
   std::vector<NcControlLine> controls;
   std::map<std::string, int> subs;  // name -> index into controls
 
+  // A line without its end.
   std::string_view Line(std::size_t index) const;
   // The O word of a line; nothing if it has none.
   int ControlOf(std::size_t line) const;
@@ -73,6 +74,7 @@ std::unique_ptr<NcFile> ReadNcFile(std::string name, std::string text);
 class NcSource {
  public:
   NcSource(std::string name, std::string text);
+  // One more folder of subroutine files.
   void SearchIn(std::filesystem::path folder) { folders_.push_back(std::move(folder)); }
 
   const NcFile& main() const { return *files_.front(); }

@@ -4,6 +4,7 @@
 // that of the control, which runs the corrected program. They differ where the program takes the
 // place of the axes for an offset (G92, G10 L20): the control takes the corrected place.
 // Frames: NcState::place in program coordinates by `wanted`. Units: m; `feed` as written.
+// Shapes: positions X, Y, Z. Failure: none. Validity: modes of RS 274/NGC.
 // Source: RS 274/NGC (NIST IR 6556); LinuxCNC 2.9 for the parameters of NcLive.
 #pragma once
 
@@ -62,7 +63,9 @@ struct NcState {
   double tool_diameter = 0.0;
 
   double Unit() const;  // of lengths in the program, m
+  // G93.
   bool HasInverseFeed() const;
+  // All three axes.
   bool KnowsPlace() const { return is_known[0] && is_known[1] && is_known[2]; }
   // Changes an offset; the axes stay.
   template <typename Change>

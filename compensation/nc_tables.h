@@ -5,6 +5,7 @@
 //   tables.tools = ReadTools("tool.tbl");                    // "T3 P3 Z51.2 D6 ;end mill"
 //
 // Units: those of the machine, as in the files; NcTables::unit is one of them in m.
+// Frames: machine coordinates. Shapes: X, Y, Z. Validity: LinuxCNC's formats.
 // Failure: InputError with file and line for a line that is none of theirs, a number or a tool
 // given twice. Source: LinuxCNC 2.9, integrator manual (tool table; parameter file).
 #pragma once
@@ -29,7 +30,9 @@ struct NcTables {
   double unit = 1e-3;  // m
 };
 
+// "number value" a line.
 std::map<int, double> ReadParameters(const std::filesystem::path& path);
+// By the number of the tool, T.
 std::map<int, NcTool> ReadTools(const std::filesystem::path& path);
 
 // The offsets that a control with these parameters starts with.

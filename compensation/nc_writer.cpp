@@ -77,13 +77,14 @@ void NcWriter::Angle(char letter, std::int64_t millionths) {
   AppendFixed(millionths, kDecimals, text_);
 }
 
-void NcWriter::Position(const Eigen::Vector3d& machine) {
+void NcWriter::Position(const Eigen::Vector3d& machine, bool is_g53) {
   const Eigen::Vector3d command = corrector_.Command(machine);
   largest_ = std::max(largest_, (command - machine).norm());
-  const NcOffsets& offsets = state_.control;
+  const NcOffsets none, &offsets = is_g53 ? none : state_.control;
   const Eigen::Vector3d to = offsets.ToProgram(command);
-  const Eigen::Vector3d from =
-      state_.is_relative ? offsets.ToProgram(at_) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  const Eigen::Vector3d from = state_.is_relative && !is_g53
+                                   ? offsets.ToProgram(at_)
+                                   : Eigen::Vector3d(Eigen::Vector3d::Zero());
   const int decimals = state_.is_inch ? 7 : 6;
   Eigen::Vector3d written;
   for (int k = 0; k < 3; ++k) {

@@ -2,6 +2,7 @@
 //
 // Positions are in the program's units and its G90 or G91, to 1e-6 mm or 1e-7 inch. An increment starts
 // from the written, rounded position, so that rounding does not accumulate.
+// Source: own; LinuxCNC 2.9 reads it. Validity: words of RS 274/NGC. Shapes: positions X, Y, Z.
 // Frames: machine coordinates in, program coordinates of the control out. Units: m in.
 // Failure: InputError for a command outside the travels, and for a program of more than
 // `most_lines` lines. Memory: the text is handed on in pieces of a megabyte.
@@ -28,18 +29,20 @@ class NcWriter {
 
   // A word behind a blank, unless it begins the line.
   void Word(std::string_view word);
+  // Counts it against `most_lines`.
   void EndLine();
   // G0 or G1 (0 or 10) unless it is in force in the output.
   void Motion(int motion);
   // The code that is in force in the output, ten times; kNoMotion after G80.
   void InForce(int motion) { motion_ = motion; }
-  // The three words of a position of the axes.
-  void Position(const Eigen::Vector3d& machine);
+  // The three words of a position of the axes; with G53 in machine coordinates.
+  void Position(const Eigen::Vector3d& machine, bool is_g53 = false);
   // "A12.5": degrees, to 1e-6.
   void Angle(char letter, std::int64_t millionths);
   // The control stands here.
   void StandAt(const Eigen::Vector3d& machine) { at_ = machine; }
   const Eigen::Vector3d& at() const { return at_; }
+  // Hands on what is left.
   void Flush();
 
   std::size_t positions() const { return positions_; }

@@ -216,6 +216,8 @@ TEST(NcProgram, RotaryAxesTurnAlongTheDividedMove) {
             "G0 X0 Y0 Z0 A10\nF100 G1 X10 Y0 Z0 A20\nX20 Y0 Z0 A30\n"
             "G91 X10 Y0 Z0 A-2.5\nX10 Y0 Z0 A-2.5\n");
   map::ExpectHas(RefusalOf("G1 X20 A30 F100\n", options), "where A stands is not known");
+  EXPECT_EQ(WrittenOut("G92 X5\nG53 G0 X1 A30\nX6\n", options),
+            "G92 X5\nG53 G0 X1 Y0 Z0 A30\nX6 Y0 Z0\n");
 }
 
 TEST(NcProgram, InverseTimeIsDividedWithTheMove) {
