@@ -7,6 +7,8 @@
 
 namespace abbe::apps {
 
+void AddInit(CLI::App& program, int& exit_code);
+void AddDoctor(CLI::App& program, int& exit_code);
 void AddRig(CLI::App& program, int& exit_code);
 void AddAlign(CLI::App& program, int& exit_code);
 void AddSweep(CLI::App& program, int& exit_code);
@@ -30,11 +32,13 @@ void AddSensitivity(CLI::App& program, int& exit_code);
 void AddHistory(CLI::App& program, int& exit_code);
 void AddLive(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
+void AddCompletion(CLI::App& program, int& exit_code);
+void AddMan(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands = std::to_array<AddCommand>(
-    {AddRig,     AddAlign,       AddSweep,     AddRecord, AddReduce,  AddCalibrate,
-     AddCircle,  AddPath,        AddHarmonics, AddPlate,  AddFuse,    AddTrack,
-     AddFollow,  AddDiagnose,    AddCauses,    AddExport, AddCorrect, AddSimulate,
-     AddConvert, AddSensitivity, AddHistory,   AddReport, AddLive});
+    {AddInit,        AddDoctor,   AddRig,    AddAlign,     AddSweep,      AddRecord,   AddReduce,
+     AddCalibrate,   AddCircle,   AddPath,   AddHarmonics, AddPlate,      AddFuse,     AddTrack,
+     AddFollow,      AddDiagnose, AddCauses, AddExport,    AddCorrect,    AddSimulate, AddConvert,
+     AddSensitivity, AddHistory,  AddReport, AddLive,      AddCompletion, AddMan});
 
 }  // namespace abbe::apps

@@ -3,13 +3,17 @@
 #include <fmt/ranges.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "apps/causes_option.h"
@@ -36,11 +40,15 @@ struct CorrectCommand {
   double chord_um = 1.0, feed_mm_min = 0.0;
   double length_mm = 0.0;  // 0: from the map
   bool quiet = false;
+  // What a program leaves to its control.
+  std::filesystem::path tools, parameters;
+  std::string control_units = "mm", block_delete, rotary;
+  std::vector<std::filesystem::path> subroutines;
+  std::vector<std::string> copied;
 };
 
 // Largest deviation of a line of commands from the corrected line, if its length is not given.
 constexpr double kLineTolerance = 0.1e-6;
-constexpr std::size_t kBuffer = 1 << 20;
 constexpr std::size_t kLongestLine = 1 << 16;
 
 std::filesystem::path OutOf(const CorrectCommand& options) {
@@ -131,20 +139,65 @@ void InFile(const CorrectCommand& options, Step step) {
   }
 }
 
-// Line by line, so that a program may be larger than the memory.
-void StreamProgram(const CorrectCommand& options, compensation::NcCorrection& correction) {
+std::string ReadProgram(const CorrectCommand& options) {
   ProgramLines lines(options.from);
-  recording::WholeFile out(OutOf(options));
   std::string text;
   for (std::string_view line; lines.Next(line);) {
-    InFile(options, [&] { correction.Take(line, text); });
-    if (text.size() < kBuffer) continue;
-    out.Append(text);
-    text.clear();
+    if (text.size() > compensation::kLargestProgram) {
+      throw InputError(fmt::format("{}: more than {} bytes; split the program",
+                                   options.from.string(), compensation::kLargestProgram));
+    }
+    (text += line) += '\n';
   }
-  InFile(options, [&] { correction.Finish(); });
-  out.Append(text);
+  return text;
+}
+
+// The corrected program is written as it comes, and is not there if it is refused.
+compensation::NcCounts StreamProgram(const CorrectCommand& options,
+                                     const compensation::Corrector& corrector,
+                                     const compensation::NcOptions& nc) {
+  std::string text = ReadProgram(options);
+  recording::WholeFile out(OutOf(options));
+  compensation::NcCounts counts;
+  InFile(options, [&] {
+    compensation::NcSource source("", std::move(text));
+    source.SearchIn(options.from.parent_path());
+    for (const auto& folder : options.subroutines) source.SearchIn(folder);
+    counts = compensation::CorrectProgram(corrector, nc, source,
+                                          [&](std::string_view piece) { out.Append(piece); });
+  });
   out.Finish();
+  return counts;
+}
+
+// "M110" as 110.
+std::set<int> CopiedCodes(const std::vector<std::string>& words) {
+  std::set<int> codes;
+  for (const std::string& word : words) {
+    int code = -1;
+    const char* const end = word.data() + word.size();
+    if (word.size() > 1 && (word[0] == 'M' || word[0] == 'm')) {
+      const auto [stop, error] = std::from_chars(word.data() + 1, end, code);
+      if (error != std::errc() || stop != end) code = -1;
+    }
+    constexpr int kFirstOfUser = 100, kLast = 999;
+    if (code < kFirstOfUser || code > kLast) {
+      throw InputError(fmt::format("--copy {}: not an M code from M100 to M999", word));
+    }
+    codes.insert(code);
+  }
+  return codes;
+}
+
+compensation::NcTables TablesOf(const CorrectCommand& options) {
+  constexpr double kMetresPerMm = 1e-3, kMetresPerInch = 25.4e-3;
+  compensation::NcTables tables;
+  tables.unit = options.control_units == "inch" ? kMetresPerInch : kMetresPerMm;
+  if (!options.tools.empty()) tables.tools = compensation::ReadTools(options.tools);
+  if (!options.parameters.empty()) {
+    tables.parameters = compensation::ReadParameters(options.parameters);
+  }
+  return tables;
 }
 
 std::vector<std::string> AssumedIn(const compensation::NcCounts& counts) {
@@ -163,6 +216,10 @@ void Warn(const CorrectCommand& options, const compensation::NcCounts& counts) {
         "abbe: {}: assumed, because it does not state them: {}; write them into the program\n",
         options.from.string(), fmt::join(AssumedIn(counts), ", "));
   }
+  for (const compensation::NcAssumption& one : counts.uncorrected) {
+    fmt::print(stderr, "abbe: {}: copied uncorrected, first in line {}: {}\n",
+               options.from.string(), one.line, one.what);
+  }
   if (!counts.has_end) {
     fmt::print(stderr, "abbe: {}: ends with neither M2, M30 nor %; is it complete?\n",
                options.from.string());
@@ -177,9 +234,12 @@ void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
                                              : LineLength(corrector, map.model(), kLineTolerance);
   nc.work_offset = VectorOf(options.work_offset_mm);
   if (!options.start_mm.empty()) nc.start = VectorOf(options.start_mm);
-  compensation::NcCorrection correction(corrector, nc);
-  StreamProgram(options, correction);
-  const auto& counts = correction.counts();
+  nc.tables = TablesOf(options);
+  if (!options.map.tool_mm.empty()) nc.p_TQ_gauge = VectorOf(options.map.tool_mm);
+  if (!options.block_delete.empty()) nc.deletes_blocks = options.block_delete == "on";
+  nc.allowed.copied = CopiedCodes(options.copied);
+  nc.allowed.rotary = !options.rotary.empty();
+  const compensation::NcCounts counts = StreamProgram(options, corrector, nc);
   Warn(options, counts);
   if (!options.json.empty()) {
     auto result = ResultOf(options, map, "program", counts.largest);
@@ -187,6 +247,7 @@ void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
                    {"moves", counts.moves},
                    {"corrected", counts.corrected},
                    {"assumed", AssumedIn(counts)},
+                   {"copied_moves", counts.copied_moves},
                    {"line_mm", nc.limits.length * 1e3},
                    {"chord_um", options.chord_um}});
     WriteResult(result, options.json);
@@ -228,11 +289,34 @@ void AddCorrect(CLI::App& program, int& exit_code) {
       ->required();
   AddPathCauses(*command, options->causes, options->feed_mm_min);
   command->add_option("--out", options->out, "The corrected file (NAME_corrected beside it)");
+  auto* const work_offset =
+      command
+          ->add_option("--work-offset", options->work_offset_mm,
+                       "Programs: axis positions of the program's zero (G54), x,y,z in mm (0,0,0)")
+          ->delimiter(',')
+          ->expected(3);
   command
-      ->add_option("--work-offset", options->work_offset_mm,
-                   "Programs: axis positions of the program's zero, x,y,z in mm (0,0,0)")
-      ->delimiter(',')
-      ->expected(3);
+      ->add_option("--parameters", options->parameters,
+                   "Programs: the control's parameters: offsets, #31 to #5000 (linuxcnc.var)")
+      ->excludes(work_offset);
+  command->add_option("--tools", options->tools,
+                      "Programs: the control's tool table, for G43 (tool.tbl)");
+  command
+      ->add_option("--control-units", options->control_units,
+                   "Programs: units of these two files, mm or inch (mm)")
+      ->check(CLI::IsMember({"mm", "inch"}));
+  command->add_option("--subroutines", options->subroutines,
+                      "Programs: folders of subroutines NAME.ngc besides the program's own");
+  command
+      ->add_option("--block-delete", options->block_delete,
+                   "Programs: blocks that begin with / are left out (on) or run (off)")
+      ->check(CLI::IsMember({"on", "off"}));
+  command
+      ->add_option("--rotary", options->rotary,
+                   "Programs: table: A, B, C carry the workpiece, which follows the corrected axes")
+      ->check(CLI::IsMember({"table"}));
+  command->add_option("--copy", options->copied,
+                      "Programs: M codes of the machine's own that do not move it (M110)");
   command
       ->add_option("--start", options->start_mm,
                    "Programs: position of the machine at the start, x,y,z in mm of the program")

@@ -14,6 +14,7 @@
 #include <system_error>
 #include <vector>
 
+#include "apps/build_facts.h"
 #include "apps/commands.h"
 #include "apps/output_guard.h"
 #include "failure/failure.h"
@@ -104,9 +105,10 @@ int main(int argc, char** argv) {
   CLI::App program(
       "abbe measures the geometric errors of a machine tool, maps them and explains them.");
   program.name("abbe");
-  program.set_version_flag("--version", ABBE_VERSION);
+  program.set_version_flag("--version", BuildFacts());
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
+  program.footer("Example: abbe init");
   int exit_code = kDone;
   for (const AddCommand add : kCommands) add(program, exit_code);
   GuardOutputs(program);

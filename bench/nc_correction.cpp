@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "machine/configurations.h"
 #include "map/error_map.h"
@@ -33,17 +33,20 @@ map::ErrorMap Column() {
 
 void ShortLines(benchmark::State& state) {
   const compensation::Corrector corrector(Column(), Vector3d::Zero());
-  std::vector<std::string> lines;
+  std::string program;
   for (int i = 0; i < 1000; ++i) {
     const double t = 2e-3 * std::numbers::pi * i;
-    lines.push_back("G1 X" + std::to_string(250 + 100 * std::cos(t)) + " Y" +
-                    std::to_string(250 + 100 * std::sin(t)));
+    program += "G1 X" + std::to_string(250 + 100 * std::cos(t)) + " Y" +
+               std::to_string(250 + 100 * std::sin(t)) + "\n";
   }
   for (auto _ : state) {
-    compensation::NcCorrection correction(
-        corrector, {{1e-6, 0.01}, Vector3d::Zero(), Vector3d(0.35, 0.25, 0.1)});
+    compensation::NcOptions options;
+    options.limits = {1e-6, 0.01};
+    options.start = Vector3d(0.35, 0.25, 0.1);
+    compensation::NcSource source("", program);
     std::string out;
-    for (const std::string& line : lines) correction.Take(line, out);
+    compensation::CorrectProgram(corrector, options, source,
+                                 [&](std::string_view piece) { out += piece; });
     benchmark::DoNotOptimize(out.data());
   }
   state.SetItemsProcessed(state.iterations() * 1000);

@@ -44,6 +44,10 @@ class Corrector {
             const Limits& limits);
 
   void KeepZero(const Eigen::Vector3d& zero);
+  // Another tool; the zero stays with the tool that touched it.
+  void SetTool(const Eigen::Vector3d& p_TQ) { p_TQ_ = p_TQ; }
+  // S.
+  const Eigen::Vector3d& signs() const { return signs_; }
 
   Eigen::Vector3d Made(const Eigen::Vector3d& position) const {
     return position + Offset(position);

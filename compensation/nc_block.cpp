@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 #include "failure/failure.h"
@@ -10,9 +9,24 @@
 namespace abbe::compensation {
 namespace {
 
-bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+// Takes a setting "#1 = 3" whose # is taken.
+void ReadSetting(NcCursor& cursor, NcBlock& block) {
+  const NcCursor::Parameter parameter = cursor.ParameterName();
+  if (!cursor.Take('=')) cursor.Refuse("a parameter without = and a value");
+  block.settings.push_back({parameter, cursor.Value()});
+}
 
-char Upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+NcWord ReadComment(NcCursor& cursor, char first) {
+  const std::string_view rest = cursor.Rest();
+  const std::size_t end = first == ';' ? rest.size() - 1 : rest.find(')');
+  if (end == std::string_view::npos) cursor.Refuse("the comment does not end");
+  cursor.Skip(end + 1);
+  return {'(', 0.0, rest.substr(0, end + 1)};
+}
+
+bool IsWordLetter(char c) {
+  return (c >= 'A' && c <= 'Z' && c != 'O') || c == '@' || c == '^' || c == '$';
+}
 
 }  // namespace
 
@@ -28,43 +42,37 @@ int CodeTimes10(const NcWord& word) {
   return static_cast<int>(std::lround(exact));
 }
 
-void ReadBlock(std::string_view line, std::size_t line_number, std::vector<NcWord>& words) {
-  words.clear();
-  std::size_t at = 0;
-  while (true) {
-    while (at < line.size() && IsBlank(line[at])) ++at;
-    if (at == line.size() || line.substr(at) == "%") return;
-    const char letter = Upper(line[at]);
-    if (letter == ';') {
-      words.push_back({'(', 0.0, line.substr(at)});
-      return;
-    }
-    if (letter == '(') {
-      const std::size_t end = line.find(')', at);
-      if (end == std::string_view::npos) RefuseLine(line_number, "the comment does not end");
-      words.push_back({'(', 0.0, line.substr(at, end - at + 1)});
-      at = end + 1;
+void ReadBlock(std::string_view line, std::size_t line_number, const NcParameters& parameters,
+               NcBlock& block) {
+  block.words.clear();
+  block.settings.clear();
+  NcCursor cursor(line, line_number, parameters);
+  block.is_deletable = cursor.Take('/');
+  for (char first = cursor.Peek(); first != '\0'; first = cursor.Peek()) {
+    if (cursor.Rest() == "%" || cursor.Rest() == "%\r") return;
+    if (first == ';' || first == '(') {
+      block.words.push_back(ReadComment(cursor, first));
       continue;
     }
-    if (letter < 'A' || letter > 'Z' || letter == 'O') {
-      RefuseLine(line_number,
-                 fmt::format("\"{}\" is not supported: parameters, expressions, subprograms and "
-                             "deletable blocks cannot be corrected; expand them first",
-                             line.substr(at, 10)));
+    if (cursor.Take('#')) {
+      ReadSetting(cursor, block);
+      continue;
     }
-    std::size_t begin = at + 1;
-    while (begin < line.size() && IsBlank(line[begin])) ++begin;
-    const std::size_t sign = begin < line.size() && line[begin] == '+' ? 1 : 0;
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(line.data() + begin + sign, line.data() + line.size(),
-                                              value, std::chars_format::fixed);
-    if (error != std::errc() || !std::isfinite(value)) {  // from_chars accepts "nan" and "inf"
-      RefuseLine(line_number,
-                 fmt::format("\"{}\" is not a letter with a number", line.substr(at, 10)));
+    const std::string_view rest = cursor.Rest();
+    const std::size_t start = cursor.at();
+    if (!IsWordLetter(first)) {
+      RefuseLine(line_number, fmt::format("\"{}\" is no word of a program", rest.substr(0, 10)));
     }
-    const std::size_t stop = end - line.data();
-    words.push_back({letter, value, line.substr(at, stop - at)});
-    at = stop;
+    cursor.Skip(1);
+    if (!cursor.IsAtValue()) {
+      RefuseLine(line_number,
+                 fmt::format("\"{}\" is not a letter with a number", rest.substr(0, 10)));
+    }
+    const double value = cursor.Value();
+    const std::string_view text = rest.substr(0, cursor.at() - start);
+    if (std::isinf(value)) RefuseLine(line_number, fmt::format("\"{}\" is too large", text));
+    const bool is_literal = text.find_first_of("#[") == std::string_view::npos;
+    block.words.push_back({first, value, text, is_literal});
   }
 }
 

@@ -17,6 +17,9 @@ using Eigen::Vector3d;
 // Allowed difference in radius of the two ends of an arc, as in LinuxCNC for millimetres.
 constexpr double kRadiusAbsolute = 0.5e-6, kRadiusRelative = 1e-3;
 
+// rad: ends nearer than this are one place; rounding of offsets is 1e-15.
+constexpr double kSameAngle = 1e-9;
+
 // m: such an arc deviates from its chord by 1 um over 3 m.
 constexpr double kLargestRadius = 1e6;
 
@@ -89,8 +92,10 @@ Course CourseOf(const Vector3d& from, const Vector3d& to, const Arc& arc, std::s
   const double start = std::atan2(a.y() - centre.y(), a.x() - centre.x());
   double sweep = std::atan2(b.y() - centre.y(), b.x() - centre.x()) - start;
   constexpr double kTurn = 2 * std::numbers::pi;
-  if (arc.is_clockwise && (sweep >= 0.0 || a == b)) sweep -= kTurn;
-  if (!arc.is_clockwise && (sweep <= 0.0 || a == b)) sweep += kTurn;
+  const double turn = arc.is_clockwise ? -kTurn : kTurn;
+  if (sweep == 0.0 || (sweep > 0.0) == arc.is_clockwise) sweep += turn;
+  if (std::abs(sweep) < kSameAngle) sweep += turn;
+  sweep += turn * (arc.turns - 1.0);
   return {u, v, w, centre, start, sweep, r_a, r_b, from[w], to[w] - from[w]};
 }
 
@@ -131,7 +136,8 @@ std::vector<Vector3d> Extremes(const Vector3d& from, const Vector3d& to, const A
   const Course course = CourseOf(from, to, arc, line_number);
   std::vector<Vector3d> points{to};
   const double end = course.start + course.sweep;
-  const double first = std::min(course.start, end), last = std::max(course.start, end);
+  const double first = std::min(course.start, end);
+  const double last = std::min(std::max(course.start, end), first + 2 * std::numbers::pi);
   for (double angle = kQuarter * std::ceil(first / kQuarter); angle < last; angle += kQuarter) {
     points.push_back(course.At((angle - course.start) / course.sweep));
   }

@@ -31,10 +31,11 @@ struct Arc {
   bool is_clockwise = false;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // its two coordinates in the plane
   std::optional<double> radius;                      // replaces the centre; negative: over 180 deg
+  double turns = 1.0;                                // begun ones: 2 is one more full circle
 };
 
-// Appends the points of an arc; a helix if the third coordinate changes. `to` equal to `from` is a
-// full circle, which needs a centre.
+// Appends the points of an arc; a helix if the third coordinate changes. `to` equal to `from`, to
+// 1e-9 rad, is a full circle, which needs a centre.
 void AddArc(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Arc& arc,
             const PathLimits& limits, std::size_t line_number,
             std::vector<Eigen::Vector3d>& points);

@@ -18,18 +18,30 @@ void EachLine(std::string_view text, const Use& use) {
   }
 }
 
+// Every loop ends within these bounds, and so does the time for an input.
+constexpr std::size_t kMostSteps = 2000;
+constexpr double kMostLines = 20000;
+
 void Read(Bytes bytes) {
   static const map::ErrorMap map = SmallMap();
-  static const compensation::Corrector corrector(map, Eigen::Vector3d(0.0, 0.0, 0.1));
+  static const Eigen::Vector3d tool(0.0, 0.0, 0.1);
+  static const compensation::Corrector corrector(map, tool);
   compensation::NcOptions options;
   options.limits = {.chord = 1e-5, .length = 0.05};
   options.start = Eigen::Vector3d::Constant(0.1);
-  compensation::NcCorrection correction(corrector, options);
+  options.p_TQ_gauge = tool;
+  options.tables.tools = {{1, {{0.0, 0.0, 20.0}, 6.0}}};
+  options.tables.parameters = std::map<int, double>{{5161, 10.0}, {5241, 5.0}, {5263, 5.0}};
+  options.deletes_blocks = false;
+  options.most_steps = kMostSteps;
+  options.most_lines = kMostLines;
   std::string out;
-  EachLine(TextOf(bytes), [&](std::string_view line, std::size_t) { correction.Take(line, out); });
-  std::vector<compensation::NcWord> words;
+  compensation::NcSource source("", std::string(TextOf(bytes)));
+  compensation::CorrectProgram(corrector, options, source,
+                               [&](std::string_view piece) { out += piece; });
+  compensation::NcBlock block;
   EachLine(out, [&](std::string_view line, std::size_t number) {
-    compensation::ReadBlock(line, number, words);
+    compensation::ReadBlock(line, number, compensation::NcParameters(), block);
   });
 }
 

@@ -1,6 +1,7 @@
 #include "hal/transports.h"
 
 #include "hal/can/canopen_device.h"
+#include "hal/modbus/example_devices.h"
 #include "hal/modbus/modbus_device.h"
 
 namespace abbe::hal {
@@ -13,5 +14,7 @@ const std::vector<Transport>& Transports() {
   };
   return transports;
 }
+
+std::string ExampleDevices(std::string_view axes) { return ExampleModbusDevices(axes); }
 
 }  // namespace abbe::hal

@@ -129,7 +129,7 @@ class CorrectTest(unittest.TestCase):
     def test_what_cannot_be_corrected_leaves_no_file(self):
         machine = MapMachine(5)
         for text, words in (("G0 X1 Y1 Z1\nG41 D1 X5\n", "part.ngc: line 2: G41"),
-                            ("G0 X1 Y1 Z1\nG28\n", "line 2: G28"),
+                            ("G0 X1 Y1 Z1\nG33 Z0 K1\n", "line 2: G33"),
                             ("G0 X1 Y1 Z99\n", "line 1: Z = 99 mm lies outside")):
             (self.folder / "part.ngc").write_text(text)
             done = self.correct(machine, "part.ngc")
@@ -188,7 +188,7 @@ class CorrectTest(unittest.TestCase):
         done = self.correct(machine, "a.ngc", "--json", self.folder / "a.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         for words in ("millimetres (G21) from line 1 on", "absolute positions (G90) from line 1 on",
-                      "arcs in XY (G17) from line 2 on", "ends with neither M2, M30 nor %"):
+                      "arcs and cycles in XY (G17) from line 2 on", "ends with neither M2, M30 nor %"):
             self.assertIn(words, done.stderr)
         self.assertEqual(len(json.loads((self.folder / "a.json").read_text())["assumed"]), 3)
         (self.folder / "b.ngc").write_text("G21 G90 G17\nG0 X10 Y20 Z30\nG2 X14 I2 F100\nM30\n")

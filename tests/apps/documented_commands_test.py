@@ -29,6 +29,8 @@ COMMAND = re.compile(r"\s*((?:build/release/apps/)?abbe\s.*|echo\s.*)")
 NOT_HERE = {
     ("README.md", "build/release/apps/abbe align"): "waits for a machine: align_test.py",
     ("README.md", "build/release/apps/abbe sweep"): "waits for a machine: sweep_test.py",
+    ("README.md", "build/release/apps/abbe doctor"): "looks at devices: first_minutes_test.py",
+    ("first-minutes.md", "abbe doctor"): "looks at devices: first_minutes_test.py",
     ("align.md", "abbe align"): "waits for a machine: align_test.py",
     ("align.md", "abbe rig"): "serves until Ctrl-C",
     ("live.md", "abbe sweep"): "waits for a machine: tests/report/live.test.mjs",
@@ -179,6 +181,7 @@ class DocumentedCommands(unittest.TestCase):
         (cls.data / "mill.toml").write_text(mill.replace("step_mm = 1.0", "step_mm = 5.0").replace("passes = 5", "passes = 2") +
                                             "\n[limits]\nEYX = { straightness_um = 50.0 }\n" + DRIFT)
         for name, text in (("turn.log", monitor_log()), ("b02_target_x.dat", target_table()), ("part.ngc", PART),
+                           ("linuxcnc.var", "5220\t1\n5221\t30\n5222\t30\n5223\t20\n"), ("tool.tbl", "T1 P1 Z50 D6 ;\n"),
                            ("D1597A_redrilled_meas_2011.txt", hole_table()),
                            ("leica_left_hand_6x6x6_dataset_poses.csv", arm_table()), ("stage.toml", BARE.format("stage")),
                            ("cmm.toml", BARE.format("cmm") + "population.smoothness_mm = 100.0\n"),

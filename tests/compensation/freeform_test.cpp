@@ -39,14 +39,14 @@ std::vector<Vector3d> Path() {
 std::vector<Vector3d> Commands(const Corrector& corrector, const std::vector<Vector3d>& path) {
   NcOptions options;
   options.limits.length = 1.0;  // a line for a line
-  NcCorrection correction(corrector, options);
-  std::string text;
+  std::string program, text;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Vector3d mm = 1e3 * path[i];
-    correction.Take(
-        fmt::format("{} X{:.6f} Y{:.6f} Z{:.6f}", i == 0 ? "G0" : "G1", mm.x(), mm.y(), mm.z()),
-        text);
+    program +=
+        fmt::format("{} X{:.6f} Y{:.6f} Z{:.6f}\n", i == 0 ? "G0" : "G1", mm.x(), mm.y(), mm.z());
   }
+  NcSource source("", program);
+  CorrectProgram(corrector, options, source, [&](std::string_view piece) { text += piece; });
   std::istringstream lines(text);
   std::vector<Vector3d> commands;
   for (std::string line; std::getline(lines, line);) {

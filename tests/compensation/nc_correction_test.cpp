@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compensation/nc_block.h"
 #include "failure/failure.h"
 #include "map/words.h"
 #include "map_cases.h"
@@ -25,10 +26,9 @@ const NcOptions kCoarse{{1e-6, 0.5}, Vector3d::Zero(), Vector3d(0, 0, 0)};
 
 std::string Corrected(std::string_view program, const Corrector& corrector = Perfect(),
                       const NcOptions& options = kCoarse) {
-  NcCorrection correction(corrector, options);
+  NcSource source("", std::string(program));
   std::string out;
-  map::Lines lines(program, "");
-  for (std::string_view line; lines.Next(line);) correction.Take(line, out);
+  CorrectProgram(corrector, options, source, [&](std::string_view piece) { out += piece; });
   return out;
 }
 
@@ -39,13 +39,13 @@ std::string Refusal(std::string_view program, const NcOptions& options = kCoarse
 // All points of an output in G90.
 std::vector<Vector3d> Points(const std::string& text) {
   std::vector<Vector3d> points;
-  std::vector<NcWord> words;
+  NcBlock block;
   map::Lines lines(text, "");
   for (std::string_view line; lines.Next(line);) {
-    ReadBlock(line, 1, words);
+    ReadBlock(line, 1, NcParameters(), block);
     Vector3d point;
     int axes = 0;
-    for (const NcWord& word : words) {
+    for (const NcWord& word : block.words) {
       if (word.letter < 'X' || word.letter > 'Z') continue;
       point[word.letter - 'X'] = 1e-3 * word.value;
       ++axes;
@@ -160,14 +160,14 @@ TEST(NcCorrection, IncrementsAddUpWithoutDrift) {
 
 TEST(NcCorrection, WhatItCannotCorrectIsRefusedWithItsLine) {
   map::ExpectHas(Refusal("G0 X1\nG41 D1\n"), "line 2: G41 is not supported: cutter compensation");
-  map::ExpectHas(Refusal("G43 H1\n"), "line 1: G43 is not supported: a tool length offset");
+  map::ExpectHas(Refusal("G43 H1\n"), "line 1: a tool length offset depends on the tool table");
   for (const char* const word :
-       {"G28", "G53 X1", "G92 X0", "G81 Z-3 R1", "G93", "G10 L2", "G5", "G33", "G38.2 Z1", "G2.1",
-        "G55", "M98", "M66", "A10", "U1", "E3", "H1"}) {
+       {"G81 Z-3", "G81 X1 Z-3 R-4", "G93 G1 X1", "G10 L2", "G10 L1 P1 X1", "G5", "G33", "G38.2 Z1",
+        "G2.1", "G55", "M98", "M110", "A10", "U1", "E3", "H1", "G80 X1", "G1 G0 X1", "G30.1 A1"}) {
     map::ExpectHas(Refusal(std::string("G0 X1\n") + word + "\n"), "line 2: ");
   }
-  for (const char* const word :
-       {"#1=3", "X[1+2]", "O100 sub", "/G0 X1", "G1 X", "(open", "X1 X2"}) {
+  for (const char* const word : {"#5221=3", "X[1+2", "X[1/0]", "X#7", "X#<depth>", "O100 sub",
+                                 "O1 endif", "O1 call", "/G0 X1", "G1 X", "(open", "X1 X2"}) {
     map::ExpectHas(Refusal(std::string("G1\n") + word + "\n"), "line 2: ");
   }
   map::ExpectHas(Refusal("G80\nX1\n"), "line 2: axis words without");
@@ -228,12 +228,10 @@ TEST(NcCorrection, AMoveIsNotDividedWithoutBounds) {
 }
 
 std::vector<std::string> Assumed(std::string_view program) {
-  NcCorrection correction(Perfect(), kCoarse);
-  std::string out;
-  map::Lines lines(program, "");
-  for (std::string_view line; lines.Next(line);) correction.Take(line, out);
+  NcSource source("", std::string(program));
+  const NcCounts counts = CorrectProgram(Perfect(), kCoarse, source, [](std::string_view) {});
   std::vector<std::string> assumed;
-  for (const NcAssumption& one : correction.counts().assumed) {
+  for (const NcAssumption& one : counts.assumed) {
     assumed.push_back(one.what + " " + std::to_string(one.line));
   }
   return assumed;
@@ -242,7 +240,8 @@ std::vector<std::string> Assumed(std::string_view program) {
 TEST(NcCorrection, TellsWhatAProgramLeavesToItsControl) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(Assumed("M3\nG0 X1\nX2\nG2 X4 I1\n"),
-            (Names{"millimetres (G21) 2", "absolute positions (G90) 2", "arcs in XY (G17) 4"}));
+            (Names{"millimetres (G21) 2", "absolute positions (G90) 2",
+                   "arcs and cycles in XY (G17) 4"}));
   EXPECT_EQ(Assumed("G20\nG0 X1 G91\n"), Names());
   EXPECT_EQ(Assumed("G0 X1 G21\nG90\n"), Names{"absolute positions (G90) 1"});
   EXPECT_EQ(Assumed("G17 G21 G90\nG0 X1\nG2 X4 I1.5\n"), Names());
@@ -251,13 +250,7 @@ TEST(NcCorrection, TellsWhatAProgramLeavesToItsControl) {
 
 // RS 274/NGC, 2.1: a file that begins with % ends with %.
 TEST(NcCorrection, AProgramThatWasCutHasNoEnd) {
-  const auto finish = [](std::string_view program) {
-    NcCorrection correction(Perfect(), kCoarse);
-    std::string out;
-    map::Lines lines(program, "");
-    for (std::string_view line; lines.Next(line);) correction.Take(line, out);
-    correction.Finish();
-  };
+  const auto finish = [](std::string_view program) { Corrected(program); };
   map::ExpectHas(map::MessageOf<InputError>([&] { finish("%\nG0 X1\nX2\n"); }),
                  "line 3: the program begins with %");
   EXPECT_NO_THROW(finish("%\nG0 X1\n%\n"));
@@ -268,8 +261,8 @@ TEST(NcCorrection, AProgramThatWasCutHasNoEnd) {
 TEST(NcCorrection, ThePlaceOfTheMachineMustBeKnown) {
   NcOptions options = kCoarse;
   options.start.reset();
-  map::ExpectHas(Refusal("G0 Z5\n", options),
-                 "line 1: moves while the position of the machine is unknown");
+  map::ExpectHas(Refusal("G0 Z5\nG1 X1\n", options),
+                 "line 2: moves while the position of the machine is unknown");
   map::ExpectHas(Refusal("G1 X1 Y1 Z1\n", options),
                  "line 1: moves while the position of the machine is unknown");
   EXPECT_EQ(Corrected("G0 X1 Y1 Z1\nG1 X2\n", Perfect(), options), "G0 X1 Y1 Z1\nG1 X2 Y1 Z1\n");

@@ -1,0 +1,54 @@
+#include "apps/readiness.h"
+
+#include "apps/machine_file.h"
+
+namespace abbe::apps {
+namespace {
+
+// Reads the file as a command would, so that a wrong key is refused with its line.
+void ReadAsCommandsDo(const std::filesystem::path& path, const settings::Table& root) {
+  if (root.Has("devices") || root.Has("head")) {
+    ReadMachineFile(path);
+  } else {
+    ReadMachineAlone(settings::Document::Read(path));
+  }
+}
+
+}  // namespace
+
+std::vector<CommandReadiness> ReadinessOf(const std::filesystem::path& path) {
+  const settings::Document document = settings::Document::Read(path);
+  const settings::Table root = document.Root();
+  ReadAsCommandsDo(path, root);
+  const bool has_axes = root.Has("chain");
+  std::vector<CommandReadiness> all;
+  const auto add = [&](const char* commands, std::vector<std::string> missing) {
+    all.push_back({commands, std::move(missing)});
+  };
+  const std::string axes = "chain and [axis.X], [axis.Y], [axis.Z] with travel_mm";
+  const std::string head = "[head] with the five probes, [target] and [noise] (abbe init --head)";
+  const std::string devices = "[devices.NAME]: the instruments to read (docs/devices.md)";
+  const std::string linkage = "[linkage] with its form and lengths (docs/machine-file.md)";
+  std::vector<std::string> sweep;
+  if (!has_axes) sweep.push_back(axes);
+  if (!root.Has("head")) sweep.push_back(head);
+  if (!root.Has("sweep"))
+    sweep.push_back("[sweep.X] with first_mm, last_mm and step_mm, one an axis");
+  std::vector<std::string> measured = sweep;
+  if (!root.Has("devices")) measured.push_back(devices);
+  add("align, sweep", measured);
+  add("reduce of a sweep, rig", sweep);
+  add("record, doctor",
+      root.Has("devices") ? std::vector<std::string>{} : std::vector<std::string>{devices});
+  add("circle, path, plate, fuse, diagnose of a machine",
+      has_axes ? std::vector<std::string>{} : std::vector<std::string>{axes});
+  add("calibrate, diagnose of an arm",
+      root.Has("linkage") ? std::vector<std::string>{} : std::vector<std::string>{linkage});
+  add("diagnose of a turning shaft", {});
+  add("history check", root.Has("limits") ? std::vector<std::string>{}
+                                          : std::vector<std::string>{
+                                                "[limits]: what you require (docs/history.md)"});
+  return all;
+}
+
+}  // namespace abbe::apps
