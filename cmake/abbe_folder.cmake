@@ -56,8 +56,6 @@ function(abbe_tests name)
   add_executable(${program} ${arg_SOURCES})
   if(arg_LABEL STREQUAL unit)
     add_dependencies(unit_tests ${program})
-    # They are compiled a quarter faster so, and take no time to run.
-    target_compile_options(${program} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   target_link_libraries(${program} PRIVATE ${arg_LINKS} GTest::gtest_main abbe_warnings)
   target_compile_definitions(${program} PRIVATE ABBE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
