@@ -109,6 +109,11 @@ class InitTest(ProgramCase):
         wrong.write_text(self.made("gantry").read_text().replace("travel_mm", "travle_mm", 1))
         self.refuse("--check", wrong, saying=["wrong.toml:", "travel_mm"])
 
+    def test_the_steps_of_a_sweep_divide_any_travel(self):
+        for travel in ("0,500", "0,437.5", "-254,254", "-50.8,101.6", "0,60", "0,7.3"):
+            path = self.made("axis", "--head", "--force", "--travel-x=" + travel)
+            self.assertEqual(self.ready(path)["align, sweep"], "ready", travel)
+
     def test_it_asks(self):
         answers = "mill\nshop-3\n0,800\n0,500\n-400,0\ncarriage\nno\n"
         path = self.path / "asked.toml"
