@@ -27,7 +27,7 @@ struct InitCommand {
   std::string kind, name, positive, chain;
   std::vector<double> travel_mm[3];
   std::filesystem::path ini, check, out = "machine.toml";
-  bool has_head = false, asks = false;
+  bool has_head = false, asks = false, force = false;
 };
 
 int CheckReadiness(const std::filesystem::path& path) {
@@ -108,6 +108,10 @@ MachineDescription Described(InitCommand& options) {
 
 int Init(InitCommand& options) {
   if (!options.check.empty()) return CheckReadiness(options.check);
+  if (!options.force && std::filesystem::exists(options.out)) {
+    throw InputError(fmt::format("{}: is there already; name another file with --out, or --force",
+                                 options.out.string()));
+  }
   const MachineDescription machine = Described(options);
   WriteText(MachineText(machine), options.out);
   const bool carries = std::any_of(machine.axes.begin(), machine.axes.end(),
@@ -159,7 +163,10 @@ void AddInit(CLI::App& program, int& exit_code) {
       "Example: abbe init --kind mill --name mill-7 --travel-x 0,800 --travel-y 0,500 --travel-z 0,500\n"
       "         abbe init --ini mill.ini --out mill.toml\n"
       "         abbe init --check mill.toml");
-  command->callback([options, &exit_code] { exit_code = Init(*options); });
+  command->callback([options, command, &exit_code] {
+    options->force = command->count("--force") > 0;  // of output_guard.h
+    exit_code = Init(*options);
+  });
 }
 
 }  // namespace abbe::apps

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "failure/failure.h"
 #include "hal/transports.h"
@@ -146,13 +147,20 @@ std::string AxisText(const AxisDescription& axis, const std::string& positive) {
   return text;
 }
 
+// Divides the length, at most 60 stations.
+double StepOf(double length) {
+  constexpr double kMostSteps = 60.0, kSteps = 50.0;
+  for (const double step : {1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0}) {
+    if (step >= length / kMostSteps && std::fmod(length, step) == 0.0) return step;
+  }
+  return length / kSteps;
+}
+
 std::string HeadText(const MachineDescription& machine) {
   std::string text(kHead);
   for (const AxisDescription& axis : machine.axes) {
-    const double length = axis.travel_mm.second - axis.travel_mm.first;
-    constexpr double kLargestStep = 1.0, kLines = 60.0;
-    const double step = std::max(kLargestStep, length / kLines);
-    text += fmt::format("[sweep.{}]\nfirst_mm = {:g}\nlast_mm = {:g}\nstep_mm = {:.3g}\n",
+    const double step = StepOf(axis.travel_mm.second - axis.travel_mm.first);
+    text += fmt::format("[sweep.{}]\nfirst_mm = {:g}\nlast_mm = {:g}\nstep_mm = {:.12g}\n",
                         axis.letter, axis.travel_mm.first, axis.travel_mm.second, step);
   }
   std::string letters;

@@ -2,7 +2,7 @@
 //
 //   NcSource source("part.ngc", text);
 //   source.SearchIn("subroutines");
-//   source.Find("pocket");                     // its file and line, read when it is first called
+//   source.Find("pocket", source.main());      // its file and line, read when it is first called
 //
 // O words: sub endsub return call, if elseif else endif, while endwhile, do while, repeat
 // endrepeat, break continue. A name is a number or <text>. A line "O100" without such a word is the

@@ -109,6 +109,11 @@ class InitTest(ProgramCase):
         wrong.write_text(self.made("gantry").read_text().replace("travel_mm", "travle_mm", 1))
         self.refuse("--check", wrong, saying=["wrong.toml:", "travel_mm"])
 
+    def test_the_steps_of_a_sweep_divide_any_travel(self):
+        for travel in ("0,500", "0,437.5", "-254,254", "-50.8,101.6", "0,60", "0,7.3"):
+            path = self.made("axis", "--head", "--force", "--travel-x=" + travel)
+            self.assertEqual(self.ready(path)["align, sweep"], "ready", travel)
+
     def test_it_asks(self):
         answers = "mill\nshop-3\n0,800\n0,500\n-400,0\ncarriage\nno\n"
         path = self.path / "asked.toml"
@@ -129,6 +134,9 @@ class InitTest(ProgramCase):
     def test_it_refuses_what_is_no_machine(self):
         out = ["--out", self.path / "n.toml"]
         self.refuse("--kind", "mill", "--travel-x", "5,5", *out, saying=["X goes from 5 to 5 mm"])
+        kept = self.made("shaft")
+        self.refuse("--kind", "mill", "--out", kept, saying=["shaft.toml: is there already"])
+        self.assertNotIn("chain", kept.read_text())
         self.refuse("--kind", "shaft", "--head", *out, saying=["--head belongs to a machine with axes"])
         (self.path / "a.ini").write_text("[KINS]\nKINEMATICS = scarakins\n")
         self.refuse("--ini", self.path / "a.ini", *out, saying=["scarakins"])
