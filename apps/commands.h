@@ -19,6 +19,7 @@ void AddPlate(CLI::App& program, int& exit_code);
 void AddFuse(CLI::App& program, int& exit_code);
 void AddDiagnose(CLI::App& program, int& exit_code);
 void AddCauses(CLI::App& program, int& exit_code);
+void AddLearnedCommand(CLI::App& program, int& exit_code);
 void AddHarmonics(CLI::App& program, int& exit_code);
 void AddExport(CLI::App& program, int& exit_code);
 void AddCorrect(CLI::App& program, int& exit_code);
@@ -31,7 +32,7 @@ void AddReport(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands = std::to_array<AddCommand>(
     {AddRig,     AddAlign,     AddSweep,   AddRecord,      AddReduce,   AddCalibrate, AddCircle,
-     AddPath,    AddHarmonics, AddPlate,   AddFuse,        AddDiagnose, AddCauses,    AddExport,
+     AddPath,    AddHarmonics, AddPlate,   AddFuse,        AddDiagnose, AddCauses,    AddLearnedCommand, AddExport,
      AddCorrect, AddSimulate,  AddConvert, AddSensitivity, AddHistory,  AddReport,    AddLive});
 
 }  // namespace abbe::apps

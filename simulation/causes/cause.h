@@ -141,6 +141,7 @@ struct Cause {
   // zero of its encoder.
   bool phase_follows_encoder_zero = false;
   bool in_map = false;  // one of the 21 errors, a function of position
+  std::optional<CorrectedBy> seat = {};  // none: as its object has it
   Follows follows = Follows::kPath;
   // Looked for beyond `shapes`, among all that the runs resolve.
   std::optional<Wave> wave = {};
