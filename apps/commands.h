@@ -31,8 +31,9 @@ void AddLive(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands = std::to_array<AddCommand>(
-    {AddRig,     AddAlign,     AddSweep,   AddRecord,      AddReduce,   AddCalibrate, AddCircle,
-     AddPath,    AddHarmonics, AddPlate,   AddFuse,        AddDiagnose, AddCauses,    AddLearnedCommand, AddExport,
-     AddCorrect, AddSimulate,  AddConvert, AddSensitivity, AddHistory,  AddReport,    AddLive});
+    {AddRig,         AddAlign,          AddSweep,     AddRecord,  AddReduce,   AddCalibrate,
+     AddCircle,      AddPath,           AddHarmonics, AddPlate,   AddFuse,     AddDiagnose,
+     AddCauses,      AddLearnedCommand, AddExport,    AddCorrect, AddSimulate, AddConvert,
+     AddSensitivity, AddHistory,        AddReport,    AddLive});
 
 }  // namespace abbe::apps

@@ -119,8 +119,8 @@ int Diagnose(const DiagnoseArguments& arguments) {
     if (diagnosis::IsModelled(finding)) causes.push_back(finding.score.candidate);
   }
   learned::Learning learning = learned::Learn(diagnosis);
-  const diagnosis::HeldOutGain gain = GainOf(
-      campaign, recordings, learning.terms.empty() ? causes : learning.Candidates());
+  const diagnosis::HeldOutGain gain =
+      GainOf(campaign, recordings, learning.IsToBeDecided() ? learning.Candidates() : causes);
   diagnosis::AddDoubtsOfHeldOut(gain, diagnosis);
   learned::Decide(gain, learning, diagnosis);
   if (!arguments.out.empty()) {

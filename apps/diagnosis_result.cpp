@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "diagnosis/found_model.h"
-#include "simulation/variables.h"
 #include "settings/unit.h"
+#include "simulation/variables.h"
 
 namespace abbe::apps {
 namespace {

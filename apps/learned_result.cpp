@@ -38,14 +38,17 @@ ordered_json TermJson(const Learned& learned) {
     json["covered"].push_back(
         {{"variable", covered.variable}, {"from", covered.from}, {"to", covered.to}});
   }
-  json["certificate"] = {{"by_chance", why.by_chance},
-                         {"heldout_rms_before", why.heldout_before},
-                         {"heldout_rms_after", why.heldout_after},
-                         {"regime", why.regime},
-                         {"imitated", why.imitated},
-                         {"nearest", why.nearest},
-                         {"cosine", why.cosine}};
+  if (learned.is_certified)
+    json["certificate"] = {{"by_chance", why.by_chance},
+                           {"heldout_rms_before", why.heldout_before},
+                           {"heldout_rms_after", why.heldout_after},
+                           {"regime", why.regime},
+                           {"imitated", why.imitated},
+                           {"nearest", why.nearest},
+                           {"cosine", why.cosine}};
   json["group"] = learned.group;
+  json["alike"] = learned.alike;
+  json["rivals"] = learned.rivals;
   if (learned.curve.at.size() > 0) json["curve"] = CurveJson(learned.curve);
   return json;
 }
@@ -62,15 +65,29 @@ std::string TermText(const Learned& learned) {
   const simulation::LearnedTerm& term = learned.term();
   const auto& why = term.certificate;
   const auto unit = simulation::ChannelNamed(term.object).value().unit;
-  std::string text = fmt::format("\n{}: {}\n  expression   {} in {}, {:.3g} {} rms\n",
-                                 learned.IsFound() ? "LEARNED" : "not certain",
-                                 learned::InWords(term), term.expression.Text(), term.object,
-                                 learned.amplitude / unit.si, unit.name);
+  std::string text =
+      fmt::format("\n{}: {}\n  expression   {} in {}, {:.3g} {} rms\n",
+                  learned.IsFound() ? "LEARNED" : "not certain", learned::InWords(term),
+                  term.expression.Text(), term.object, learned.amplitude / unit.si, unit.name);
+  if (!learned.alike.empty()) {
+    text += fmt::format("  or at        {}, which these runs show alike\n",
+                        fmt::join(learned.alike, ", "));
+  }
+  for (const std::string& rival : learned.rivals) {
+    text += fmt::format("  or           {}, nearly as probable\n", rival);
+  }
+  if (!learned.is_certified) {
+    for (const std::string& doubt : learned.doubts) {
+      text += fmt::format("  not certain: {}\n", doubt);
+    }
+    return text;
+  }
   text += fmt::format("  in noise     as much with a chance of {:.1g}, the whole grammar asked\n",
                       why.by_chance);
   if (why.heldout_before > 0.0) {
-    text += fmt::format("  held out     rms {:.3f} of the stated noise without it, {:.3f} with it\n",
-                        why.heldout_before, why.heldout_after);
+    text +=
+        fmt::format("  held out     rms {:.3f} of the stated noise without it, {:.3f} with it\n",
+                    why.heldout_before, why.heldout_after);
   }
   if (!learned.is_smooth) text += fmt::format("  elsewhere    {}\n", RegimeText(why.regime));
   text += fmt::format("  imitated     {:.0f} % of its effect by parameters of the simulation",

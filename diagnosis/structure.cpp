@@ -13,14 +13,14 @@ namespace abbe::diagnosis {
 using Eigen::Index;
 using Eigen::RowVectorXd;
 using simulation::Disturbance;
-using simulation::Scene;
-using simulation::Trace;
 using simulation::FactorOf;
 using simulation::GapOf;
 using simulation::HasFactor;
 using simulation::IsGap;
 using simulation::IsSpeed;
 using simulation::OwnerOf;
+using simulation::Scene;
+using simulation::Trace;
 using simulation::ValuesOf;
 
 std::optional<Range> RangeOf(const std::string& variable, const StageChannel& channel,

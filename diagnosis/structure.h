@@ -33,9 +33,9 @@ namespace abbe::diagnosis {
 using simulation::ChannelsOf;
 using simulation::Instrument;
 using simulation::InstrumentOf;
+using simulation::kFeltAtRim;
 using simulation::kFeltByLinkage;
 using simulation::kFeltByProbes;
-using simulation::kFeltAtRim;
 using simulation::StageChannel;
 
 struct Range {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/variables.h"
 #include "fusion/machine_problem.h"
 #include "machine/volumetric_jacobian.h"
+#include "simulation/variables.h"
 
 namespace abbe::diagnosis {
 namespace {

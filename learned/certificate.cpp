@@ -54,18 +54,22 @@ Coefficient CoefficientIn(const std::vector<Index>& own, const std::vector<Index
 }  // namespace
 
 double ByChance(const TermSearch& search, bool is_smooth) {
-  if (is_smooth) return std::min(1.0, std::exp(search.smooth->log_probability) *
-                                          static_cast<double>(search.asked_by_row + 1));
+  if (is_smooth) {
+    const auto questions = static_cast<double>(search.structures);
+    return std::clamp(std::exp(search.smooth->log_probability) * questions, 1e-300, 1.0);
+  }
   const Rated& best = search.best.front();
   const double chance = LogChanceOf(best.chi_square, best.proposal.columns());
   const std::vector<double> least = LeastChances(search.scans, kDraws, kSeed);
   const double median = least[least.size() / 2];
   const double atoms = std::log(0.5) / std::log1p(-std::exp(median));
-  const auto as_small = static_cast<double>(std::ranges::upper_bound(least, chance) - least.begin());
+  const auto as_small =
+      static_cast<double>(std::ranges::upper_bound(least, chance) - least.begin());
   constexpr double kEnough = 10.0;
   const double over_parts = as_small >= kEnough ? as_small / kDraws : AnyOf(chance, atoms);
   const double by_row = AnyOf(chance, static_cast<double>(search.asked_by_row));
-  return std::min(1.0, over_parts + by_row);
+  constexpr double kLeast = 1e-300;  // less is no number
+  return std::clamp(over_parts + by_row, kLeast, 1.0);
 }
 
 std::string RegimeOf(const diagnosis::Fit& fit, const Learned& learned, std::size_t place) {
@@ -79,13 +83,14 @@ std::string RegimeOf(const diagnosis::Fit& fit, const Learned& learned, std::siz
   const auto channel = simulation::ChannelNamed(term.object).value();
   const std::vector<PartScan> scans = ScanParts(fit, channel);
   const auto scan = std::ranges::find_if(scans, [&](const PartScan& each) {
-    return each.variable == product.front().variable && !each.by_direction;
+    return each.variable == product.front().variable && !each.by_direction &&
+           each.hats == (product.front().form != Atom::Form::kStep);
   });
   if (scan == scans.end()) return simulation::kUntold;
   std::vector<Index> inner, outer;
   constexpr Index kFifth = kParts / 5;
-  for (Index part = 0; part < kParts; ++part) {
-    (part < kFifth || part >= kParts - kFifth ? outer : inner).push_back(part);
+  for (Index part = 0; part < scan->at.size(); ++part) {
+    (part < kFifth || part >= scan->at.size() - kFifth ? outer : inner).push_back(part);
   }
   const VectorXd f = OverParts(product.front(), *scan).row(0).transpose();
   const Coefficient in = CoefficientIn(inner, outer, *scan, f),

@@ -8,6 +8,8 @@
 
 #include "diagnosis/linear_runs.h"
 #include "diagnosis/shortlist.h"
+#include "simulation/stage_channel.h"
+#include "simulation/variables.h"
 
 namespace abbe::learned {
 namespace {
@@ -38,46 +40,76 @@ double CosineOf(const MatrixXd& of_cause, const VectorXd& with_term, double of_t
 
 }  // namespace
 
-Confounding ConfoundingOf(const diagnosis::Fit& fit, const Candidate& term,
-                          const std::shared_ptr<const diagnosis::Fit>& base,
-                          const std::vector<Candidate>& causes) {
-  const diagnosis::Campaign& campaign = base->campaign();
+std::vector<Candidate> NamedBeside(const diagnosis::Fit& base,
+                                   const std::vector<Candidate>& found) {
+  const diagnosis::Campaign& campaign = base.campaign();
   const auto all = diagnosis::AllCandidates(
       campaign.scene(), diagnosis::CoarsenessOf(campaign.instruments().machine.population));
-  std::vector<Candidate> candidates{term};
-  for (const diagnosis::Named& named : diagnosis::Shortlist(*base, all)) {
-    const Candidate& candidate = named.best.candidate;
-    if (!candidate.cause->IsRandomField() && !diagnosis::IsAmong(causes, candidate)) {
-      candidates.push_back(candidate);
+  std::vector<Candidate> named;
+  for (const diagnosis::Named& each : diagnosis::Shortlist(base, all)) {
+    const Candidate& candidate = each.best.candidate;
+    if (!candidate.cause->IsRandomField() && !diagnosis::IsAmong(found, candidate)) {
+      named.push_back(candidate);
     }
   }
-  const diagnosis::LinearRuns linear(campaign, campaign.runs(),
-                                     diagnosis::ValuesOf(base->result()));
+  return named;
+}
+
+double ImitatedShare(const diagnosis::Fit& fit, const simulation::LearnedTerm& term,
+                     double chi_square) {
+  const auto channel = simulation::ChannelNamed(term.object).value();
+  const bool is_line = std::ranges::all_of(term.expression.terms, [](const auto& product) {
+    return product.size() == 1 && product.front().form == simulation::Atom::Form::kLinear;
+  });
+  const auto variables = is_line ? std::vector<std::string>{} : term.expression.Variables();
+  const auto count = static_cast<Index>(variables.size()) + 1;
+  MatrixXd A_A = MatrixXd::Zero(count, count);
+  VectorXd A_e = VectorXd::Zero(count);
+  double whole = 0.0;
+  for (std::size_t run = 0; run < fit.runs(); ++run) {
+    const simulation::Trace& trace = fit.TraceOf(run);
+    if (trace.rows() == 0 || !channel.Feels(trace)) continue;
+    const MatrixXd functions = term.expression.Of(trace);
+    const Eigen::RowVectorXd weights = fit.ScoresOf(run, channel.stage).weights;
+    if (functions.rows() == 0 || weights.size() == 0) continue;
+    const Eigen::RowVectorXd effect = term.coefficients.transpose() * functions;
+    MatrixXd A = MatrixXd::Ones(count, trace.rows());
+    for (Index i = 1; i < count; ++i) {
+      A.row(i) = simulation::ValuesInUnit(variables[static_cast<std::size_t>(i - 1)], trace);
+    }
+    whole += weights.dot(effect.cwiseAbs2());
+    A_A += A * weights.asDiagonal() * A.transpose();
+    A_e += A * weights.cwiseProduct(effect).transpose();
+  }
+  whole -= A_e.dot(A_A.completeOrthogonalDecomposition().solve(A_e));
+  return whole > 0.0 ? 1.0 - std::sqrt(std::min(1.0, chi_square / whole)) : 1.0;
+}
+
+Confounding ConfoundingOf(const diagnosis::Fit& fit, const Candidate& term,
+                          const diagnosis::Fit& base, const std::vector<Candidate>& named) {
+  const diagnosis::Campaign& campaign = base.campaign();
+  std::vector<Candidate> candidates{term};
+  candidates.insert(candidates.end(), named.begin(), named.end());
+  const diagnosis::LinearRuns linear(campaign, campaign.runs(), diagnosis::ValuesOf(base.result()));
   std::vector<diagnosis::RunSums> sums;
   for (std::size_t run = 0; run < linear.count(); ++run) {
     sums.push_back(linear.SumsOf(linear.At(run), candidates));
   }
   const MatrixXd S = linear.Information(diagnosis::PointersTo(sums));
   const Index own = term.cause->coefficients();
-  MatrixXd C_C = MatrixXd::Zero(own, own);
-  for (const auto& each : sums) C_C += each.C_C.topLeftCorner(own, own);
   VectorXd along = VectorXd::Ones(own);
   for (std::size_t i = 0; i < fit.taken_in().size(); ++i) {
     if (fit.taken_in()[i].Name() == term.Name()) along = fit.ScoreOf(i).coefficients;
   }
-  const double whole = along.dot(C_C * along),
-               of_term = along.dot(S.topLeftCorner(own, own) * along);
+  const double of_term = along.dot(S.topLeftCorner(own, own) * along);
   Confounding confounding;
-  if (whole > 0.0) {
-    confounding.imitated = 1.0 - std::sqrt(std::clamp(of_term / whole, 0.0, 1.0));
-  }
   std::vector<Likeness> alike;
   Index first = own;
   for (std::size_t i = 1; i < candidates.size(); ++i) {
     const Index count = candidates[i].cause->coefficients();
     const VectorXd with_term = S.block(first, 0, count, own) * along;
-    alike.push_back({candidates[i].Name(),
-                     CosineOf(S.block(first, first, count, count), with_term, of_term)});
+    alike.push_back(
+        {candidates[i].Name(), CosineOf(S.block(first, first, count, count), with_term, of_term)});
     first += count;
   }
   std::ranges::stable_sort(alike, std::greater(), &Likeness::cosine);

@@ -28,7 +28,7 @@ using simulation::LearnedCause;
 using simulation::LearnedTerm;
 using FitPointer = std::shared_ptr<const Fit>;
 
-constexpr std::size_t kMostTerms = 3;
+constexpr std::size_t kMostTerms = 3, kMostSmooth = 2;
 constexpr double kProbable = 4.6;  // log odds, 99 %
 constexpr double kImitated = 0.9;  // of its effect, or cosine: one group
 constexpr double kFalseDiscovery = 0.05;
@@ -40,7 +40,8 @@ std::vector<simulation::Covered> CoveredBy(const Fit& fit, const LearnedTerm& te
   for (const std::string& variable : term.expression.Variables()) {
     const auto range = diagnosis::RangeOf(variable, channel, fit.campaign().scene());
     const double unit = simulation::UnitOf(variable).si;
-    if (range) covered.push_back({variable, range->first / unit, range->last / unit});
+    if (range)
+      covered.push_back({variable, Rounded(range->first / unit), Rounded(range->last / unit)});
   }
   return covered;
 }
@@ -52,29 +53,38 @@ LearnedTerm TermOf(const Fit& fit, const Rated& rated) {
                    .covariance = rated.by_numbers,
                    .u95_of_numbers = rated.u95_of_numbers};
   term.covered = CoveredBy(fit, term);
+  term.certificate.imitated = ImitatedShare(fit, term, rated.chi_square);
   return term;
 }
 
 // A smooth function as cubic B-splines, as many parts as cosines it needs.
 LearnedTerm SmoothTermOf(const Fit& fit, const Found& found) {
   const diagnosis::Structure& structure = found.structure;
-  const double unit = simulation::UnitOf(structure.variable).si;
+  const std::string variable = LearnableOf(structure.variable);
+  const double unit = simulation::UnitOf(variable).si;
+  const auto range =
+      diagnosis::RangeOf(variable, structure.channel, fit.campaign().scene()).value();
   const auto parts = static_cast<double>(structure.terms);
   LearnedTerm term{.object = structure.channel.object,
                    .expression = simulation::Expression{{simulation::Product{
                        Atom{Atom::Form::kSpline,
-                            structure.variable,
-                            {structure.range.first / unit, structure.range.last / unit, parts}}}}},
+                            variable,
+                            {Rounded(range.first / unit), Rounded(range.last / unit), parts}}}}},
                    .coefficients = {},
                    .covariance = {}};
   term.covered = CoveredBy(fit, term);
   return term;
 }
 
+std::string TermOfChannel(const std::string& object, const simulation::Expression& expression) {
+  return fmt::format("{} [{}]", object, expression.Text());
+}
+
 struct Step {
   FitPointer fit;
   std::vector<Learned> terms;
   std::vector<Leftover> left;
+  std::vector<Found> structures;            // asked beside the terms
   std::vector<const TermSearch*> searches;  // that found each
 };
 
@@ -143,6 +153,10 @@ void TakeSizes(const Step& step, std::size_t causes, std::vector<Learned>& terms
     term.covariance = score.covariance.topLeftCorner(count, count);
     if (by_numbers.size() == term.covariance.size()) term.covariance += by_numbers;
     terms[i].amplitude = AmplitudeOf(*step.fit, term);
+    if (terms[i].is_smooth) {
+      term.certificate.imitated =
+          ImitatedShare(*step.fit, term, step.searches[i]->smooth->chi_square);
+    }
     terms[i].cause = LearnedCause::Of(std::move(term));
   }
 }
@@ -161,48 +175,93 @@ class Learner {
   const std::vector<Candidate>& causes() const { return causes_; }
 
  private:
-  bool TakeNext(bool only_smooth, const std::vector<Found>& structures, Step& step);
+  std::vector<Learned> Proposed(const TermSearch& search, bool only_smooth, const Fit& fit) const;
+  bool TakeNext(bool only_smooth, Step& step);
 
   std::vector<Candidate> causes_;
   FitPointer start_, base_;
-  std::vector<TermSearch> searches_;
+  std::vector<std::unique_ptr<const TermSearch>> searches_;
 };
 
-bool Learner::TakeNext(bool only_smooth, const std::vector<Found>& structures, Step& step) {
+// Other terms that are nearly as probable; of another place: at another stage, of other variables.
+void AddRivals(const TermSearch& search, const Rated& rated, Learned& next) {
+  const auto variables = rated.proposal.expression().Variables();
+  for (const Rated& other : search.best) {
+    if (&other == &rated || other.log_posterior < rated.log_posterior - kProbable) continue;
+    const std::string& object = other.proposal.channel.object;
+    const simulation::Expression expression = other.proposal.expression();
+    if (TermOfChannel(object, expression) ==
+        TermOfChannel(next.term().object, next.term().expression))
+      continue;
+    next.rivals.push_back(TermOfChannel(object, expression));
+    const bool is_alike =
+        object == next.term().object || std::ranges::find(next.alike, object) != next.alike.end();
+    auto others = expression.Variables(), own = variables;
+    std::ranges::sort(others);
+    std::ranges::sort(own);
+    if (is_alike && others == own) continue;
+    next.doubts = {"other stages or variables are nearly as probable"};
+  }
+}
+
+// What may come next, the most probable first: expressions near the best one, and where it is more
+// probable, or alone asked for, the smooth function.
+std::vector<Learned> Learner::Proposed(const TermSearch& search, bool only_smooth,
+                                       const Fit& fit) const {
+  constexpr std::size_t kFitted = 3;
+  constexpr double kNear = 12.0;  // in log odds
+  std::vector<Learned> proposed;
+  const double best = search.best.empty() ? 0.0 : search.best.front().log_posterior;
+  const double smooth = search.smooth ? search.log_posterior_of_smooth : 0.0;
+  const auto add_smooth = [&] {
+    proposed.push_back(Prepared(SmoothTermOf(fit, *search.smooth), true, search.smooth->drawn.sd));
+  };
+  if (smooth > kProbable && (only_smooth || smooth > best)) add_smooth();
+  if (only_smooth) return proposed;
+  for (const Rated& rated : search.best) {
+    const bool is_near = rated.log_posterior > std::max(best - kNear, kProbable);
+    if (!is_near || proposed.size() == kFitted) break;
+    Learned next = Prepared(TermOf(fit, rated), false, 0.0);
+    if (next.term().certificate.imitated > kImitated) continue;
+    next.alike = rated.alike;
+    AddRivals(search, rated, next);
+    proposed.push_back(std::move(next));
+  }
+  return proposed;
+}
+
+// Of those that may come next the first beside which nothing is left, else the first.
+bool Learner::TakeNext(bool only_smooth, Step& step) {
   // The first search is the same for both ways.
   if (!step.terms.empty() || searches_.empty()) {
-    searches_.reserve(2 * kMostTerms);  // they are pointed to
-    searches_.push_back(SearchTerms(*step.fit, structures));
+    searches_.push_back(
+        std::make_unique<const TermSearch>(SearchTerms(*step.fit, step.structures)));
   }
-  const TermSearch& search = step.terms.empty() ? searches_.front() : searches_.back();
-  const bool has_expression = !search.best.empty() && search.best.front().log_posterior > kProbable;
-  const bool has_smooth = search.smooth && search.log_posterior_of_smooth > kProbable;
-  const bool smooth_first =
-      has_smooth && (only_smooth || !has_expression ||
-                     search.log_posterior_of_smooth > search.best.front().log_posterior);
-  if (!smooth_first && (only_smooth || !has_expression)) return false;
-  Learned next = smooth_first
-                     ? Prepared(SmoothTermOf(*step.fit, *search.smooth), true,
-                                search.smooth->drawn.sd)
-                     : Prepared(TermOf(*step.fit, search.best.front()), false, 0.0);
-  std::vector<Learned> terms = step.terms;
-  terms.push_back(std::move(next));
-  const FitPointer fit = Fitted(start_, With(causes_, terms));
-  if (!fit) return false;
-  std::vector<const TermSearch*> searches = step.searches;
-  searches.push_back(&search);
-  step = {fit, std::move(terms), {}, std::move(searches)};
+  const TermSearch& search = step.terms.empty() ? *searches_.front() : *searches_.back();
+  std::optional<Step> taken;
+  for (Learned& next : Proposed(search, only_smooth, *step.fit)) {
+    if (diagnosis::IsAmong(With(causes_, step.terms), next.candidate)) continue;
+    Step tried{nullptr, step.terms, {}, {}, step.searches};
+    tried.terms.push_back(std::move(next));
+    tried.fit = Fitted(start_, With(causes_, tried.terms));
+    if (!tried.fit) continue;
+    tried.searches.push_back(&search);
+    tried.structures = diagnosis::FindStructures(*tried.fit);
+    tried.left = LeftBeside(*tried.fit, tried.structures);
+    const bool is_all = tried.left.empty();
+    if (is_all || !taken) taken = std::move(tried);
+    if (is_all) break;
+  }
+  if (!taken) return false;
+  step = std::move(*taken);
   return true;
 }
 
 Step Learner::Run(bool only_smooth) {
-  Step step{start_, {}, {}, {}};
-  std::vector<Found> structures = diagnosis::FindStructures(*start_);
-  step.left = LeftBeside(*start_, structures);
-  while (!step.left.empty() && step.terms.size() < kMostTerms) {
-    if (!TakeNext(only_smooth, structures, step)) break;
-    structures = diagnosis::FindStructures(*step.fit);
-    step.left = LeftBeside(*step.fit, structures);
+  Step step{start_, {}, {}, diagnosis::FindStructures(*start_), {}};
+  step.left = LeftBeside(*start_, step.structures);
+  const std::size_t most = only_smooth ? kMostSmooth : kMostTerms;
+  while (!step.left.empty() && step.terms.size() < most && TakeNext(only_smooth, step)) {
   }
   if (!step.terms.empty()) TakeSizes(step, causes_.size(), step.terms);
   return step;
@@ -224,23 +283,30 @@ bool MayLearn(const diagnosis::Diagnosis& diagnosis) {
          !campaign.scene().travel.isZero(0.0);
 }
 
+// Terms beside which something is left are told without: they are not found.
 void Certify(const Learner& learner, const Step& step, Learning& learning) {
+  if (!learning.left.empty()) {
+    learning.terms = step.terms;
+    return;
+  }
+  const std::vector<Candidate> named = NamedBeside(*learner.base(), learner.causes());
   for (std::size_t i = 0; i < step.terms.size(); ++i) {
     Learned learned = step.terms[i];
     const Confounding confounding =
-        ConfoundingOf(*step.fit, learned.candidate, learner.base(), learner.causes());
+        ConfoundingOf(*step.fit, learned.candidate, *learner.base(), named);
     LearnedTerm term = learned.term();
     term.certificate.by_chance = ByChance(*step.searches[i], learned.is_smooth);
     term.certificate.regime = RegimeOf(*step.fit, learned, learner.causes().size() + i);
-    term.certificate.imitated = confounding.imitated;
     term.certificate.nearest = confounding.nearest;
     term.certificate.cosine = confounding.cosine;
     learned.group = confounding.group;
+    learned.is_certified = true;
     if (!learned.group.empty()) {
       learned.doubts.push_back("a named cause can do the same");
-    } else if (confounding.imitated > kImitated) {
-      learned.doubts.push_back(fmt::format(
-          "parameters of the simulation can make {:.0f} % of its effect", 100.0 * confounding.imitated));
+    } else if (term.certificate.imitated > kImitated) {
+      learned.doubts.push_back(
+          fmt::format("parameters of the simulation can make {:.0f} % of its effect",
+                      100.0 * term.certificate.imitated));
     }
     learned.curve = diagnosis::CurveOf(*learner.start(), *step.fit, learner.causes().size() + i);
     learned.cause = LearnedCause::Of(std::move(term));
@@ -289,12 +355,16 @@ Learning Learn(const diagnosis::Diagnosis& diagnosis) {
 void Decide(const diagnosis::HeldOutGain& gain, Learning& learning,
             diagnosis::Diagnosis& diagnosis) {
   if (learning.terms.empty()) return;
+  if (!learning.left.empty()) {
+    for (Learned& learned : learning.terms) learned.doubts.push_back("something is left beside it");
+    return;
+  }
   std::vector<double> chances;
   for (const Learned& learned : learning.terms) {
     chances.push_back(learned.term().certificate.by_chance);
   }
   const double passing = LargestPassing(chances);
-  bool all = learning.left.empty();
+  bool all = true;
   for (std::size_t i = 0; i < learning.terms.size(); ++i) {
     Learned& learned = learning.terms[i];
     LearnedTerm term = learned.term();
@@ -310,9 +380,6 @@ void Decide(const diagnosis::HeldOutGain& gain, Learning& learning,
       if (!(gain.after < gain.without[place].held)) {
         learned.doubts.push_back("rows that were held out come out worse with it");
       }
-    }
-    if (!learning.left.empty()) {
-      learned.doubts.push_back("something is left beside it");
     }
     learned.cause = LearnedCause::Of(std::move(term));
     all = all && learned.IsFound();

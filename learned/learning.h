@@ -13,6 +13,7 @@
 //   - the whole grammar makes as much out of noise in less than 5 % (Benjamini and Hochberg over the
 //     terms of the diagnosis), and rows held out come out better with it;
 //   - nothing is left beside the terms: no expression is told that does not fit;
+//   - no term of another stage or other variables is nearly as probable (1 %);
 //   - no named cause can do the same (confounding.h); else both are told as one group.
 // Units: SI. Shapes: a term for each candidate. Failure: that of Fit.
 // Source: Benjamini and Hochberg, J. R. Statist. Soc. B 57 (1995); docs/theory-diagnosis.md.
@@ -35,9 +36,11 @@ struct Learned {
   std::shared_ptr<const simulation::LearnedCause> cause;  // of the term with its certificate
   diagnosis::Candidate candidate;                         // as it is fitted
   std::shared_ptr<const simulation::Cause> fitted;        // what `candidate` points to
-  bool is_smooth = false;
-  double amplitude = 0.0;  // m or rad, rms over the rows of the runs
+  bool is_smooth = false, is_certified = false;
+  double amplitude = 0.0;               // m or rad, rms over the rows of the runs
+  std::vector<std::string> alike = {};  // other stages where it does the same to these runs
   diagnosis::Curve curve = {};
+  std::vector<std::string> rivals = {};  // other terms that are nearly as probable: "X [x * y]"
   std::vector<std::string> group = {};   // named causes that could be it as well
   std::vector<std::string> doubts = {};  // why it does not count as found; empty: it does
 
@@ -47,11 +50,13 @@ struct Learned {
 
 struct Learning {
   std::vector<Learned> terms;
-  std::vector<diagnosis::Leftover> before;  // what the diagnosis had left
-  std::vector<diagnosis::Leftover> left;    // what is left beside the terms
+  std::vector<diagnosis::Leftover> before;   // what the diagnosis had left
+  std::vector<diagnosis::Leftover> left;     // what is left beside the terms
   std::vector<diagnosis::Candidate> causes;  // of the catalogue, fitted beside them
   double chi_before = 0.0, chi_after = 0.0;  // chi-square per row
 
+  // Whether rows held out decide.
+  bool IsToBeDecided() const { return !terms.empty() && left.empty(); }
   // The causes, then the terms.
   std::vector<diagnosis::Candidate> Candidates() const;
 };

@@ -1,11 +1,7 @@
 #include "learned/number_posterior.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,9 +25,6 @@ double BackFrom(Form form, const NumberGrid& grid, double even) {
   if (form == Form::kSine) return 1.0 / even;
   return grid.in_logarithm ? std::exp(even) : even;
 }
-
-// So that a text shows it.
-double Rounded(double number) { return std::strtod(fmt::format("{:.6g}", number).c_str(), nullptr); }
 
 struct Point {
   double even;
@@ -59,6 +52,8 @@ NumberPosterior PosteriorOf(const diagnosis::Fit& fit, const Proposal& proposal,
     for (int i = -kOneSide; i <= kOneSide; ++i) {
       const double even = middle + i * step / kOneSide;
       if (form == Form::kSine && !(even > 0.0)) continue;
+      const bool is_place = form == Form::kStep || form == Form::kKink;
+      if (is_place && (even < grid.numbers.front() || even > grid.numbers.back())) continue;
       moved.push_back(at(even));
       evens.push_back(even);
     }
@@ -81,8 +76,8 @@ NumberPosterior PosteriorOf(const diagnosis::Fit& fit, const Proposal& proposal,
     even[i] = points[i].even;
     const double from = points[std::max<Index>(i - 1, 0)].even,
                  to = points[std::min<Index>(i + 1, size - 1)].even;
-    weight[i] = 0.5 * (to - from) *
-                std::exp(0.5 * (points[i].rated.chi_square - best->rated.chi_square));
+    weight[i] =
+        0.5 * (to - from) * std::exp(0.5 * (points[i].rated.chi_square - best->rated.chi_square));
   }
   const double width = weight.sum();
   if (!(width > 0.0)) return posterior;
@@ -96,10 +91,10 @@ NumberPosterior PosteriorOf(const diagnosis::Fit& fit, const Proposal& proposal,
   const double spread = std::sqrt(weight.dot((even.array() - found).square().matrix()));
   const double least = step / kOneSide;  // what was told apart
   const double u = std::max(2.0 * spread, least);
-  posterior.u95 = 0.5 * std::abs(BackFrom(form, grid, found + u) -
-                                 BackFrom(form, grid, std::max(found - u, form == Form::kSine
-                                                                             ? 0.1 * found
-                                                                             : found - u)));
+  posterior.u95 =
+      0.5 * std::abs(BackFrom(form, grid, found + u) -
+                     BackFrom(form, grid,
+                              std::max(found - u, form == Form::kSine ? 0.1 * found : found - u)));
   const Index columns = posterior.best.coefficients.size();
   posterior.by_number = MatrixXd::Zero(columns, columns);
   for (Index i = 0; i < size; ++i) {

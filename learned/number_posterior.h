@@ -16,9 +16,9 @@
 namespace abbe::learned {
 
 struct NumberPosterior {
-  Rated best;                 // with the number that was found
-  double log_share = 0.0;     // of the width of the posterior in the prior range
-  double u95 = 0.0;           // two standard deviations
+  Rated best;                      // with the number that was found
+  double log_share = 0.0;          // of the width of the posterior in the prior range
+  double u95 = 0.0;                // two standard deviations
   Eigen::MatrixXd by_number = {};  // how much the coefficients spread with it: a covariance
 };
 

@@ -34,7 +34,10 @@ std::vector<PartScan> EmptyScans(const diagnosis::Fit& fit, const StageChannel& 
     if (!range) continue;
     const double unit = simulation::UnitOf(variable).si;
     const diagnosis::Range own{range->first / unit, range->last / unit};
-    scans.push_back({channel, variable, false, own, {}, {}, {}});
+    const VectorXd borders = VectorXd::LinSpaced(kParts + 1, own.first, own.last);
+    const VectorXd middles = 0.5 * (borders.head(kParts) + borders.tail(kParts));
+    scans.push_back({channel, variable, false, false, own, middles, {}, {}});
+    scans.push_back({channel, variable, false, true, own, borders, {}, {}});
     if (!HasSign(variable)) continue;
     scans.push_back(scans.back());
     scans.back().by_direction = true;
@@ -42,9 +45,8 @@ std::vector<PartScan> EmptyScans(const diagnosis::Fit& fit, const StageChannel& 
   return scans;
 }
 
-// Which part each row is in, and what it counts there.
-void AddRows(const PartScan& scan, const Trace& trace, Eigen::Ref<MatrixXd> functions,
-             VectorXd& sums, VectorXd& counts) {
+// What each row counts for each part or hat.
+void AddRows(const PartScan& scan, const Trace& trace, Eigen::Ref<MatrixXd> functions) {
   const RowVectorXd values = simulation::ValuesInUnit(scan.variable, trace);
   if (values.size() == 0) return;
   RowVectorXd signs = RowVectorXd::Ones(values.size());
@@ -57,9 +59,9 @@ void AddRows(const PartScan& scan, const Trace& trace, Eigen::Ref<MatrixXd> func
   for (Index row = 0; row < values.size(); ++row) {
     const double at = (values[row] - scan.range.first) * scale;
     const Index part = std::clamp(static_cast<Index>(std::floor(at)), Index{0}, kParts - 1);
-    functions(part, row) = signs[row];
-    sums[part] += values[row];
-    counts[part] += 1.0;
+    const double on = std::clamp(at - static_cast<double>(part), 0.0, 1.0);
+    functions(part, row) = scan.hats ? (1.0 - on) * signs[row] : signs[row];
+    if (scan.hats) functions(part + 1, row) = on * signs[row];
   }
 }
 
@@ -89,7 +91,8 @@ Explained ExplainedBy(const MatrixXd& S, const VectorXd& g, const MatrixXd& f) {
 }
 
 std::vector<Atom> AtomsOf(Atom::Form form, const PartScan& scan) {
-  if (!IsProposed(form, scan.variable, scan.range)) return {};
+  if (scan.hats == (form == Atom::Form::kStep)) return {};
+  if (!IsAskedOfParts(form) || !IsProposed(form, scan.variable, scan.range)) return {};
   if (!HasNumber(form)) return {{form, scan.variable}};
   std::vector<Atom> atoms;
   for (const double number : GridOf(form, scan.variable, scan.range).numbers) {
@@ -101,30 +104,30 @@ std::vector<Atom> AtomsOf(Atom::Form form, const PartScan& scan) {
 }  // namespace
 
 bool IsAskedOfParts(Atom::Form form) {
-  return form != Atom::Form::kLag && form != Atom::Form::kPlay;
+  return form != Atom::Form::kLag && form != Atom::Form::kPlay && form != Atom::Form::kDecay;
 }
 
 std::vector<PartScan> ScanParts(const diagnosis::Fit& fit, const StageChannel& channel) {
   std::vector<PartScan> scans = EmptyScans(fit, channel);
-  const auto count = static_cast<Index>(scans.size());
+  std::vector<Index> groups;
+  Index columns = 0;
+  for (const PartScan& scan : scans) {
+    groups.push_back(scan.at.size());
+    columns += groups.back();
+  }
   std::vector<MatrixXd> functions(fit.runs());
-  std::vector<VectorXd> sums(scans.size(), VectorXd::Zero(kParts)), counts = sums;
   for (std::size_t run = 0; run < fit.runs(); ++run) {
     const Trace& trace = fit.TraceOf(run);
     if (trace.rows() == 0 || !channel.Feels(trace)) continue;
-    functions[run] = MatrixXd::Zero(count * kParts, trace.rows());
-    for (Index s = 0; s < count; ++s) {
-      AddRows(scans[s], trace, functions[run].middleRows(s * kParts, kParts), sums[s], counts[s]);
+    functions[run] = MatrixXd::Zero(columns, trace.rows());
+    Index first = 0;
+    for (const PartScan& scan : scans) {
+      AddRows(scan, trace, functions[run].middleRows(first, scan.at.size()));
+      first += scan.at.size();
     }
   }
-  const std::vector<Index> groups(scans.size(), kParts);
   auto projections = fit.ProjectInStage(channel.stage, functions, groups);
   for (std::size_t s = 0; s < scans.size(); ++s) {
-    const auto& range = scans[s].range;
-    const VectorXd even =
-        VectorXd::LinSpaced(kParts, range.first + 0.5 * range.Length() / kParts,
-                            range.last - 0.5 * range.Length() / kParts);
-    scans[s].middle = (counts[s].array() > 0.0).select(sums[s].cwiseQuotient(counts[s]), even);
     scans[s].S = std::move(projections[s].information);
     scans[s].g = std::move(projections[s].score);
   }
@@ -133,7 +136,7 @@ std::vector<PartScan> ScanParts(const diagnosis::Fit& fit, const StageChannel& c
 
 MatrixXd OverParts(const Atom& atom, const PartScan& scan) {
   const auto values = [&](const std::string&, const Trace&) -> RowVectorXd {
-    return scan.middle.transpose();
+    return scan.at.transpose();
   };
   const Trace none;
   MatrixXd f = simulation::ValuesOfAtom(atom, none, values);
@@ -176,12 +179,11 @@ std::vector<double> LeastChances(const std::vector<PartScan>& scans, int draws,
   for (const PartScan& scan : scans) {
     // g = B z with B B' = S.
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scan.S);
-    const MatrixXd B = eigen.eigenvectors() *
-                       eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+    const MatrixXd B =
+        eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
     // Of all atoms, scaled to unit information; waves as pairs that are orthogonal.
     std::vector<VectorXd> singles, waves;
     for (const Atom::Form form : Forms()) {
-      if (!IsAskedOfParts(form)) continue;
       for (const Atom& atom : AtomsOf(form, scan)) {
         const MatrixXd f = OverParts(atom, scan);
         const MatrixXd information = f * scan.S * f.transpose();
@@ -191,18 +193,19 @@ std::vector<double> LeastChances(const std::vector<PartScan>& scans, int draws,
         for (Index i = 0; i < f.rows(); ++i) {
           const double value = of.eigenvalues()[i];
           const bool absorbed = !(value > kAbsorbed * most);
-          VectorXd unit = VectorXd::Zero(kParts);
+          VectorXd unit = VectorXd::Zero(scan.at.size());
           if (!absorbed) unit = f.transpose() * of.eigenvectors().col(i) / std::sqrt(value);
           (f.rows() == 1 ? singles : waves).push_back(std::move(unit));
         }
       }
     }
-    const auto matrix = [](const std::vector<VectorXd>& columns) {
-      MatrixXd all(kParts, static_cast<Index>(columns.size()));
+    if (singles.empty() && waves.empty()) continue;
+    const auto matrix = [&](const std::vector<VectorXd>& columns) {
+      MatrixXd all(scan.at.size(), static_cast<Index>(columns.size()));
       for (Index c = 0; c < all.cols(); ++c) all.col(c) = columns[static_cast<std::size_t>(c)];
       return all;
     };
-    MatrixXd z(kParts, draws);
+    MatrixXd z(scan.at.size(), draws);
     place += kStride;
     for (Index i = 0; i < z.size(); ++i) {
       z.data()[i] = pool[(place + static_cast<std::size_t>(i)) % kPool];

@@ -1,7 +1,10 @@
 #include "learned/proposal.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace abbe::learned {
 
@@ -9,9 +12,9 @@ using Form = Atom::Form;
 
 namespace {
 
-constexpr int kBorders = 31;  // between 32 parts of a range
+constexpr int kBorders = 31, kAtEnds = 1;  // between 32 parts of a range
 constexpr double kWaveStep = 0.4, kMostWaves = 12.0;
-constexpr int kLogSteps = 12;
+constexpr int kLogSteps = 14;
 
 bool IsTimeLike(const std::string& variable) {
   return variable.starts_with("time") || variable.starts_with("way of ") ||
@@ -21,7 +24,8 @@ bool IsTimeLike(const std::string& variable) {
 NumberGrid Logarithmic(double first, double last) {
   NumberGrid grid{{}, true, std::log(last / first)};
   for (int i = 0; i < kLogSteps; ++i) {
-    grid.numbers.push_back(first * std::pow(last / first, static_cast<double>(i) / (kLogSteps - 1)));
+    grid.numbers.push_back(first *
+                           std::pow(last / first, static_cast<double>(i) / (kLogSteps - 1)));
   }
   return grid;
 }
@@ -45,9 +49,9 @@ std::size_t Proposal::columns() const {
 }
 
 const std::vector<Form>& Forms() {
-  static const std::vector<Form> forms{Form::kLinear, Form::kSquare, Form::kAbsolute, Form::kStep,
-                                       Form::kKink,   Form::kSine,   Form::kDecay,    Form::kLag,
-                                       Form::kPlay};
+  static const std::vector<Form> forms{Form::kLinear, Form::kSquare, Form::kAbsolute,
+                                       Form::kStep,   Form::kKink,   Form::kSine,
+                                       Form::kDecay,  Form::kLag,    Form::kPlay};
   return forms;
 }
 
@@ -57,13 +61,14 @@ bool HasNumber(Form form) {
 }
 
 NumberGrid GridOf(Form form, const std::string& variable, const diagnosis::Range& range) {
-  constexpr double kFastest = 0.02, kSlowest = 2.0, kFine = 0.005, kWide = 0.5;  // of the range
-  constexpr double kShortLag = 60.0, kLongLag = 7200.0;                          // s
+  constexpr double kFastest = 0.003, kSlowest = 2.0, kFine = 0.005, kWide = 0.5;  // of the range
+  constexpr double kShortLag = 60.0, kLongLag = 7200.0;                           // s
   NumberGrid grid{{}, false, range.Length()};
   switch (form) {
     case Form::kStep:
     case Form::kKink:
-      for (int i = 1; i <= kBorders; ++i) {
+      // At an end of the range a kink is a straight line, a step nothing.
+      for (int i = 1 + kAtEnds; i <= kBorders - kAtEnds; ++i) {
         grid.numbers.push_back(range.first + range.Length() * i / (kBorders + 1));
       }
       break;
@@ -84,6 +89,10 @@ NumberGrid GridOf(Form form, const std::string& variable, const diagnosis::Range
   }
   if (!IsProposed(form, variable, range)) return {};
   return grid;
+}
+
+double Rounded(double number) {
+  return std::strtod(fmt::format("{:.6g}", number).c_str(), nullptr);
 }
 
 bool IsProposed(Form form, const std::string& variable, const diagnosis::Range& range) {

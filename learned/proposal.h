@@ -42,6 +42,9 @@ struct NumberGrid {
 // `range` in the unit of the variable. Empty: the form has no number, or none fits.
 NumberGrid GridOf(Atom::Form form, const std::string& variable, const diagnosis::Range& range);
 
+// To six digits, as a text shows it.
+double Rounded(double number);
+
 // Whether a form of that variable says anything: a square of a warmth does, a decay of x does not.
 bool IsProposed(Atom::Form form, const std::string& variable, const diagnosis::Range& range);
 

@@ -28,10 +28,20 @@ constexpr diagnosis::SizeRange kSizes{1e-9, 1e-3, 1.25};  // m or rad
 constexpr double kHidden = 1e-6;
 constexpr double kWorthAWord = 15.0;  // chi-square
 
+bool IsSum(const std::string& variable) {
+  return variable.size() == 3 && (variable[1] == '+' || variable[1] == '-');
+}
+
+// Of how many atoms a proposal is: a sum of two positions counts twice.
+double LengthOf(const Proposal& proposal) {
+  double length = 0.0;
+  for (const Atom& atom : proposal.atoms) length += IsSum(atom.variable) ? 2.0 : 1.0;
+  return length;
+}
+
 // The rank before sizes and numbers are averaged over.
 double QuickWorth(const Rated& rated, double atoms) {
-  const double k = static_cast<double>(rated.proposal.atoms.size());
-  double worth = 0.5 * rated.chi_square - k * std::log(atoms);
+  double worth = 0.5 * rated.chi_square - LengthOf(rated.proposal) * std::log(atoms);
   for (const Atom& atom : rated.proposal.atoms) {
     if (HasNumber(atom.form)) worth -= std::log(static_cast<double>(kParts));
   }
@@ -47,42 +57,53 @@ bool IsSame(const Rated& a, const Rated& b) {
          });
 }
 
-// Where an axis errs over the position of another one, its straightness: EYX over x rather than Y,
-// which is the same to all runs.
-bool IsNatural(const Rated& rated) {
+// Of stages that do the same to all runs that one is told which a metrologist would name: over the
+// position of another axis its straightness, EYX over x; else the axis itself; the ball last.
+int Rank(const Rated& rated) {
   const std::string& object = rated.proposal.channel.object;
   const std::string& variable = rated.proposal.atoms.front().variable;
-  const char axis = static_cast<char>(std::tolower(object.back()));
-  const bool is_motion = object.size() == 3 || object.size() == 1;
-  if (!is_motion) return true;
-  const bool other_moves = variable.size() == 1 && variable[0] != std::tolower(object[0]);
-  return object.size() == 1 ? !other_moves : variable.back() == axis;
+  if (object.starts_with("ball_")) return 0;
+  if (object.size() == 1) return 2;
+  const auto axis = static_cast<char>(std::tolower(object.back()));
+  return object.size() == 3 && variable == std::string(1, axis) ? 3 : 1;
 }
 
 // Whether two stages do the same to the data with the same atoms.
 bool IsAsGood(const Rated& a, const Rated& b) {
   constexpr double kSame = 1e-3;
   return std::abs(a.chi_square - b.chi_square) < kSame * b.chi_square &&
-         std::ranges::equal(a.proposal.atoms, b.proposal.atoms,
-                            [](const Atom& x, const Atom& y) {
-                              return x.form == y.form && x.variable == y.variable;
-                            });
+         std::ranges::equal(a.proposal.atoms, b.proposal.atoms, [](const Atom& x, const Atom& y) {
+           return x.form == y.form && x.variable == y.variable;
+         });
 }
 
-void KeepBest(std::vector<Rated>& all, std::size_t count, double atoms) {
+bool HasForms(const Rated& a, const Rated& b) {
+  return std::ranges::equal(a.proposal.atoms, b.proposal.atoms, {}, &Atom::form, &Atom::form);
+}
+
+// `each_form`: only the best of each.
+void KeepBest(std::vector<Rated>& all, std::size_t count, double atoms, bool each_form = false) {
   std::ranges::stable_sort(all, std::greater(),
                            [&](const Rated& rated) { return QuickWorth(rated, atoms); });
   std::vector<Rated> kept;
   for (Rated& rated : all) {
     if (kept.size() == count) break;
-    const auto known = std::ranges::find_if(kept, [&](const Rated& other) {
-      return IsSame(other, rated) || IsAsGood(other, rated);
-    });
+    if (each_form &&
+        std::ranges::any_of(kept, [&](const Rated& k) { return HasForms(k, rated); })) {
+      continue;
+    }
+    const auto known = std::ranges::find_if(
+        kept, [&](const Rated& other) { return IsSame(other, rated) || IsAsGood(other, rated); });
     if (known == kept.end()) {
       kept.push_back(std::move(rated));
-    } else if (!IsSame(*known, rated) && IsNatural(rated) && !IsNatural(*known)) {
-      *known = std::move(rated);
+      continue;
     }
+    if (IsSame(*known, rated)) continue;
+    std::vector<std::string> alike = std::move(known->alike);
+    const bool better = Rank(rated) > Rank(*known);
+    alike.push_back((better ? *known : rated).proposal.channel.object);
+    if (better) *known = std::move(rated);
+    known->alike = std::move(alike);
   }
   all = std::move(kept);
 }
@@ -97,28 +118,23 @@ void AddOfParts(const std::vector<PartScan>& scans, std::vector<Rated>& all) {
       if (scan.by_direction && atom.form != Form::kSign) rated.proposal.atoms.push_back(sign);
       all.push_back(std::move(rated));
     };
-    if (scan.by_direction) {
+    if (scan.by_direction && scan.hats) {
       const double information = scan.S.sum(), score = scan.g.sum();
       if (information > 0.0) add(sign, score * score / information);
     }
     for (const Form form : Forms()) {
-      if (!IsAskedOfParts(form)) continue;
       const Asked best = BestOf(scan, form);
       if (best.chi_square > 0.0) add(best.atom, best.chi_square);
     }
   }
 }
 
-bool IsSum(const std::string& variable) {
-  return variable.size() == 3 && (variable[1] == '+' || variable[1] == '-');
-}
-
-// Lags and plays, and the products of two plain variables.
+// Decays, lags and plays, and the products of two plain variables.
 std::vector<Proposal> ByRow(const std::vector<PartScan>& scans) {
   std::vector<Proposal> proposals;
   for (const PartScan& scan : scans) {
-    if (scan.by_direction) continue;
-    for (const Form form : {Form::kLag, Form::kPlay}) {
+    if (scan.by_direction || scan.hats) continue;
+    for (const Form form : {Form::kDecay, Form::kLag, Form::kPlay}) {
       if (!IsProposed(form, scan.variable, scan.range)) continue;
       for (const double number : GridOf(form, scan.variable, scan.range).numbers) {
         proposals.push_back({scan.channel, {{form, scan.variable, {number}}}});
@@ -127,9 +143,9 @@ std::vector<Proposal> ByRow(const std::vector<PartScan>& scans) {
     if (IsSum(scan.variable)) continue;
     for (const PartScan& other : scans) {
       if (&other == &scan) break;
-      if (other.by_direction || IsSum(other.variable)) continue;
-      proposals.push_back({scan.channel, {{Form::kLinear, other.variable},
-                                          {Form::kLinear, scan.variable}}});
+      if (other.by_direction || other.hats || IsSum(other.variable)) continue;
+      proposals.push_back(
+          {scan.channel, {{Form::kLinear, other.variable}, {Form::kLinear, scan.variable}}});
     }
     for (const PartScan& other : scans) {
       if (!other.by_direction || other.variable == scan.variable) continue;
@@ -222,6 +238,7 @@ Rated WithNumbers(const Fit& fit, const Rated& rough, const std::vector<PartScan
     if (HasNumber(rough.proposal.atoms[a].form)) which.push_back(a);
   }
   Rated best = AskByRow(fit, {rough.proposal}).front();
+  best.alike = rough.alike;
   if (which.empty()) return best;
   std::map<std::size_t, NumberPosterior> posteriors;
   const int rounds = which.size() > 1 ? 2 : 1;
@@ -232,11 +249,12 @@ Rated WithNumbers(const Fit& fit, const Rated& rough, const std::vector<PartScan
         return each.channel.object == best.proposal.channel.object &&
                each.variable == atom.variable;
       });
-      posteriors[a] = PosteriorOf(fit, best.proposal, a,
-                                  GridOf(atom.form, atom.variable, scan->range));
+      posteriors[a] =
+          PosteriorOf(fit, best.proposal, a, GridOf(atom.form, atom.variable, scan->range));
       best = posteriors[a].best;
     }
   }
+  best.alike = rough.alike;
   best.by_numbers = MatrixXd::Zero(best.coefficients.size(), best.coefficients.size());
   best.u95_of_numbers.clear();
   for (const std::size_t a : which) {
@@ -248,6 +266,10 @@ Rated WithNumbers(const Fit& fit, const Rated& rough, const std::vector<PartScan
 }
 
 }  // namespace
+
+std::string LearnableOf(const std::string& variable) {
+  return variable.starts_with("temp_") ? "warming of " + variable : variable;
+}
 
 std::vector<Rated> AskByRow(const Fit& fit, const std::vector<Proposal>& proposals) {
   constexpr std::size_t kAtOnce = 512;
@@ -270,6 +292,7 @@ TermSearch SearchTerms(const Fit& fit, const std::vector<diagnosis::Found>& stru
   const auto channels = simulation::ChannelsOf(fit.campaign().scene());
   TermSearch search;
   search.channels = channels.size();
+  search.structures = structures.size();
   std::vector<Rated> all;
   std::size_t most_scans = 1;
   for (const StageChannel& channel : channels) {
@@ -289,18 +312,24 @@ TermSearch SearchTerms(const Fit& fit, const std::vector<diagnosis::Found>& stru
   const std::vector<Proposal> products = ProductsOf(all);
   search.asked_by_row += products.size();
   for (Rated& rated : AskByRow(fit, products)) all.push_back(std::move(rated));
+  // A number off by half a part costs so much that other forms may come first.
+  std::vector<Rated> of_forms = all;
+  KeepBest(of_forms, kRefined, atoms, true);
   KeepBest(all, kRefined, atoms);
+  std::ranges::move(of_forms, std::back_inserter(all));
+  KeepBest(all, 2 * kRefined, atoms);
   const double log_odds = std::log(diagnosis::kElse / static_cast<double>(channels.size()));
   for (const Rated& rough : all) {
     Rated rated = WithNumbers(fit, rough, search.scans);
-    rated.log_posterior = rated.log_evidence + log_odds -
-                          static_cast<double>(rated.proposal.atoms.size()) * std::log(atoms);
+    rated.log_posterior =
+        rated.log_evidence + log_odds - LengthOf(rated.proposal) * std::log(atoms);
     search.best.push_back(std::move(rated));
   }
   std::ranges::stable_sort(search.best, std::greater(), &Rated::log_posterior);
   const diagnosis::Found* smooth = nullptr;
   for (const diagnosis::Found& found : structures) {
     if (found.structure.form != diagnosis::Structure::Form::kSmooth) continue;
+    if (!simulation::IsVariable(LearnableOf(found.structure.variable))) continue;
     if (!smooth || found.drawn.log_evidence > smooth->drawn.log_evidence) smooth = &found;
   }
   if (smooth != nullptr && smooth->drawn.log_evidence > 0.0) {

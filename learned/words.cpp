@@ -24,7 +24,8 @@ struct Maker {
 
 // What makes such things on machines, by form and stage.
 constexpr std::array kMakers = {
-    Maker{"step", "a joint of two scales or guideways, a rail end under a carriage, a clamp that lets go",
+    Maker{"step",
+          "a joint of two scales or guideways, a rail end under a carriage, a clamp that lets go",
           "a loose contact, a range switch of the amplifier, a touched cable",
           "a scratch or dirt on the graduation, a joint of the disc, lost counts",
           "the ball settling in its seat"},
@@ -42,19 +43,21 @@ constexpr std::array kMakers = {
     Maker{"product", "weight of one axis that bends the guideway of another, a twisted bed",
           "tilt of the target with its place", "gravity on a turning arm",
           "a cap force that turns with the arm"},
-    Maker{"speed", "following error, friction, an oil film that lifts the carriage, centrifugal force",
+    Maker{"speed",
+          "following error, friction, an oil film that lifts the carriage, centrifugal force",
           "a low-pass filter in the amplifier", "a late or filtered encoder reading",
           "drag of the ball in its cap"},
     Maker{"direction", "play, wind-up of a screw, friction of covers and hoses",
-          "a cable that is dragged along", "play in a joint, a hysteresis of the encoder's coupling",
+          "a cable that is dragged along",
+          "play in a joint, a hysteresis of the encoder's coupling",
           "friction of the ball in its cap"},
     Maker{"temperature", "heat in spindle, drive or coolant, a column that bends with the room",
           "temperature of probe and amplifier", "temperature of a link or its encoder",
           "growth of the ball's stem"},
     Maker{"time", "warming up, a foundation that creeps", "drift of the amplifier",
           "creep of a joint", "a seat that creeps"},
-    Maker{"own column", "what that column measures: load, torque, humidity, coolant",
-          "the same", "the same", "the same"},
+    Maker{"own column", "what that column measures: load, torque, humidity, coolant", "the same",
+          "the same", "the same"},
 };
 
 bool IsOf(const std::string& variable, std::string_view beginning) {
@@ -121,9 +124,9 @@ struct Size {
 // A coefficient in the unit of its channel, times `factor`.
 Size SizeOf(const LearnedTerm& term, double factor) {
   const double unit = simulation::ChannelNamed(term.object).value().unit.si;
-  const double u = term.covariance.size() > 0 ? std::sqrt(std::max(0.0, term.covariance(0, 0))) : 0.0;
-  return {factor * term.coefficients[0] / unit,
-          std::abs(factor) * standards::kCoverage * u / unit};
+  const double u =
+      term.covariance.size() > 0 ? std::sqrt(std::max(0.0, term.covariance(0, 0))) : 0.0;
+  return {factor * term.coefficients[0] / unit, std::abs(factor) * standards::kCoverage * u / unit};
 }
 
 std::string At(const LearnedTerm& term, const Atom& atom) {
@@ -149,11 +152,11 @@ Size AmplitudeOf(const LearnedTerm& term) {
 std::string SplineWords(const LearnedTerm& term, const Atom& atom) {
   const double unit = simulation::ChannelNamed(term.object).value().unit.si;
   const double span = term.coefficients.maxCoeff() - term.coefficients.minCoeff();
-  return fmt::format("{} is a smooth function of {} over {:.4g} to {:.4g} {}, spanning {:.3g} {}; "
-                     "no expression of the grammar says it",
-                     term.object, Of(atom.variable), atom.numbers[0], atom.numbers[1],
-                     Unit(atom.variable), span / unit,
-                     simulation::ChannelNamed(term.object).value().unit.name);
+  return fmt::format(
+      "{} is a smooth function of {} over {:.4g} to {:.4g} {}, spanning {:.3g} {}; "
+      "no expression of the grammar says it",
+      term.object, Of(atom.variable), atom.numbers[0], atom.numbers[1], Unit(atom.variable),
+      span / unit, simulation::ChannelNamed(term.object).value().unit.name);
 }
 
 std::string OneAtom(const LearnedTerm& term, const Atom& atom, const std::string& unit) {
@@ -163,8 +166,8 @@ std::string OneAtom(const LearnedTerm& term, const Atom& atom, const std::string
   const std::string size = Sized(value, u95);
   switch (atom.form) {
     case Form::kLinear:
-      return fmt::format("{} changes by {} {} with {}", object, size,
-                         PerUnit(atom.variable, unit), v);
+      return fmt::format("{} changes by {} {} with {}", object, size, PerUnit(atom.variable, unit),
+                         v);
     case Form::kSquare:
       return fmt::format("{} changes by {} {} times the square of {} in {}", object, size, unit, v,
                          Unit(atom.variable));
@@ -186,11 +189,9 @@ std::string OneAtom(const LearnedTerm& term, const Atom& atom, const std::string
       return fmt::format("{} begins {} {} off and fades with {}, constant {}", object, size, unit,
                          v, At(term, atom));
     case Form::kLag:
-      return fmt::format("{} follows {} by {} {}, {} s late", object, v, size,
-                         PerUnit(atom.variable, unit),
-                         Sized(atom.numbers[0], term.u95_of_numbers.empty()
-                                                    ? 0.0
-                                                    : term.u95_of_numbers.front()));
+      return fmt::format(
+          "{} follows {} by {} {}, {} s late", object, v, size, PerUnit(atom.variable, unit),
+          Sized(atom.numbers[0], term.u95_of_numbers.empty() ? 0.0 : term.u95_of_numbers.front()));
     case Form::kPlay:
       return fmt::format("{} has a play over {} of {}, which makes {} {} from end to end", object,
                          v, At(term, atom), size, unit);

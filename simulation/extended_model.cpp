@@ -151,8 +151,8 @@ ModelGain ReadGain(const Table& root) {
 void ReadDiagnosis(const Table& root, ExtendedModel& model) {
   if (!root.Has("diagnosis")) return;
   const Table table = root.Child("diagnosis");
-  model.verdict =
-      table.Choice("verdict", {"clean", "explained", "ambiguous", kVerdictLearned, kVerdictUnexplained}, true);
+  model.verdict = table.Choice(
+      "verdict", {"clean", "explained", "ambiguous", kVerdictLearned, kVerdictUnexplained}, true);
   model.next_runs = table.Texts("next_runs", 0, std::vector<std::string>{});
   for (const Table& left : table.Children("unexplained")) {
     Unexplained& one = model.unexplained.emplace_back();

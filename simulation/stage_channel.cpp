@@ -28,7 +28,8 @@ namespace {
 StageChannel ErrorMotion(int axis, int motion) {
   const bool own = motion == axis;
   return {own ? std::string(1, "XYZ"[axis]) : machine::MotionName(axis, motion),
-          MotionStage(axis, motion), motion < 3 ? kLengthUnit : kAngleUnit, kFeltByProbes | kFeltByLinkage};
+          MotionStage(axis, motion), motion < 3 ? kLengthUnit : kAngleUnit,
+          kFeltByProbes | kFeltByLinkage};
 }
 
 StageChannel Ball(int i) {

@@ -32,9 +32,7 @@ struct StageChannel {
   estimation::PrintUnit unit;
   unsigned instruments;  // whose runs feel it
 
-  bool Feels(const Trace& trace) const {
-    return (instruments & InstrumentOf(trace)) != 0;
-  }
+  bool Feels(const Trace& trace) const { return (instruments & InstrumentOf(trace)) != 0; }
   // Whether so much could be left at all.
   bool IsPlausible(double amount) const;
 };

@@ -252,12 +252,13 @@ function learnedGroup(term) {
         ['Expression', `${term.expression} in ${objectName(term.object)}`, true],
         ['Effect', `${significant(term.amplitude)}\u00a0${unitText(term.unit)} rms`],
         ['Not certain', (term.doubts ?? []).length ? capital(term.doubts.join('; ')) : null, true],
-        ['Chance that noise makes as much', plain(Number(why.by_chance?.toPrecision(1)))],
+        ['Chance that noise makes as much', isNumber(why.by_chance) ? plain(Number(why.by_chance.toPrecision(1))) : null],
         ['Held-out rows, in their noise', why.heldout_rms_before > 0 ?
            `${fixed(why.heldout_rms_before, 3)} without it, ${fixed(why.heldout_rms_after, 3)} with it` :
            null],
-        ['Elsewhere', term.smooth ? null : capital(REGIMES[why.regime] ?? ''), true],
-        ['Could be imitated', `${fixed(100 * why.imitated, 0)}\u00a0% of its effect by parameters of the simulation${nearest}`, true],
+        ['Elsewhere', term.smooth || !why.regime ? null : capital(REGIMES[why.regime] ?? ''), true],
+        ['Could be imitated', !isNumber(why.imitated) ? null : `${fixed(100 * why.imitated, 0)}\u00a0% of its effect by parameters of the simulation${nearest}`, true],
+        ['Or at', (term.alike ?? []).length ? `${term.alike.map(objectName).join('; ')}, which these runs show alike` : null, true],
         ['Or one of', (term.group ?? []).map(candidateName).join('; ') || null, true],
         ['Suggestion', term.suggestion ? `Such things are made by ${term.suggestion}` : null, true],
       ]),

@@ -91,12 +91,11 @@ LearnedCause::LearnedCause(LearnedTerm term) : term_(std::move(term)) {
   }
   cause_.objects = [object = Object(term_.object)](const Scene& scene) -> std::vector<Object> {
     const auto channels = ChannelsOf(scene);
-    const bool has = std::ranges::find(channels, object.name(), &StageChannel::object) !=
-                     channels.end();
+    const bool has =
+        std::ranges::find(channels, object.name(), &StageChannel::object) != channels.end();
     return has ? std::vector<Object>{object} : std::vector<Object>{};
   };
-  cause_.columns = [channel, expression = term_.expression,
-                    values = ValuesWithin(term_.covered)](
+  cause_.columns = [channel, expression = term_.expression, values = ValuesWithin(term_.covered)](
                        const Trace& trace, const Object&,
                        const Eigen::VectorXd&) -> std::vector<Disturbance> {
     if (!channel.Feels(trace)) return {};

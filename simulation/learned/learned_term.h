@@ -34,7 +34,7 @@ struct Certificate {
   double by_chance = 1.0;  // probability of as much in noise, the whole grammar asked
   double heldout_before = 0.0, heldout_after = 0.0;  // rms of the rows held out, in their noise
   std::string regime = "untold";  // beyond what was fitted: kHolds, kFails, kUntold
-  double imitated = 0.0;  // share of its effect, rms, that parameters of the simulation can make
+  double imitated = 0.0;     // share of its effect, rms, that parameters of the simulation can make
   std::string nearest = {};  // the named cause most like it, "backlash:X"; empty: none
   double cosine = 0.0;       // of both, free of the parameters
 };

@@ -50,8 +50,7 @@ LearnedTerm ReadLearnedTerm(const Table& table) {
   }
   const std::string stage = table.Text("stage", StageName(term.object));
   if (stage != StageName(term.object)) {
-    throw table.Error("stage", fmt::format("of {} is \"{}\"", term.object,
-                                           StageName(term.object)));
+    throw table.Error("stage", fmt::format("of {} is \"{}\"", term.object, StageName(term.object)));
   }
   term.expression = ReadExpression(table);
   const Index count = term.expression.columns();

@@ -68,9 +68,8 @@ Atom Beyond(Form form, std::string_view inside, std::string_view text) {
   for (const auto& [sign, factor] : {std::pair{" - ", 1.0}, std::pair{" + ", -1.0}}) {
     const auto at = inside.rfind(sign);
     if (at == std::string_view::npos) continue;
-    return {form,
-            Variable(inside.substr(0, at), text),
-            {factor * Number(inside.substr(at + 3), text)}};
+    return {
+        form, Variable(inside.substr(0, at), text), {factor * Number(inside.substr(at + 3), text)}};
   }
   return {form, Variable(inside, text), {0.0}};
 }

@@ -54,10 +54,11 @@ INSTANTIATE_TEST_SUITE_P(
     OfTheGrammar, TextAndBack,
     testing::Values("x", "x^2", "abs(speed of x)", "sin(2 pi x+y / 12.5)",
                     "sin(2 pi x / 5) + cos(2 pi x / 5)", "step(x - 31.4)", "step(y + 2)",
-                    "max(0, feed - 1200)", "exp(-time of run / 300)", "lag(warming of temp_table_c, 600)",
-                    "play(pivot_1, 0.01)", "sign(z)", "bspline(x, -10, 110, 12)", "x * y",
-                    "sign(x) * step(y - 3)", "x * y + step(z - 1e-05) + column load_n",
-                    "rate of temp_table_c", "gap of probe_a^2", "way of x * x-z"));
+                    "max(0, feed - 1200)", "exp(-time of run / 300)",
+                    "lag(warming of temp_table_c, 600)", "play(pivot_1, 0.01)", "sign(z)",
+                    "bspline(x, -10, 110, 12)", "x * y", "sign(x) * step(y - 3)",
+                    "x * y + step(z - 1e-05) + column load_n", "rate of temp_table_c",
+                    "gap of probe_a^2", "way of x * x-z"));
 
 struct Refused {
   const char* text;
@@ -74,18 +75,19 @@ TEST_P(Nonsense, IsRefusedWithItsReason) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    OfTheGrammar, Nonsense,
-    testing::Values(Refused{"", "which is no variable"}, Refused{"w", "which is no variable"},
-                    Refused{"step(x - y)", "where a number belongs"},
-                    Refused{"exp(-x / -3)", "above zero"}, Refused{"lag(x)", "lacks its number"},
-                    Refused{"x * y * z", "product of more than two"},
-                    Refused{"x + y + z + x", "more than three terms"},
-                    Refused{"sign(feed)", "of no axis and no pivot"},
-                    Refused{"bspline(x, 3, 3, 4)", "empty range"},
-                    Refused{"bspline(x, 0, 3, 2.5)", "whole number of parts"},
-                    Refused{"x * bspline(x, 0, 3, 2)", "stands alone"},
-                    Refused{"exp(-x / nan)", "where a number belongs"}));
+INSTANTIATE_TEST_SUITE_P(OfTheGrammar, Nonsense,
+                         testing::Values(Refused{"", "which is no variable"},
+                                         Refused{"w", "which is no variable"},
+                                         Refused{"step(x - y)", "where a number belongs"},
+                                         Refused{"exp(-x / -3)", "above zero"},
+                                         Refused{"lag(x)", "lacks its number"},
+                                         Refused{"x * y * z", "product of more than two"},
+                                         Refused{"x + y + z + x", "more than three terms"},
+                                         Refused{"sign(feed)", "of no axis and no pivot"},
+                                         Refused{"bspline(x, 3, 3, 4)", "empty range"},
+                                         Refused{"bspline(x, 0, 3, 2.5)", "whole number of parts"},
+                                         Refused{"x * bspline(x, 0, 3, 2)", "stands alone"},
+                                         Refused{"exp(-x / nan)", "where a number belongs"}));
 
 TEST(Expression, HasItsClosedForm) {
   const Trace trace = ThereAndBack();

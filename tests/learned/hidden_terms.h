@@ -32,7 +32,12 @@ struct HiddenTerm {
 };
 
 inline rig::HiddenEffects EffectsOf(const HiddenTerm& term, std::uint64_t seed) {
-  return {rig::HiddenEffect{term.effect, term.object, term.places, term.values, {}, {},
+  return {rig::HiddenEffect{term.effect,
+                            term.object,
+                            term.places,
+                            term.values,
+                            {},
+                            {},
                             random::CounterRandom(seed, 0x7E57)}};
 }
 
@@ -54,15 +59,15 @@ inline const Effect kStep{.name = "test-step",
                           }};
 
 // An axis goes with the product of its position and another's: height at 30 mm each.
-inline const Effect kProduct{
-    .name = "test-product",
-    .objects = rig::kAxisObject,
-    .in_run = [](const HiddenEffect& e, RunParts& run) {
-      run.Shift(e.place(), [by = e.At("height_um") / 9e-4, first = e.place(),
-                            second = e.places[1]](const MachineState& state) {
-        return by * state.position[first] * state.position[second];
-      });
-    }};
+inline const Effect kProduct{.name = "test-product",
+                             .objects = rig::kAxisObject,
+                             .in_run = [](const HiddenEffect& e, RunParts& run) {
+                               run.Shift(
+                                   e.place(), [by = e.At("height_um") / 9e-4, first = e.place(),
+                                               second = e.places[1]](const MachineState& state) {
+                                     return by * state.position[first] * state.position[second];
+                                   });
+                             }};
 
 // A probe begins to drift at an instant: height after 1000 s.
 inline const Effect kKink{.name = "test-kink",
@@ -74,14 +79,15 @@ inline const Effect kKink{.name = "test-kink",
                             });
                           }};
 
-// An axis lifts after another has turned round, and settles with its way.
+// A probe settles from the beginning of each run on.
 inline const Effect kDecay{
     .name = "test-decay",
-    .objects = rig::kAxisObject,
+    .objects = rig::kProbeObject,
     .in_run = [](const HiddenEffect& e, RunParts& run) {
-      run.Shift(e.place(), [height = e.At("height_um"), decay = e.At("decay_mm"),
-                            by = e.places[1]](const MachineState& state) {
-        return height * std::exp(-state.since_turn[by] / decay);
+      run.Gap(e.place(), [height = e.At("height_um"), fades = e.At("fades_s"),
+                          began = std::make_shared<double>(-1.0)](const MachineState& state) {
+        if (*began < 0.0) *began = state.time;
+        return height * std::exp(-(state.time - *began) / fades);
       });
     }};
 
@@ -89,35 +95,33 @@ inline const Effect kDecay{
 inline const Effect kSpeed{.name = "test-speed",
                            .objects = rig::kAxisObject,
                            .in_run = [](const HiddenEffect& e, RunParts& run) {
-                             run.Shift(e.place(), [height = e.At("height_um")](
-                                                      const MachineState& state) {
-                               return height * state.velocity.squaredNorm() / 1e-4;
-                             });
+                             run.Shift(e.place(),
+                                       [height = e.At("height_um")](const MachineState& state) {
+                                         return height * state.velocity.squaredNorm() / 1e-4;
+                                       });
                            }};
 
 // An axis gives way to the motion of another: one sign, another sign.
-inline const Effect kPushed{.name = "test-pushed",
-                            .objects = rig::kAxisObject,
-                            .in_run = [](const HiddenEffect& e, RunParts& run) {
-                              run.Shift(e.place(), [height = e.At("height_um"),
-                                                    by = e.places[1]](const MachineState& state) {
-                                return height * state.direction[by];
-                              });
-                            }};
+inline const Effect kPushed{
+    .name = "test-pushed",
+    .objects = rig::kAxisObject,
+    .in_run = [](const HiddenEffect& e, RunParts& run) {
+      run.Shift(e.place(), [height = e.At("height_um"), by = e.places[1]](
+                               const MachineState& state) { return height * state.direction[by]; });
+    }};
 
 // An encoder jumps at an angle.
-inline const Effect kJump{.name = "test-jump",
-                          .objects = rig::kPivotObject,
-                          .keys = {{"height_urad", rig::Draw::kUniform, 0.0, 0.0},
-                                   {"at_rad", rig::Draw::kTurn}},
-                          .in_run = [](const HiddenEffect& e, RunParts& run) {
-                            if (std::isnan(e.At("at_rad"))) return;
-                            run.Angle(e.place(), [height = e.At("height_urad"),
-                                                  at = e.At("at_rad")](const MachineState&,
-                                                                       double turn) {
-                              return std::remainder(turn - at, rig::kTurn) >= 0.0 ? height : 0.0;
-                            });
-                          }};
+inline const Effect kJump{
+    .name = "test-jump",
+    .objects = rig::kPivotObject,
+    .keys = {{"height_urad", rig::Draw::kUniform, 0.0, 0.0}, {"at_rad", rig::Draw::kTurn}},
+    .in_run = [](const HiddenEffect& e, RunParts& run) {
+      if (std::isnan(e.At("at_rad"))) return;
+      run.Angle(e.place(), [height = e.At("height_urad"), at = e.At("at_rad")](const MachineState&,
+                                                                               double turn) {
+        return std::remainder(turn - at, rig::kTurn) >= 0.0 ? height : 0.0;
+      });
+    }};
 
 // Outside the grammar: a place where two axes together pass a line.
 inline const Effect kCorner{
@@ -131,14 +135,14 @@ inline const Effect kCorner{
     }};
 
 // Outside: the product of all three positions, height at 30 mm each.
-inline const Effect kThree{.name = "test-three",
-                           .objects = rig::kAxisObject,
-                           .in_run = [](const HiddenEffect& e, RunParts& run) {
-                             run.Shift(e.place(), [by = e.At("height_um") / 2.7e-5](
-                                                      const MachineState& state) {
-                               return by * state.position.prod();
-                             });
-                           }};
+inline const Effect kThree{
+    .name = "test-three",
+    .objects = rig::kAxisObject,
+    .in_run = [](const HiddenEffect& e, RunParts& run) {
+      run.Shift(e.place(), [by = e.At("height_um") / 2.7e-5](const MachineState& state) {
+        return by * state.position.prod();
+      });
+    }};
 
 // Outside: what was driven is remembered and forgotten, height after a long way at 10 mm/s.
 inline const Effect kMemory{
@@ -189,40 +193,45 @@ inline HiddenTerm DrawTerm(std::uint64_t seed, int kind) {
   const double place = random.Uniform(5, 15.0, 45.0);
   const auto of_axis = [&](const Effect& effect, std::map<std::string, double> values,
                            std::set<std::string> variables, std::string form, double coefficient) {
-    return HiddenTerm{&effect, Axis(axis), {axis, other, third}, std::move(values),
-                      StagesOf(axis), std::move(variables), std::move(form), coefficient};
+    return HiddenTerm{&effect,        Axis(axis),           {axis, other, third}, std::move(values),
+                      StagesOf(axis), std::move(variables), std::move(form),      coefficient};
   };
   const std::string v = Position(other);
   switch (kind) {
     case 0: {
       const double height = size(1.0, 6.0);
-      return of_axis(kStep, {{"height_um", height}, {"at_mm", place}}, {v}, fmt::format("step({}", v), height);
+      return of_axis(kStep, {{"height_um", height}, {"at_mm", place}}, {v},
+                     fmt::format("step({}", v), height);
     }
     case 1: {
       const double height = size(1.0, 8.0);
       const std::string first = Position(std::min(axis, other)),
                         last = Position(std::max(axis, other));
-      return of_axis(kProduct, {{"height_um", height}}, {first, last}, fmt::format("{} * {}", first, last),
-                     height / 900.0);
+      return of_axis(kProduct, {{"height_um", height}}, {first, last},
+                     fmt::format("{} * {}", first, last), height / 900.0);
     }
     case 2: {
       const int probe = pick(6, 5);
       const double height = size(0.5, 4.0);
       const std::string name = fmt::format("probe_{}", "abcde"[probe]);
-      return {&kKink,
-              name,
-              {probe},
-              {{"height_um", height}, {"from_s", random.Uniform(7, 100.0, 400.0)}},
-              {name},
-              {"time"},
-              "max(0, time - ",
-              height / 1000.0};
+      return {
+          &kKink,           name,
+          {probe},          {{"height_um", height}, {"from_s", random.Uniform(7, 100.0, 400.0)}},
+          {name},           {"time"},
+          "max(0, time - ", height / 1000.0};
     }
     case 3: {
-      const double height = size(2.0, 10.0);
-      return of_axis(kDecay,
-                     {{"height_um", height}, {"decay_mm", random.Uniform(8, 0.5, 4.0)}},
-                     {fmt::format("way of {}", v)}, fmt::format("exp(-way of {}", v), height);
+      const int probe = pick(6, 5);
+      const double height = size(0.3, 3.0);
+      const std::string name = fmt::format("probe_{}", "abcde"[probe]);
+      return {&kDecay,
+              name,
+              {probe},
+              {{"height_um", height}, {"fades_s", random.Uniform(8, 10.0, 60.0)}},
+              {name},
+              {"time of run"},
+              "exp(-time of run / ",
+              height};
     }
     case 4: {
       const double height = size(2.0, 15.0);
@@ -236,8 +245,14 @@ inline HiddenTerm DrawTerm(std::uint64_t seed, int kind) {
       const int pivot = pick(6, 3);
       const std::string name = fmt::format("pivot_{}", pivot + 1);
       const double height = size(15.0, 120.0);
-      return {&kJump, name,   {pivot}, {{"height_urad", height}, {"at_rad", std::nan("")}},
-              {name}, {name}, fmt::format("step({}", name), height};
+      return {&kJump,
+              name,
+              {pivot},
+              {{"height_urad", height}, {"at_rad", std::nan("")}},
+              {name},
+              {name},
+              fmt::format("step({}", name),
+              height};
     }
     case 7:
       return of_axis(kCorner, {{"height_um", size(2.0, 10.0)}, {"at_mm", place}},

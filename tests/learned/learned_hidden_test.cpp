@@ -20,7 +20,7 @@ TEST_P(LearnedTerms, AreRight) {
   const HiddenTerm& hidden = GetParam();
   const HiddenWorlds worlds(rig::CampaignKind::kStandard);
   constexpr std::uint64_t kSeed = 5;
-  const auto [diagnosis, learning] = 
+  const auto [diagnosis, learning] =
       LearnedFrom(worlds, kSeed, worlds.RecordEffects(kSeed, EffectsOf(hidden, kSeed)));
   ASSERT_EQ(diagnosis.verdict, Verdict::kLearned);
   ASSERT_EQ(learning.terms.size(), 1U);
@@ -36,16 +36,40 @@ TEST_P(LearnedTerms, AreRight) {
 INSTANTIATE_TEST_SUITE_P(
     OfTheRig, LearnedTerms,
     testing::Values(
-        HiddenTerm{&kStep, "Y", {1, 0}, {{"height_um", 3.0}, {"at_mm", 31.4}}, StagesOf(1), {"x"},
-                   "step(x - ", 3.0},
-        HiddenTerm{&kProduct, "X", {0, 1}, {{"height_um", 4.0}}, StagesOf(0), {"x", "y"}, "x * y",
-                   4.0 / 900.0},
-        HiddenTerm{&kKink, "probe_b", {1}, {{"height_um", 3.0}, {"from_s", 250.0}}, {"probe_b"},
-                   {"time"}, "max(0, time - ", 0.003},
-        HiddenTerm{&kDecay, "Z", {2, 0}, {{"height_um", 4.0}, {"decay_mm", 1.0}}, StagesOf(2),
-                   {"way of x"}, "exp(-way of x / ", 4.0},
-        HiddenTerm{&kSpeed, "X", {0}, {{"height_um", 8.0}}, StagesOf(0), {"feed"}, "feed^2",
-                   8.0 / 36e4}),
+        HiddenTerm{&kStep,
+                   "Y",
+                   {1, 0},
+                   {{"height_um", 3.0}, {"at_mm", 31.4}},
+                   StagesOf(1),
+                   {"x"},
+                   "step(x - ",
+                   3.0},
+        HiddenTerm{&kProduct,
+                   "X",
+                   {0, 1},
+                   {{"height_um", 12.0}},
+                   StagesOf(0),
+                   {"x", "y"},
+                   "x * y",
+                   12.0 / 900.0},
+        HiddenTerm{&kKink,
+                   "probe_b",
+                   {1},
+                   {{"height_um", 3.0}, {"from_s", 250.0}},
+                   {"probe_b"},
+                   {"time"},
+                   "max(0, time - ",
+                   0.003},
+        HiddenTerm{&kDecay,
+                   "probe_c",
+                   {2},
+                   {{"height_um", 1.0}, {"fades_s", 30.0}},
+                   {"probe_c"},
+                   {"time of run"},
+                   "exp(-time of run / ",
+                   1.0},
+        HiddenTerm{
+            &kSpeed, "X", {0}, {{"height_um", 8.0}}, StagesOf(0), {"feed"}, "feed^2", 8.0 / 36e4}),
     [](const auto& each) {
       std::string name(each.param.effect->name);
       std::erase(name, '-');

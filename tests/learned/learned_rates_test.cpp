@@ -108,8 +108,8 @@ class Judge {
         "above 5 sd: verdict learned {}; stage, object and variable {}; F1 {:.3f} (precision {:.3f}, "
         "recall {:.3f}); form {}; size inside U95 {}; held out within 5 % of the noise {}; a named "
         "cause {}; outside the grammar, smooth or unexplained {}\n",
-        certified_.Text(), place_.Text(), 2.0 * precision * recall / (precision + recall), precision,
-        recall, form_.Text(), inside_.Text(), at_floor_.Text(), named_wrong_.Text(),
+        certified_.Text(), place_.Text(), 2.0 * precision * recall / (precision + recall),
+        precision, recall, form_.Text(), inside_.Text(), at_floor_.Text(), named_wrong_.Text(),
         outside_.Text());
   }
 
@@ -124,11 +124,10 @@ TEST(LearnedRates, OfEffectsOfNoCatalogue) {
   ForEachSeed([&](std::uint64_t seed) {
     const HiddenTerm hidden = DrawTerm(seed, static_cast<int>((seed - 1) % kTermKinds));
     const auto world = worlds.RecordEffects(seed, EffectsOf(hidden, seed));
-    const double sd =
-        visible.BesideRivals(visible.ColumnOfWorld(
-                                 worlds.WithoutCounts().RecordEffects(seed, EffectsOf(hidden, seed)),
-                                 seed),
-                             "");
+    const double sd = visible.BesideRivals(
+        visible.ColumnOfWorld(worlds.WithoutCounts().RecordEffects(seed, EffectsOf(hidden, seed)),
+                              seed),
+        "");
     fmt::print("[{:.1f} {} {} size {:.3g}] ", sd, hidden.effect->name, hidden.object, hidden.size);
     judge.Add(hidden, sd, LearnedFrom(worlds, seed, world));
   });
