@@ -3,7 +3,7 @@
 //
 //   diagnosis::Diagnosis diagnosis = diagnosis::Diagnose(campaign);
 //   learned::Learning learning = learned::Learn(diagnosis);
-//   const auto gain = HoldOut(campaign, recordings, learning.Candidates(causes));
+//   const auto gain = diagnosis::HoldOut(campaign, recordings, learning.Candidates());
 //   learned::Decide(gain, learning, diagnosis);           // verdict "learned", or as it was
 //
 // Runs only where a diagnosis ended with something left. One term after the other is searched for
@@ -11,10 +11,10 @@
 // whether anything is left beside it. A smooth function is a term too, where no expression is as
 // probable, or where something is left beside the expressions. A term counts as found when
 //   - the whole grammar makes as much out of noise in less than 5 % (Benjamini and Hochberg over the
-//     terms of the diagnosis), and rows held out come out better with it;
-//   - nothing is left beside the terms: no expression is told that does not fit;
-//   - no term of another stage or other variables is nearly as probable (1 %);
-//   - no named cause can do the same (confounding.h); else both are told as one group.
+//     terms of the diagnosis), and rows held out come out better with it,
+//   - nothing is left beside the terms: no expression is told that does not fit,
+//   - no term of another stage or other variables is nearly as probable (1 %),
+//   - no named cause can do the same (confounding.h), else both are told as one group.
 // Units: SI. Shapes: a term for each candidate. Failure: that of Fit.
 // Source: Benjamini and Hochberg, J. R. Statist. Soc. B 57 (1995); docs/theory-diagnosis.md.
 // Validity: not for arms before an instrument and shafts: nothing is learned there.

@@ -1,7 +1,7 @@
 // The search for the term that explains most of what is left beside a fit: exhaustive over channels,
 // variables and atoms, reproducible.
 //
-//   const std::vector<Rated> best = SearchTerms(fit);
+//   const std::vector<Rated> best = SearchTerms(fit, structures).best;
 //   best.front().proposal.expression().Text();
 //
 // All atoms are asked over parts of their variables (part_scan.h), decays, lags, plays and products of two

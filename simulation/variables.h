@@ -2,7 +2,7 @@
 // "x+y", "pivot_2", "shaft", "feed", "speed of x" (with its sign), "temp_table_c", "rate of
 // temp_table_c", "gap of probe_a" and "column humidity" (the user's own); beside them "time of
 // run" (since it began), "way of x" (since its reversal) and "warming of temp_table_c" (since the
-// campaign began), which only a learned term (learned/expression.h) uses. Two have a factor, the
+// campaign began), which only a learned term (learned/ has it) uses. Two have a factor, the
 // direction of motion (+1, -1): "direction of x" is that direction, over the position, "reversal of
 // x" the same over the logarithm of the way since the reversal.
 // Units: SI inside, printed in UnitOf. Shapes: one entry a row of the run.
