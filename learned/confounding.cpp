@@ -24,6 +24,35 @@ struct Likeness {
   double cosine;
 };
 
+// A constant and, but for a straight line itself, a straight line in each variable.
+std::vector<std::string> LinesBeside(const simulation::LearnedTerm& term) {
+  const bool is_line = std::ranges::all_of(term.expression.terms, [](const auto& product) {
+    return product.size() == 1 && product.front().form == simulation::Atom::Form::kLinear;
+  });
+  return is_line ? std::vector<std::string>{} : term.expression.Variables();
+}
+
+simulation::Cause LinesOf(const simulation::LearnedTerm& term) {
+  const auto variables = LinesBeside(term);
+  simulation::Cause lines;
+  lines.id = "lines";
+  lines.plausible = VectorXd::Ones(static_cast<Index>(variables.size()) + 1);
+  lines.columns = [variables, channel = simulation::ChannelNamed(term.object).value()](
+                      const simulation::Trace& trace, const simulation::Object&,
+                      const VectorXd&) -> std::vector<simulation::Disturbance> {
+    if (!channel.Feels(trace)) return {};
+    std::vector<simulation::Disturbance> columns{
+        simulation::InStage(trace, channel.stage, Eigen::RowVectorXd::Ones(trace.rows()))};
+    for (const std::string& variable : variables) {
+      const Eigen::RowVectorXd values = simulation::ValuesInUnit(variable, trace);
+      if (values.size() == 0) return {};
+      columns.push_back(simulation::InStage(trace, channel.stage, values));
+    }
+    return columns;
+  };
+  return lines;
+}
+
 // The share of the term's effect, as a cosine, in what a cause spans.
 double CosineOf(const MatrixXd& of_cause, const VectorXd& with_term, double of_term) {
   constexpr double kAbsorbed = 1e-8;
@@ -55,13 +84,10 @@ std::vector<Candidate> NamedBeside(const diagnosis::Fit& base,
   return named;
 }
 
-double ImitatedShare(const diagnosis::Fit& fit, const simulation::LearnedTerm& term,
-                     double chi_square) {
+double ImitatedByRows(const diagnosis::Fit& fit, const simulation::LearnedTerm& term,
+                      double chi_square) {
   const auto channel = simulation::ChannelNamed(term.object).value();
-  const bool is_line = std::ranges::all_of(term.expression.terms, [](const auto& product) {
-    return product.size() == 1 && product.front().form == simulation::Atom::Form::kLinear;
-  });
-  const auto variables = is_line ? std::vector<std::string>{} : term.expression.Variables();
+  const auto variables = LinesBeside(term);
   const auto count = static_cast<Index>(variables.size()) + 1;
   MatrixXd A_A = MatrixXd::Zero(count, count);
   VectorXd A_e = VectorXd::Zero(count);
@@ -86,9 +112,11 @@ double ImitatedShare(const diagnosis::Fit& fit, const simulation::LearnedTerm& t
 }
 
 Confounding ConfoundingOf(const diagnosis::Fit& fit, const Candidate& term,
-                          const diagnosis::Fit& base, const std::vector<Candidate>& named) {
+                          const simulation::LearnedTerm& what, const diagnosis::Fit& base,
+                          const std::vector<Candidate>& named) {
   const diagnosis::Campaign& campaign = base.campaign();
-  std::vector<Candidate> candidates{term};
+  const simulation::Cause lines = LinesOf(what);
+  std::vector<Candidate> candidates{term, {&lines, term.object, {}}};
   candidates.insert(candidates.end(), named.begin(), named.end());
   const diagnosis::LinearRuns linear(campaign, campaign.runs(), diagnosis::ValuesOf(base.result()));
   std::vector<diagnosis::RunSums> sums;
@@ -102,10 +130,20 @@ Confounding ConfoundingOf(const diagnosis::Fit& fit, const Candidate& term,
     if (fit.taken_in()[i].Name() == term.Name()) along = fit.ScoreOf(i).coefficients;
   }
   const double of_term = along.dot(S.topLeftCorner(own, own) * along);
+  const Index of_lines = lines.coefficients(), both = own + of_lines;
+  MatrixXd C_C = MatrixXd::Zero(both, both);
+  for (const auto& each : sums) C_C += each.C_C.topLeftCorner(both, both);
+  const double all = along.dot(C_C.topLeftCorner(own, own) * along);
+  const double share_of_lines = CosineOf(C_C.bottomRightCorner(of_lines, of_lines),
+                                         C_C.bottomLeftCorner(of_lines, own) * along, all);
+  const double whole = all * (1.0 - share_of_lines * share_of_lines);
   Confounding confounding;
+  constexpr double kRounding = 1e-9;
+  confounding.imitated =
+      whole > kRounding * all ? 1.0 - std::sqrt(std::min(1.0, of_term / whole)) : 1.0;
   std::vector<Likeness> alike;
-  Index first = own;
-  for (std::size_t i = 1; i < candidates.size(); ++i) {
+  Index first = both;
+  for (std::size_t i = 2; i < candidates.size(); ++i) {
     const Index count = candidates[i].cause->coefficients();
     const VectorXd with_term = S.block(first, 0, count, own) * along;
     alike.push_back(

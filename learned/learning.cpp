@@ -29,8 +29,9 @@ using simulation::LearnedTerm;
 using FitPointer = std::shared_ptr<const Fit>;
 
 constexpr std::size_t kMostTerms = 3, kMostSmooth = 2;
-constexpr double kProbable = 4.6;  // log odds, 99 %
-constexpr double kImitated = 0.9;  // of its effect, or cosine: one group
+constexpr double kProbable = 4.6;     // log odds, 99 %
+constexpr double kHardlyLeft = 0.98;  // of its effect: not proposed
+constexpr double kImitated = 0.9;     // of its effect, or cosine: one group
 constexpr double kFalseDiscovery = 0.05;
 
 // What the runs covered of the variables of an expression.
@@ -53,7 +54,6 @@ LearnedTerm TermOf(const Fit& fit, const Rated& rated) {
                    .covariance = rated.by_numbers,
                    .u95_of_numbers = rated.u95_of_numbers};
   term.covered = CoveredBy(fit, term);
-  term.certificate.imitated = ImitatedShare(fit, term, rated.chi_square);
   return term;
 }
 
@@ -153,10 +153,6 @@ void TakeSizes(const Step& step, std::size_t causes, std::vector<Learned>& terms
     term.covariance = score.covariance.topLeftCorner(count, count);
     if (by_numbers.size() == term.covariance.size()) term.covariance += by_numbers;
     terms[i].amplitude = AmplitudeOf(*step.fit, term);
-    if (terms[i].is_smooth) {
-      term.certificate.imitated =
-          ImitatedShare(*step.fit, term, step.searches[i]->smooth->chi_square);
-    }
     terms[i].cause = LearnedCause::Of(std::move(term));
   }
 }
@@ -222,7 +218,7 @@ std::vector<Learned> Learner::Proposed(const TermSearch& search, bool only_smoot
     const bool is_near = rated.log_posterior > std::max(best - kNear, kProbable);
     if (!is_near || proposed.size() == kFitted) break;
     Learned next = Prepared(TermOf(fit, rated), false, 0.0);
-    if (next.term().certificate.imitated > kImitated) continue;
+    if (ImitatedByRows(fit, next.term(), rated.chi_square) > kHardlyLeft) continue;
     next.alike = rated.alike;
     AddRivals(search, rated, next);
     proposed.push_back(std::move(next));
@@ -293,10 +289,11 @@ void Certify(const Learner& learner, const Step& step, Learning& learning) {
   for (std::size_t i = 0; i < step.terms.size(); ++i) {
     Learned learned = step.terms[i];
     const Confounding confounding =
-        ConfoundingOf(*step.fit, learned.candidate, *learner.base(), named);
+        ConfoundingOf(*step.fit, learned.candidate, learned.term(), *learner.base(), named);
     LearnedTerm term = learned.term();
     term.certificate.by_chance = ByChance(*step.searches[i], learned.is_smooth);
     term.certificate.regime = RegimeOf(*step.fit, learned, learner.causes().size() + i);
+    term.certificate.imitated = confounding.imitated;
     term.certificate.nearest = confounding.nearest;
     term.certificate.cosine = confounding.cosine;
     learned.group = confounding.group;
@@ -337,6 +334,16 @@ Learning Learn(const diagnosis::Diagnosis& diagnosis) {
   Learner learner(diagnosis.base, learning.causes);
   if (!learner.start()) return learning;
   Step step = learner.Run(false);
+  if (step.terms.empty() && !learning.causes.empty()) {
+    // Causes beside what is unexplained are doubtful: they may have taken a part of it.
+    Learner alone(diagnosis.base, {});
+    Step other = alone.Run(false);
+    if (!other.terms.empty() && other.left.empty()) {
+      learner = std::move(alone);
+      step = std::move(other);
+      learning.causes.clear();
+    }
+  }
   const auto is_smooth = [](const Learned& term) { return term.is_smooth; };
   if (!step.left.empty() && !std::ranges::all_of(step.terms, is_smooth)) {
     // No expression that leaves something is told; a smooth function may leave nothing.
@@ -385,6 +392,7 @@ void Decide(const diagnosis::HeldOutGain& gain, Learning& learning,
     all = all && learned.IsFound();
   }
   if (!all) return;
+  if (learning.causes.empty()) std::erase_if(diagnosis.findings, diagnosis::IsModelled);
   diagnosis.verdict = diagnosis::Verdict::kLearned;
   diagnosis.leftovers.clear();
   diagnosis.chi_after = learning.chi_after;
