@@ -168,8 +168,9 @@ std::string PathCauses::Line() const {
       "in addition to the map, from {}: {}", name_,
       causes_.empty() ? "nothing" : fmt::format("{}", fmt::join(NamesOf(causes_), ", ")));
   if (!left_.empty()) {
-    line += fmt::format("; left out, because a path has no time and no temperature: {}",
-                        fmt::join(NamesOf(left_), ", "));
+    line += fmt::format(
+        "; left out, because a path has no time and no temperature, or because they act across or about an axis: {}",
+        fmt::join(NamesOf(left_), ", "));
   }
   if (!doubts_.empty()) line += fmt::format("; {}; the U95 of the map is without that", doubts_);
   return line;

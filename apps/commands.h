@@ -23,6 +23,7 @@ void AddTrack(CLI::App& program, int& exit_code);
 void AddFollow(CLI::App& program, int& exit_code);
 void AddDiagnose(CLI::App& program, int& exit_code);
 void AddCauses(CLI::App& program, int& exit_code);
+void AddLearnedCommand(CLI::App& program, int& exit_code);
 void AddHarmonics(CLI::App& program, int& exit_code);
 void AddExport(CLI::App& program, int& exit_code);
 void AddCorrect(CLI::App& program, int& exit_code);
@@ -36,9 +37,10 @@ void AddCompletion(CLI::App& program, int& exit_code);
 void AddMan(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands = std::to_array<AddCommand>(
-    {AddInit,        AddDoctor,   AddRig,    AddAlign,     AddSweep,      AddRecord,   AddReduce,
-     AddCalibrate,   AddCircle,   AddPath,   AddHarmonics, AddPlate,      AddFuse,     AddTrack,
-     AddFollow,      AddDiagnose, AddCauses, AddExport,    AddCorrect,    AddSimulate, AddConvert,
-     AddSensitivity, AddHistory,  AddReport, AddLive,      AddCompletion, AddMan});
+    {AddInit,   AddDoctor,    AddRig,        AddAlign,    AddSweep,       AddRecord,
+     AddReduce, AddCalibrate, AddCircle,     AddPath,     AddHarmonics,   AddPlate,
+     AddFuse,   AddTrack,     AddFollow,     AddDiagnose, AddCauses,      AddLearnedCommand,
+     AddExport, AddCorrect,   AddSimulate,   AddConvert,  AddSensitivity, AddHistory,
+     AddReport, AddLive,      AddCompletion, AddMan});
 
 }  // namespace abbe::apps

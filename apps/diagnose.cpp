@@ -14,6 +14,7 @@
 #include "apps/diagnose_plan.h"
 #include "apps/diagnosis_result.h"
 #include "apps/instruments.h"
+#include "apps/learned_result.h"
 #include "apps/machine_recording.h"
 #include "apps/protocol.h"
 #include "apps/result_file.h"
@@ -22,6 +23,7 @@
 #include "diagnosis/measured_noise.h"
 #include "diagnosis/next_run.h"
 #include "failure/failure.h"
+#include "learned/learning.h"
 #include "recording/file_hash.h"
 #include "settings/toml_text.h"
 #include "simulation/doubt.h"
@@ -55,8 +57,10 @@ nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
                               const std::vector<recording::Recording>& recordings,
                               const diagnosis::Campaign& campaign,
                               const diagnosis::Diagnosis& diagnosis,
-                              const diagnosis::HeldOutGain& gain) {
+                              const diagnosis::HeldOutGain& gain,
+                              const learned::Learning& learning) {
   auto json = DiagnosisJson(diagnosis, gain);
+  AddLearned(learning, json);
   json["abbe"] = ABBE_VERSION;
   json["machine"] = campaign.instruments().machine.name;
   for (const fs::path& path : arguments.recordings) {
@@ -114,15 +118,22 @@ int Diagnose(const DiagnoseArguments& arguments) {
   for (const auto& finding : diagnosis.findings) {
     if (diagnosis::IsModelled(finding)) causes.push_back(finding.score.candidate);
   }
-  const diagnosis::HeldOutGain gain = GainOf(campaign, recordings, causes);
+  learned::Learning learning = learned::Learn(diagnosis);
+  const diagnosis::HeldOutGain gain =
+      GainOf(campaign, recordings, learning.IsToBeDecided() ? learning.Candidates() : causes);
   diagnosis::AddDoubtsOfHeldOut(gain, diagnosis);
+  learned::Decide(gain, learning, diagnosis);
   if (!arguments.out.empty()) {
-    WriteModel(diagnosis::FoundModel(diagnosis, campaign, gain), arguments);
+    simulation::ExtendedModel model = diagnosis::FoundModel(diagnosis, campaign, gain);
+    for (const learned::Learned& term : learning.terms) {
+      if (term.IsFound()) model.causes.push_back(simulation::ModelledTerm(term.term()));
+    }
+    WriteModel(std::move(model), arguments);
   }
   if (!arguments.json.empty())
-    WriteResult(JsonOf(arguments, recordings, campaign, diagnosis, gain), arguments.json);
+    WriteResult(JsonOf(arguments, recordings, campaign, diagnosis, gain, learning), arguments.json);
   if (arguments.quiet) return kDone;
-  fmt::print("{}", DiagnosisText(diagnosis, gain));
+  fmt::print("{}{}", DiagnosisText(diagnosis, gain), LearnedText(learning));
   for (const std::string& note : campaign.notes()) fmt::print("\nNote: {}\n", note);
   for (const std::string& note : diagnosis.notes) fmt::print("\nNote: {}\n", note);
   return kDone;

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "diagnosis/found_model.h"
-#include "diagnosis/variables.h"
 #include "settings/unit.h"
+#include "simulation/variables.h"
 
 namespace abbe::apps {
 namespace {
@@ -127,19 +127,7 @@ ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const He
     json["rms_after"] = std::sqrt(diagnosis.chi_after);
   }
   const diagnosis::Curve& curve = finding.curve;
-  if (curve.at.size() > 0) {
-    const auto listed = [](const Eigen::VectorXd& values, double unit) {
-      std::vector<double> list(values.begin(), values.end());
-      for (double& each : list) each /= unit;
-      return list;
-    };
-    json["curve"] = {
-        {"variable", fmt::format("{} in {}", curve.variable, curve.variable_unit.name)},
-        {"unit", curve.unit.name},
-        {"x", listed(curve.at, curve.variable_unit.si)},
-        {"before", listed(curve.before, curve.unit.si)},
-        {"after", listed(curve.after, curve.unit.si)}};
-  }
+  if (curve.at.size() > 0) json["curve"] = CurveJson(curve);
   if (const std::string sensor = object.sensor(); !sensor.empty()) {
     json["parameters"].push_back({{"name", "sensor"}, {"value", sensor}});
   }
@@ -222,7 +210,7 @@ std::string WhatItDoes(const Leftover& leftover) {
   if (leftover.variable == diagnosis::kAtRest) return "scatters where nothing moves";
   if (leftover.variable == diagnosis::kMemory) return "is correlated from one reading to the next";
   if (IsOfAnInterval(leftover)) {
-    const auto unit = diagnosis::UnitOf(leftover.variable);
+    const auto unit = simulation::UnitOf(leftover.variable);
     return fmt::format("is offset where {} is {:.4g} to {:.4g} {},{}{}", leftover.variable,
                        leftover.from / unit.si, leftover.to / unit.si, unit.name,
                        OthersText(leftover), leftover.one_of.empty() ? "" : ",");
@@ -254,6 +242,36 @@ std::string EvidenceText(const Diagnosis& diagnosis) {
 
 std::string NameOf(const Candidate& candidate) {
   return candidate.cause->id + ":" + simulation::Title(candidate.object);
+}
+
+ordered_json CurveJson(const diagnosis::Curve& curve) {
+  const auto listed = [](const Eigen::VectorXd& values, double unit) {
+    std::vector<double> list(values.begin(), values.end());
+    for (double& each : list) each /= unit;
+    return list;
+  };
+  return {{"variable", fmt::format("{} in {}", curve.variable, curve.variable_unit.name)},
+          {"unit", curve.unit.name},
+          {"x", listed(curve.at, curve.variable_unit.si)},
+          {"before", listed(curve.before, curve.unit.si)},
+          {"after", listed(curve.after, curve.unit.si)}};
+}
+
+ordered_json LeftoverJson(const Leftover& leftover) {
+  ordered_json left{{"variable", leftover.variable},
+                    {"object", leftover.object},
+                    {"amplitude", leftover.amplitude / leftover.unit.si},
+                    {"unit", leftover.unit.name},
+                    {"p_value", leftover.p_value}};
+  for (const auto& other : leftover.one_of) {
+    left["one_of"].push_back({{"variable", other.variable}, {"object", other.object}});
+  }
+  if (!IsOfAnInterval(leftover)) return left;
+  const auto unit = simulation::UnitOf(leftover.variable);
+  left["from"] = leftover.from / unit.si;
+  left["to"] = leftover.to / unit.si;
+  left["variable_unit"] = unit.name;
+  return left;
 }
 
 ordered_json KeyJson(const std::string& name) {
@@ -298,20 +316,7 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const HeldOutGain& gain) 
                            {"rms_after_mm", 1e3 * gain.arm_after}};
   }
   for (const Leftover& leftover : diagnosis.leftovers) {
-    auto& left = json["unexplained"].emplace_back();
-    left = {{"variable", leftover.variable},
-            {"object", leftover.object},
-            {"amplitude", leftover.amplitude / leftover.unit.si},
-            {"unit", leftover.unit.name},
-            {"p_value", leftover.p_value}};
-    for (const auto& other : leftover.one_of) {
-      left["one_of"].push_back({{"variable", other.variable}, {"object", other.object}});
-    }
-    if (!IsOfAnInterval(leftover)) continue;
-    const auto unit = diagnosis::UnitOf(leftover.variable);
-    left["from"] = leftover.from / unit.si;
-    left["to"] = leftover.to / unit.si;
-    left["variable_unit"] = unit.name;
+    json["unexplained"].push_back(LeftoverJson(leftover));
   }
   for (const Score& score : diagnosis.evidence) {
     json["evidence"].push_back({{"cause", score.candidate.cause->id},

@@ -14,6 +14,10 @@ std::string NameOf(const diagnosis::Candidate& candidate);
 // A key of a cause as name, quantity and unit: "time_constant_s", "time constant", "s".
 nlohmann::ordered_json KeyJson(const std::string& name);
 
+// Measured less simulated where it shows; not empty.
+nlohmann::ordered_json CurveJson(const diagnosis::Curve& curve);
+nlohmann::ordered_json LeftoverJson(const diagnosis::Leftover& leftover);
+
 nlohmann::ordered_json DiagnosisJson(const diagnosis::Diagnosis& diagnosis,
                                      const diagnosis::HeldOutGain& gain);
 std::string DiagnosisText(const diagnosis::Diagnosis& diagnosis,

@@ -56,6 +56,8 @@ std::string_view Name(Verdict verdict) {
       return "ambiguous";
     case Verdict::kUnexplained:
       return "unexplained";
+    case Verdict::kLearned:
+      return "learned";
   }
   return "";
 }

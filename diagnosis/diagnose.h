@@ -10,7 +10,7 @@
 // probable of both results is kept (noise_hypothesis.h).
 // Verdict: `clean`: nothing found, nothing left. `explained`: each finding has at least the
 // probability kCertain among its rivals, and nothing is left. `ambiguous`: a finding has rivals.
-// `unexplained`: structure is left. Shapes: coefficients as their cause has them; one evidence a
+// `unexplained`: structure is left; `learned`: a term of no catalogue explains it (learned/). Shapes: coefficients as their cause has them; one evidence a
 // cause and object.
 // Source: MacKay, Neural Computation 4 (1992), for evidence and Occam factor.
 // Units: SI.
@@ -19,6 +19,7 @@
 // catalogue shows as structure without a name.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,7 +38,7 @@ inline constexpr double kPresent = 0.1;  // probability that a machine has a cau
 inline constexpr double kBesideUnexplained = 0.9;
 inline constexpr double kShowable = 5.0;  // standard deviations of a plausible size
 
-enum class Verdict { kClean, kExplained, kAmbiguous, kUnexplained };
+enum class Verdict { kClean, kExplained, kAmbiguous, kUnexplained, kLearned };
 // "explained".
 std::string_view Name(Verdict verdict);
 
@@ -77,6 +78,9 @@ struct Diagnosis {
   double chi_before = 0.0, chi_after = 0.0;  // chi-square per row of all runs
   double map_change = 0.0;    // m: largest change of the volumetric error by the findings
   estimation::Result fitted;  // with all that was found
+  // With the noise that was found; and its fit without causes where something is left.
+  std::shared_ptr<const Campaign> campaign = {};
+  std::shared_ptr<const Fit> base = {};
 };
 
 // The whole search.

@@ -164,6 +164,7 @@ void Search::Describe() {
   diagnosis_.verdict = VerdictOf(diagnosis_);
   AddDoubts(fit_->campaign().scene(), diagnosis_);
   diagnosis_.fitted = fit_->result();
+  if (diagnosis_.verdict == Verdict::kUnexplained) diagnosis_.base = base_;
 }
 
 }  // namespace abbe::diagnosis

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "diagnosis/search.h"
@@ -55,11 +56,15 @@ std::string NoteOf(const PreparedRun& run, const estimation::NoiseMemory& noise)
 
 }  // namespace
 
-Diagnosis BesideMemory(const Campaign& campaign) {
+Diagnosis BesideMemory(const Campaign& given) {
+  const auto own = std::make_shared<const Campaign>(given);
+  const Campaign& campaign = *own;
   Search white(campaign);
   Diagnosis diagnosis = white.Run();
+  diagnosis.campaign = own;
   if (diagnosis.verdict != Verdict::kUnexplained) return diagnosis;
-  Campaign remembering = campaign;
+  const auto other_noise = std::make_shared<Campaign>(campaign);
+  Campaign& remembering = *other_noise;
   std::vector<std::string> notes;
   for (std::size_t run = 0; run < campaign.runs().size(); ++run) {
     // What structures explain was no memory.
@@ -74,6 +79,7 @@ Diagnosis BesideMemory(const Campaign& campaign) {
   Diagnosis other = again.Run();
   if (Worth(again) < Worth(white)) return diagnosis;
   other.notes = std::move(notes);
+  other.campaign = other_noise;
   return other;
 }
 

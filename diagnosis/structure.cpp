@@ -6,64 +6,22 @@
 #include <cmath>
 #include <numbers>
 
-#include "diagnosis/variables.h"
-#include "simulation/causes/shaft.h"
+#include "simulation/variables.h"
 
 namespace abbe::diagnosis {
 
 using Eigen::Index;
 using Eigen::RowVectorXd;
 using simulation::Disturbance;
+using simulation::FactorOf;
+using simulation::GapOf;
+using simulation::HasFactor;
+using simulation::IsGap;
+using simulation::IsSpeed;
+using simulation::OwnerOf;
 using simulation::Scene;
 using simulation::Trace;
-
-namespace {
-
-const estimation::PrintUnit kMicrometres{"um", 1e-6}, kMicroradians{"urad", 1e-6};
-
-}  // namespace
-
-Instrument InstrumentOf(const Trace& trace) {
-  if (trace.rim) return kRim;
-  return trace.head ? kProbes : kLinkage;
-}
-
-bool StageChannel::IsPlausible(double amount) const {
-  constexpr double kMost = 1e-3;  // m
-  return unit.name != kMicrometres.name || amount < kMost;
-}
-
-std::vector<StageChannel> ChannelsOf(const Scene& scene) {
-  std::vector<StageChannel> channels;
-  const auto add = [&](const std::vector<simulation::Object>& objects, auto stage_of,
-                       const auto& unit, unsigned instruments) {
-    for (const simulation::Object& each : objects) {
-      channels.push_back({each.name(), stage_of(each.first()), unit, instruments});
-    }
-  };
-  const auto reading = [](int index) { return simulation::kReadingStage + index; };
-  const auto encoder = [](int index) { return simulation::kEncoderStage + index; };
-  add(simulation::ProbesOf(scene), reading, kMicrometres, kProbes);
-  add(simulation::PivotsOf(scene), encoder, kMicroradians, kLinkage);
-  if (scene.travel.isZero(0.0)) return channels;
-  add(simulation::AxesOf(scene), simulation::Positioning, kMicrometres, kProbes | kLinkage);
-  for (const simulation::Object& axis : simulation::AxesOf(scene)) {
-    for (int motion = 0; motion < machine::kMotions; ++motion) {
-      if (motion == axis.first()) continue;
-      channels.push_back({machine::MotionName(axis.first(), motion),
-                          simulation::MotionStage(axis.first(), motion),
-                          motion < 3 ? kMicrometres : kMicroradians, kProbes | kLinkage});
-    }
-  }
-  if (scene.Pivots() > 0) {
-    for (int i = 0; i < 3; ++i) {
-      channels.push_back(
-          {std::string("ball_") + "xyz"[i], simulation::kTipStage + i, kMicrometres, kLinkage});
-    }
-  }
-  add(simulation::RimSensorsOf(scene), reading, kMicrometres, kRim);
-  return channels;
-}
+using simulation::ValuesOf;
 
 std::optional<Range> RangeOf(const std::string& variable, const StageChannel& channel,
                              const Scene& scene) {

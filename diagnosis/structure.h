@@ -3,15 +3,13 @@
 //   const Structure structure{channel, "feed", range};
 //   structure.ColumnsOf(trace);       // one disturbance of the channel's stage for each term
 //
-// A channel is one stage of the simulation (simulation/disturbance.h): the reading of a probe or of
-// a sensor at a shaft, the angle of a pivot, an error motion of an axis ("X" its positioning, "EAX"
-// and so on the others), or the place of the ball in the linkage ("ball_x"). Forms, of a variable v
-// over its range:
+// A channel is one stage of the simulation (simulation/stage_channel.h). Forms, of a variable v over
+// its range:
 //   smooth     cosines cos(pi k (v - first) / length), `terms` of them from k = 1
 //   line       sine and cosine of `wave` times v
 //   interval   1 from `from` to `to`, 0 elsewhere
 //   product    of two variables "x*y": products of their Legendre polynomials of degree 1 and 2
-// Variables (variables.h) with a factor, as the direction of motion, have it in each term, and
+// Variables (simulation/variables.h) with a factor, as the direction of motion, have it in each term, and
 // begin with k = 0. What a cause does is left out: of an axis or a pivot over its own direction
 // k = 0 (lost motion that is the same everywhere), of an axis over its own speed what changes sign
 // with it (a lag), of a probe over its own gap the line and the square (a gain, a characteristic),
@@ -28,26 +26,17 @@
 #include "diagnosis/scan.h"
 #include "estimation/parameter.h"
 #include "simulation/causes/cause.h"
+#include "simulation/stage_channel.h"
 
 namespace abbe::diagnosis {
 
-// The instruments that runs are recorded with.
-enum Instrument : unsigned { kProbes = 1, kLinkage = 2, kRim = 4 };
-Instrument InstrumentOf(const simulation::Trace& trace);
-
-struct StageChannel {
-  std::string object;  // "probe_a", "pivot_1", "X", "EAX"
-  Eigen::Index stage;
-  estimation::PrintUnit unit;
-  unsigned instruments;  // whose runs feel it
-
-  bool Feels(const simulation::Trace& trace) const {
-    return (instruments & InstrumentOf(trace)) != 0;
-  }
-  // Whether so much could be left at all.
-  bool IsPlausible(double amount) const;
-};
-std::vector<StageChannel> ChannelsOf(const simulation::Scene& scene);
+using simulation::ChannelsOf;
+using simulation::Instrument;
+using simulation::InstrumentOf;
+using simulation::kFeltAtRim;
+using simulation::kFeltByLinkage;
+using simulation::kFeltByProbes;
+using simulation::StageChannel;
 
 struct Range {
   double first = std::numeric_limits<double>::infinity();

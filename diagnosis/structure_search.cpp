@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "diagnosis/variables.h"
+#include "simulation/variables.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -19,7 +19,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
+using simulation::IsGap;
+using simulation::PeriodicVariablesOf;
+using simulation::ProductsOf;
 using simulation::Trace;
+using simulation::ValuesOf;
+using simulation::VariablesOf;
 
 constexpr double kAbsorbed = 1e-4;  // of the most information: what is left is rounding
 constexpr double kOfAWave = 0.4;    // over the range, from one line to the next
@@ -177,7 +182,7 @@ Scan ScanOf(const Fit& fit, const std::string& variable, const std::vector<Stage
 // Channels of one kind of run share range and waves.
 void AddStrongest(const Fit& fit, const simulation::Scene& scene, const std::string& variable,
                   const ScoresByRun& scores, std::vector<std::vector<Structure>>& of_channel) {
-  for (const Instrument instrument : {kProbes, kLinkage, kRim}) {
+  for (const Instrument instrument : {kFeltByProbes, kFeltByLinkage, kFeltAtRim}) {
     std::vector<StageChannel> channels;
     std::vector<std::size_t> places;
     for (std::size_t c = 0; c < of_channel.size(); ++c) {
@@ -255,7 +260,7 @@ Found Sharpened(const Fit& fit, Found found) {
 }
 
 // Where it turns evenly, tuned waves are the harmonics that causes make.
-bool IsAtShaft(const Found& found) { return found.structure.channel.instruments == kRim; }
+bool IsAtShaft(const Found& found) { return found.structure.channel.instruments == kFeltAtRim; }
 
 // A smooth function with as many terms as the data ask for. What a probe makes of its own gap has
 // no fine structure: along an axis the gap goes with the position, and many terms would do what two
@@ -302,7 +307,7 @@ Found Tuned(const Fit& fit, Found found) {
 double RmsOf(const Fit& fit, const Found& found) {
   double weight = 0.0;
   for (std::size_t run = 0; run < fit.runs(); ++run) {
-    if (InstrumentOf(fit.TraceOf(run)) != kRim) continue;
+    if (InstrumentOf(fit.TraceOf(run)) != kFeltAtRim) continue;
     weight += fit.ScoresOf(run, found.structure.channel.stage).weights.sum();
   }
   return std::sqrt(found.chi_square / weight);
@@ -366,7 +371,7 @@ Found Refined(const Fit& fit, Found found) {
 
 Leftover LeftoverOf(const Fit& fit, const Found& found, std::size_t questions) {
   const Structure& structure = found.structure;
-  const double amplitude = structure.channel.instruments == kRim ? RmsOf(fit, found)
+  const double amplitude = structure.channel.instruments == kFeltAtRim ? RmsOf(fit, found)
                            : structure.interval.IsEmpty() ? found.length / std::numbers::sqrt2
                                                           : found.length;
   return {structure.variable,

@@ -22,7 +22,7 @@ struct Dependence {
 };
 
 struct Leftover {
-  std::string variable;  // of variables.h
+  std::string variable;  // of simulation/variables.h
   std::string object;    // channel
   // m or rad, rms over the rows; of an interval, how far apart; of a scatter, in units of the noise
   double amplitude = 0.0;

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "diagnosis/variables.h"
 #include "fusion/machine_problem.h"
 #include "machine/volumetric_jacobian.h"
+#include "simulation/variables.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -20,6 +20,9 @@ using Eigen::Index;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 using simulation::Trace;
+using simulation::UnitOf;
+using simulation::ValuesOf;
+using simulation::VariablesOf;
 
 constexpr int kParts = 24;        // of the range of a variable
 constexpr double kTells = 1.0;    // largest effect over the noise of a part, squared

@@ -111,6 +111,16 @@ ModelledCause ReadCause(const Table& table, const CauseObjects& machine) {
   return cause;
 }
 
+void RefuseOtherObject(const Table& table, const CauseObjects& machine, const Object& object) {
+  using Kind = Object::Kind;
+  const bool lacks = object.kind() == Kind::kPivot   ? object.first() >= machine.pivots
+                     : object.kind() == Kind::kProbe ? !machine.head
+                                                     : false;
+  if (!lacks) return;
+  throw table.Error("object", fmt::format("machine \"{}\" has no {}; delete the table",
+                                          machine.machine, object.name()));
+}
+
 Origin ReadOrigin(const Table& root) {
   Origin origin;
   if (root.Has("started")) {
@@ -141,8 +151,8 @@ ModelGain ReadGain(const Table& root) {
 void ReadDiagnosis(const Table& root, ExtendedModel& model) {
   if (!root.Has("diagnosis")) return;
   const Table table = root.Child("diagnosis");
-  model.verdict =
-      table.Choice("verdict", {"clean", "explained", "ambiguous", kVerdictUnexplained}, true);
+  model.verdict = table.Choice(
+      "verdict", {"clean", "explained", "ambiguous", kVerdictLearned, kVerdictUnexplained}, true);
   model.next_runs = table.Texts("next_runs", 0, std::vector<std::string>{});
   for (const Table& left : table.Children("unexplained")) {
     Unexplained& one = model.unexplained.emplace_back();
@@ -203,6 +213,17 @@ std::string CauseText(const ModelledCause& cause) {
 
 }  // namespace
 
+ModelledCause ModelledTerm(LearnedTerm term) {
+  const auto learned = LearnedCause::Of(std::move(term));
+  const LearnedTerm& of = learned->term();
+  return {.cause = &learned->cause(),
+          .object = learned->object(),
+          .values = of.coefficients,
+          .u95 = {},
+          .covariance = of.covariance,
+          .learned = learned};
+}
+
 std::string ModelledCause::Name() const { return fmt::format("{}:{}", cause->id, Title(object)); }
 
 ExtendedModel ReadExtendedModel(const std::filesystem::path& path, const CauseObjects& objects) {
@@ -233,6 +254,10 @@ ExtendedModel ReadExtendedModel(const std::filesystem::path& path, const CauseOb
   for (const Table& table : root.Children("cause")) {
     model.causes.push_back(ReadCause(table, objects));
   }
+  for (const Table& table : root.Children("learned")) {
+    model.causes.push_back(ModelledTerm(ReadLearnedTerm(table)));
+    RefuseOtherObject(table, objects, model.causes.back().object);
+  }
   root.RefuseUnknown();
   return model;
 }
@@ -247,7 +272,9 @@ std::string ExtendedModelText(const ExtendedModel& model) {
     text += fmt::format("started = {}\n", Quoted(recording::InstantText(model.origin.started)));
   }
   text += DiagnosisText(model);
-  for (const ModelledCause& cause : model.causes) text += CauseText(cause);
+  for (const ModelledCause& cause : model.causes) {
+    text += cause.learned ? LearnedTermText(cause.learned->term()) : CauseText(cause);
+  }
   const ModelGain& gain = model.gain;
   text += "\n# Measured less simulated, in units of the stated noise.\n[gain]\n";
   text += fmt::format("fitted_rms_before = {}\nfitted_rms_after = {}\n", Float(gain.fitted_before),

@@ -18,11 +18,13 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "simulation/causes/cause.h"
+#include "simulation/learned/learned_term.h"
 #include "simulation/trace.h"
 
 namespace abbe::simulation {
@@ -35,6 +37,8 @@ struct ModelledCause {
   Eigen::MatrixXd covariance;            // of the coefficients; empty: not stated
   double probability = 1.0;              // among its rivals
   std::vector<std::string> rivals = {};  // "cap-friction:cap", the most probable first
+  // Of a learned term, which owns its cause; null: of the catalogue.
+  std::shared_ptr<const LearnedCause> learned = {};
 
   std::string Name() const;  // "backlash:X", "thermal-growth:X (temp_table_c)"
 };
@@ -59,7 +63,10 @@ struct Unexplained {
   std::optional<double> in_space = {};
 };
 
-inline constexpr const char* kVerdictUnexplained = "unexplained";
+// As it is used.
+ModelledCause ModelledTerm(LearnedTerm term);
+
+inline constexpr const char *kVerdictUnexplained = "unexplained", *kVerdictLearned = "learned";
 
 struct ExtendedModel {
   std::string machine;

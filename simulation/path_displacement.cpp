@@ -29,7 +29,7 @@ Trace TraceOf(const Eigen::Matrix3Xd& path, double feed) {
 
 bool ActsOnPath(const ModelledCause& cause) {
   return cause.cause->CorrectedAt(cause.object) == CorrectedBy::kMotion &&
-         cause.cause->follows == Follows::kPath;
+         cause.object.IsOfAxes() && cause.cause->follows == Follows::kPath;
 }
 
 Eigen::Matrix3Xd PathDisplacement(const Eigen::Matrix3Xd& path, double feed,

@@ -6,6 +6,7 @@ const VERDICTS = {
   explained: 'The causes found explain the runs completely.',
   ambiguous: 'There is a cause, but these runs cannot separate several candidates.',
   unexplained: 'Residuals remain that no known cause explains.',
+  learned: 'No known cause explains the residuals; a learned term does.',
 };
 const EVIDENCE_SHOWN = 8;  // candidates before the list is folded
 
@@ -30,7 +31,8 @@ const percent = (share) =>
     isNumber(share) ? share > 0.999 ? 'over 99.9\u00a0%' : `${fixed(100 * share, 1)}\u00a0%` : null;
 
 function diagnosisSummary(result) {
-  const found = (result.findings ?? []).map(findingName);
+  const terms = (result.learned ?? []).filter(({found}) => found).map(({words}) => words);
+  const found = [...terms, ...(result.findings ?? []).map(findingName)];
   const verdict = VERDICTS[result.verdict] ?? capital(String(result.verdict ?? ''));
   if (!found.length) return verdict;
   const told = result.verdict === 'unexplained' ? 'What would explain part of it' : 'Found';
@@ -221,12 +223,46 @@ const whatItDoes = (left) => {
   return `is offset where ${variable} is ${first} to ${last}\u00a0${unit},${oneOf(left)}`;
 };
 
+// What was left before anything was learned stands there too, where a term explains it.
 function leftoverBlock(result) {
-  return notesBlock('Left unexplained:', (result.unexplained ?? []).map((left) => {
+  const learned = result.verdict === 'learned';
+  const left = learned ? result.left_before_learning : result.unexplained;
+  return notesBlock(learned ? 'Left by the known causes:' : 'Left unexplained:', (left ?? []).map((left) => {
     const {object, amplitude, unit, p_value: p} = left;
     return `${capital(objectName(object))} ${whatItDoes(left)} by ${significant(amplitude)}\u00a0${
         unitText(unit)} in a way that no known cause makes (p = ${plain(Number(p?.toPrecision(1)))})`;
   }));
+}
+
+const REGIMES = {
+  holds: 'the outer fifths of the range ask for the same size',
+  fails: 'the outer fifths of the range ask for another size: valid between what was measured',
+  untold: 'the outer fifths of the range cannot tell: valid between what was measured',
+};
+
+// A term that no known cause makes: in words, why it is believed, and where it shows.
+function learnedGroup(term) {
+  const why = term.certificate ?? {};
+  const nearest = why.nearest ?
+      `; the nearest known cause is ${candidateName(why.nearest)}, cosine ${fixed(why.cosine, 2)}` :
+      '';
+  return element(
+      'section', {class: 'group'},
+      element('h3', {}, `${term.found ? 'Learned' : 'Not certain'}: ${term.words}`), factList([
+        ['Expression', `${term.expression} in ${objectName(term.object)}`, true],
+        ['Effect', `${significant(term.amplitude)}\u00a0${unitText(term.unit)} rms`],
+        ['Not certain', (term.doubts ?? []).length ? capital(term.doubts.join('; ')) : null, true],
+        ['Chance that noise makes as much', isNumber(why.by_chance) ? plain(Number(why.by_chance.toPrecision(1))) : null],
+        ['Held-out rows, in their noise', why.heldout_rms_before > 0 ?
+           `${fixed(why.heldout_rms_before, 3)} without it, ${fixed(why.heldout_rms_after, 3)} with it` :
+           null],
+        ['Elsewhere', term.smooth || !why.regime ? null : capital(REGIMES[why.regime] ?? ''), true],
+        ['Could be imitated', !isNumber(why.imitated) ? null : `${fixed(100 * why.imitated, 0)}\u00a0% of its effect by parameters of the simulation${nearest}`, true],
+        ['Or at', (term.alike ?? []).length ? `${term.alike.map(objectName).join('; ')}, which these runs show alike` : null, true],
+        ['Or one of', (term.group ?? []).map(candidateName).join('; ') || null, true],
+        ['Suggestion', term.suggestion ? `Such things are made by ${term.suggestion}` : null, true],
+      ]),
+      findingCurve(term));
 }
 
 const inPart = (result) => result.verdict === 'unexplained' && result.findings?.length ?
@@ -263,7 +299,7 @@ registerSection({
       ['Recordings', (result.recordings ?? []).join(', '), true], ['Extended model', result.model],
       ['The error map changes by up to', result.map_change_um > 0 && result.findings?.length ?
          `${significant(result.map_change_um)}\u00a0\u00b5m` : null]],
-  body: (result) => [leftoverBlock(result), inPart(result), ...(result.findings ?? []).map((one) => findingGroup(one, result.heldout)),
+  body: (result) => [leftoverBlock(result), ...(result.learned ?? []).map(learnedGroup), inPart(result), ...(result.findings ?? []).map((one) => findingGroup(one, result.heldout)),
                      rivalsTable(result), gainTable(result), evidenceTable(result),
                      cannotShowBlock(result)]
                         .flat()
@@ -276,7 +312,8 @@ registerSection({
     ],
     row: (result) =>
         [capital(String(result.verdict ?? '')),
-         (result.findings ?? []).map(findingName).join('; ') || 'nothing',
+         [...(result.findings ?? []).map(findingName),
+          ...(result.learned ?? []).filter(({found}) => found).map(({words}) => words)].join('; ') || 'nothing',
          ...['rms_before', 'rms_after'].map(
              (key) => isNumber(result.heldout?.[key]) ? fixed(result.heldout[key], 3) : null)],
   },

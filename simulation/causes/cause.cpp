@@ -88,6 +88,7 @@ Recalled Cause::RecallFrom(const VectorXd& values) const {
 
 CorrectedBy Cause::CorrectedAt(const Object& object) const {
   if (in_map) return CorrectedBy::kMap;
+  if (seat) return *seat;
   return object.IsOfAxes() ? CorrectedBy::kMotion : CorrectedBy::kInstrument;
 }
 

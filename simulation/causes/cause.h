@@ -140,7 +140,8 @@ struct Cause {
   // Sine and cosine of shape[0] times the angle of a pivot: their phase is known no better than the
   // zero of its encoder.
   bool phase_follows_encoder_zero = false;
-  bool in_map = false;  // one of the 21 errors, a function of position
+  bool in_map = false;                   // one of the 21 errors, a function of position
+  std::optional<CorrectedBy> seat = {};  // none: as its object has it
   Follows follows = Follows::kPath;
   // Looked for beyond `shapes`, among all that the runs resolve.
   std::optional<Wave> wave = {};

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/variables.h"
+#include "simulation/variables.h"
 
 namespace abbe::diagnosis {
 namespace structure_test {
@@ -16,7 +16,11 @@ namespace structure_test {
 using Eigen::Index;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
+using simulation::ChannelsOf;
 using simulation::Trace;
+using simulation::UnitOf;
+using simulation::ValuesOf;
+using simulation::VariablesOf;
 
 constexpr Index kRows = 401;
 

@@ -70,6 +70,10 @@ class HiddenWorlds {
     for (const std::string& text : hidden) {
       effects.push_back(rig::ParseHidden(text, seed, machine_.sensors));
     }
+    return RecordEffects(seed, std::move(effects));
+  }
+
+  rig::Campaign RecordEffects(std::uint64_t seed, rig::HiddenEffects effects) const {
     return rig::RecordCampaign(machine_, seed, std::move(effects),
                                {.kind = kind_, .reduced = true});
   }

@@ -56,7 +56,11 @@ class VisibleEffects {
 
   // By how many standard deviations each reading changes, free of what all others tell.
   VectorXd ColumnOf(const std::vector<std::string>& hidden, std::uint64_t seed) const {
-    const rig::Campaign with = worlds_.Record(seed, hidden), without = worlds_.Record(seed, {});
+    return ColumnOfWorld(worlds_.Record(seed, hidden), seed);
+  }
+  // The same of a world; its encoders count in steps.
+  VectorXd ColumnOfWorld(const rig::Campaign& with, std::uint64_t seed) const {
+    const rig::Campaign without = worlds_.Record(seed, {});
     std::vector<double> campaign, dwell;
     for (std::size_t i = 0; i < with.recordings.size(); ++i) {
       const bool still = with.recordings[i].Kind() == "dwell";

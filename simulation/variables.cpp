@@ -1,4 +1,4 @@
-#include "diagnosis/variables.h"
+#include "simulation/variables.h"
 
 #include <algorithm>
 #include <set>
@@ -6,18 +6,17 @@
 #include "settings/unit.h"
 #include "simulation/causes/shaft.h"
 
-namespace abbe::diagnosis {
+namespace abbe::simulation {
 
 using Eigen::Index;
 using Eigen::RowVectorXd;
-using simulation::Scene;
-using simulation::Trace;
 
 namespace {
 
 const std::string kDirectionOf = "direction of ", kReversalOf = "reversal of ",
                   kSpeedOf = "speed of ", kRateOf = "rate of ", kGapOf = "gap of ",
-                  kColumn = "column ";
+                  kColumn = "column ", kWayOf = "way of ", kWarmingOf = "warming of ",
+                  kTimeOfRun = "time of run";
 
 // "x" of "direction of x".
 std::string BehindKind(const std::string& variable) {
@@ -60,7 +59,7 @@ RowVectorXd RowNamed(const std::string& name, const std::vector<std::string>& na
   return rows.row(found - names.begin());
 }
 
-RowVectorXd GapIn(const Trace& trace, const simulation::Object& probe) {
+RowVectorXd GapIn(const Trace& trace, const Object& probe) {
   if (!trace.head || probe.first() >= trace.head->gap.rows()) return {};
   return trace.head->gap.row(probe.first());
 }
@@ -78,8 +77,8 @@ std::vector<std::string> OtherColumnsOf(const Scene& scene) {
 
 RowVectorXd FactorOf(const std::string& variable, const Trace& trace) {
   if (!HasFactor(variable)) return {};
-  const simulation::Object object(BehindKind(variable));
-  if (object.kind() == simulation::Object::Kind::kPivot) {
+  const Object object(BehindKind(variable));
+  if (object.kind() == Object::Kind::kPivot) {
     return trace.linkage->heading.row(object.first());
   }
   return trace.heading.row(BehindKind(variable)[0] - 'x');
@@ -88,6 +87,11 @@ RowVectorXd FactorOf(const std::string& variable, const Trace& trace) {
 RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
   if (variable.starts_with(kColumn)) {
     return RowNamed(variable.substr(kColumn.size()), trace.others, trace.other);
+  }
+  if (variable == kTimeOfRun) return trace.time.transpose();
+  if (variable.starts_with(kWayOf)) return trace.since_reversal.row(BehindKind(variable)[0] - 'x');
+  if (variable.starts_with(kWarmingOf)) {
+    return RowNamed(BehindKind(variable), trace.sensors, trace.warming);
   }
   if (variable.starts_with(kDirectionOf)) return ValuesOf(BehindKind(variable), trace);
   if (variable.starts_with(kReversalOf)) {
@@ -98,7 +102,7 @@ RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
     const RowVectorXd values = ValuesOf(BehindKind(variable), trace);
     return values.size() == 0 ? values : RateOf(values, trace.clock);
   }
-  const simulation::Object object(BehindKind(variable));
+  const Object object(BehindKind(variable));
   if (variable.starts_with(kGapOf)) return GapIn(trace, object);
   if (variable == "time") return trace.clock.transpose();
   if (variable == "run") return RowVectorXd::Constant(trace.rows(), trace.number);
@@ -109,7 +113,7 @@ RowVectorXd ValuesOf(const std::string& variable, const Trace& trace) {
     const double sign = variable[1] == '+' ? 1.0 : -1.0;
     return trace.axes.row(variable[0] - 'x') + sign * trace.axes.row(variable[2] - 'x');
   }
-  if (object.kind() == simulation::Object::Kind::kPivot) {
+  if (object.kind() == Object::Kind::kPivot) {
     if (trace.pivots() == 0) return {};
     return trace.linkage->angles.row(object.first());
   }
@@ -135,7 +139,7 @@ std::vector<std::string> VariablesOf(const Scene& scene) {
     variables.push_back(kReversalOf + axis);
     variables.push_back(kSpeedOf + axis);
   }
-  for (const auto& pivot : simulation::PivotsOf(scene)) {
+  for (const auto& pivot : PivotsOf(scene)) {
     variables.push_back(pivot.name());
     variables.push_back(kDirectionOf + pivot.name());
   }
@@ -143,9 +147,46 @@ std::vector<std::string> VariablesOf(const Scene& scene) {
     variables.push_back(sensor);
     variables.push_back(kRateOf + sensor);
   }
-  for (const auto& probe : simulation::ProbesOf(scene)) variables.push_back(GapOf(probe.name()));
+  for (const auto& probe : ProbesOf(scene)) variables.push_back(GapOf(probe.name()));
   for (std::string& column : OtherColumnsOf(scene)) variables.push_back(std::move(column));
   return variables;
+}
+
+std::vector<std::string> VariablesToLearnFrom(const Scene& scene) {
+  std::vector<std::string> variables{"time", kTimeOfRun, "x",   "y",   "z",   "x+y",
+                                     "x-y",  "x+z",      "x-z", "y+z", "y-z", "feed"};
+  for (const char* axis : {"x", "y", "z"}) {
+    variables.push_back(kSpeedOf + axis);
+    variables.push_back(kWayOf + axis);
+  }
+  for (const auto& pivot : PivotsOf(scene)) variables.push_back(pivot.name());
+  for (const std::string& sensor : scene.Sensors()) {
+    variables.push_back(kWarmingOf + sensor);
+    variables.push_back(kRateOf + sensor);
+  }
+  for (const auto& probe : ProbesOf(scene)) variables.push_back(GapOf(probe.name()));
+  for (std::string& column : OtherColumnsOf(scene)) variables.push_back(std::move(column));
+  return variables;
+}
+
+bool IsVariable(const std::string& name) {
+  const auto is_axis = [](std::string_view text) {
+    return text.size() == 1 && text[0] >= 'x' && text[0] <= 'z';
+  };
+  const auto is_behind = [&](const std::string& kind, const auto& rule) {
+    return name.starts_with(kind) && name.size() > kind.size() && rule(name.substr(kind.size()));
+  };
+  const auto is_sensor = [](const std::string& text) { return text.starts_with("temp_"); };
+  const auto is_probe = [](const std::string& text) {
+    return Object(text).kind() == Object::Kind::kProbe;
+  };
+  const bool is_sum = name.size() == 3 && (name[1] == '+' || name[1] == '-') &&
+                      is_axis(name.substr(0, 1)) && is_axis(name.substr(2));
+  return is_axis(name) || is_sum || name == "time" || name == kTimeOfRun || name == "feed" ||
+         Object(name).kind() == Object::Kind::kPivot || is_behind(kSpeedOf, is_axis) ||
+         is_behind(kWayOf, is_axis) || is_behind(kWarmingOf, is_sensor) ||
+         is_behind(kRateOf, is_sensor) || is_behind(kGapOf, is_probe) ||
+         is_behind(kColumn, [](const std::string&) { return true; });
 }
 
 std::vector<std::string> ProductsOf(const Scene& scene) {
@@ -161,8 +202,8 @@ std::vector<std::string> ProductsOf(const Scene& scene) {
 std::vector<std::string> PeriodicVariablesOf(const Scene& scene) {
   std::vector<std::string> variables{"time", "x",   "y",   "z",   "x+y",
                                      "x-y",  "x+z", "x-z", "y+z", "y-z"};
-  for (const auto& shaft : simulation::ShaftOf(scene)) variables.push_back(shaft.name());
-  for (const auto& pivot : simulation::PivotsOf(scene)) variables.push_back(pivot.name());
+  for (const auto& shaft : ShaftOf(scene)) variables.push_back(shaft.name());
+  for (const auto& pivot : PivotsOf(scene)) variables.push_back(pivot.name());
   return variables;
 }
 
@@ -175,7 +216,8 @@ estimation::PrintUnit UnitOf(const std::string& variable) {
   if (variable.starts_with(kReversalOf) || variable.find('*') != std::string::npos) {
     return {"", 1.0};
   }
-  if (variable == "time") return {"s", 1.0};
+  if (variable == "time" || variable == kTimeOfRun) return {"s", 1.0};
+  if (variable.starts_with(kWarmingOf)) return {"K", 1.0};
   if (variable == "run") return {"", 1.0};
   if (variable == "feed" || IsSpeed(variable)) return {"mm/min", settings::kMillimetrePerMinute};
   if (variable == "shaft" || variable.starts_with("pivot_")) return {"rad", 1.0};
@@ -185,4 +227,4 @@ estimation::PrintUnit UnitOf(const std::string& variable) {
   return {"mm", settings::kMillimetre};
 }
 
-}  // namespace abbe::diagnosis
+}  // namespace abbe::simulation
