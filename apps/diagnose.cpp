@@ -38,7 +38,7 @@ struct DiagnoseArguments {
   std::vector<fs::path> recordings;
   fs::path machine, out, json;
   std::string campaign;  // of the plan
-  bool plan = false, quiet = false;
+  bool plan = false, learn = false, quiet = false;
 };
 
 void WriteModel(simulation::ExtendedModel model, const DiagnoseArguments& arguments) {
@@ -118,7 +118,8 @@ int Diagnose(const DiagnoseArguments& arguments) {
   for (const auto& finding : diagnosis.findings) {
     if (diagnosis::IsModelled(finding)) causes.push_back(finding.score.candidate);
   }
-  learned::Learning learning = learned::Learn(diagnosis);
+  learned::Learning learning;
+  if (arguments.learn) learning = learned::Learn(diagnosis);
   const diagnosis::HeldOutGain gain =
       GainOf(campaign, recordings, learning.IsToBeDecided() ? learning.Candidates() : causes);
   diagnosis::AddDoubtsOfHeldOut(gain, diagnosis);
@@ -162,6 +163,11 @@ void AddDiagnose(CLI::App& program, int& exit_code) {
           "With --plan: the runs of a campaign of the virtual rig: minimal, standard, full")
       ->check(CLI::IsMember(CampaignKinds()))
       ->needs(plan);
+  command
+      ->add_flag("--learn", arguments->learn,
+                 "Where something is left, extend the simulation by terms that nobody wrote down; "
+                 "on trial: how often one is wrong has not been measured yet")
+      ->excludes(plan);
   command->add_flag("--quiet", arguments->quiet, "No tables");
   command->footer(
       "Example: abbe diagnose sweep_X.csv circle.csv cube.csv --machine mill.toml -o "

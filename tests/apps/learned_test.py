@@ -20,7 +20,7 @@ class LearnedTest(ProgramCase):
         self.done("--machine", MACHINE, "--seed", 5, "--campaign", "standard", "--reduced", "--out", campaign,
                   "--hide", "unknown-feed-square:object=X:height_um=8", command="rig record")
         runs = sorted(campaign.glob("*.h5"))
-        text = self.done(*runs, "--machine", MACHINE, "-o", model, "--json", result)
+        text = self.done(*runs, "--machine", MACHINE, "--learn", "-o", model, "--json", result)
         told = json.loads(result.read_text())
         self.assertEqual(told["verdict"], "learned", text)
         self.assertEqual(told["unexplained"], [])
