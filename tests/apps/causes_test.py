@@ -175,12 +175,12 @@ class CausesTest(ProgramCase):
                                 "--dwell", 0.1, "--feed", 6000),
                 *(self.rig_record(f"{axis}.csv", "--axis", axis, "--mounting", "A", "--rate", 20) for axis in "XYZ")]
         without, certain, doubted = self.doubted(
-            "fuse", runs, '[[cause]]\nid = "backlash"\nobject = "X"\nwidth_um = 6.0\n',
+            "fuse", runs, '[[cause]]\nid = "probe-gain"\nobject = "probe_b"\ndelta = 0.05\n',
             "-o", self.path / "map.toml", "--fixed-smoothness")
         of = lambda result, key: np.array(result["map"]["grid"][key])
         np.testing.assert_array_equal(of(doubted, "error"), of(certain, "error"))
         change = of(doubted, "error") - of(without, "error")
-        self.assertGreater(np.abs(change).max(), 2e-6)
+        self.assertGreater(np.abs(change).max(), 1e-6)
         added = of(doubted, "u")**2 - of(certain, "u")**2 - change**2
         # The numbers of the grid are rounded to 1 pm.
         self.assertAlmostEqual(1e6 * np.sqrt(added.mean()), LEFT_UM, delta=1e-4)
