@@ -13,7 +13,7 @@
 // Failure: none; runs that do not know which way an axis moved stay as they are.
 // Source: ISO 230-1 and ISO 230-2 for the reversal error, forward minus backward.
 // Validity: one number along the whole axis; directions as each row's run knows them
-// (simulated_run.h).
+// (simulation/simulated_run.h).
 #pragma once
 
 #include <string>
