@@ -1,6 +1,6 @@
 // Error motions that differ between the two directions of an axis, as parameters of its runs.
 //
-//   for (SimulatedRun& run : runs) WithReversals(machine, run);   // blocks "reversal X", ...
+//   for (auto& run : runs) WithReversals(machine, run);           // blocks "reversal X", ...
 //   JudgeReversals(machine, fit, runs);      // as large as the runs say, or held at nothing
 //   ReversalsOf(fit, 1.0);                   // {"EBX", -13.2e-6, 0.1e-6, true}
 //
