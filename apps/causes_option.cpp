@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "apps/instruments.h"
@@ -167,11 +168,16 @@ std::string PathCauses::Line() const {
   std::string line = fmt::format(
       "in addition to the map, from {}: {}", name_,
       causes_.empty() ? "nothing" : fmt::format("{}", fmt::join(NamesOf(causes_), ", ")));
-  if (!left_.empty()) {
-    line += fmt::format(
-        "; left out, because a path has no time and no temperature, or because they act across or about an axis: {}",
-        fmt::join(NamesOf(left_), ", "));
-  }
+  const auto add_left = [&](bool by_path, const char* why) {
+    std::vector<ModelledCause> left;
+    std::ranges::copy_if(left_, std::back_inserter(left), [&](const ModelledCause& cause) {
+      return (cause.cause->follows == simulation::Follows::kPath) == by_path;
+    });
+    if (left.empty()) return;
+    line += fmt::format("; left out, because {}: {}", why, fmt::join(NamesOf(left), ", "));
+  };
+  add_left(false, "a path has no time and no temperature");
+  add_left(true, "only what acts along an axis is known to move a path");
   if (!doubts_.empty()) line += fmt::format("; {}; the U95 of the map is without that", doubts_);
   return line;
 }

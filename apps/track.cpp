@@ -262,6 +262,7 @@ class Tracking {
       tracked.Know(RunsOf(test.recording));
     }
     std::vector<track::Candidate> candidates;
+    candidates.reserve(tests.size());
     for (const Test& test : tests) {
       candidates.push_back({fs::path(test.recording.name).filename().string(),
                             MinutesOf(test.recording), tracked.Test(RunsOf(test.recording)).test});

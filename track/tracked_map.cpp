@@ -131,8 +131,9 @@ void TrackedMap::SetLag(std::size_t sensor, double lag) { sensors_[sensor].lag =
 
 void TrackedMap::Follow(const Conditions& conditions) {
   for (const auto& [name, value] : conditions.temperature) {
-    const auto known = std::find_if(sensors_.begin(), sensors_.end(),
-                                    [&](const auto& each) { return each.sensor == name; });
+    const auto known =
+        std::find_if(sensors_.begin(), sensors_.end(),
+                     [sought = name](const auto& each) { return each.sensor == sought; });
     if (known == sensors_.end()) {
       std::vector<std::string> all;
       for (const map::Warmth& each : sensors_) all.push_back(each.sensor);
