@@ -1,4 +1,5 @@
-// The commands of the program and their options, read from their definitions: for manual pages and completion.
+// The commands of the program and their options, read from their definitions: for manual pages and
+// completion.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,5 @@
-// `abbe completion` and `abbe man`: what shells and man(1) want to know, from the definitions of the commands.
+// `abbe completion` and `abbe man`: what shells and man(1) want to know, from the definitions of
+// the commands.
 #include <fmt/format.h>
 
 #include <algorithm>

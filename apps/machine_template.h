@@ -6,8 +6,8 @@
 //
 // Kinds: mill (moving table), gantry, lathe, axis, arm, shaft. Units: mm, as in the file.
 // Failure: InputError for another kind, a travel whose end is not above its beginning.
-// Source: docs/machine-file.md. Validity: numbers of instruments are those of the demonstration machine and have to be
-// replaced by one's own, as the comments say.
+// Source: docs/machine-file.md. Validity: numbers of instruments are those of the demonstration
+// machine and have to be replaced by one's own, as the comments say.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// The result of `abbe track` as data and as tables for people. Data in SI unless the key has a unit;
-// tables end in a newline.
+// The result of `abbe track` as data and as tables for people. Data in SI unless the key has a
+// unit; tables end in a newline.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,7 +42,7 @@ struct TrackReport {
 
 // From the first to the last row.
 double MinutesOf(const recording::Recording& recording);
-// Of the corners and the middle of the volume, m.
+// The largest U95 among the corners and the middle of the volume, m.
 double LargestU95(const map::ErrorMap& map);
 
 nlohmann::ordered_json TrackJson(const map::ErrorMap& map, const TrackReport& report);

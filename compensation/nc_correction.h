@@ -5,10 +5,11 @@
 //   const NcCounts counts = CorrectProgram(corrector, options, source, write);
 //
 // Loops, branches, subroutines, parameters and expressions are written out, canned cycles as their
-// moves. G0 keeps its end point; G1 is divided into lines no longer than limits.length, G2 and G3 into
-// chords within limits.chord, written as G1. Every corrected line gives X, Y and Z, because the
-// errors of one axis move all three (nc_writer.h). All other words, line numbers and comments stay
-// on the first line of their block; M0 M1 M2 M30 M60, which act after the move, are on the last.
+// moves. G0 keeps its end point; G1 is divided into lines no longer than limits.length, G2 and G3
+// into chords within limits.chord, written as G1. Every corrected line gives X, Y and Z, because
+// the errors of one axis move all three (nc_writer.h). All other words, line numbers and comments
+// stay on the first line of their block; M0 M1 M2 M30 M60, which act after the move, are on the
+// last.
 //
 // Supported: docs/correct.md; anything else is refused with its line and a way out.
 // Modes that a program does not set before its first move are assumed to be G21, G90 and, for arcs,

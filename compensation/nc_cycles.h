@@ -9,8 +9,8 @@
 // Out is to R with G99, to where the first cycle of a row began with G98 if that is above R.
 // Frames: program coordinates. Shapes: positions X, Y, Z. Units: those of the program, throughout.
 // Failure: InputError with the line for R below the bottom, Q that is not above 0, more than
-// kMostLines moves. Source: RS 274/NGC (NIST IR 6556), 3.5.16; LinuxCNC 2.9 (0.010 in). Validity: G74 and G84 tap: their feed is geared to the
-// spindle; G76, G87 and G88 depend on the control.
+// kMostLines moves. Source: RS 274/NGC (NIST IR 6556), 3.5.16; LinuxCNC 2.9 (0.010 in). Validity:
+// G74 and G84 tap: their feed is geared to the spindle; G76, G87 and G88 depend on the control.
 #pragma once
 
 #include <Eigen/Core>

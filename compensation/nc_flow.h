@@ -2,11 +2,12 @@
 //
 //   RunProgram(source, parameters, host);
 //
-// The host gets every line that acts, in order, with loops and calls written out. Limits: kLevels of
-// calls, as in LinuxCNC, and NcHost::MostSteps() lines in all, after which a loop is taken for
+// The host gets every line that acts, in order, with loops and calls written out. Limits: kLevels
+// of calls, as in LinuxCNC, and NcHost::MostSteps() lines in all, after which a loop is taken for
 // endless. Failure: InputError with the line (and the file, for a subroutine of another one), also
 // for a branch that depends on a value that is known only at the control.
-// Source: LinuxCNC 2.9, O codes. Validity: branches by known values. Units: conditions as the program writes them.
+// Source: LinuxCNC 2.9, O codes. Validity: branches by known values. Units: conditions as the
+// program writes them.
 #pragma once
 
 #include <cstddef>

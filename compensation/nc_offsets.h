@@ -3,7 +3,8 @@
 //   p_machine = tool + system + turn(rotation) (p_program + g92)
 //
 // Frames: program coordinates, and the positions of the axes (machine coordinates).
-// Shapes: X, Y, Z. Units: m, rad. Failure: none. Validity: linear axes. Source: LinuxCNC 2.9 (order of the offsets; the turn of G10 R in XY).
+// Shapes: X, Y, Z. Units: m, rad. Failure: none. Validity: linear axes. Source: LinuxCNC 2.9 (order
+// of the offsets; the turn of G10 R in XY).
 #pragma once
 
 #include <Eigen/Core>

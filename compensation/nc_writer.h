@@ -1,7 +1,7 @@
 // Writes the corrected program: words, and positions as the control must be told to reach them.
 //
-// Positions are in the program's units and its G90 or G91, to 1e-6 mm or 1e-7 inch. An increment starts
-// from the written, rounded position, so that rounding does not accumulate.
+// Positions are in the program's units and its G90 or G91, to 1e-6 mm or 1e-7 inch. An increment
+// starts from the written, rounded position, so that rounding does not accumulate.
 // Source: own; LinuxCNC 2.9 reads it. Validity: words of RS 274/NGC. Shapes: positions X, Y, Z.
 // Frames: machine coordinates in, program coordinates of the control out. Units: m in.
 // Failure: InputError for a command outside the travels, and for a program of more than

@@ -7,11 +7,11 @@
 //
 // How: search.h. Where structure is left, correlated noise is tried as a rival explanation: runs
 // whose residuals go on from row to row are whitened for it, the search is repeated, and the more
-// probable of both results is kept (noise_hypothesis.h).
-// Verdict: `clean`: nothing found, nothing left. `explained`: each finding has at least the
-// probability kCertain among its rivals, and nothing is left. `ambiguous`: a finding has rivals.
-// `unexplained`: structure is left; `learned`: a term of no catalogue explains it (learned/). Shapes: coefficients as their cause has them; one evidence a
-// cause and object.
+// probable of both results is kept (noise_hypothesis.h). Verdict: `clean`: nothing found, nothing
+// left. `explained`: each finding has at least the probability kCertain among its rivals, and
+// nothing is left. `ambiguous`: a finding has rivals. `unexplained`: structure is left; `learned`:
+// a term of no catalogue explains it (learned/). Shapes: coefficients as their cause has them; one
+// evidence a cause and object.
 // Source: MacKay, Neural Computation 4 (1992), for evidence and Occam factor.
 // Units: SI.
 // Failure: that of Fit.

@@ -3,18 +3,18 @@
 //   const Structure structure{channel, "feed", range};
 //   structure.ColumnsOf(trace);       // one disturbance of the channel's stage for each term
 //
-// A channel is one stage of the simulation (simulation/stage_channel.h). Forms, of a variable v over
-// its range:
+// A channel is one stage of the simulation (simulation/stage_channel.h). Forms, of a variable v
+// over its range:
 //   smooth     cosines cos(pi k (v - first) / length), `terms` of them from k = 1
 //   line       sine and cosine of `wave` times v
 //   interval   1 from `from` to `to`, 0 elsewhere
 //   product    of two variables "x*y": products of their Legendre polynomials of degree 1 and 2
-// Variables (simulation/variables.h) with a factor, as the direction of motion, have it in each term, and
-// begin with k = 0. What a cause does is left out: of an axis or a pivot over its own direction
-// k = 0 (lost motion that is the same everywhere), of an axis over its own speed what changes sign
-// with it (a lag), of a probe over its own gap the line and the square (a gain, a characteristic),
-// with Legendre polynomials in place of cosines. Units: SI. Used to test what is left
-// (structure_search.h) and to let something that is in no catalogue compete with the causes
+// Variables (simulation/variables.h) with a factor, as the direction of motion, have it in each
+// term, and begin with k = 0. What a cause does is left out: of an axis or a pivot over its own
+// direction k = 0 (lost motion that is the same everywhere), of an axis over its own speed what
+// changes sign with it (a lag), of a probe over its own gap the line and the square (a gain, a
+// characteristic), with Legendre polynomials in place of cosines. Units: SI. Used to test what is
+// left (structure_search.h) and to let something that is in no catalogue compete with the causes
 // (something_else.h).
 #pragma once
 

@@ -22,8 +22,8 @@
 // points. Source: R. C. Paule and J. Mandel, J. Res. NBS 87 (1982) 377-385, for the excess; G.
 // Knapp and J. Hartung, Stat. Med. 22 (2003) 2693-2710, for the coverage; E. C. Fieller, J. R.
 // Stat. Soc. B 16 (1954) 175-185. Validity: a steady drift; a scatter whose memory is shorter than
-// the campaigns together (a random walk still looks like a drift in one of four). Wear and collisions do not keep to a
-// line; the excess scatter then grows.
+// the campaigns together (a random walk still looks like a drift in one of four). Wear and
+// collisions do not keep to a line; the excess scatter then grows.
 #pragma once
 
 #include <map>

@@ -7,8 +7,8 @@
 // through the information of the fit (part_scan.h), which has the priors and the noise, drifting as
 // drifting. Below what so many draws show, the effective number of atoms that their median stands
 // for. Lags, plays and products, which are asked row by row, count one by one (Bonferroni).
-// Regime: what the channel does in the outer fifths of the range, at both ends, is set free, and the
-// coefficient of the inner three fifths held against that of the outer two.
+// Regime: what the channel does in the outer fifths of the range, at both ends, is set free, and
+// the coefficient of the inner three fifths held against that of the outer two.
 // Units: none. Failure: none. Source: Davison and Hinkley, Bootstrap Methods (1997), 4.2.
 #pragma once
 
@@ -22,10 +22,11 @@ struct Learned;
 
 inline constexpr int kDraws = 1000;
 
-// Of the best of a search; of a smooth function the chance that the structure search gives it.
+// For the best of a search; for a smooth function the chance that the structure search states.
 double ByChance(const TermSearch& search, bool is_smooth);
 
-// kHolds, kFails or kUntold (simulation/learned/learned_term.h); `place` among the causes of the fit.
+// kHolds, kFails or kUntold (simulation/learned/learned_term.h); `place` among the causes of the
+// fit.
 std::string RegimeOf(const diagnosis::Fit& fit, const Learned& learned, std::size_t place);
 
 }  // namespace abbe::learned

@@ -3,11 +3,12 @@
 //   ImitatedByRows(fit, term, chi_square);      // 0.3: parameters can make 30 % of it, rms
 //   const Confounding confounding = ConfoundingOf(fit, candidate, term, base, named);
 //
-// Imitated: 1 - sqrt(S / C'C) of the effect, less a constant and, but for a straight line itself, straight lines in its
-// variables (zeros, scales and squarenesses are for those); S is what of
-// it is left free of all parameters. In the metric of the data, or quickly, each row by its weight,
-// which counts what is common to the rows of a run with drifting noise for too much. Named causes, each with the shapes that what is left asks
-// for: the cosine of their columns with that of the term, free of all parameters.
+// Imitated: 1 - sqrt(S / C'C) of the effect, less a constant and, but for a straight line itself,
+// straight lines in its variables (zeros, scales and squarenesses are for those); S is what of it
+// is left free of all parameters. In the metric of the data, or quickly, each row by its weight,
+// which counts what is common to the rows of a run with drifting noise for too much. Named causes,
+// each with the shapes that what is left asks for: the cosine of their columns with that of the
+// term, free of all parameters.
 // Units: none. Failure: that of the fit. Source: Kennedy and O'Hagan, J. R. Statist. Soc. B 63
 // (2001), on discrepancy and parameters. Validity: to first order at the fit.
 #pragma once

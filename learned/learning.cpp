@@ -226,7 +226,7 @@ std::vector<Learned> Learner::Proposed(const TermSearch& search, bool only_smoot
   return proposed;
 }
 
-// Of those that may come next the first beside which nothing is left, else the first.
+// Takes the first proposal beside which nothing is left; where there is none, the first of all.
 bool Learner::TakeNext(bool only_smooth, Step& step) {
   // The first search is the same for both ways.
   if (!step.terms.empty() || searches_.empty()) {
@@ -279,7 +279,7 @@ bool MayLearn(const diagnosis::Diagnosis& diagnosis) {
          !campaign.scene().travel.isZero(0.0);
 }
 
-// Terms beside which something is left are told without: they are not found.
+// Terms beside which something is left get no certificate: they do not count as found.
 void Certify(const Learner& learner, const Step& step, Learning& learning) {
   if (!learning.left.empty()) {
     learning.terms = step.terms;
@@ -346,7 +346,7 @@ Learning Learn(const diagnosis::Diagnosis& diagnosis) {
   }
   const auto is_smooth = [](const Learned& term) { return term.is_smooth; };
   if (!step.left.empty() && !std::ranges::all_of(step.terms, is_smooth)) {
-    // No expression that leaves something is told; a smooth function may leave nothing.
+    // An expression that leaves something is dropped; a smooth function may leave nothing.
     Step smooth = learner.Run(true);
     if (smooth.left.empty()) step = std::move(smooth);
   }

@@ -12,9 +12,9 @@
 // probable, or where something is left beside the expressions. A term counts as found when
 //   - the whole grammar makes as much out of noise in less than 5 % (Benjamini and Hochberg over the
 //     terms of the diagnosis), and rows held out come out better with it,
-//   - nothing is left beside the terms: no expression is told that does not fit,
+//   - nothing is left beside the terms: an expression that does not fit is dropped,
 //   - no term of another stage or other variables is nearly as probable (1 %),
-//   - no named cause can do the same (confounding.h), else both are told as one group.
+//   - no named cause can do the same (confounding.h), else both stand as one group.
 // Units: SI. Shapes: a term for each candidate. Failure: that of Fit.
 // Source: Benjamini and Hochberg, J. R. Statist. Soc. B 57 (1995); docs/theory-diagnosis.md.
 // Validity: not for arms before an instrument and shafts: nothing is learned there.

@@ -89,7 +89,7 @@ NumberPosterior PosteriorOf(const diagnosis::Fit& fit, const Proposal& proposal,
   if (at_mean.chi_square > best->rated.chi_square - kAsGood) posterior.best = std::move(at_mean);
   const double found = Even(form, grid, posterior.best.proposal.atoms[atom].numbers[0]);
   const double spread = std::sqrt(weight.dot((even.array() - found).square().matrix()));
-  const double least = step / kOneSide;  // what was told apart
+  const double least = step / kOneSide;  // the resolution of the scan
   const double u = std::max(2.0 * spread, least);
   posterior.u95 =
       0.5 * std::abs(BackFrom(form, grid, found + u) -

@@ -70,7 +70,7 @@ struct Explained {
   std::size_t freedom = 0;
 };
 
-// Of one or two functions.
+// For one or two functions.
 Explained ExplainedBy(const MatrixXd& S, const VectorXd& g, const MatrixXd& f) {
   const MatrixXd information = f * S * f.transpose();
   const VectorXd score = f * g;
@@ -181,7 +181,7 @@ std::vector<double> LeastChances(const std::vector<PartScan>& scans, int draws,
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scan.S);
     const MatrixXd B =
         eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-    // Of all atoms, scaled to unit information; waves as pairs that are orthogonal.
+    // All atoms, scaled to unit information; waves as pairs that are orthogonal.
     std::vector<VectorXd> singles, waves;
     for (const Atom::Form form : Forms()) {
       for (const Atom& atom : AtomsOf(form, scan)) {

@@ -6,10 +6,11 @@
 // The range of a variable is cut into kParts equal parts. One column for each part, and one hat for
 // each border between them, through the projection of the fit (diagnosis/fit.h), give information S
 // and score g of what the channel does there; a function f of the variable then has the information
-// f'Sf and the score f'g: a step in parts, all others in hats, between which they count as straight.
-// Under the fitted simulation g has the covariance S, priors and noise
-// as the fit has them: draws of it are what the grammar finds in nothing.
-// Units: SI for amounts, the unit of the variable for its values. Shapes: kParts, or one more hats. Failure: none.
+// f'Sf and the score f'g: a step in parts, all others in hats, between which they count as
+// straight. Under the fitted simulation g has the covariance S, priors and noise as the fit has
+// them: draws of it are what the grammar finds in nothing.
+// Units: SI for amounts, the unit of the variable for its values. Shapes: kParts, or one more hats.
+// Failure: none.
 // Source: score test, Rao, Proc. Cambridge Phil. Soc. 44 (1948).
 #pragma once
 

@@ -32,7 +32,7 @@ bool IsSum(const std::string& variable) {
   return variable.size() == 3 && (variable[1] == '+' || variable[1] == '-');
 }
 
-// Of how many atoms a proposal is: a sum of two positions counts twice.
+// The number of atoms in a proposal; a sum of two positions counts twice.
 double LengthOf(const Proposal& proposal) {
   double length = 0.0;
   for (const Atom& atom : proposal.atoms) length += IsSum(atom.variable) ? 2.0 : 1.0;
@@ -57,7 +57,7 @@ bool IsSame(const Rated& a, const Rated& b) {
          });
 }
 
-// Of stages that do the same to all runs that one is told which a metrologist would name: over the
+// Among stages that do the same to all runs the one a metrologist would name comes first: over the
 // position of another axis its straightness, EYX over x; else the axis itself; the ball last.
 int Rank(const Rated& rated) {
   const std::string& object = rated.proposal.channel.object;
@@ -172,7 +172,7 @@ std::vector<Proposal> ProductsOf(const std::vector<Rated>& best) {
   return products;
 }
 
-// Of the proposals of one channel.
+// Asks the proposals of one channel.
 std::vector<Rated> AskInChannel(const Fit& fit, const std::vector<Proposal>& proposals) {
   const StageChannel& channel = proposals.front().channel;
   std::vector<Index> groups;

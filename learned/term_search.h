@@ -1,12 +1,12 @@
-// The search for the term that explains most of what is left beside a fit: exhaustive over channels,
-// variables and atoms, reproducible.
+// The search for the term that explains most of what is left beside a fit: exhaustive over
+// channels, variables and atoms, reproducible.
 //
 //   const std::vector<Rated> best = SearchTerms(fit, structures).best;
 //   best.front().proposal.expression().Text();
 //
-// All atoms are asked over parts of their variables (part_scan.h), decays, lags, plays and products of two
-// plain variables row by row; the best kMultiplied are multiplied with each other; the numbers of
-// the best kRefined are refined row by row. What is told of a proposal:
+// All atoms are asked over parts of their variables (part_scan.h), decays, lags, plays and products
+// of two plain variables row by row; the best kMultiplied are multiplied with each other; the
+// numbers of the best kRefined are refined row by row. Each proposal then has a
 //   log evidence   its coefficients as draws of one size, all sizes from 1 nm (nrad) to 1 mm (mrad)
 //                  alike, averaged over the range of its numbers (Laplace's approximation)
 //   log prior      -k ln n of k atoms out of n, and that something is there at all
@@ -32,7 +32,7 @@ struct Rated {
   Proposal proposal;
   double chi_square = 0.0, log_evidence = 0.0, log_posterior = 0.0;
   Eigen::VectorXd coefficients = {};  // m or rad per unit of its term
-  // Of the numbers of its atoms: U95, and what they add to the covariance of the coefficients.
+  // U95 of the numbers of its atoms, and what they add to the covariance of the coefficients.
   std::vector<double> u95_of_numbers = {};
   Eigen::MatrixXd by_numbers = {};
   std::vector<std::string> alike = {};  // other stages where it does the same to these runs

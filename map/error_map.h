@@ -63,7 +63,7 @@ class ErrorMap {
   const MapOrigin& origin() const { return origin_; }
   const machine::VolumetricModel& model() const { return model_; }
   const Eigen::MatrixXd& cov_pp() const { return cov_pp_; }
-  // Of a map that is kept true (map_state.h); none: it was made once.
+  // For a map that is kept current (map_state.h); none: it was made once.
   const std::optional<MapState>& state() const { return state_; }
   // An imported map does not.
   bool StatesUncertainty() const { return cov_pp_.size() > 0; }

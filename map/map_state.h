@@ -6,8 +6,8 @@
 //   state.covariance.topLeftCorner(map.cov_pp().rows(), map.cov_pp().cols());    // is map.cov_pp()
 //
 // The errors of the map are those at `time` and at the temperatures of `sensors`. A parameter of
-// `names` is a response, "response table EXX.linear", in SI for each kelvin, or one of an instrument
-// or a mounting, "probe_gain.a", as a later run of it has it.
+// `names` is a response, "response table EXX.linear", in SI for each kelvin, or one of an
+// instrument or a mounting, "probe_gain.a", as a later run of it has it.
 // Units: SI; temperatures in degC, time in s since 1970. Shapes: P parameters of the map and n of
 // `names`: values n, covariance (P + n) x (P + n), those of the map first.
 // Failure: InputError by ErrorMap for other shapes and for what is not finite.

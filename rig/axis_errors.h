@@ -58,7 +58,7 @@ class AxisErrors {
   std::vector<GaussianProcess> functions_;
   Motions offsets_ = Motions::Zero();  // value of the processes at the reference
   Motions slopes_ = Motions::Zero();   // subtracted
-  // Of s, s^2 and s^3, s from 0 to 1 along the travel.
+  // Coefficients of s, s^2 and s^3, s from 0 to 1 along the travel.
   Eigen::Matrix<double, kMotions, 3> bends_ = Eigen::Matrix<double, kMotions, 3>::Zero();
 };
 

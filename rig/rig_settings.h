@@ -9,8 +9,9 @@
 // temperature_drift_c (0.1), cap_um (1: lag of the ball in its cap at high feed), cap_feed_mm_min
 // (10: the feed of half of that), cap_force_n (8.5: the force for which cap_um holds),
 // encoder_counts (4194304 a turn). [rig.ageing]: the keys of [population] for what a day adds,
-// [rig.ageing.by_kelvin] those for each kelvin; lag_s, swing_c, wander_c; all 0 unless stated. InputError with file, line and key; keys of shared tables that
-// the rig does not use are not checked.
+// [rig.ageing.by_kelvin] those for each kelvin; lag_s, swing_c, wander_c; all 0 unless stated.
+// InputError with file, line and key; keys of shared tables that the rig does not use are not
+// checked.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -37,7 +37,7 @@ struct ModelledCause {
   Eigen::MatrixXd covariance;            // of the coefficients; empty: not stated
   double probability = 1.0;              // among its rivals
   std::vector<std::string> rivals = {};  // "cap-friction:cap", the most probable first
-  // Of a learned term, which owns its cause; null: of the catalogue.
+  // A learned term owns its cause; null: one of the catalogue.
   std::shared_ptr<const LearnedCause> learned = {};
 
   std::string Name() const;  // "backlash:X", "thermal-growth:X (temp_table_c)"

@@ -22,7 +22,7 @@ Derivatives DerivativesOf(const Eigen::MatrixXd& values, const Trace& trace);
 // rows, else from where it has been.
 Eigen::RowVectorXd HeadingOfAxis(const Trace& trace, Eigen::Index axis);
 
-// Of each axis of a path, from its positions alone.
+// The heading of each axis of a path, from its positions alone.
 Eigen::Matrix3Xd HeadingsOf(const Eigen::Matrix3Xd& path);
 
 // Metres since the heading last changed. Before a pass began the axis moved as it then did. Between

@@ -11,12 +11,12 @@
 //   mean += S M^-1 S_i' (h - L mean_i)        S -> S R^-T        log = (w'M^-1 w - log det M) / 2 - cost(mean)
 //
 // with w = S_i'(h - L mean_i), whose covariance before the test is B + B^2. The agreement of a test
-// is the chi-square of w in the eigenvectors of B whose eigenvalue exceeds 1/2, that is, in what the
-// test knows better than, or about as well as, the state.
+// is the chi-square of w in the eigenvectors of B whose eigenvalue exceeds 1/2, that is, in what
+// the test knows better than, or about as well as, the state.
 // Units: those of the state. Shapes: state n, root n x n, test m x m and m for m entries.
 // Failure: InputError for a covariance that is not positive semidefinite to rounding.
-// Source: Anderson and Moore, Optimal Filtering (1979), 6.5 (square-root filters, information form);
-// Teunissen, Testing Theory (2006), for the agreement.
+// Source: Anderson and Moore, Optimal Filtering (1979), 6.5 (square-root filters, information
+// form); Teunissen, Testing Theory (2006), for the agreement.
 // Validity: linear tests; independent noise of successive tests.
 #pragma once
 
@@ -54,7 +54,7 @@ struct Agreement {
   double probability = 1.0;  // of a statistic as large where nothing is wrong
 };
 
-// Of a test that has not been measured yet.
+// Before the test is taken into the state.
 Agreement AgreementOf(const LinearTest& test, const Gaussian& state);
 
 // Log of the marginal likelihood, but for what depends on the test alone.

@@ -13,6 +13,7 @@
 #include "failure/failure.h"
 #include "fusion/machine_problem.h"
 #include "fusion/marginal.h"
+#include "fusion/reversals.h"
 #include "simulation/linkage/linkage_problem.h"
 
 namespace abbe::track {
@@ -106,6 +107,8 @@ class Fit {
       throw InputError(fmt::format("{} has {} numbers in one run and {} in another", block.name,
                                    problem_.Block(at->second).size(), block.size()));
     }
+    // An axis reverses as the map says it does.
+    if (fusion::IsReversal(block) && !numbers_.contains(block.FullName(0))) block.Hold();
     for (std::size_t i = 0; i < block.entries.size(); ++i) {
       const auto entry = numbers_.find(block.FullName(i));
       if (entry == numbers_.end()) continue;

@@ -3,8 +3,8 @@
 //   const Eigen::VectorXd best = Maximum(log_likelihood, start, low, high, 2);
 //
 // Shapes: n each. Failure: none; a value that is not finite counts as the least. Source: Brent,
-// Algorithms for Minimization without Derivatives (1973), by Boost.Math. Validity: one maximum along
-// each variable; to some hundredths of the range, as logarithms of lags and sizes need.
+// Algorithms for Minimization without Derivatives (1973), by Boost.Math. Validity: one maximum
+// along each variable; to some hundredths of the range, as logarithms of lags and sizes need.
 #pragma once
 
 #include <Eigen/Core>

@@ -4,12 +4,12 @@
 //   watched[0].U95, watched[0].exceeded;                      // now; when it exceeds the limit
 //   const Choice choice = NextTest(tracked, candidates, limits, horizon);
 //
-// A limit of an error is compared with the largest U95 of that error over the travel, a limit of the
-// volumetric error with the largest over a grid of the volume: beyond it, the map says neither pass
-// nor fail. Limits of what no map states (circularity, positioning A) are left out. Time alone
-// widens U95: temperatures stay as they are.
-// Candidates are tests that were made before, with their durations; of all choices of up to three of
-// them the one that takes the fewest minutes and keeps every U95 below its limit for `horizon`.
+// A limit of an error is compared with the largest U95 of that error over the travel, a limit of
+// the volumetric error with the largest over a grid of the volume: beyond it, the map says neither
+// pass nor fail. Limits of what no map states (circularity, positioning A) are left out. Time alone
+// widens U95: temperatures stay as they are. Candidates are tests that were made before, with their
+// durations; of all choices of up to three of them the one that takes the fewest minutes and keeps
+// every U95 below its limit for `horizon`.
 // Units: those of the limits (um, urad) for U95, s since 1970, min. Shapes: one entry a limit.
 // Failure: none. A choice that keeps no limit says so.
 // Source: variances of a random walk are linear in time.

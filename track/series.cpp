@@ -25,7 +25,7 @@ constexpr double kLeastLag = 1.0;    // s
 constexpr double kLeastSize = 1e-3;  // of walk and noise, of the usual change
 constexpr int kSeriesRounds = 3;
 
-// Of the changes from row to row: the median, but not less than the least one that is not 0.
+// The median change from row to row, at least the smallest one that is not 0.
 double UsualChange(const VectorXd& value) {
   VectorXd change = (value.tail(value.size() - 1) - value.head(value.size() - 1)).cwiseAbs();
   std::sort(change.begin(), change.end());

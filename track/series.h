@@ -12,8 +12,8 @@
 // rows, before and after.
 // Units: those of the series; time in s, lags in s, the walk after an hour. Shapes: rows n;
 // temperature sensors x n.
-// Failure: InputError for fewer than 12 rows, for times that go back, for values that are not finite
-// and for gross jumps: a change from row to row of more than 50 times the usual one.
+// Failure: InputError for fewer than 12 rows, for times that go back, for values that are not
+// finite and for gross jumps: a change from row to row of more than 50 times the usual one.
 // Source: gaussian.h; the fixed-interval smoother of Rauch, Tung and Striebel (1965).
 // Validity: gains and lags are constant; a sensor with a wrong law bends the response.
 #pragma once

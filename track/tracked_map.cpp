@@ -9,6 +9,7 @@
 
 #include "failure/failure.h"
 #include "fusion/machine_problem.h"
+#include "fusion/reversals.h"
 #include "recording/instant.h"
 #include "track/drift_model.h"
 #include "track/first_order_lag.h"
@@ -210,7 +211,9 @@ void TrackedMap::Know(const std::vector<simulation::SimulatedRun>& runs) {
 LinearRun TrackedMap::Test(const std::vector<simulation::SimulatedRun>& runs) {
   Know(runs);
   Move();
-  return Linearize(runs, names_, state_);
+  std::vector<simulation::SimulatedRun> reversing = runs;
+  for (simulation::SimulatedRun& run : reversing) fusion::WithReversals(machine_, run);
+  return Linearize(std::move(reversing), names_, state_);
 }
 
 Taken TrackedMap::Take(const std::vector<simulation::SimulatedRun>& runs, double began) {

@@ -14,13 +14,13 @@
 // y_s the temperature of sensor s behind its lag (first_order_lag.h), V the walk of a day. A test
 // updates everything with the full covariance (linear_run.h, gaussian.h).
 // Frames: map/error_map.h. Units: SI, degC, s since 1970. Shapes: as MapState.
-// Failure: InputError for a map without covariance, for a walk that neither the machine file nor the
-// map states, for a time before the present one, for a temperature that the map does not know or
-// lacks, for a test whose rows do not fit, and for one that contradicts the map: p below 1e-3. The
-// state stays as it was.
+// Failure: InputError for a map without covariance, for a walk that neither the machine file nor
+// the map states, for a time before the present one, for a temperature that the map does not know
+// or lacks, for a test whose rows do not fit, and for one that contradicts the map: p below 1e-3.
+// The state stays as it was.
 // Source: Kalman (1960); Anderson and Moore (1979), 6.5.
-// Validity: errors that change slowly against the length of a test; a temperature is a straight line
-// between its readings; gains and lags are constant.
+// Validity: errors that change slowly against the length of a test; a temperature is a straight
+// line between its readings; gains and lags are constant.
 #pragma once
 
 #include <map>

@@ -1,4 +1,5 @@
-// Tables [devices] of a machine file, to be filled in: a probe amplifier and a control over Modbus TCP.
+// Tables [devices] of a machine file, to be filled in: a probe amplifier and a control over Modbus
+// TCP.
 //
 //   ExampleModbusDevices("XYZ");
 //

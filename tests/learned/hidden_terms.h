@@ -178,7 +178,7 @@ inline std::vector<std::string> StagesOf(int axis) {
 
 inline constexpr int kTermKinds = 10, kTermKindsInGrammar = 7;
 
-// Of one of kTermKinds kinds; sizes as of the effects that the rig hides.
+// A term of one of kTermKinds kinds, as large as the effects that the rig hides.
 inline HiddenTerm DrawTerm(std::uint64_t seed, int kind) {
   using namespace hidden_terms;
   const random::CounterRandom random(seed, 0x7E54);

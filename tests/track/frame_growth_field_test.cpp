@@ -1,7 +1,7 @@
 // A real machine that grows while it warms up: the place of the Z end stop of a large 3D printer
 // against its frame and bed (tanaes/whopping_Voron_mods 62268ed, docs/frame_expansion/data). Every
-// second block of 20 rows is held out. NumPy's lstsq leaves 37.2 um there by the frame alone, 4.4 um
-// with the bed and 3.0 um with a lag besides.
+// second block of 20 rows is held out. NumPy's lstsq leaves 37.2 um there by the frame alone, 4.4
+// um with the bed and 3.0 um with a lag besides.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
