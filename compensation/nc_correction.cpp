@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "compensation/nc_comment.h"
 #include "compensation/nc_cycles.h"
 #include "compensation/nc_flow.h"
 #include "compensation/nc_meaning.h"
 #include "compensation/nc_moves.h"
+#include "compensation/nc_setup.h"
 #include "compensation/nc_state.h"
 #include "failure/failure.h"
 
@@ -23,66 +22,6 @@ using Eigen::Vector3d;
 // #5599: whether the control shows (debug, ...) comments; it stays in the program.
 constexpr int kDebugComments = 5599;
 
-constexpr int kShownDecimals = 6;
-
-// "%d", "%f", "%lf" and "%.3f" in a comment that shows values: their decimals. What was taken.
-std::size_t TakeFormat(std::string_view text, int& decimals) {
-  if (text.starts_with("%d")) {
-    decimals = 0;
-    return 2;
-  }
-  for (const std::string_view plain : {"%f", "%lf"}) {
-    if (!text.starts_with(plain)) continue;
-    decimals = kShownDecimals;
-    return plain.size();
-  }
-  constexpr std::size_t kSize = 4;  // "%.3f"
-  if (text.size() < kSize || !text.starts_with("%.") || text[3] != 'f') return 0;
-  if (text[2] < '0' || text[2] > '9') return 0;
-  decimals = text[2] - '0';
-  return kSize;
-}
-
-// The comment "(debug, depth #1)" with the value of its parameters; others as they are.
-std::string CommentText(std::string_view text, std::size_t line_number,
-                        const NcParameters& parameters) {
-  std::string start;
-  for (const char c : text.substr(0, 8)) {
-    if (c != ' ') start += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  }
-  const bool is_abort = start.starts_with("(abort,");
-  if (is_abort) {
-    RefuseLine(line_number, fmt::format("the program ends itself here: {}", text.substr(0, 60)));
-  }
-  if (!start.starts_with("(debug,") && !start.starts_with("(print,") &&
-      !start.starts_with("(log,")) {
-    return std::string(text);
-  }
-  std::string out;
-  int decimals = kShownDecimals;
-  for (std::size_t i = 0; i < text.size();) {
-    if (const std::size_t taken = TakeFormat(text.substr(i), decimals); taken > 0) {
-      i += taken;
-      continue;
-    }
-    NcCursor cursor(text.substr(i), line_number, parameters);
-    if (text[i] != '#') {
-      out += text[i++];
-      continue;
-    }
-    try {
-      const double value = cursor.Value();
-      // What only the control knows, it also shows.
-      out += std::isnan(value) ? std::string(text.substr(i, cursor.at()))
-                               : fmt::format("{:.{}f}", value, decimals);
-      i += cursor.at();
-    } catch (const InputError&) {
-      out += text[i++];  // no parameter: a sign
-    }
-  }
-  return out;
-}
-
 class ProgramCorrection : public NcHost {
  public:
   ProgramCorrection(Corrector corrector, const NcOptions& options, NcSource& source, NcSink write)
@@ -91,7 +30,8 @@ class ProgramCorrection : public NcHost {
         source_(source),
         parameters_(LiveOf(state_, options_.tables), options_.tables.parameters),
         writer_(corrector_, state_, options.most_lines, std::move(write)),
-        moves_(corrector_, options_, state_, writer_, counts_) {
+        moves_(corrector_, options_, state_, writer_, counts_),
+        setup_(corrector_, options_, state_, writer_) {
     if (!(options_.limits.chord > 0.0) || !(options_.limits.length > 0.0)) {
       throw InputError("the chord tolerance and the length of a line must be above 0");
     }
@@ -172,7 +112,7 @@ class ProgramCorrection : public NcHost {
     if (meaning.context != kNoMotion) {
       ActOnContext(meaning);
     } else {
-      ActOnModes(meaning);
+      setup_.TakeModes(block_, meaning, line_number_);
       ActOnMotion(line, meaning);
     }
     for (const NcSetting& setting : block_.settings) {
@@ -222,207 +162,6 @@ class ProgramCorrection : public NcHost {
     }
   }
 
-  void ActOnModes(const NcMeaning& meaning) {
-    TakeTool(meaning);
-    for (const int code : meaning.modes) TakeMode(code, meaning);
-    KeepModalWords(block_, line_number_, state_);
-    if (meaning.motion == kNoMotion) return;
-    if (!IsCycle(meaning.motion) || !IsCycle(state_.motion)) {
-      state_.cycle_r = state_.cycle_initial = kRuntime;
-    }
-    if (meaning.motion != state_.motion) {
-      state_.cycle_bottom = state_.cycle_peck = state_.cycle_dwell = kRuntime;
-    }
-    constexpr int kCancel = 800;
-    state_.motion = meaning.motion == kCancel ? kNoMotion : meaning.motion;
-  }
-
-  void TakeMode(int code, const NcMeaning& meaning) {
-    switch (code) {
-      case 170:
-      case 180:
-      case 190:
-        state_.plane = code / 10;
-        return;
-      case 200:
-      case 210:
-        state_.is_inch = code == 200;
-        return;
-      case 900:
-      case 910:
-        state_.is_relative = code == 910;
-        return;
-      case 901:
-      case 911:
-        state_.centre_is_absolute = code == 901;
-        return;
-      case 70:
-      case 80:
-        state_.is_diameter = code == 70;
-        return;
-      case 980:
-      case 990:
-        state_.retracts_to_r = code == 990;
-        return;
-      case 430:
-      case 431:
-      case 432:
-      case 490:
-        return TakeToolLength(code, meaning);
-      default:
-        break;
-    }
-    constexpr int kG54 = 540, kG59 = 590;
-    if (code >= kG54 && code <= kG59 + 3) {
-      const int system = code <= kG59 ? (code - kG54) / 10 : code - kG59 + 5;
-      if (!state_.wanted.is_known[system]) {
-        Refuse(
-            fmt::format("the offset of G{:g} is known only at the control; name its parameter "
-                        "file with --parameters",
-                        code / 10.0));
-      }
-      state_.ChangeOffsets([&](NcOffsets& offsets) { offsets.active = system; });
-    }
-  }
-
-  const NcTool& ToolOf(double number) {
-    if (!options_.tables.tools) {
-      Refuse("a tool length offset depends on the tool table; name it with --tools tool.tbl");
-    }
-    const auto found = options_.tables.tools->find(static_cast<int>(number));
-    if (number != std::round(number) || found == options_.tables.tools->end()) {
-      Refuse(fmt::format("tool {:.9g} is not in the tool table; add it", number));
-    }
-    return found->second;
-  }
-
-  void TakeTool(const NcMeaning& meaning) {
-    for (const NcWord& word : block_.words) {
-      constexpr double kLargestTool = 1e6;
-      const bool is_tool = word.value >= 0.0 && word.value < kLargestTool;
-      if (word.letter == 'T') {
-        state_.selected.reset();
-        if (is_tool) state_.selected = static_cast<int>(word.value);
-      }
-      if (word.letter == 'M' && CodeTimes10(word) == 610) {
-        state_.tool.reset();
-        if (meaning.q && *meaning.q >= 0.0 && *meaning.q < kLargestTool) {
-          state_.tool = static_cast<int>(*meaning.q);
-        }
-      }
-    }
-    if (meaning.changes_tool) state_.tool = state_.selected;
-    if (!state_.tool || !options_.tables.tools) return;
-    const auto found = options_.tables.tools->find(*state_.tool);
-    state_.tool_diameter = found == options_.tables.tools->end() ? 0.0 : found->second.diameter;
-  }
-
-  void TakeToolLength(int code, const NcMeaning& meaning) {
-    const Vector3d before = state_.wanted.tool;
-    Vector3d tool = Vector3d::Zero();
-    if (code == 430 || code == 432) {
-      if (code == 432) tool = before;
-      double number = meaning.h.value_or(0.0);
-      if (code == 432 && !meaning.h) Refuse("G43.2 without H");
-      if (!meaning.h && !state_.tool) {
-        Refuse("G43 without H, and no tool was changed before it (M6); write G43 with H");
-      }
-      if (!meaning.h) number = *state_.tool;
-      if (number != 0.0) tool += options_.tables.unit * ToolOf(number).offset;
-    } else if (code == 431) {
-      tool = before;
-      for (int k = 0; k < 3; ++k) {
-        if (!meaning.axes[k]) continue;
-        tool[k] = state_.Unit() * *meaning.axes[k] / (k == 0 && state_.is_diameter ? 2.0 : 1.0);
-      }
-    }
-    if (tool != Vector3d::Zero() && !options_.p_TQ_gauge) {
-      Refuse(fmt::format(
-          "a tool offset of X {:.6g} Y {:.6g} Z {:.6g} mm moves the point at which the errors of "
-          "the map act; give with --tool the point of a tool whose length offset is 0",
-          1e3 * tool.x(), 1e3 * tool.y(), 1e3 * tool.z()));
-    }
-    state_.ChangeOffsets([&](NcOffsets& offsets) { offsets.tool = tool; });
-    if (options_.p_TQ_gauge) {
-      corrector_.SetTool(*options_.p_TQ_gauge - corrector_.signs().cwiseProduct(tool));
-    }
-  }
-
-  // Lengths of a block that sets offsets; not a number where none is given.
-  Vector3d Given(const NcMeaning& meaning) const {
-    Vector3d given;
-    for (int k = 0; k < 3; ++k) {
-      given[k] = kRuntime;
-      if (!meaning.axes[k]) continue;
-      given[k] = state_.Unit() * *meaning.axes[k] / (k == 0 && state_.is_diameter ? 2.0 : 1.0);
-    }
-    return given;
-  }
-
-  void MustKnow(const NcMeaning& meaning) const {
-    for (int k = 0; k < 3; ++k) {
-      const bool needs = meaning.axes[k] || state_.wanted.IsTurned();
-      if (needs && !state_.is_known[k]) {
-        Refuse(
-            fmt::format("an offset from the place in {}, which is not known; begin with G0 to X, "
-                        "Y and Z in G90, or give the start with --start x,y,z",
-                        "XYZ"[k]));
-      }
-    }
-  }
-
-  void TakeG92(int code, const NcMeaning& meaning) {
-    const Vector3d given = Given(meaning);
-    const Vector3d machine = state_.wanted.ToMachine(state_.place);
-    constexpr int kSet = 920, kForget = 921, kSuspend = 922;
-    if (code == kSet) {
-      MustKnow(meaning);
-      state_.wanted.SetG92(machine, given);
-      state_.control.SetG92(writer_.at(), given);
-    } else {
-      for (NcOffsets* offsets : {&state_.wanted, &state_.control}) {
-        if (code == kForget) offsets->g92.setZero();
-        offsets->g92_acts = code > kSuspend;
-      }
-    }
-    state_.place = state_.wanted.ToProgram(machine);
-    state_.rotary.fill(kRuntime);
-  }
-
-  void TakeG10(const NcMeaning& meaning) {
-    if (meaning.l && *meaning.l != 2.0 && *meaning.l != 20.0) {
-      Refuse(
-          "G10 L0, L1, L10 and L11 change the tool table of the control; set it there and name "
-          "it with --tools");
-    }
-    if (!meaning.l || !meaning.p) Refuse("G10 takes L and P");
-    const double p = *meaning.p;
-    if (!(p >= 0.0 && p <= kSystems) || p != std::round(p)) {
-      Refuse(fmt::format("G10 P{:.9g}: coordinate systems are P1 to P9, P0 the active one", p));
-    }
-    const int system = p == 0.0 ? state_.wanted.active : static_cast<int>(p) - 1;
-    const Vector3d given = Given(meaning);
-    const Vector3d machine = state_.wanted.ToMachine(state_.place);
-    const bool is_here = *meaning.l == 20.0;
-    if (is_here) MustKnow(meaning);
-    const bool is_whole = meaning.axes[0] && meaning.axes[1] && meaning.axes[2];
-    for (NcOffsets* offsets : {&state_.wanted, &state_.control}) {
-      if (meaning.radius) offsets->rotations[system] = *meaning.radius * std::numbers::pi / 180.0;
-      if (is_here) {
-        if (meaning.radius) Refuse("G10 L20 with R; set the turn with G10 L2");
-        offsets->SetSystem(system, offsets == &state_.wanted ? machine : writer_.at(), given);
-      } else {
-        for (int k = 0; k < 3; ++k) {
-          if (meaning.axes[k]) offsets->systems[system][k] = given[k];
-        }
-      }
-      offsets->is_known[system] = offsets->is_known[system] || is_whole;
-    }
-    if (state_.wanted.IsTurned() && !state_.KnowsPlace()) state_.is_known.fill(false);
-    state_.place = state_.wanted.ToProgram(machine);
-    state_.rotary.fill(kRuntime);
-  }
-
   void ActOnMotion(std::string_view line, const NcMeaning& meaning) {
     constexpr int kDwell = 40;
     const bool takes_axes = meaning.nonmodal != kNoMotion && meaning.nonmodal != kDwell;
@@ -439,35 +178,11 @@ class ProgramCorrection : public NcHost {
     if (!is_free && (meaning.HasCentre() || meaning.radius)) {
       Refuse("I, J, K and R belong to an arc");
     }
-    switch (meaning.nonmodal) {
-      case 280:
-      case 300:
-        return moves_.GoHome(block_, meaning, meaning.nonmodal == 280 ? 0 : 1, line_number_);
-      case 281:
-      case 301:
-        TakeHome(meaning.nonmodal == 281 ? 0 : 1);
-        break;
-      case 100:
-        TakeG10(meaning);
-        break;
-      case 920:
-      case 921:
-      case 922:
-      case 923:
-        TakeG92(meaning.nonmodal, meaning);
-        break;
-      default:
-        break;
+    if (meaning.nonmodal == 280 || meaning.nonmodal == 300) {
+      return moves_.GoHome(block_, meaning, meaning.nonmodal == 280 ? 0 : 1, line_number_);
     }
+    setup_.TakeOffsets(meaning, line_number_);
     CopyLine(line, meaning);
-  }
-
-  void TakeHome(int home) {
-    if (!state_.KnowsPlace()) {
-      Refuse("G28.1 or G30.1 at a place that is not known; begin with G0 to X, Y and Z");
-    }
-    state_.wanted.homes[home] = state_.wanted.ToMachine(state_.place);
-    state_.wanted.home_is_known[home] = true;
   }
 
   // A block that does not move: as it is, or with the values of its expressions.
@@ -536,6 +251,7 @@ class ProgramCorrection : public NcHost {
   NcParameters parameters_;
   NcWriter writer_;
   NcMoves moves_;
+  NcSetup setup_;
   NcBlock block_;
   std::vector<Level> levels_ = std::vector<Level>(1);
   std::size_t line_number_ = 0;

@@ -328,7 +328,7 @@ std::string TextOf(const NcWord& word, std::size_t line_number) {
   std::string number = fmt::format("{:.9f}", word.value);
   number.erase(number.find_last_not_of('0') + 1);
   if (number.ends_with('.')) number.pop_back();
-  if (number == "-0") number = "0";
+  if (number == "-0") number.erase(0, 1);
   return word.letter + number;
 }
 
