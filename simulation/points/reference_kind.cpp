@@ -69,8 +69,14 @@ class ReferenceRuns : public RunKind {
   bool MakesMaps() const override { return true; }
   std::vector<SimulatedRun> ForMap(const RunSource& source, const machine::VolumetricModel& model,
                                    const Instruments& on) const override {
-    return {SimulateReference(model, on.machine.reference,
-                              on.LinkageFor(source.head.name).noise.reference, source.whole())};
+    ReferenceRun run = ReadRun(source.whole(), on);
+    if (!StatesNoise(run)) {
+      PreparedRuns of_repeats;
+      SetNoise(on.linkage ? Eigen::Vector3d::Constant(on.linkage->noise.reference)
+                          : NoiseOf(run, on, {}, of_repeats),
+               run);
+    }
+    return {SimulateReference(model, on.machine.reference, run)};
   }
 
   PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel& model,

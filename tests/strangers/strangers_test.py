@@ -116,6 +116,27 @@ class MapsOfStrangers(unittest.TestCase):
         self.assertLess(volume["rms"], 2 * volume["u"])
         self.assertGreater(judge.coverage(sum(judge.map_pulls(result, world.machine).values(), [])), 0.9)
 
+    def test_a_short_test_of_a_machine_that_reverses_is_taken(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            world = World(91000, run.MACHINE, EFFECTS["angular_play"])
+            files = world.write_all(folder)
+            machine, volume = folder / "mill.toml", folder / "map.toml"
+            machine.write_text(run.MACHINE.read_text() + "\n[drift]\npositioning_um = 0.1\nyaw_urad = 0.5\n")
+            fused, message, code, _ = run.abbe(
+                PROGRAM, "fuse", *(f for f in files if any(word in f.name for word in run.MAPPED)),
+                "--machine", machine, "-o", volume)
+            self.assertEqual(code, 0, message)
+            # The same sweep three days later: rows as noisy as stated, and hardly a surprise.
+            sweep = next(f for f in files if "sweep_X" in f.name)
+            later = folder / "later.csv"
+            later.write_text(sweep.read_text().replace("2026-11-21T", "2026-11-24T"))
+            tracked, message, code, _ = run.abbe(PROGRAM, "track", volume, later, "--machine", machine)
+            self.assertEqual(code, 0, message)
+            (test,) = tracked["tests"]
+            self.assertLess(test["noise"], 1.3)
+            self.assertGreater(test["agreement"]["p"], 1e-3)
+
     def test_nothing_reverses_where_nothing_does(self):
         self.assertEqual(self.fused(91000, "clean")[0]["reversals"], [])
 
