@@ -31,7 +31,7 @@ struct InitCommand {
 };
 
 int CheckReadiness(const std::filesystem::path& path) {
-  for (const CommandReadiness& each : ReadinessOf(path)) {
+  for (const CommandReadiness& each : ReadinessOf(settings::Document::Read(path))) {
     if (each.missing.empty()) {
       fmt::print("{}: ready\n", each.commands);
       continue;
@@ -113,7 +113,9 @@ int Init(InitCommand& options) {
                                  options.out.string()));
   }
   const MachineDescription machine = Described(options);
-  WriteText(MachineText(machine), options.out);
+  const std::string text = MachineText(machine);
+  ReadinessOf(settings::Document::Parse(text, options.out.string()));  // refused before written
+  WriteText(text, options.out);
   const bool carries = std::any_of(machine.axes.begin(), machine.axes.end(),
                                    [](const AxisDescription& axis) { return axis.carries_work; });
   fmt::print("{}: written. Next:\n", options.out.string());
@@ -123,7 +125,6 @@ int Init(InitCommand& options) {
   }
   fmt::print("  abbe init --check {}        what it lacks for which command\n",
              options.out.string());
-  ReadinessOf(options.out);  // a file that abbe itself refuses must not be left unseen
   return kDone;
 }
 

@@ -34,7 +34,10 @@ const relm::LinkageSettings& MachineFile::Linkage() const {
 }
 
 MachineFile ReadMachineFile(const std::filesystem::path& path) {
-  const settings::Document document = settings::Document::Read(path);
+  return ReadMachineFile(settings::Document::Read(path));
+}
+
+MachineFile ReadMachineFile(const settings::Document& document) {
   const settings::Table root = document.Root();
   MachineFile file{document, probes::ReadSweepSetup(root),   {}, {},
                    {},       probes::ReadAlignSettings(root)};
@@ -62,7 +65,7 @@ MachineFile ReadMachineFile(const std::filesystem::path& path) {
 
 machine::Machine ReadMachineOf(const std::filesystem::path& path) {
   const settings::Document document = settings::Document::Read(path);
-  if (document.Root().Has("devices")) return ReadMachineFile(path).sweep_setup.machine;
+  if (document.Root().Has("devices")) return ReadMachineFile(document).sweep_setup.machine;
   machine::Machine machine = machine::ReadMachine(document.Root());
   ReadProtocol(document.Root());
   history::ReadLimits(document.Root());

@@ -33,6 +33,7 @@ struct MachineFile {
 
 // InputError with file, line and key.
 MachineFile ReadMachineFile(const std::filesystem::path& path);
+MachineFile ReadMachineFile(const settings::Document& document);
 
 // Reads the machine only. Its file may lack [devices]; it then contains nothing but the machine.
 machine::Machine ReadMachineOf(const std::filesystem::path& path);

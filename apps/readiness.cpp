@@ -6,20 +6,20 @@ namespace abbe::apps {
 namespace {
 
 // Reads the file as a command would, so that a wrong key is refused with its line.
-void ReadAsCommandsDo(const std::filesystem::path& path, const settings::Table& root) {
+void ReadAsCommandsDo(const settings::Document& machine_file) {
+  const settings::Table root = machine_file.Root();
   if (root.Has("devices") || root.Has("head")) {
-    ReadMachineFile(path);
+    ReadMachineFile(machine_file);
   } else {
-    ReadMachineAlone(settings::Document::Read(path));
+    ReadMachineAlone(machine_file);
   }
 }
 
 }  // namespace
 
-std::vector<CommandReadiness> ReadinessOf(const std::filesystem::path& path) {
-  const settings::Document document = settings::Document::Read(path);
-  const settings::Table root = document.Root();
-  ReadAsCommandsDo(path, root);
+std::vector<CommandReadiness> ReadinessOf(const settings::Document& machine_file) {
+  ReadAsCommandsDo(machine_file);
+  const settings::Table root = machine_file.Root();
   const bool has_axes = root.Has("chain");
   std::vector<CommandReadiness> all;
   const auto add = [&](const char* commands, std::vector<std::string> missing) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>
+#include <stdexcept>
 
 namespace abbe {
 
@@ -14,7 +15,10 @@ struct Seeds {
 
 inline Seeds SeedsFromEnvironment() {
   Seeds seeds;
-  if (const char* count = std::getenv("ABBE_SEEDS")) seeds.last = std::strtoull(count, nullptr, 10);
+  if (const char* count = std::getenv("ABBE_SEEDS")) {
+    std::istringstream(count) >> seeds.last;
+    if (seeds.last == 0) throw std::runtime_error("ABBE_SEEDS is a number of worlds from 1 on");
+  }
   if (const char* shard = std::getenv("ABBE_SHARD")) {
     char slash = 0;
     std::istringstream(shard) >> seeds.first >> slash >> seeds.step;

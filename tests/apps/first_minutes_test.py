@@ -134,6 +134,7 @@ class InitTest(ProgramCase):
     def test_it_refuses_what_is_no_machine(self):
         out = ["--out", self.path / "n.toml"]
         self.refuse("--kind", "mill", "--travel-x", "5,5", *out, saying=["X goes from 5 to 5 mm"])
+        self.assertFalse((self.path / "n.toml").exists())
         kept = self.made("shaft")
         self.refuse("--kind", "mill", "--out", kept, saying=["shaft.toml: is there already"])
         self.assertNotIn("chain", kept.read_text())

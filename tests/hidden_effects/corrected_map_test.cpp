@@ -3,7 +3,6 @@
 // The truth is the machine of the rig. Worlds: ABBE_SEEDS, ABBE_SHARD.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include "rig/world.h"
 #include "simulation/kinds.h"
 #include "tests/hidden_effects/judgement.h"
+#include "tests/recording/scratch.h"
 #include "tests/seeds.h"
 
 namespace abbe {
@@ -78,8 +78,8 @@ fusion::FuseReport MapOf(const simulation::Instruments& instruments,
 }
 
 std::filesystem::path Written(const simulation::ExtendedModel& model) {
-  const auto path = std::filesystem::path(testing::TempDir()) /
-                    fmt::format("{}_corrected_map_test.toml", getpid());
+  static const recording::Scratch folder;
+  const auto path = folder / "model.toml";
   std::ofstream(path) << simulation::ExtendedModelText(model);
   return path;
 }

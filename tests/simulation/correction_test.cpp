@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include "simulation/kinds.h"
 #include "simulation/linkage/linkage_simulation.h"
 #include "tests/fusion/rig_campaign.h"
+#include "tests/recording/scratch.h"
 
 namespace abbe::simulation {
 namespace correction_test {
@@ -71,8 +71,8 @@ ExtendedModel ModelOf(const Case& each) {
   const std::string hidden = each.hidden;
   const std::size_t colon = hidden.find(':'), object = colon + 8;
   const std::size_t end = hidden.find(':', object);
-  const auto path =
-      std::filesystem::path(testing::TempDir()) / fmt::format("correction_test_{}.toml", getpid());
+  static const recording::Scratch folder;
+  const auto path = folder / "model.toml";
   std::ofstream(path) << fmt::format(
       "extended_model = 1\nmachine = \"demo-mill\"\nstarted = \"{}\"\n"
       "[[start]]\nsensor = \"temp_table_c\"\ntemperature_c = {}\n"

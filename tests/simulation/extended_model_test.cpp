@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,6 +11,7 @@
 #include "failure/failure.h"
 #include "recording/instant.h"
 #include "simulation/causes/registry.h"
+#include "tests/recording/scratch.h"
 
 namespace abbe::simulation {
 namespace extended_model_test {
@@ -21,8 +21,8 @@ using Eigen::VectorXd;
 const CauseObjects kMill{"mill", true, 3};
 
 std::filesystem::path Written(const std::string& text) {
-  const auto path = std::filesystem::path(testing::TempDir()) /
-                    fmt::format("{}_extended_model_test.toml", getpid());
+  static const recording::Scratch folder;
+  const auto path = folder / "test.toml";
   std::ofstream(path) << text;
   return path;
 }
