@@ -33,7 +33,9 @@ Diagnosed Diagnose(const Recordings& recordings, const MachineFile& machine) {
   for (const Finding& finding : done.diagnosis.findings) {
     if (diagnosis::IsModelled(finding)) causes.push_back(finding.score.candidate);
   }
-  if (!causes.empty()) done.gain = diagnosis::HoldOut(*done.campaign, recordings, causes);
+  std::string why_not;
+  done.gain = diagnosis::HoldOutWhereTheySuffice(*done.campaign, recordings, causes, why_not);
+  if (!why_not.empty()) done.diagnosis.notes.push_back(why_not);
   diagnosis::AddDoubtsOfHeldOut(done.gain, done.diagnosis);
   return done;
 }
@@ -94,6 +96,14 @@ void BindDiagnosis(py::module_& m) {
           [](const Diagnosed& s) { return std::string(diagnosis::Name(s.diagnosis.verdict)); },
           "\"clean\", \"explained\", \"ambiguous\" or \"unexplained\".")
       .def_property_readonly("findings", [](const Diagnosed& s) { return s.diagnosis.findings; })
+      .def_property_readonly(
+          "notes",
+          [](const Diagnosed& s) {
+            std::vector<std::string> notes = s.campaign->notes();
+            notes.insert(notes.end(), s.diagnosis.notes.begin(), s.diagnosis.notes.end());
+            return notes;
+          },
+          "How the recordings were taken, and what was found of their noise.")
       .def_property_readonly(
           "cannot_show", [](const Diagnosed& s) { return s.diagnosis.cannot_show; },
           "Causes that these recordings cannot show.")
