@@ -14,7 +14,7 @@ esac
 speed=20 # the virtual machine runs this many times faster than a real one
 out=out
 ./setup/install setup/build_packages
-./setup/build release -DABBE_TESTS=OFF
+./setup/build release -DABBE_TESTS=OFF -DABBE_PYTHON_MODULE=OFF
 abbe=build/release/apps/abbe
 
 rm -rf "$out"

@@ -67,7 +67,8 @@ std::vector<std::string> WordsAt(const CommandNode& node) {
   std::vector<std::string> words;
   for (const CommandNode& below : node.below) words.emplace_back(LastWordOf(below));
   for (const CommandOption& option : node.options) {
-    words.insert(words.end(), option.names.begin(), option.names.end());
+    const std::vector<std::string>& offered = option.names.empty() ? option.words : option.names;
+    words.insert(words.end(), offered.begin(), offered.end());
   }
   return words;
 }
@@ -127,6 +128,10 @@ void AddFish(const CommandNode& node, const std::string& condition, std::string&
                        LastWordOf(below), FishQuoted(below.what));
   }
   for (const CommandOption& option : node.options) {
+    if (option.names.empty() && !option.words.empty()) {
+      out += fmt::format("complete -c abbe -f -n {} -a '{}' -d {}\n", FishQuoted(condition),
+                         fmt::join(option.words, " "), FishQuoted(option.what));
+    }
     for (const std::string& name : option.names) {
       const bool is_long = name.starts_with("--");
       out += fmt::format(
@@ -137,7 +142,13 @@ void AddFish(const CommandNode& node, const std::string& condition, std::string&
     }
   }
   for (const CommandNode& below : node.below) {
-    const std::string seen = fmt::format("__fish_seen_subcommand_from {}", LastWordOf(below));
+    std::string seen = fmt::format("__fish_seen_subcommand_from {}", LastWordOf(below));
+    for (const CommandNode& other : node.below) {  // "rig record" is not "record"
+      const bool has_it = std::ranges::any_of(
+          other.below, [&](const CommandNode& n) { return LastWordOf(n) == LastWordOf(below); });
+      if (has_it)
+        seen += fmt::format("; and not __fish_seen_subcommand_from {}", LastWordOf(other));
+    }
     AddFish(below, condition == "__fish_use_subcommand" ? seen : condition + "; and " + seen, out);
   }
 }
@@ -165,7 +176,9 @@ std::string CompletionFor(const CommandNode& program, const std::string& shell) 
   if (shell == "zsh") {
     return "#compdef abbe\n# Completion of abbe in zsh, by that of bash, written by: abbe completion zsh\n"
            "autoload -U +X bashcompinit && bashcompinit\n" +
-           BashCompletion(program);
+           BashCompletion(program) +
+           // zsh reads this file when the first completion is asked for, which is answered too.
+           "_bash_complete -o default -F _abbe\n";
   }
   if (shell != "fish") {
     throw InputError(fmt::format("{}: no shell that is known here; bash, zsh or fish", shell));

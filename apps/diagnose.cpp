@@ -76,17 +76,10 @@ nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
 diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
                               const std::vector<recording::Recording>& recordings,
                               const std::vector<diagnosis::Candidate>& causes) {
-  // How well an arm is known where it was not fitted is worth a figure also without a cause.
-  if (causes.empty() && !campaign.EstimatesNoise()) return {};
-  try {
-    return diagnosis::HoldOut(campaign, recordings, causes);
-  } catch (const NumericalError& error) {
-    fmt::print(stderr,
-               "abbe: the gain on held-out data is unknown, because half of the runs do not "
-               "suffice for a fit: {}\n",
-               error.what());
-    return {};
-  }
+  std::string why_not;
+  auto gain = diagnosis::HoldOutWhereTheySuffice(campaign, recordings, causes, why_not);
+  if (!why_not.empty()) fmt::print(stderr, "abbe: {}\n", why_not);
+  return gain;
 }
 
 void RefuseStrangers(const std::vector<recording::Recording>& recordings,

@@ -4,12 +4,10 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/causes_option.h"
@@ -21,6 +19,7 @@
 #include "apps/machine_recording.h"
 #include "apps/protocol.h"
 #include "apps/result_file.h"
+#include "fusion/fuse_sources.h"
 #include "map/map_file.h"
 #include "map/map_grid.h"
 #include "simulation/kinds.h"
@@ -30,7 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using simulation::RunSource;
-using simulation::SimulatedRun;
 
 struct FuseArguments {
   std::vector<fs::path> recordings;
@@ -43,26 +41,6 @@ struct FuseArguments {
 RunSource SourceAt(const machine::Machine& machine, const fs::path& path) {
   return {ReadHeadOf(machine, path), BlocksOf(path),
           [&machine, path] { return ReadRecordingOf(machine, path); }};
-}
-
-RunSource AsRead(const RunSource& source) { return source; }
-
-// One source after the other, each as `as_taken` has it.
-fusion::FuseReport FuseSources(const std::vector<RunSource>& sources,
-                               const std::function<RunSource(const RunSource&)>& as_taken,
-                               const simulation::Instruments& instruments,
-                               fusion::FuseOptions options) {
-  options.runs_on = [&](const machine::VolumetricModel& model) {
-    std::vector<SimulatedRun> runs;
-    for (const RunSource& source : sources) {
-      for (auto& run : simulation::SimulateForMap(as_taken(source), model, instruments)) {
-        runs.push_back(std::move(run));
-      }
-    }
-    return runs;
-  };
-  return fusion::Fuse(instruments.machine,
-                      options.runs_on(fusion::UnknownMachine(instruments.machine)), options);
 }
 
 struct MapChange {
@@ -81,11 +59,13 @@ MapChange ChangeOf(const map::ErrorMap& before, const map::ErrorMap& after) {
 }
 
 // Recordings as they were read, causes and all, may fit no map.
-std::optional<fusion::FuseReport> FuseIfItFits(
-    const simulation::Instruments& instruments, const std::vector<RunSource>& sources,
-    const std::function<RunSource(const RunSource&)>& as_taken, bool choose_smoothness) {
+std::optional<fusion::FuseReport> FuseIfItFits(const simulation::Instruments& instruments,
+                                               const std::vector<RunSource>& sources,
+                                               const fusion::AsTaken& as_taken,
+                                               bool choose_smoothness) {
   try {
-    return FuseSources(sources, as_taken, instruments, {.choose_smoothness = choose_smoothness});
+    return fusion::FuseSources(sources, instruments, {.choose_smoothness = choose_smoothness},
+                               as_taken);
   } catch (const NumericalError&) {
     return std::nullopt;
   }
@@ -162,7 +142,7 @@ int Fuse(const FuseArguments& arguments) {
   for (const auto& [sensor, mean] : conditions.temperature) {
     options.sensors.push_back({sensor, 0.0, mean, mean});
   }
-  const fusion::FuseReport report = FuseSources(sources, corrected, instruments, options);
+  const fusion::FuseReport report = fusion::FuseSources(sources, instruments, options, corrected);
   map::WriteMap(report.map, arguments.out);
   auto json = FuseJson(report);
   for (const RunSource& source : sources) AddProtocol(source.head, json);
@@ -170,9 +150,8 @@ int Fuse(const FuseArguments& arguments) {
   if (causes.Active()) {
     json["causes_taken_out"] = causes.Data();
     text += fmt::format("\n{}\n{}", causes.Line(), NotInMap(causes.taken()));
-    const auto without = other && !causes.TakesCertain()
-                             ? other
-                             : FuseIfItFits(instruments, sources, AsRead, choose);
+    const auto without =
+        other && !causes.TakesCertain() ? other : FuseIfItFits(instruments, sources, {}, choose);
     if (without) {
       const MapChange change = ChangeOf(without->map, report.map);
       json["map_change_um"] = {{"rms", 1e6 * change.rms}, {"largest", 1e6 * change.largest}};

@@ -6,5 +6,6 @@ find_package(BLAS REQUIRED)
 unset(BLA_VENDOR)
 # Into every program, also those of others that use the installed libraries.
 add_library(abbe_one_blas_thread OBJECT ${CMAKE_CURRENT_LIST_DIR}/one_blas_thread.cpp)
+set_target_properties(abbe_one_blas_thread PROPERTIES POSITION_INDEPENDENT_CODE ON)
 target_compile_definitions(Eigen3::Eigen INTERFACE EIGEN_USE_BLAS)
 target_link_libraries(Eigen3::Eigen INTERFACE $<TARGET_OBJECTS:abbe_one_blas_thread> BLAS::BLAS)

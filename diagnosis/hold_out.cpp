@@ -1,5 +1,7 @@
 #include "diagnosis/hold_out.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -128,6 +130,22 @@ HeldOutGain HoldOut(const Campaign& campaign, const std::vector<Recording>& reco
                                               : Without(i, causes, baseline, held));
   }
   return gain;
+}
+
+HeldOutGain HoldOutWhereTheySuffice(const Campaign& campaign,
+                                    const std::vector<recording::Recording>& recordings,
+                                    const std::vector<Candidate>& causes, std::string& why_not) {
+  // How well an arm is known where it was not fitted is worth a figure also without a cause.
+  if (causes.empty() && !campaign.EstimatesNoise()) return {};
+  try {
+    return HoldOut(campaign, recordings, causes);
+  } catch (const NumericalError& error) {
+    why_not = fmt::format(
+        "the gain on held-out data is unknown, because half of the runs do not suffice for a fit: "
+        "{}",
+        error.what());
+    return {};
+  }
 }
 
 }  // namespace abbe::diagnosis

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "diagnosis/campaign.h"
@@ -42,5 +43,11 @@ struct HeldOutGain {
 // `recordings`: those of the campaign.
 HeldOutGain HoldOut(const Campaign& campaign, const std::vector<recording::Recording>& recordings,
                     const std::vector<Candidate>& causes);
+
+// The same where it is worth it (causes, or noise that the runs estimate) and half of the runs
+// suffice for a fit; else no rows, and `why_not` says why they do not suffice.
+HeldOutGain HoldOutWhereTheySuffice(const Campaign& campaign,
+                                    const std::vector<recording::Recording>& recordings,
+                                    const std::vector<Candidate>& causes, std::string& why_not);
 
 }  // namespace abbe::diagnosis

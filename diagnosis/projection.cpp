@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "diagnosis/fit.h"
+#include "failure/interruption.h"
 
 namespace abbe::diagnosis {
 
@@ -38,6 +39,7 @@ void AddBlocks(const MatrixXd& C, const std::vector<Index>& which,
 
 std::vector<Fit::Projection> Fit::Finish(const std::vector<MatrixXd>& C_C, const MatrixXd& C_J,
                                          const VectorXd& C_r) const {
+  MayBeInterrupted();
   constexpr double kRounding = 1e-9;  // of the information of a column
   std::vector<Index> acting;          // of all columns
   Index first = 0;

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <utility>
 
+#include "failure/interruption.h"
+
 namespace abbe::estimation {
 namespace {
 
@@ -246,6 +248,7 @@ Linearization Linearize(const Problem& problem, const Layout& layout, const Vect
   Linearization result;
   result.prior = PriorSums(layout, x);
   for (const auto& terms : TermsOfSources(problem)) {
+    MayBeInterrupted();
     std::vector<Piece> pieces = Divide(terms);
     arena.execute([&] {
       tbb::parallel_for(std::size_t{0}, pieces.size(),

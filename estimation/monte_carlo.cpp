@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "failure/failure.h"
+#include "failure/interruption.h"
 
 namespace abbe::estimation {
 namespace {
@@ -61,6 +62,7 @@ class Draws {
 
   // Appends the draws [first, first + count).
   void Append(std::uint64_t first, std::uint64_t count) {
+    MayBeInterrupted();
     for (auto& column : columns_) column.resize(first + count);
     tbb::parallel_for(tbb::blocked_range<std::uint64_t>(first, first + count, 256),
                       [&](auto range) {

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "failure/interruption.h"
+
 namespace abbe::estimation {
 namespace {
 
@@ -78,6 +80,7 @@ class TermCost : public ceres::CostFunction {
     RowMatrix jacobian;
     if (jacobians != nullptr) jacobian.resize(num_residuals(), x.size());
     try {
+      MayBeInterrupted();
       term_.residual->Evaluate(x, values, jacobians != nullptr ? &jacobian : nullptr);
     } catch (const NumericalError&) {
       return false;

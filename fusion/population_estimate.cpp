@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "failure/interruption.h"
 #include "fusion/population_evidence.h"
 #include "fusion/target_form.h"
 #include "settings/unit.h"
@@ -141,6 +142,7 @@ class Estimate {
     of_machine_ = OfMachine();
     auto now = evidence_.At(of_machine_, theta_);
     for (int step = 0; step < kSteps; ++step) {
+      MayBeInterrupted();
       local_ = evidence_.SlopesAt(of_machine_, theta_, now);
       const VectorXd slope = local_.gradient - evidence_.precision() * theta_;
       VectorXd way = (local_.fisher + evidence_.precision()).ldlt().solve(slope);

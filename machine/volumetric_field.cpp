@@ -63,7 +63,7 @@ Vector3d VolumetricField::Error(const Vector3d& position, const Vector3d& p_TQ) 
                  {axes_[0].At(position[0]), axes_[1].At(position[1]), axes_[2].At(position[2])});
 }
 
-Eigen::Matrix3Xd VolumetricField::Errors(const Eigen::Matrix3Xd& positions,
+Eigen::Matrix3Xd VolumetricField::Errors(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                                          const Vector3d& p_TQ) const {
   Eigen::Matrix3Xd result(3, positions.cols());
   AxisErrors errors;

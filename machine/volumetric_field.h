@@ -29,7 +29,8 @@ class VolumetricField {
   // The error at one position.
   Eigen::Vector3d Error(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ) const;
   // At many; fastest where only one axis moves from one to the next.
-  Eigen::Matrix3Xd Errors(const Eigen::Matrix3Xd& positions, const Eigen::Vector3d& p_TQ) const;
+  Eigen::Matrix3Xd Errors(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                          const Eigen::Vector3d& p_TQ) const;
 
  private:
   using AxisErrors = std::array<geometry::ErrorVector<double>, kAxes>;

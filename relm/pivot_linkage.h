@@ -70,11 +70,12 @@ class PivotLinkage {
   // The branch of a pose, to continue on it.
   Branch BranchOf(const Eigen::Vector3d& angles) const;
 
+  using Poses = Eigen::Ref<const Eigen::Matrix3Xd, 0, Eigen::OuterStride<3>>;
   // Many poses: one column each. Outputs are resized. Returns how many poses were reached.
-  void Tips(const Eigen::Matrix3Xd& angles, Eigen::Matrix3Xd& tips) const;
+  void Tips(const Poses& angles, Eigen::Matrix3Xd& tips) const;
   // Columns without angles are zero; `reach` says why.
-  Eigen::Index AnglesOf(const Eigen::Matrix3Xd& tips, const Branch& branch,
-                        Eigen::Matrix3Xd& angles, std::vector<Reach>& reach) const;
+  Eigen::Index AnglesOf(const Poses& tips, const Branch& branch, Eigen::Matrix3Xd& angles,
+                        std::vector<Reach>& reach) const;
 
   static constexpr double kSingular = 1e-6;
 

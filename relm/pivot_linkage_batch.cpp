@@ -61,7 +61,7 @@ void BlockAngles(const double* __restrict__ p, const Reach* reach, int count, do
 
 }  // namespace
 
-void PivotLinkage::Tips(const Eigen::Matrix3Xd& angles, Eigen::Matrix3Xd& tips) const {
+void PivotLinkage::Tips(const Poses& angles, Eigen::Matrix3Xd& tips) const {
   tips.resize(3, angles.cols());
   for (Eigen::Index first = 0; first < angles.cols(); first += kBlock) {
     const int count = static_cast<int>(std::min<Eigen::Index>(kBlock, angles.cols() - first));
@@ -69,7 +69,7 @@ void PivotLinkage::Tips(const Eigen::Matrix3Xd& angles, Eigen::Matrix3Xd& tips) 
   }
 }
 
-Eigen::Index PivotLinkage::AnglesOf(const Eigen::Matrix3Xd& tips, const Branch& branch,
+Eigen::Index PivotLinkage::AnglesOf(const Poses& tips, const Branch& branch,
                                     Eigen::Matrix3Xd& angles, std::vector<Reach>& reach) const {
   angles.resize(3, tips.cols());
   reach.resize(tips.cols());

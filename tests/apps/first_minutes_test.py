@@ -234,6 +234,7 @@ class WordsTest(ProgramCase):
         self.assertEqual(self.completed("abbe correct --par"), ["--parameters"])
         self.assertEqual(sorted(self.completed("abbe init --kind ")), ["arm", "axis", "gantry", "lathe", "mill", "shaft"])
         self.assertEqual(self.completed("abbe correct --block-delete o"), ["on", "off"])
+        self.assertTrue({"bash", "fish", "zsh"} <= set(self.completed("abbe completion ")))
 
     def test_fish_and_zsh_have_the_same_words(self):
         fish = self.done("fish", command="completion")
@@ -241,11 +242,44 @@ class WordsTest(ProgramCase):
             self.assertRegex(fish, rf"-n '__fish_use_subcommand' -a {name} ")
         self.assertRegex(fish, r"-n '__fish_seen_subcommand_from correct' -l tools -r")
         self.assertTrue(self.done("zsh", command="completion").startswith("#compdef abbe\n"))
-        for shell in ("zsh", "fish"):
-            if shutil.which(shell):
-                script = self.path / f"abbe.{shell}"
-                script.write_text(self.done(shell, command="completion"))
-                subprocess.run([shell, "-n", script], check=True)
+
+    @unittest.skipUnless(shutil.which("fish"), "needs fish")
+    def test_fish_completes_commands_options_and_values(self):
+        (self.path / "abbe.fish").write_text(self.done("fish", command="completion"))
+
+        def completed(line):
+            """What fish offers at the end of a line."""
+            script = f"source {self.path}/abbe.fish; complete -C '{line}'"
+            done = subprocess.run(["fish", "-N", "-c", script], capture_output=True, text=True, check=True,
+                                  cwd=self.path, env={**os.environ, "HOME": str(self.path)})
+            self.assertEqual(done.stderr, "")
+            return [offered.split("\t")[0] for offered in done.stdout.splitlines()]
+
+        self.assertEqual(completed("abbe cor"), ["correct"])
+        self.assertIn("record", completed("abbe rig rec"))
+        self.assertEqual(completed("abbe correct --par"), ["--parameters"])
+        self.assertEqual(completed("abbe correct --block-delete o"), ["off", "on"])
+        self.assertEqual(completed("abbe completion "), ["bash", "fish", "zsh"])
+        # Options of `abbe record` are not those of `abbe rig record`.
+        self.assertEqual((completed("abbe record --dev"), completed("abbe rig record --dev")), (["--devices"], []))
+
+    @unittest.skipUnless(shutil.which("zsh"), "needs zsh")
+    def test_zsh_completes_at_the_first_tab(self):
+        (self.path / "_abbe").write_text(self.done("zsh", command="completion"))
+
+        def assert_completed(line, rest):
+            """One TAB behind `line` adds `rest`. A zsh as in a terminal, which reads the file only now."""
+            script = (f"zmodload zsh/zpty; zpty -b z zsh -f -i\n"
+                      f"zpty -w z \"PS1=; fpath=({self.path} \\$fpath); autoload -U compinit; compinit -u -D; "
+                      f"bindkey '^I' complete-word; print re''ady\"\n"
+                      f"zpty -r z out '*ready*'; zpty -w -n z $'{line}\\t'; zpty -r z out '*{rest}*'; print -r -- $out")
+            done = subprocess.run(["zsh", "-f", "-c", script], capture_output=True, text=True, timeout=30,
+                                  env={**os.environ, "HOME": str(self.path), "TERM": "vt100"})
+            self.assertIn(rest, done.stdout)
+
+        assert_completed("abbe di", "agnose")
+        assert_completed("abbe rig rec", "ord")
+        assert_completed("abbe correct --par", "ameters")
 
     def test_manual_pages_are_troff(self):
         self.done("--out", self.path / "man1", command="man")

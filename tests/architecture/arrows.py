@@ -38,6 +38,7 @@ ARROWS = {
     "live": "failure recording report",
     "rig": "failure random settings recording hal",
     "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis learned history track report live rig",
+    "python": "failure settings recording estimation machine map compensation probes paths relm simulation fusion diagnosis apps",
 }
 
 # header of a library or of a transport -> the files that may include it; everybody else goes through them.

@@ -17,7 +17,7 @@ from header_examples import examples
 NAME = re.compile(r"(?<![\w:.\"'-])(?:[A-Z][a-z0-9]+(?:[A-Z]\w*)+|[A-Z][a-z]\w*(?=\()|k[A-Z]\w+)\b")
 FILE = re.compile(r"[\w/.-]+\.(?:h|cpp|py|md)\b")
 # Names of others, and of mathematics.
-FOREIGN = {"CiA", "LinuxCNC", "MacKay", "OpenBLAS", "SocketCAN", "Phi", "Rx", "Ry", "Rz", "Tx", "Ty", "Tz"}
+FOREIGN = {"CiA", "LinuxCNC", "MacKay", "NumPy", "OpenBLAS", "SocketCAN", "Phi", "Rx", "Ry", "Rz", "Tx", "Ty", "Tz"}
 
 
 def identifiers(root):

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "failure/failure.h"
+#include "failure/interruption.h"
 #include "random/counter_random.h"
 
 namespace abbe::estimation {
@@ -26,6 +27,15 @@ MonteCarloModel SumOfFour(Input input) {
 
 const MonteCarloModel kNormals =
     SumOfFour([](const CounterRandom& r, std::uint64_t draw) { return r.Normal(draw); });
+
+struct Ended {};
+
+TEST(MonteCarlo, EndsBetweenItsStepsWhenTheProcessAsks) {
+  AskBetweenSteps([] { throw Ended{}; });
+  EXPECT_THROW(PropagateDistributions(1, kNormals), Ended);
+  AskBetweenSteps(nullptr);
+  EXPECT_TRUE(PropagateDistributions(1, kNormals).stabilised);
+}
 
 TEST(MonteCarlo, FourNormalsOfJcgm101Clause922) {
   const auto result = PropagateDistributions(1, kNormals);

@@ -12,6 +12,7 @@
 
 #include "estimation/autodiff_residual.h"
 #include "failure/failure.h"
+#include "failure/interruption.h"
 #include "linear_case.h"
 
 namespace abbe::estimation {
@@ -299,6 +300,20 @@ TEST(Problem, OtherExceptionsOfAResidualPassThrough) {
                                         }),
               {p}, 1.0);
   EXPECT_THROW(problem.Solve(), std::domain_error);
+}
+
+struct Stopped {};
+
+// What was asked throws its own exception, and the next solve is as any other.
+TEST(Problem, EndsBetweenItsStepsWhenTheProcessAsks) {
+  Problem problem;
+  const BlockId block = problem.Add(Block("x", {"a", "b"}));
+  problem.Add(problem.AddSource("rows"), Linear(RandomMatrix(9, 2, 1), RandomMatrix(9, 1, 2)),
+              {block}, 1.0);
+  AskBetweenSteps([] { throw Stopped{}; });
+  EXPECT_THROW(problem.Solve(), Stopped);
+  AskBetweenSteps(nullptr);
+  EXPECT_NO_THROW(problem.Solve());
 }
 
 // exp(-x) -> 0 has its minimum at infinity: each step is 1 long.

@@ -1,0 +1,26 @@
+#include "fusion/fuse_sources.h"
+
+#include <utility>
+
+#include "fusion/machine_prior.h"
+#include "simulation/kinds.h"
+
+namespace abbe::fusion {
+
+FuseReport FuseSources(const std::vector<simulation::RunSource>& sources,
+                       const simulation::Instruments& instruments, FuseOptions options,
+                       const AsTaken& as_taken) {
+  options.runs_on = [&](const machine::VolumetricModel& model) {
+    std::vector<simulation::SimulatedRun> runs;
+    for (const simulation::RunSource& source : sources) {
+      for (auto& run :
+           simulation::SimulateForMap(as_taken ? as_taken(source) : source, model, instruments)) {
+        runs.push_back(std::move(run));
+      }
+    }
+    return runs;
+  };
+  return Fuse(instruments.machine, options.runs_on(UnknownMachine(instruments.machine)), options);
+}
+
+}  // namespace abbe::fusion

@@ -1,0 +1,29 @@
+// One error map from recordings as they are, whole or block by block: what `abbe fuse` does with
+// its files.
+//
+//   const FuseReport report = FuseSources(sources, instruments, {});
+//
+// Frames, units, shapes: fusion/fuse.h.
+// Failure: that of the kinds of run (simulation/kinds.h) and of Fuse.
+// Source: docs/fuse.md.
+// Validity: recordings of one machine that belong together (simulation::RefuseStrangers).
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "fusion/fuse.h"
+#include "simulation/instruments.h"
+#include "simulation/run_source.h"
+
+namespace abbe::fusion {
+
+// One source at a time, each as `as_taken` has it (empty: as it is).
+using AsTaken = std::function<simulation::RunSource(const simulation::RunSource&)>;
+
+// Simulates the sources on the machine, again where other knots are tried, and fuses them.
+FuseReport FuseSources(const std::vector<simulation::RunSource>& sources,
+                       const simulation::Instruments& instruments, FuseOptions options,
+                       const AsTaken& as_taken = {});
+
+}  // namespace abbe::fusion
