@@ -4,6 +4,7 @@
 
 #include "apps/protocol.h"
 #include "history/limits.h"
+#include "investigate/cost.h"
 #include "machine/drift.h"
 #include "rig/rig_settings.h"
 
@@ -56,6 +57,7 @@ MachineFile ReadMachineFile(const std::filesystem::path& path) {
   ReadProtocol(root);
   history::ReadLimits(root);
   machine::ReadDrift(root);
+  investigate::CheckCosts(root);
   root.RefuseUnknown();
   return file;
 }
@@ -67,6 +69,7 @@ machine::Machine ReadMachineOf(const std::filesystem::path& path) {
   ReadProtocol(document.Root());
   history::ReadLimits(document.Root());
   machine::ReadDrift(document.Root());
+  investigate::CheckCosts(document.Root());
   document.Root().RefuseUnknown();
   return machine;
 }
@@ -79,6 +82,7 @@ MachineAlone ReadMachineAlone(const settings::Document& document) {
   ReadProtocol(root);
   history::ReadLimits(root);
   machine::ReadDrift(root);
+  investigate::CheckCosts(root);
   root.RefuseUnknown();
   return alone;
 }

@@ -42,7 +42,7 @@ Campaign::Campaign(simulation::Instruments instruments)
 
 Campaign Campaign::WithoutRuns() const {
   Campaign empty(instruments_);
-  empty.origin_ = origin();
+  if (origin_ || !runs_.empty()) empty.origin_ = origin();
   empty.facts_ = facts_;
   return empty;
 }

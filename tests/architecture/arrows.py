@@ -32,12 +32,13 @@ ARROWS = {
     "fusion": "failure settings recording geometry estimation standards machine map probes paths relm simulation",
     "diagnosis": "failure standards settings recording estimation machine probes relm simulation fusion",
     "learned": "failure random standards estimation simulation diagnosis",
+    "investigate": "failure random settings recording machine simulation diagnosis",
     "history": "failure standards settings recording",
     "track": "failure settings recording standards estimation machine map simulation fusion history",
     "report": "failure",
     "live": "failure recording report",
     "rig": "failure random settings recording hal",
-    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis learned history track report live rig",
+    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis learned investigate history track report live rig",
 }
 
 # header of a library or of a transport -> the files that may include it; everybody else goes through them.
