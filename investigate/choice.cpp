@@ -127,7 +127,8 @@ class Prospects {
 
   WeighedRun Weigh(const PossibleRun& possible, const MatrixXd& before,
                    const MatrixXd& after) const {
-    const double waiting = simulation::StartedOf(possible.path) - situation_.about.started;
+    const double waiting =
+        std::max(0.0, simulation::StartedOf(possible.path) - situation_.about.started);
     return {possible.text, CostOf(possible.path, situation_.place, waiting, situation_.costs),
             std::max(0.0, ExpectedInformation(before, after, worlds_.list)), possible.path};
   }

@@ -47,6 +47,28 @@ double FeedOf(const recording::Recording& path) {
   return most > 0.0 ? most : kUsual;
 }
 
+// No minus before a zero.
+double Written(double place) { return std::abs(place) < 5e-6 ? 0.0 : place; }
+
+// Each motion along a closed path with a quarter of itself before and after: all axes have moved
+// before it counts.
+std::vector<Row> WithRunIns(const std::vector<Row>& rows) {
+  std::vector<Row> all;
+  for (std::size_t first = 0, last = 0; first < rows.size(); first = last) {
+    while (last < rows.size() && rows[last].IsOfOneMotion(rows[first])) ++last;
+    const auto begin = rows.begin() + first, end = rows.begin() + last;
+    const std::ptrdiff_t count = end - begin;
+    constexpr std::ptrdiff_t kFewest = 4;
+    const double step = count > 1 ? (begin[1].place - begin[0].place).norm() : 0.0;
+    const bool is_closed = count > kFewest && step > 0.0 &&
+                           (begin[count - 1].place - begin[0].place).norm() < 2 * step;
+    if (is_closed) all.insert(all.end(), end - count / 4, end);
+    all.insert(all.end(), begin, end);
+    if (is_closed) all.insert(all.end(), begin, begin + count / 4);
+  }
+  return all;
+}
+
 }  // namespace
 
 std::string ControlProgram(const recording::Recording& path, const std::string& title) {
@@ -55,17 +77,18 @@ std::string ControlProgram(const recording::Recording& path, const std::string& 
   if (rows.empty()) throw InputError(fmt::format("{}: a path without rows", path.name));
   std::string text = Comment(title) + Comment("written by abbe: look for collisions first") +
                      "G17 G21 G90 G94\nG64 P0.002\n" + fmt::format("F{:.6g}\n", FeedOf(path));
-  for (std::size_t first = 0, last = 0; first < rows.size(); first = last) {
-    while (last < rows.size() && rows[last].place == rows[first].place &&
-           rows[last].IsOfOneMotion(rows[first])) {
+  const std::vector<Row> all = WithRunIns(rows);
+  for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
+    while (last < all.size() && all[last].place == all[first].place &&
+           all[last].IsOfOneMotion(all[first])) {
       ++last;
     }
-    const Vector3d& at = rows[first].place;
+    const Vector3d at = all[first].place.unaryExpr([](double each) { return Written(each); });
     text += fmt::format("G1 X{:.5f} Y{:.5f} Z{:.5f}\n", at.x(), at.y(), at.z());
     if (last - first > 1) {
-      const double stand = rows[last - 1].time - rows[first].time;
+      const double stand = all[last - 1].time - all[first].time;
       text += fmt::format("G4 P{:.3f}\n", std::max(stand, kLeastStand));
-    } else if (last == rows.size() || !rows[last].IsOfOneMotion(rows[first])) {
+    } else if (last == all.size() || !all[last].IsOfOneMotion(all[first])) {
       text += fmt::format("G4 P{:.3f}\n", kTurn);
     }
   }

@@ -32,7 +32,7 @@ struct Subject {
   std::vector<std::string> sensors = {};  // columns of temperatures, "temp_table_c"
   double room = 20.0;                     // degC, before they are known
   double budget = 45.0;                   // minutes
-  double least_bits = 0.02;               // a run that promises less is not made
+  double least_bits = 0.01;               // a run that promises less is not made
 };
 
 // Who records. Nothing of what it knows beyond the recordings reaches the investigation.
