@@ -129,8 +129,11 @@ class Prospects {
                    const MatrixXd& after) const {
     const double waiting =
         std::max(0.0, simulation::StartedOf(possible.path) - situation_.about.started);
+    const auto made = std::ranges::count(situation_.made, possible.text);
+    const double bits =
+        std::ldexp(ExpectedInformation(before, after, worlds_.list), -static_cast<int>(made));
     return {possible.text, CostOf(possible.path, situation_.place, waiting, situation_.costs),
-            std::max(0.0, ExpectedInformation(before, after, worlds_.list)), possible.path};
+            std::max(0.0, bits), possible.path};
   }
 
   // `all`: of everything together.

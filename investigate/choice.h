@@ -32,6 +32,9 @@ struct Situation {
   Place place;                      // what is on the machine
   const Costs& costs;
   simulation::PathAbout about;  // of a run that begins now
+  // The texts of the runs so far. One that did not settle what it promised to settle promised too
+  // much: each time before halves what it promises now.
+  std::vector<std::string> made;
   // Whether a path can be recorded at all.
   std::function<bool(const recording::Recording& path)> records;
 };

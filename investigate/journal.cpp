@@ -203,6 +203,14 @@ std::vector<Outcome> Journal::outcomes() const {
   return outcomes;
 }
 
+std::vector<std::string> Journal::texts() const {
+  std::vector<std::string> texts;
+  for (const Json& step : data_.at("steps")) {
+    if (step.contains("file")) texts.push_back(step.at("text"));
+  }
+  return texts;
+}
+
 void Journal::Decide(const Choice& choice) {
   const WeighedRun& best = choice.weighed.front();
   const std::size_t number = steps() + 1;

@@ -57,6 +57,8 @@ class Journal {
   std::filesystem::path WaitingPath() const;  // of the planned path
   bool IsEnded() const;
   std::vector<Outcome> outcomes() const;
+  // What was done in the steps that were recorded.
+  std::vector<std::string> texts() const;
   // The number of the next or of the waiting step, from 1.
   std::size_t number() const;
   const std::filesystem::path& folder() const { return folder_; }

@@ -155,11 +155,14 @@ Worlds OfFinding(const diagnosis::Finding& finding, const simulation::Scene& sce
     sum += rival.probability;
   }
   AddUnknown(scene, std::max(finding.something_else, 1.0 - sum), worlds);
+  Normalize(worlds.list);
   return worlds;
 }
 
-// What is left depends on one of these, each told from the others.
+// What is left depends on one of these, each told from the others; or it was an accident of the
+// runs, and another one will not show it.
 Worlds OfLeftovers(const Diagnosis& now, const simulation::Scene& scene) {
+  constexpr double kAccident = 0.05;
   Worlds worlds;
   AddNothing(0.0, worlds);
   for (const diagnosis::Leftover& left : now.leftovers) {
@@ -174,7 +177,10 @@ Worlds OfLeftovers(const Diagnosis& now, const simulation::Scene& scene) {
       worlds.list.push_back(std::move(world));
     }
   }
-  if (worlds.list.size() > 1) Normalize(worlds.list);
+  if (worlds.list.size() == 1) return worlds;
+  Normalize(worlds.list);
+  for (World& world : worlds.list) world.probability *= 1.0 - kAccident;
+  worlds.list.front().probability = kAccident;
   return worlds;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -53,13 +54,33 @@ double FeedOf(const Recording& path) {
   return std::ranges::max(feed) * settings::kMillimetrePerMinute;
 }
 
-// Each place of a row of stands once.
+// Each place of a row of stands once; a recorded one is still settling when its rows begin.
 std::vector<Vector3d> StandsOf(const std::vector<Vector3d>& places) {
+  constexpr double kWindow = 20e-6;  // m
   std::vector<Vector3d> stands;
   for (const Vector3d& each : places) {
-    if (stands.empty() || stands.back() != each) stands.push_back(each);
+    if (!stands.empty() && (stands.back() - each).norm() < kWindow) {
+      stands.back() = each;
+    } else {
+      stands.push_back(each);
+    }
   }
   return stands;
+}
+
+// The stations of the swept axis, in order: the middle of the rows about each.
+std::vector<double> StationsOf(const std::vector<Vector3d>& places, int axis, double apart,
+                               const AxisTravel& travel) {
+  std::vector<double> along, stations;
+  along.reserve(places.size());
+  for (const Vector3d& place : places) along.push_back(place[axis]);
+  std::ranges::sort(along);
+  for (std::size_t first = 0, last = 0; first < along.size(); first = last) {
+    while (last < along.size() && along[last] - along[first] < apart) ++last;
+    stations.push_back(
+        std::clamp(along[std::midpoint(first, last - 1)], travel.first, travel.last));
+  }
+  return stations;
 }
 
 // Of a motion, with a run-in and a run-out: of a closed path a quarter of itself, of another one
@@ -218,12 +239,8 @@ LinkageRig PlannedRecorder::RigOf(const Run& run) const {
 Recording PlannedRecorder::Sweep(const Run& run) {
   CampaignMachine planned = machine_;
   hal::SweepPlan& plan = *planned.rig.sweeps[AxisNumber(run.axis)];
-  plan.stations.clear();
-  for (const Vector3d& place : run.places) plan.stations.push_back(place[AxisNumber(run.axis)]);
-  std::ranges::sort(plan.stations);
-  const auto same = [&](double a, double b) { return std::abs(a - b) < 4.0 * plan.window; };
-  plan.stations.erase(std::unique(plan.stations.begin(), plan.stations.end(), same),
-                      plan.stations.end());
+  const int axis = AxisNumber(run.axis);
+  plan.stations = StationsOf(run.places, axis, 4.0 * plan.window, planned.rig.travels[axis]);
   plan.passes = static_cast<int>(std::ranges::max(run.path.At("pass")));
   const Mounting mounting = MountingOf(run);
   const World world(planned.rig, seed_, hidden_, mounting);

@@ -14,8 +14,8 @@ using investigate::Place;
 
 simulation::Instruments OnlyLinkage() {
   simulation::Instruments on{};
-  const auto demo = settings::Document::Read(std::string(ABBE_SOURCE_DIR) +
-                                             "/machines/demo_mill.toml");
+  const auto demo =
+      settings::Document::Read(std::string(ABBE_SOURCE_DIR) + "/machines/demo_mill.toml");
   on.linkage = relm::ReadLinkageSettings(demo.Root());
   return on;
 }

@@ -69,6 +69,24 @@ TEST_F(PlannedRecorder, StandsAtTheStationsOfASweep) {
   EXPECT_EQ(met, stations);
 }
 
+// A recording as a path: its axes were still settling when its rows began.
+TEST_F(PlannedRecorder, RepeatsWhatItRecorded) {
+  const auto sweep =
+      recorder_.Record(simulation::SweepPath('Z', Travels(), "id = \"first\"\n", About()), 1);
+  const auto again = recorder_.Record(sweep, 2);
+  EXPECT_EQ(again.rows(), sweep.rows());
+  const auto one = sweep.At("z_mm"), other = again.At("z_mm");
+  for (std::size_t row = 0; row < one.size(); ++row) EXPECT_NEAR(other[row], one[row], 1e-3) << row;
+
+  const auto cube = recorder_.Record(simulation::GridPath({.middle = {0.03, 0.03, 0.03},
+                                                           .size = {0.02, 0.02, 0.02},
+                                                           .counts = {2, 2, 2},
+                                                           .mounting = "base = \"first\"\n"},
+                                                          About()),
+                                     3);
+  EXPECT_EQ(recorder_.Record(cube, 4).rows(), cube.rows());
+}
+
 TEST_F(PlannedRecorder, NamesWhatIsMountedAnewByTheRun) {
   const auto path = simulation::SweepPath('X', Travels(), "id = \"planned anew\"\n", About());
   EXPECT_EQ(recorder_.Record(path, 5).HeaderText("mounting.id"), "mounted 5");
