@@ -16,7 +16,7 @@
 #include "tests/seeds.h"
 
 namespace abbe {
-namespace investigate_hidden_test {
+namespace investigate_rates_test {
 
 using investigate::Ended;
 using investigate::Journal;
@@ -146,5 +146,5 @@ TEST(Investigate, CostsBesideTheCampaigns) {
   EXPECT_GT(full, standard);
 }
 
-}  // namespace investigate_hidden_test
+}  // namespace investigate_rates_test
 }  // namespace abbe
