@@ -35,8 +35,6 @@ class OfRig : public investigate::Recorder {
     for (const std::string& text : option.hide) {
       hidden_.push_back(rig::ParseHidden(text, seed_, machine_.sensors));
     }
-    constexpr double kHour = 3600.0;  // s
-    rig::SetInTime(hidden_, {{0.0, kHour, true, true}});
   }
 
   bool Records(const Recording& path) const override {

@@ -1,8 +1,8 @@
 // The run to make next: of all that could be made, the one that is expected to tell most a minute
 // of what is the matter.
 //
-//   const Choice choice = Choose({instruments, recordings, now, place, costs, about, records});
-//   choice.weighed[0].text;              // "sweep X over its travel, there and back, with the head"
+//   const Choice choice = Choose({campaign, recordings, now, place, costs, about, made, records});
+//   choice.weighed[0].text;  // "sweep X over its travel, there and back, with the head"
 //   choice.weighed[0].bits_per_minute();
 //
 // The runs are those of diagnosis/run_catalogue.h whose instrument is at hand, simulated on the
@@ -62,6 +62,7 @@ struct Choice {
   std::vector<std::string> never_shown = {};  // causes that none of these runs shows
 };
 
+// All that could be made, weighed.
 Choice Choose(const Situation& situation);
 
 }  // namespace abbe::investigate

@@ -1,7 +1,7 @@
 // What a run costs on the machine: minutes to set its instrument up, to wait, and to run.
 //
 //   const Costs costs = ReadCosts(document.Root(), instruments);
-//   const Minutes minutes = CostOf(path, Place{"head", "X first"}, now, costs);
+//   const Minutes minutes = CostOf(path, now, 0.0, costs);
 //
 // An instrument that is not on the machine takes `set_up`, one that is there but mounted otherwise
 // `again`: another axis of the head, a target or a base mounted anew, the other elbow. Both as the
@@ -45,6 +45,7 @@ struct Place {
 
   friend bool operator==(const Place&, const Place&) = default;
 };
+// By the header.
 Place PlaceOf(const recording::Recording& run);
 
 struct Minutes {

@@ -39,6 +39,7 @@ struct Subject {
 class Recorder {
  public:
   virtual ~Recorder() = default;
+  // Whether it can make the run at all.
   virtual bool Records(const recording::Recording& path) const = 0;
   // The file name in the folder of the journal; nothing: not yet.
   virtual std::optional<std::string> Record(const recording::Recording& path,

@@ -26,10 +26,6 @@ Json JsonOf(const Minutes& minutes) {
           {"total", minutes.total()}};
 }
 
-Minutes MinutesOf(const Json& json) {
-  return {json.at("set_up"), json.at("waiting"), json.at("run")};
-}
-
 Json JsonOf(const std::vector<Probable>& list) {
   Json json = Json::array();
   for (const Probable& each : list) {
@@ -183,7 +179,6 @@ std::vector<fs::path> Journal::recordings() const {
 bool Journal::IsWaiting() const { return steps() > 0 && !last().contains("file"); }
 const Json& Journal::last() const { return data_.at("steps").back(); }
 std::string Journal::WaitingText() const { return last().at("text"); }
-Minutes Journal::WaitingMinutes() const { return MinutesOf(last().at("minutes")); }
 fs::path Journal::WaitingPath() const { return folder_ / last().at("path").get<std::string>(); }
 bool Journal::IsEnded() const { return data_.contains("ended"); }
 std::size_t Journal::number() const { return IsWaiting() ? steps() : steps() + 1; }

@@ -1,7 +1,7 @@
 // What may be the matter with a machine, with the probability of each before the next run: nothing,
 // one of the known causes, or something that is in no catalogue.
 //
-//   const Worlds worlds = WorldsOf(now, scene, campaign);
+//   const Worlds worlds = WorldsOf(now, scene, coarseness);
 //   worlds.list[0].probability;        // that nothing is the matter
 //
 // Before any run: the prior odds of a diagnosis. Afterwards: what the diagnosis says of each cause.

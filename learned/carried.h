@@ -1,7 +1,7 @@
 // Learned terms that go from one machine to another, and the names that people give them.
 //
 //   campaign.CarryOn(CarriedFrom({"other_mill.causes.toml"}));
-//   const std::string text = WithName(TextOf("mill.causes.toml"), "mill.causes.toml", 1, naming);
+//   const std::string named = WithName(text, "mill.causes.toml", "1", naming);
 //
 // A file is an extended model of any machine with tables [[learned]]. A term that was certified
 // there competes as a named cause (LearnedCause::CarriedOn), under its name, or its expression
@@ -22,6 +22,7 @@
 
 namespace abbe::learned {
 
+// All terms of the files.
 std::vector<std::shared_ptr<const simulation::LearnedCause>> CarriedFrom(
     const std::vector<std::filesystem::path>& files);
 

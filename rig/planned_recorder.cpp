@@ -174,6 +174,20 @@ std::string HeadText(const Mounting& mounting) {
                      mounting.target_shift / settings::kMillimetre, mounting.target_reversed);
 }
 
+// Angles of the pivots in the middle of the travels.
+std::vector<double> TurnsInTheMiddle(const CampaignMachine& machine, std::uint64_t seed) {
+  if (!machine.linkage) return {};
+  Vector3d middle;
+  for (int axis = 0; axis < kAxes; ++axis) {
+    const auto [first, last] = machine.rig.travels[axis];
+    middle[axis] = std::midpoint(first, last);
+  }
+  const Linkage linkage(*machine.linkage, seed);
+  const LinkageRig rig(World(machine.rig, seed), linkage);
+  const Vector3d turns = linkage.TurnsForPlace(rig.ToolAt(middle), machine.rig.temperature);
+  return {turns.begin(), turns.end()};
+}
+
 std::string TableOf(const Mounting& mounting) {
   return fmt::format("[mounting]\nid = {}\n", settings::Quoted(IdOf(mounting.number))) +
          HeadText(mounting);
@@ -187,7 +201,10 @@ PlannedRecorder::PlannedRecorder(CampaignMachine machine, std::uint64_t seed, Hi
       seed_(seed),
       hidden_(std::move(hidden)),
       started_(started),
-      climate_(machine_.rig, seed, kFirstPlannedRun, machine_.sensors.columns) {}
+      climate_(machine_.rig, seed, kFirstPlannedRun, machine_.sensors.columns) {
+  constexpr double kHour = 3600.0;  // s
+  SetInTime(hidden_, {{0.0, kHour, true, true}}, TurnsInTheMiddle(machine_, seed));
+}
 
 bool PlannedRecorder::Records(const Recording& path) const {
   const std::string kind = path.Kind();

@@ -8,7 +8,7 @@
 // temperatures and header count, its readings do not. What is mounted anew (an id or a base that is
 // none of those before) is drawn by the number of the run and gets the id "mounted 3", so that later
 // paths can name it.
-// Units: s since 1970. The same (machine file, seed, hidden effects, path, number) gives the same
+// Frames: positions as the control counts. Units: s since 1970, columns as their names say. The same (machine file, seed, hidden effects, path, number) gives the same
 // recording. Failure: InputError for a kind that the rig does not record, or a place out of reach.
 // Validity: cables that are swapped at the amplifier are not recorded (Records() is false).
 #pragma once
@@ -28,9 +28,15 @@ namespace abbe::rig {
 
 class PlannedRecorder {
  public:
+  // Instants and angles that the effects leave open are drawn in the first hour, and about the
+  // middle of the travels.
   PlannedRecorder(CampaignMachine machine, std::uint64_t seed, HiddenEffects hidden,
                   double started);
 
+  // With all values drawn.
+  const HiddenEffects& hidden() const { return hidden_; }
+
+  // Whether it can.
   bool Records(const recording::Recording& path) const;
   // `number`: each run has its own noise.
   recording::Recording Record(const recording::Recording& path, std::uint64_t number);

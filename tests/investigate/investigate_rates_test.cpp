@@ -67,9 +67,9 @@ Result Investigated(InvestigatedMachine& machine, std::uint64_t seed,
   Ended ended = investigate::Investigate(machine.subject(), recorder, journal);
   const auto outcomes = journal.outcomes();
   const bool is_certain = !outcomes.empty() && outcomes.back().is_certain;
-  std::string line = fmt::format("{} {} -> {:.1f} min, {} runs, {}, {}", seed,
-                                 rig::TruthOf(hidden).dump(), journal.spent(), journal.steps(),
-                                 outcomes.back().verdict, is_certain ? "certain" : "open");
+  std::string line = fmt::format(
+      "{} {} -> {:.1f} min, {} runs, {}, {}", seed, rig::TruthOf(recorder.hidden()).dump(),
+      journal.spent(), journal.steps(), outcomes.back().verdict, is_certain ? "certain" : "open");
   for (const auto& finding : outcomes.back().findings) {
     line += fmt::format("; {} {:.3f}", finding.name, finding.probability);
   }

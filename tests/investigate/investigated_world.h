@@ -45,13 +45,12 @@ class InvestigatedMachine {
   const rig::CampaignMachine& rig() const { return rig_; }
   investigate::Subject& subject() { return subject_; }
 
-  // The effects of a world; instants in the first hour.
+  // The effects of a world.
   rig::HiddenEffects Hidden(std::uint64_t seed, const std::vector<std::string>& texts) const {
     rig::HiddenEffects hidden;
     for (const std::string& text : texts) {
       hidden.push_back(rig::ParseHidden(text, seed, rig_.sensors));
     }
-    rig::SetInTime(hidden, {{0.0, 3600.0, true, true}});
     return hidden;
   }
 
@@ -77,6 +76,8 @@ class WorldRecorder : public investigate::Recorder {
     ++recorded;
     return name;
   }
+
+  const rig::HiddenEffects& hidden() const { return rig_.hidden(); }
 
   int recorded = 0;
 
