@@ -130,8 +130,8 @@ class Prospects {
     const double waiting =
         std::max(0.0, simulation::StartedOf(possible.path) - situation_.about.started);
     const auto made = std::ranges::count(situation_.made, possible.text);
-    const double bits =
-        std::ldexp(ExpectedInformation(before, after, worlds_.list), -static_cast<int>(made));
+    const double bits = std::ldexp(ExpectedInformation(before, after, worlds_.list),
+                                   -static_cast<int>(made) - situation_.stalled);
     return {possible.text, CostOf(possible.path, situation_.place, waiting, situation_.costs),
             std::max(0.0, bits), possible.path};
   }

@@ -1,7 +1,7 @@
 // The run to make next: of all that could be made, the one that is expected to tell most a minute
 // of what is the matter.
 //
-//   const Choice choice = Choose({campaign, recordings, now, place, costs, about, made, records});
+//   const Choice choice = Choose({campaign, recordings, now, place, costs, about, made, 0, records});
 //   choice.weighed[0].text;  // "sweep X over its travel, there and back, with the head"
 //   choice.weighed[0].bits_per_minute();
 //
@@ -32,9 +32,10 @@ struct Situation {
   Place place;                      // what is on the machine
   const Costs& costs;
   simulation::PathAbout about;  // of a run that begins now
-  // The texts of the runs so far. One that did not settle what it promised to settle promised too
-  // much: each time before halves what it promises now.
+  // The simulation that promises may be wrong: each time that a run of this text was made before
+  // halves what it promises, and each run since anything was settled halves what all promise.
   std::vector<std::string> made;
+  int stalled = 0;
   // Whether a path can be recorded at all.
   std::function<bool(const recording::Recording& path)> records;
 };

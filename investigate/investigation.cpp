@@ -124,7 +124,7 @@ class Investigator {
       about.temperature.try_emplace(sensor, subject_.room);
     }
     return Choose({now.campaign, recordings_, diagnosis_ ? &*diagnosis_ : nullptr, place_,
-                   subject_.costs, about, journal_.texts(),
+                   subject_.costs, about, journal_.texts(), journal_.stalled(),
                    [&](const Recording& path) { return recorder_.Records(path); }});
   }
 

@@ -198,6 +198,18 @@ std::vector<Outcome> Journal::outcomes() const {
   return outcomes;
 }
 
+int Journal::stalled() const {
+  constexpr double kSettled = 0.1;  // of what was promised
+  int stalled = 0;
+  for (const Json& step : data_.at("steps")) {
+    if (!step.contains("after") || !step.at("after").contains("entropy_bits")) continue;
+    const double before = step.at("before").at("entropy_bits"), bits = step.at("bits"),
+                 after = step.at("after").at("entropy_bits");
+    stalled = after > before - kSettled * bits ? stalled + 1 : 0;
+  }
+  return stalled;
+}
+
 std::vector<std::string> Journal::texts() const {
   std::vector<std::string> texts;
   for (const Json& step : data_.at("steps")) {

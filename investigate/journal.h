@@ -63,6 +63,8 @@ class Journal {
   bool IsEnded() const;
   // Of the steps that were diagnosed.
   std::vector<Outcome> outcomes() const;
+  // Of the last steps, those after which as much was open as before.
+  int stalled() const;
   // What was done in the steps that were recorded.
   std::vector<std::string> texts() const;
   // The number of the next or of the waiting step, from 1.

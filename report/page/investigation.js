@@ -71,7 +71,7 @@ registerSection({
     return `After ${fixed(ended.minutes, 0)} minutes and ${runs} runs the verdict is ` +
         `${ended.verdict}, ${sure}: ${ended.why}.`;
   },
-  facts: (result) => [['Begun', dateText(result.started)]],
+  facts: () => [],
   body: (result) => [timeLine(result), element(
       'details', {class: 'fold group'},
       element('summary', {}, 'What was weighed before each run'), weighedTable(result))],

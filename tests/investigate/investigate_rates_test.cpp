@@ -3,6 +3,7 @@
 // (--gtest_filter); worlds: ABBE_SEEDS.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <functional>
@@ -61,7 +62,7 @@ struct Result {
 Result Investigated(InvestigatedMachine& machine, std::uint64_t seed,
                     const rig::HiddenEffects& hidden) {
   machine.subject().budget = MinutesOf(machine, rig::CampaignKind::kFull);
-  const auto folder = EmptyFolder(fmt::format("world_{}", seed));
+  const auto folder = EmptyFolder(fmt::format("world_{}_{}", getpid(), seed));
   Journal journal = Journal::In(folder, AboutDemo());
   WorldRecorder recorder(machine.rig(), seed, hidden);
   Ended ended = investigate::Investigate(machine.subject(), recorder, journal);
