@@ -22,6 +22,7 @@ void AddFuse(CLI::App& program, int& exit_code);
 void AddTrack(CLI::App& program, int& exit_code);
 void AddFollow(CLI::App& program, int& exit_code);
 void AddDiagnose(CLI::App& program, int& exit_code);
+void AddInvestigate(CLI::App& program, int& exit_code);
 void AddCauses(CLI::App& program, int& exit_code);
 void AddLearnedCommand(CLI::App& program, int& exit_code);
 void AddHarmonics(CLI::App& program, int& exit_code);
@@ -37,10 +38,10 @@ void AddCompletion(CLI::App& program, int& exit_code);
 void AddMan(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands = std::to_array<AddCommand>(
-    {AddInit,   AddDoctor,    AddRig,        AddAlign,    AddSweep,       AddRecord,
-     AddReduce, AddCalibrate, AddCircle,     AddPath,     AddHarmonics,   AddPlate,
-     AddFuse,   AddTrack,     AddFollow,     AddDiagnose, AddCauses,      AddLearnedCommand,
-     AddExport, AddCorrect,   AddSimulate,   AddConvert,  AddSensitivity, AddHistory,
-     AddReport, AddLive,      AddCompletion, AddMan});
+    {AddInit,           AddDoctor,    AddRig,     AddAlign,      AddSweep,       AddRecord,
+     AddReduce,         AddCalibrate, AddCircle,  AddPath,       AddHarmonics,   AddPlate,
+     AddFuse,           AddTrack,     AddFollow,  AddDiagnose,   AddInvestigate, AddCauses,
+     AddLearnedCommand, AddExport,    AddCorrect, AddSimulate,   AddConvert,     AddSensitivity,
+     AddHistory,        AddReport,    AddLive,    AddCompletion, AddMan});
 
 }  // namespace abbe::apps

@@ -23,6 +23,7 @@
 #include "diagnosis/measured_noise.h"
 #include "diagnosis/next_run.h"
 #include "failure/failure.h"
+#include "learned/carried.h"
 #include "learned/learning.h"
 #include "recording/file_hash.h"
 #include "settings/toml_text.h"
@@ -35,7 +36,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DiagnoseArguments {
-  std::vector<fs::path> recordings;
+  std::vector<fs::path> recordings, learned;
   fs::path machine, out, json;
   std::string campaign;  // of the plan
   bool plan = false, learn = false, quiet = false;
@@ -105,6 +106,7 @@ int Diagnose(const DiagnoseArguments& arguments) {
   diagnosis::UseMeasuredNoise(recordings, instruments);
   diagnosis::Campaign campaign(std::move(instruments));
   for (const recording::Recording& recording : recordings) campaign.Add(recording);
+  campaign.CarryOn(learned::CarriedFrom(arguments.learned));
   diagnosis::Diagnosis diagnosis = diagnosis::Diagnose(campaign);
   diagnosis::AddNextRuns(campaign, recordings, diagnosis);
   std::vector<diagnosis::Candidate> causes;
@@ -160,6 +162,11 @@ void AddDiagnose(CLI::App& program, int& exit_code) {
       ->add_flag("--learn", arguments->learn,
                  "Where something is left, extend the simulation by terms that nobody wrote down; "
                  "on trial: how often one is wrong has not been measured yet")
+      ->excludes(plan);
+  command
+      ->add_option("--learned", arguments->learned,
+                   "Extended models of other machines: the terms that were learned there compete "
+                   "as named causes")
       ->excludes(plan);
   command->add_flag("--quiet", arguments->quiet, "No tables");
   command->footer(

@@ -113,7 +113,7 @@ ordered_json FindingJson(std::size_t which, const Diagnosis& diagnosis, const He
   }
   const auto& words = finding.score.candidate.cause->words;
   json["words"] = {{"what", words.what}, {"shows", words.shows}};
-  if (GivesAdvice(diagnosis)) {
+  if (GivesAdvice(diagnosis) && !words.check.empty()) {
     json["words"].update({{"check", words.check}, {"remedy", words.remedy}});
   }
   if (const auto without = WorthOf(which, diagnosis, gain)) {
@@ -147,7 +147,8 @@ std::string FindingText(std::size_t which, const Diagnosis& diagnosis, const Hel
   text += OneOfText(finding);
   const auto& words = finding.score.candidate.cause->words;
   text += fmt::format("  what it is   {}\n  how it shows {}\n", words.what, words.shows);
-  if (GivesAdvice(diagnosis)) {
+  // What was learned has none.
+  if (GivesAdvice(diagnosis) && !words.check.empty()) {
     text += fmt::format("  check        {}\n  what to do   {}\n", words.check, words.remedy);
   }
   if (const auto without = WorthOf(which, diagnosis, gain)) {

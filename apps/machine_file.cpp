@@ -4,6 +4,7 @@
 
 #include "apps/protocol.h"
 #include "history/limits.h"
+#include "investigate/cost.h"
 #include "machine/drift.h"
 #include "rig/rig_settings.h"
 
@@ -59,6 +60,7 @@ MachineFile ReadMachineFile(const settings::Document& document) {
   ReadProtocol(root);
   history::ReadLimits(root);
   machine::ReadDrift(root);
+  investigate::CheckCosts(root);
   root.RefuseUnknown();
   return file;
 }
@@ -70,6 +72,7 @@ machine::Machine ReadMachineOf(const std::filesystem::path& path) {
   ReadProtocol(document.Root());
   history::ReadLimits(document.Root());
   machine::ReadDrift(document.Root());
+  investigate::CheckCosts(document.Root());
   document.Root().RefuseUnknown();
   return machine;
 }
@@ -82,6 +85,7 @@ MachineAlone ReadMachineAlone(const settings::Document& document) {
   ReadProtocol(root);
   history::ReadLimits(root);
   machine::ReadDrift(root);
+  investigate::CheckCosts(root);
   root.RefuseUnknown();
   return alone;
 }

@@ -42,8 +42,9 @@ Campaign::Campaign(simulation::Instruments instruments)
 
 Campaign Campaign::WithoutRuns() const {
   Campaign empty(instruments_);
-  empty.origin_ = origin();
+  if (origin_ || !runs_.empty()) empty.origin_ = origin();
   empty.facts_ = facts_;
+  empty.carried_ = carried_;
   return empty;
 }
 
@@ -77,6 +78,10 @@ void Campaign::NumberRuns() {
   for (PreparedRun& run : runs_) in_time.push_back(&run.trace);
   std::ranges::stable_sort(in_time, {}, &simulation::Trace::started);
   for (int number = 0; simulation::Trace * trace : in_time) trace->number = number++;
+}
+
+void Campaign::CarryOn(std::vector<std::shared_ptr<const simulation::LearnedCause>> carried) {
+  carried_ = std::move(carried);
 }
 
 simulation::Origin Campaign::origin() const {

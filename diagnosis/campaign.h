@@ -14,6 +14,7 @@
 // Validity: runs of one machine in one state: what changes between them has to be a cause.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@
 #include "recording/recording.h"
 #include "simulation/causes/cause.h"
 #include "simulation/instruments.h"
+#include "simulation/learned/learned_term.h"
 #include "simulation/run_kind.h"
 
 namespace abbe::diagnosis {
@@ -39,6 +41,12 @@ class Campaign {
 
   // A campaign without runs, for parts of those of this one or further ones on the same clock.
   Campaign WithoutRuns() const;
+
+  // Terms that were learned on other machines, as candidates beside the known causes.
+  void CarryOn(std::vector<std::shared_ptr<const simulation::LearnedCause>> carried);
+  const std::vector<std::shared_ptr<const simulation::LearnedCause>>& carried() const {
+    return carried_;
+  }
 
   simulation::Origin origin() const;
 
@@ -81,6 +89,7 @@ class Campaign {
   std::vector<PreparedRun> runs_;
   std::vector<InvalidOfRun> invalid_;
   std::vector<std::string> notes_;
+  std::vector<std::shared_ptr<const simulation::LearnedCause>> carried_;
 };
 
 }  // namespace abbe::diagnosis

@@ -76,6 +76,18 @@ std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coar
   return candidates;
 }
 
+std::vector<Candidate> CandidatesOf(const Campaign& campaign) {
+  const simulation::Scene scene = campaign.scene();
+  std::vector<Candidate> candidates =
+      AllCandidates(scene, CoarsenessOf(campaign.instruments().machine.population));
+  for (const auto& carried : campaign.carried()) {
+    for (const simulation::Object& object : carried->cause().objects(scene)) {
+      candidates.push_back({&carried->cause(), object, {}});
+    }
+  }
+  return candidates;
+}
+
 std::vector<std::string> StandingPairs(const simulation::Scene& scene) {
   std::vector<std::string> names;
   for (const simulation::Cause& cause : simulation::Causes()) {

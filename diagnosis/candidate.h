@@ -46,6 +46,9 @@ double CoarsenessOf(const machine::Population& population);
 // shapes of one cause and object follow each other.
 std::vector<Candidate> AllCandidates(const simulation::Scene& scene, double coarseness = 1.0);
 
+// Those of a campaign: all causes, and what was learned on other machines.
+std::vector<Candidate> CandidatesOf(const Campaign& campaign);
+
 struct Score {
   Candidate candidate;
   Eigen::VectorXd coefficients;  // SI

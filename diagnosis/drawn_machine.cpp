@@ -46,11 +46,16 @@ VectorXd Drawn(const estimation::ParameterBlock& block, const Normal& normal) {
 }  // namespace
 
 Values DrawnMachine(const Campaign& campaign, const Normal& normal) {
+  return DrawnMachine(campaign, campaign.runs(), normal);
+}
+
+Values DrawnMachine(const Campaign& campaign, const std::vector<PreparedRun>& runs,
+                    const Normal& normal) {
   Values values;
   DrawFunctions(campaign, normal, values);
   values.emplace("squareness",
                  campaign.instruments().machine.population.squareness * Draws(3, normal));
-  for (const PreparedRun& run : campaign.runs()) {
+  for (const PreparedRun& run : runs) {
     for (const auto& block : run.simulated.blocks) {
       if (!values.contains(block.name)) values.emplace(block.name, Drawn(block, normal));
     }

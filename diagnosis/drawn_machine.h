@@ -9,6 +9,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "diagnosis/campaign.h"
 #include "diagnosis/linear_runs.h"
@@ -19,5 +20,8 @@ inline constexpr double kAligned = 100e-6;  // rad, of a target that was set by 
 
 // `normal`: the next of independent standard normal numbers.
 Values DrawnMachine(const Campaign& campaign, const std::function<double()>& normal);
+// Of runs that are not in the campaign.
+Values DrawnMachine(const Campaign& campaign, const std::vector<PreparedRun>& runs,
+                    const std::function<double()>& normal);
 
 }  // namespace abbe::diagnosis

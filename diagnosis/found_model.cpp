@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "simulation/causes/cause.h"
 #include "standards/coverage.h"
@@ -70,8 +71,21 @@ simulation::Unexplained UnexplainedOf(const Leftover& leftover, const Campaign& 
           leftover.unit.name, InSpace(leftover, campaign)};
 }
 
-simulation::ModelledCause ModelledOf(const Finding& finding) {
-  simulation::ModelledCause cause = FoundCause(finding.score);
+// What was learned on another machine, as large as it is on this one.
+simulation::ModelledCause FoundOn(const Campaign& campaign, const Score& score) {
+  for (const auto& carried : campaign.carried()) {
+    if (&carried->cause() != score.candidate.cause) continue;
+    simulation::LearnedTerm term = carried->term();
+    term.coefficients = score.coefficients;
+    term.covariance = score.covariance;
+    term.u95_of_numbers.clear();  // they are those of the other machine
+    return simulation::ModelledTerm(std::move(term));
+  }
+  return FoundCause(score);
+}
+
+simulation::ModelledCause ModelledOf(const Campaign& campaign, const Finding& finding) {
+  simulation::ModelledCause cause = FoundOn(campaign, finding.score);
   cause.probability = finding.probability;
   for (const Rival& rival : finding.rivals) cause.rivals.push_back(rival.candidate.Name());
   return cause;
@@ -121,7 +135,7 @@ simulation::ExtendedModel FoundModel(const Diagnosis& diagnosis, const Campaign&
     model.unexplained.push_back(UnexplainedOf(leftover, campaign));
   }
   for (const Finding& finding : diagnosis.findings) {
-    if (IsModelled(finding)) model.causes.push_back(ModelledOf(finding));
+    if (IsModelled(finding)) model.causes.push_back(ModelledOf(campaign, finding));
     if (finding.next_run) model.next_runs.push_back(finding.next_run->text);
   }
   return model;

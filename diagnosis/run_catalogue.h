@@ -8,6 +8,7 @@
 // Units: SI. A run that the linkage does not reach is left out.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,10 +21,17 @@ struct PossibleRun {
   std::string text;    // what to do: "record gap steps of the X axis: ..."
   double seconds = 0;  // that it takes
   PreparedRun run;
+  recording::Recording path;  // as it is planned, with the readings of a perfect machine
 };
 
 // `recordings`: those of the campaign.
 std::vector<PossibleRun> PossibleRuns(const Campaign& campaign,
                                       const std::vector<recording::Recording>& recordings);
+
+// The same and those to begin with, for runs that begin as `about` says; `wanted`: of which kinds.
+using WantedKind = std::function<bool(const simulation::RunKind& kind)>;
+std::vector<PossibleRun> PossibleRuns(const Campaign& campaign,
+                                      const std::vector<recording::Recording>& recordings,
+                                      const simulation::PathAbout& about, const WantedKind& wanted);
 
 }  // namespace abbe::diagnosis

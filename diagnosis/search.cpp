@@ -42,8 +42,7 @@ bool InReadings(const Candidate& candidate) {
 }  // namespace
 
 Search::Search(const Campaign& campaign)
-    : candidates_(
-          AllCandidates(campaign.scene(), CoarsenessOf(campaign.instruments().machine.population))),
+    : candidates_(CandidatesOf(campaign)),
       rim_sensors_(simulation::RimSensorsOf(campaign.scene()).size()),
       base_(std::make_shared<const Fit>(campaign)),
       fit_(base_) {}

@@ -71,9 +71,7 @@ double CosineOf(const MatrixXd& of_cause, const VectorXd& with_term, double of_t
 
 std::vector<Candidate> NamedBeside(const diagnosis::Fit& base,
                                    const std::vector<Candidate>& found) {
-  const diagnosis::Campaign& campaign = base.campaign();
-  const auto all = diagnosis::AllCandidates(
-      campaign.scene(), diagnosis::CoarsenessOf(campaign.instruments().machine.population));
+  const auto all = diagnosis::CandidatesOf(base.campaign());
   std::vector<Candidate> named;
   for (const diagnosis::Named& each : diagnosis::Shortlist(base, all)) {
     const Candidate& candidate = each.best.candidate;

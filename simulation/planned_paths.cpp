@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "recording/instant.h"
 #include "settings/toml_text.h"
@@ -66,7 +67,7 @@ std::string HeaderOf(const HeaderAbout& about) {
 Recording CirclePath(const CirclePlan& plan, const PathAbout& about) {
   constexpr double kTurning = 5.0;  // s, before it goes round the other way
   const int first = plan.plane[0] - 'X', second = plan.plane[1] - 'X';
-  PathMaker maker({"linkage", about.machine, about.started}, about);
+  PathMaker maker({"linkage", about.machine, about.started, {}, plan.mounting}, about);
   const double turn = 2.0 * std::numbers::pi * plan.radius / plan.feed;
   double begin = 0.0;
   for (const int sense : {1, -1}) {
@@ -112,6 +113,65 @@ Recording GapStepPath(char axis, const Vector3d& start, const std::vector<double
   return maker.Take();
 }
 
+Recording SweepPath(char axis, const std::array<machine::Travel, 3>& travels,
+                    const std::string& mounting, const PathAbout& about) {
+  constexpr int kSteps = 15;                                         // as a campaign, reduced
+  constexpr double kStand = 0.6, kInterval = 0.047, kTurning = 1.0;  // s
+  constexpr double kFeed = 600.0 * settings::kMillimetrePerMinute;
+  PathMaker maker(
+      {"sweep", about.machine, about.started, fmt::format("axis = \"{}\"\n", axis), mounting},
+      about);
+  const machine::Travel& travel = travels[axis - 'X'];
+  const double step = (travel.last - travel.first) / kSteps;
+  double begin = 0.0;
+  for (const int direction : {1, -1}) {
+    for (int i = 0; i <= kSteps; ++i) {
+      Vector3d axes(travels[0].first, travels[1].first, travels[2].first);
+      axes[axis - 'X'] = travel.first + (direction > 0 ? i : kSteps - i) * step;
+      for (double since = 0.0; since < kStand; since += kInterval) {
+        maker.Add({begin + since, axes, 1, direction, kFeed});
+      }
+      begin += kStand + step / kFeed;
+    }
+    begin += kTurning;
+  }
+  return maker.Take();
+}
+
+Recording GridPath(const GridPlan& plan, const PathAbout& about) {
+  constexpr double kStand = 0.5;  // s
+  constexpr int kReadings = 5;    // in a stand
+  PathMaker maker({"linkage", about.machine, about.started, {}, plan.mounting}, about);
+  Vector3d before = plan.middle - plan.size / 2;
+  double begin = 0.0;
+  const int lines = plan.counts[1] * plan.counts[2];
+  for (int line = 0; line < lines; ++line) {
+    const int z = line / plan.counts[1], y = line % plan.counts[1];
+    for (int i = 0; i < plan.counts[0]; ++i) {
+      const Eigen::Vector3i at(line % 2 == 0 ? i : plan.counts[0] - 1 - i,
+                               z % 2 == 0 ? y : plan.counts[1] - 1 - y, z);
+      const Vector3d share =
+          at.cast<double>().cwiseQuotient((plan.counts.array() - 1).max(1).matrix().cast<double>());
+      const Vector3d place = plan.middle + plan.size.cwiseProduct(share) - plan.size / 2;
+      const Vector3d way = place - before;
+      int sense = 1;
+      for (const double each : way) {
+        if (each != 0.0) {
+          sense = each > 0.0 ? 1 : -1;
+          break;
+        }
+      }
+      begin += way.norm() / plan.feed;
+      for (int reading = 0; reading < kReadings; ++reading) {
+        maker.Add({begin + kStand * reading / kReadings, place, 1, sense, plan.feed});
+      }
+      begin += kStand;
+      before = place;
+    }
+  }
+  return maker.Take();
+}
+
 Recording StillPath(char axis, const Vector3d& at, const PathAbout& about) {
   constexpr double kInterval = 0.093;  // s: no multiple of the period of the mains
   constexpr int kReadings = 120;
@@ -142,6 +202,16 @@ Recording LengthPath(char axis, const Vector3d& middle, const machine::Travel& t
       {fmt::format("approach_{}", "xyz"[axis - 'X']), std::vector<double>(lengths.size(), 1.0)});
   path.columns.push_back({"u_length_um", std::vector<double>(lengths.size(), kU)});
   path.columns.push_back({"length_mm", std::move(lengths)});
+  return path;
+}
+
+Recording BegunAt(Recording path, double started) {
+  constexpr std::string_view kKey = "started = ";
+  const std::size_t from = path.header.find(kKey);
+  if (from == std::string::npos) return path;
+  const std::size_t to = path.header.find('\n', from);
+  path.header.replace(from, to - from,
+                      fmt::format("{}{}", kKey, settings::Quoted(recording::InstantText(started))));
   return path;
 }
 

@@ -55,6 +55,10 @@ Recording RunKind::Plan(Recording path, const Instruments&) const {
   return path;
 }
 
+std::string RunKind::MountingOf(const Recording&) const { return {}; }
+
+std::vector<NextRun> RunKind::FirstRuns(const Instruments&, const PathAbout&) const { return {}; }
+
 std::vector<NextRun> RunKind::NextRuns(const std::vector<const Recording*>&, const Instruments&,
                                        const PathAbout&) const {
   return {};

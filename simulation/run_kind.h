@@ -104,6 +104,10 @@ class RunKind {
   virtual bool Takes(const recording::Recording& head) const = 0;
   // A shaft needs none.
   virtual bool NeedsAxes() const { return true; }
+  // What it is recorded with, and how that is mounted: runs with both the same need no set-up
+  // between them.
+  virtual std::string_view Instrument() const { return name(); }
+  virtual std::string MountingOf(const recording::Recording& head) const;
 
   // An error map.
   virtual bool MakesMaps() const { return false; }
@@ -142,6 +146,9 @@ class RunKind {
   // A path with the readings of a perfect machine (planned_run.h).
   virtual recording::Recording Plan(recording::Recording path,
                                     const Instruments& instruments) const;
+  // Runs to begin with, where nothing needs to be recorded before.
+  virtual std::vector<NextRun> FirstRuns(const Instruments& instruments,
+                                         const PathAbout& about) const;
   // `recorded`: the runs of this kind so far.
   virtual std::vector<NextRun> NextRuns(const std::vector<const recording::Recording*>& recorded,
                                         const Instruments& instruments,

@@ -42,7 +42,10 @@ void CountFrom(const Origin& origin, Trace& trace) {
   trace.clock = trace.time.array() + later;
   trace.warming = trace.temperature;
   for (std::size_t s = 0; s < trace.sensors.size(); ++s) {
-    trace.warming.row(s).array() -= origin.temperature.at(trace.sensors[s]);
+    // A sensor that was not there at the start begins with its first value.
+    const auto start = origin.temperature.find(trace.sensors[s]);
+    trace.warming.row(s).array() -=
+        start != origin.temperature.end() ? start->second : trace.temperature(s, 0);
   }
 }
 

@@ -73,21 +73,28 @@ std::string StageName(const std::string& object) {
 }
 
 std::shared_ptr<const LearnedCause> LearnedCause::Of(LearnedTerm term) {
-  return std::shared_ptr<const LearnedCause>(new LearnedCause(std::move(term)));
+  constexpr double kWide = 10.0;  // the data say how large it is
+  return std::shared_ptr<const LearnedCause>(new LearnedCause(std::move(term), kWide));
 }
 
-LearnedCause::LearnedCause(LearnedTerm term) : term_(std::move(term)) {
+std::shared_ptr<const LearnedCause> LearnedCause::CarriedOn(LearnedTerm term) {
+  if (term.words.empty()) term.words = "a term that was learned on another machine";
+  return std::shared_ptr<const LearnedCause>(new LearnedCause(std::move(term), 1.0));
+}
+
+LearnedCause::LearnedCause(LearnedTerm term, double times) : term_(std::move(term)) {
   constexpr double kPlausible = 10e-6;  // m or rad
   const StageChannel channel = ChannelOfTerm(term_);
   cause_.id = term_.name.empty() ? term_.expression.Text() : term_.name;
   cause_.words.what = term_.words;
+  cause_.words.shows = fmt::format("{} follows {}", term_.object, term_.expression.Text());
   cause_.keys = KeysOfTerm(term_);
   // As large as it was found, where it was: a coefficient has the unit of its summand.
   cause_.plausible = Eigen::VectorXd::Constant(term_.expression.columns(), kPlausible);
   const Index known = std::min(cause_.plausible.size(), term_.coefficients.size());
   for (Index i = 0; i < known; ++i) {
     const double size = std::abs(term_.coefficients[i]);
-    if (size > 0.0) cause_.plausible[i] = 10.0 * size;
+    if (size > 0.0) cause_.plausible[i] = times * size;
   }
   cause_.objects = [object = Object(term_.object)](const Scene& scene) -> std::vector<Object> {
     const auto channels = ChannelsOf(scene);

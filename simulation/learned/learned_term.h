@@ -61,13 +61,17 @@ std::string StageName(const std::string& object);
 class LearnedCause {
  public:
   static std::shared_ptr<const LearnedCause> Of(LearnedTerm term);
+  // As a cause that other machines may have: with the prior of a named one, as large as it was
+  // found where it was learned.
+  static std::shared_ptr<const LearnedCause> CarriedOn(LearnedTerm term);
 
   const LearnedTerm& term() const { return term_; }
   const Cause& cause() const { return cause_; }
   Object object() const { return term_.object; }
 
  private:
-  explicit LearnedCause(LearnedTerm term);
+  // `times`: the plausible sizes over those of the term.
+  LearnedCause(LearnedTerm term, double times);
 
   LearnedTerm term_;
   Cause cause_;

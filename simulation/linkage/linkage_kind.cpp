@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -29,7 +30,9 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using recording::Recording;
 
-constexpr const char* kBaseAnew = "planned anew";
+constexpr const char *kBaseAnew = "planned anew", *kFirstBase = "first";
+constexpr double kFast = 600.0 * settings::kMillimetrePerMinute;  // m/s, of new circles
+constexpr double kSlow = 120.0 * settings::kMillimetrePerMinute;
 
 LinkageSimulation Nominal(const Instruments& on, const relm::LinkageSettings& settings) {
   return {on.machine.chain, settings,
@@ -53,6 +56,26 @@ bool Moves(const Recording& run) {
     if (way * settings::kMillimetre > kStayWindow) ++moved;
   }
   return 2 * moved > run.rows();
+}
+
+// The box of the travels.
+struct Volume {
+  explicit Volume(const std::array<machine::Travel, 3>& travels) {
+    for (std::size_t axis = 0; axis < travels.size(); ++axis) {
+      size[axis] = travels[axis].last - travels[axis].first;
+      middle[axis] = std::midpoint(travels[axis].first, travels[axis].last);
+    }
+    smallest = size.minCoeff();
+  }
+  Vector3d middle, size;
+  double smallest;
+};
+
+NextRun CircleRun(CirclePlan plan, const PathAbout& about) {
+  return {fmt::format("record a circle in {} of radius {:.3g} mm at {:.0f} mm/min, in both senses",
+                      plan.plane, plan.radius / settings::kMillimetre,
+                      plan.feed / settings::kMillimetrePerMinute),
+          CirclePath(plan, about)};
 }
 
 // The runs that could follow those of a linkage.
@@ -82,11 +105,11 @@ class AfterLinkage {
   }
 
   void AddOtherFeed(const Recording& run) {
-    constexpr double kFast = 300.0;     // mm/min
+    constexpr double kIsFast = 300.0;   // mm/min
     constexpr double kOtherFeed = 5.0;  // times
     const auto column = run.Find("feed_mm_min");
     const double feed = column ? *std::max_element(column->begin(), column->end()) : 0.0;
-    const double times = feed == 0.0 || feed >= kFast ? 1.0 / kOtherFeed : kOtherFeed;
+    const double times = feed == 0.0 || feed >= kIsFast ? 1.0 / kOtherFeed : kOtherFeed;
     runs_.push_back({feed == 0.0 ? fmt::format("repeat {} at a fifth of its feed", ShortName(run))
                                  : fmt::format("repeat {} at {:.0f} mm/min instead of {:.0f}",
                                                ShortName(run), times * feed, feed),
@@ -108,26 +131,29 @@ class AfterLinkage {
     elbow = elbow == relm::Elbow::kUp ? relm::Elbow::kDown : relm::Elbow::kUp;
     runs_.push_back({fmt::format("repeat {} with the linkage's elbow {}", name,
                                  elbow == relm::Elbow::kUp ? "up" : "down"),
-                     Again(run, AsItWas(run)), std::move(other)});
+                     WithElbow(elbow, Again(run, AsItWas(run))), std::move(other)});
+  }
+
+  static Recording WithElbow(relm::Elbow elbow, Recording run) {
+    run.header =
+        fmt::format("elbow = \"{}\"\n", elbow == relm::Elbow::kUp ? "up" : "down") + run.header;
+    return run;
   }
 
   void AddCircles() {
-    constexpr double kFeed = 600.0;  // mm/min
-    double smallest = on_.machine.travels[0].last - on_.machine.travels[0].first;
-    Vector3d middle;
-    for (std::size_t axis = 0; axis < on_.machine.travels.size(); ++axis) {
-      const machine::Travel& travel = on_.machine.travels[axis];
-      smallest = std::min(smallest, travel.last - travel.first);
-      middle[axis] = std::midpoint(travel.first, travel.last);
-    }
+    const Volume volume(on_.machine.travels);
+    const Recording* first = moving_ != nullptr ? moving_ : standing_;
+    const std::string base = BaseLines(first != nullptr ? BaseOf(*first) : kFirstBase);
     const auto add = [&](const char* plane, double radius) {
-      runs_.push_back(
-          {fmt::format("record a circle in {} of radius {:.3g} mm at {:.0f} mm/min, in both senses",
-                       plane, radius / settings::kMillimetre, kFeed),
-           CirclePath({plane, middle, radius, kFeed * settings::kMillimetre / 60.0}, about_)});
+      runs_.push_back(CircleRun({.plane = plane,
+                                 .centre = volume.middle,
+                                 .radius = radius,
+                                 .feed = kFast,
+                                 .mounting = base},
+                                about_));
     };
-    for (const char* plane : {"XY", "YZ", "ZX"}) add(plane, smallest / 3.0);
-    add("XY", smallest / 6.0);
+    for (const char* plane : {"XY", "YZ", "ZX"}) add(plane, volume.smallest / 3.0);
+    add("XY", volume.smallest / 6.0);
   }
 
   const Instruments& on_;
@@ -140,6 +166,12 @@ class LinkageRuns : public RunKind {
  public:
   std::string_view name() const override { return "linkage"; }
   bool Takes(const Recording& head) const override { return head.Kind() == name(); }
+
+  // The base and the elbow.
+  std::string MountingOf(const Recording& head) const override {
+    return fmt::format("{} {}", head.HeaderText("mounting.base").value_or(kFirstBase),
+                       head.HeaderText("elbow").value_or(""));
+  }
 
   bool MakesMaps() const override { return true; }
   std::vector<SimulatedRun> ForMap(const RunSource& source, const machine::VolumetricModel& model,
@@ -187,6 +219,30 @@ class LinkageRuns : public RunKind {
     FlagPlaces(path);
     PlanAngles(on, path);
     return path;
+  }
+
+  // Slow circles, and stands in the whole volume; the fast circles are there always.
+  std::vector<NextRun> FirstRuns(const Instruments& on, const PathAbout& about) const override {
+    if (!on.linkage || !on.HasAxes()) return {};
+    const Volume volume(on.machine.travels);
+    std::vector<NextRun> runs;
+    for (const char* plane : {"XY", "YZ", "ZX"}) {
+      runs.push_back(CircleRun({.plane = plane,
+                                .centre = volume.middle,
+                                .radius = volume.smallest / 3.0,
+                                .feed = kSlow,
+                                .mounting = BaseLines(kFirstBase)},
+                               about));
+    }
+    const Vector3d share(25.0 / 60.0, 25.0 / 60.0, 50.0 / 60.0);
+    runs.push_back({"stand at 80 places of a cube with the linkage",
+                    GridPath({.middle = volume.middle,
+                              .size = share.cwiseProduct(volume.size),
+                              .counts = {4, 4, 5},
+                              .feed = kFast,
+                              .mounting = BaseLines(kFirstBase)},
+                             about)});
+    return runs;
   }
 
   std::vector<NextRun> NextRuns(const std::vector<const Recording*>& recorded,

@@ -19,6 +19,11 @@ class LengthRuns : public RunKind {
   std::string_view name() const override { return "length"; }
   bool Takes(const Recording& head) const override { return head.Kind() == name(); }
 
+  // Aligned anew for each axis.
+  std::string MountingOf(const Recording& head) const override {
+    return head.HeaderText("axis").value_or("");
+  }
+
   bool MakesMaps() const override { return true; }
   std::vector<SimulatedRun> ForMap(const RunSource& source, const machine::VolumetricModel& model,
                                    const Instruments& on) const override {

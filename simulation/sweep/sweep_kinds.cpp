@@ -32,7 +32,8 @@ using Eigen::Vector3d;
 using recording::Recording;
 
 constexpr const char* kAnew = "planned anew";  // a mounting
-constexpr double kLeastNoise = 1e-12;          // m
+constexpr const char* kFirstMounting = "first";
+constexpr double kLeastNoise = 1e-12;  // m
 
 // The slope of a Gaussian process: its deviation over its length (fusion/machine_prior.h).
 Eigen::Matrix<double, 6, 3> SlopesOf(const machine::Population& population) {
@@ -102,6 +103,14 @@ InStays NoiseInStays(const Recording& recording, const Stays& stays, probes::Pro
 class HeadKind : public RunKind {
  public:
   bool Takes(const Recording& head) const override { return head.Kind() == name(); }
+
+  std::string_view Instrument() const override { return "head"; }
+  // The axis, the set-up, the channels.
+  std::string MountingOf(const Recording& head) const override {
+    return fmt::format("{} {} {}", head.HeaderText("axis").value_or(""),
+                       head.HeaderText("mounting.id").value_or(kFirstMounting),
+                       head.HeaderText("mounting.swapped").value_or(""));
+  }
 
   PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel& model,
                        const Instruments& on, const FactsByRun&) const override {
@@ -283,6 +292,20 @@ class SweepRuns : public HeadKind {
   }
 
   RowRule HeldOut(const Recording& recording) const override { return EverySecondPass(recording); }
+
+  // Of each axis over its travel, there and back.
+  std::vector<NextRun> FirstRuns(const Instruments& on, const PathAbout& about) const override {
+    std::vector<NextRun> runs;
+    if (!on.head) return runs;
+    for (const char axis : {'X', 'Y', 'Z'}) {
+      const machine::Travel& travel = on.machine.travels[axis - 'X'];
+      if (travel.first == travel.last) continue;
+      runs.push_back(
+          {fmt::format("sweep {} over its travel, there and back, with the head", axis),
+           SweepPath(axis, on.machine.travels, MountingLines(kFirstMounting, {}), about)});
+    }
+    return runs;
+  }
 
   // After the first sweep of each axis.
   std::vector<NextRun> NextRuns(const std::vector<const Recording*>& recorded,

@@ -31,13 +31,14 @@ ARROWS = {
     "simulation": "failure random settings recording geometry estimation machine probes paths relm",
     "fusion": "failure settings recording geometry estimation standards machine map probes paths relm simulation",
     "diagnosis": "failure standards settings recording estimation machine probes relm simulation fusion",
-    "learned": "failure random standards estimation simulation diagnosis",
+    "learned": "failure random settings standards estimation simulation diagnosis",
+    "investigate": "failure random settings recording machine simulation diagnosis",
     "history": "failure standards settings recording",
     "track": "failure settings recording standards estimation machine map simulation fusion history",
     "report": "failure",
     "live": "failure recording report",
     "rig": "failure random settings recording hal",
-    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis learned history track report live rig",
+    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis learned investigate history track report live rig",
     "python": "failure settings recording estimation machine map compensation probes paths relm simulation fusion diagnosis apps",
 }
 

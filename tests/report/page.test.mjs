@@ -316,6 +316,24 @@ test(
     }));
 
 test(
+    'an investigation is a time line of its runs',
+    () => withPage({}, async (page) => {
+      const section = page.locator('section.result', {hasText: 'Time line of the runs'}).or(
+          page.locator('section.result', {has: page.locator('ol.timeline')}));
+      assert.match(
+          await section.locator('.summary').textContent(),
+          /After 30 minutes and 2 runs the verdict is explained, certain/);
+      const runs = section.locator('.timeline li');
+      assert.equal(await runs.count(), 2);
+      assert.match(await runs.nth(1).textContent(), /13 to 30.*Sweep X.*explained; backlash:X 1\.000/);
+      // The bars are as long as the runs took: 10 and 3 of 30 min.
+      const widths = await runs.nth(0).locator('.part').evaluateAll(
+          (parts) => parts.map((part) => part.getBoundingClientRect().width));
+      assert.ok(Math.abs(widths[0] / widths[1] - 10 / 3) < 0.05, widths.join());
+      await section.screenshot({path: join(screenshots, 'investigation.png')});
+    }));
+
+test(
     'a calibration tells what it found, pose by pose, and what it could not see',
     () => withPage({}, async (page) => {
       const section = page.locator('section.result', {hasText: 'Calibration of the linkage'});

@@ -620,6 +620,35 @@ export function planResult() {
   };
 }
 
+// Two runs, after the second of which the verdict is certain; one name tries to leave its element.
+export function investigationResult() {
+  const weighed = (text, minutes, bits) => ({text, minutes, bits, bits_per_minute: bits / minutes});
+  const step = (number, text, [set_up, run], bits, entropy_bits, next, after) => ({
+    number,
+    text,
+    minutes: {set_up, waiting: 0, run, total: set_up + run},
+    bits,
+    before: {entropy_bits, nothing: 0.85, worlds: [{name: 'nothing', probability: 0.85}],
+             weighed: [weighed(text, set_up + run, bits), weighed(next, 20, bits / 2)], never_shown: []},
+    path: `0${number}_path.csv`,
+    file: `0${number}_run.h5`,
+    after
+  });
+  return {
+    command: 'investigate',
+    machine: 'demo-mill',
+    recorder: 'devices',
+    started: '2026-11-21T08:00:00Z',
+    steps: [
+      step(1, 'record a circle in XY', [10, 3], 0.317, 1.45, '<img src=x onerror="window.escaped = true">',
+           {verdict: 'clean', findings: [], left: [], certain: false}),
+      step(2, 'sweep X over its travel', [15, 2], 0.273, 1.22, 'sweep Y over its travel',
+           {verdict: 'explained', findings: [{name: 'backlash:X', probability: 0.9996}], left: [], certain: true})
+    ],
+    ended: {why: 'the verdict is certain', minutes: 30, verdict: 'explained', certain: true}
+  };
+}
+
 // Limits that are kept, not kept, undecided and without a figure; one name tries to leave its element.
 export function checkResult() {
   const check = (name, verdict, value, U95, limit, unit = 'um', conditions = '') =>
@@ -769,6 +798,7 @@ export function writeSamples(folder) {
     'diagnosis.json': diagnosisResult(),
     'diagnosis_in_part.json': diagnosisInPart(),
     'plan.json': planResult(),
+    'investigation.json': investigationResult(),
     'history_check.json': checkResult(),
     'history_trend.json': trendResult(),
     'history_compare.json': comparisonResult(),

@@ -1,0 +1,151 @@
+// How many minutes at the machine an investigation takes to a certain, right verdict, beside the
+// campaigns of the virtual rig, and how often it is certain and wrong. Each row by itself
+// (--gtest_filter); worlds: ABBE_SEEDS.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "rig/campaign.h"
+#include "tests/hidden_effects/judgement.h"
+#include "tests/investigate/investigated_world.h"
+#include "tests/seeds.h"
+
+namespace abbe {
+namespace investigate_rates_test {
+
+using investigate::Ended;
+using investigate::Journal;
+
+void ForEachSeed(const std::function<void(std::uint64_t seed)>& use) {
+  const Seeds seeds = SeedsFromEnvironment();
+  for (std::uint64_t seed = seeds.first; seed <= seeds.last; seed += seeds.step) use(seed);
+}
+
+double MinutesOf(InvestigatedMachine& machine, rig::CampaignKind kind) {
+  const auto campaign = rig::RecordCampaign(machine.rig(), 1, {}, {.kind = kind, .reduced = true});
+  return CostOfCampaign(campaign.recordings, machine.subject().costs).total();
+}
+
+// What came of the worlds of a row.
+struct Row {
+  std::vector<double> right;  // minutes to a certain, right verdict
+  int worlds = 0, wrong = 0;  // certain and wrong
+  std::map<std::string, int> open;
+
+  double Median() {
+    if (right.empty()) return 0.0;
+    std::ranges::sort(right);
+    return right[right.size() / 2];
+  }
+  void Print(const char* name) {
+    std::string minutes, others;
+    Median();
+    for (const double each : right) minutes += fmt::format(" {:.0f}", each);
+    for (const auto& [what, count] : open) others += fmt::format(" {} {}", count, what);
+    fmt::print("{}: {} worlds, {} certain and right, {} certain and wrong; open:{}\n  minutes:{}\n",
+               name, worlds, right.size(), wrong, others.empty() ? " none" : others, minutes);
+  }
+};
+
+struct Result {
+  Ended ended;
+  bool is_certain;
+  double minutes;
+};
+
+Result Investigated(InvestigatedMachine& machine, std::uint64_t seed,
+                    const rig::HiddenEffects& hidden) {
+  machine.subject().budget = MinutesOf(machine, rig::CampaignKind::kFull);
+  const auto folder = EmptyFolder(fmt::format("world_{}_{}", getpid(), seed));
+  Journal journal = Journal::In(folder, AboutDemo());
+  WorldRecorder recorder(machine.rig(), seed, hidden);
+  Ended ended = investigate::Investigate(machine.subject(), recorder, journal);
+  const auto outcomes = journal.outcomes();
+  const bool is_certain = !outcomes.empty() && outcomes.back().is_certain;
+  std::string line = fmt::format(
+      "{} {} -> {:.1f} min, {} runs, {}, {}", seed, rig::TruthOf(recorder.hidden()).dump(),
+      journal.spent(), journal.steps(), outcomes.back().verdict, is_certain ? "certain" : "open");
+  for (const auto& finding : outcomes.back().findings) {
+    line += fmt::format("; {} {:.3f}", finding.name, finding.probability);
+  }
+  for (const auto& left : outcomes.back().left) line += "; left " + left;
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
+  std::filesystem::remove_all(folder);
+  return {std::move(ended), is_certain, journal.spent()};
+}
+
+void Add(const Result& result, bool is_right, Row& row) {
+  ++row.worlds;
+  if (!result.is_certain) {
+    ++row.open[std::string(Name(result.ended.diagnosis->verdict))];
+  } else if (is_right) {
+    row.right.push_back(result.minutes);
+  } else {
+    ++row.wrong;
+  }
+}
+
+bool IsOfData(const rig::HiddenEffect& effect) {
+  return effect.entry->name == "stuck-channel" || effect.entry->name == "outliers";
+}
+
+TEST(Investigate, WorldsWithOneEffect) {
+  InvestigatedMachine machine;
+  Row row;
+  ForEachSeed([&](std::uint64_t seed) {
+    const random::CounterRandom random(seed, 0x41DE);
+    const auto hidden = machine.Hidden(seed, {DrawHidden(random, 0, true)});
+    if (IsOfData(hidden.front())) return;
+    const Result result = Investigated(machine, seed, hidden);
+    const auto& findings = result.ended.diagnosis->findings;
+    Add(result, findings.size() == 1 && Names(findings.front(), hidden.front()), row);
+  });
+  row.Print("one effect");
+  EXPECT_LE(row.wrong, row.worlds / 10);
+}
+
+TEST(Investigate, WorldsWithNothing) {
+  InvestigatedMachine machine;
+  Row row;
+  ForEachSeed([&](std::uint64_t seed) {
+    const Result result = Investigated(machine, seed, {});
+    Add(result, result.ended.diagnosis->verdict == Verdict::kClean, row);
+  });
+  row.Print("nothing");
+  EXPECT_LE(row.wrong, row.worlds / 10);
+}
+
+TEST(Investigate, WorldsOutsideTheCatalogue) {
+  InvestigatedMachine machine;
+  Row row;
+  ForEachSeed([&](std::uint64_t seed) {
+    const random::CounterRandom random(seed, 0x0BAD);
+    const auto hidden = machine.Hidden(seed, {DrawHidden(random, 0, false)});
+    const Result result = Investigated(machine, seed, hidden);
+    Add(result,
+        result.ended.diagnosis->verdict == Verdict::kUnexplained &&
+            LivesIn(*result.ended.diagnosis, rig::TruthOf(hidden)[0].at("variable")),
+        row);
+  });
+  row.Print("outside the catalogue");
+  EXPECT_LE(row.wrong, row.worlds / 10);
+}
+
+TEST(Investigate, CostsBesideTheCampaigns) {
+  InvestigatedMachine machine;
+  const double standard = MinutesOf(machine, rig::CampaignKind::kStandard),
+               full = MinutesOf(machine, rig::CampaignKind::kFull);
+  fmt::print("standard campaign {:.0f} min, full campaign {:.0f} min\n", standard, full);
+  EXPECT_GT(standard, 0.0);
+  EXPECT_GT(full, standard);
+}
+
+}  // namespace investigate_rates_test
+}  // namespace abbe
