@@ -6,6 +6,8 @@ const stepEnd = (steps, index) =>
 
 const doneSteps = (result) => (result.steps ?? []).filter(({file}) => file);
 
+const runText = (count) => count === 1 ? '1 run' : `${count} runs`;
+
 const cameText = ({after}) => {
   if (!after) return 'not diagnosed yet';
   const found = after.findings.map(({name, probability}) => `${name} ${fixed(probability, 3)}`);
@@ -30,10 +32,8 @@ function timeLine(result) {
           element(
               'div', {class: 'bar', 'aria-hidden': 'true'},
               element(
-                  'span', {
-                    class: 'before',
-                    style: share(stepEnd(steps, index) - step.minutes.total)
-                  }),
+                  'span',
+                  {class: 'before', style: share(stepEnd(steps, index) - step.minutes.total)}),
               part('setup', step.minutes.set_up), part('waiting', step.minutes.waiting),
               part('run', step.minutes.run)),
           element('p', {class: 'came'}, cameText(step))));
@@ -50,13 +50,14 @@ const weighedTable = (result) => table({
   caption: 'What each run was expected to tell',
   columns: [
     {head: 'Run'}, {head: 'Open before', unit: 'bits', numeric: true},
-    {head: 'Expected', unit: 'bits', numeric: true},
-    {head: 'Took', unit: 'min', numeric: true}, {head: 'The next best'}
+    {head: 'Expected', unit: 'bits', numeric: true}, {head: 'Took', unit: 'min', numeric: true},
+    {head: 'The next best'}
   ],
   rows: (result.steps ?? [])
-            .map(({text, before, bits, minutes}) =>
-                     [capital(text), fixed(before.entropy_bits, 2), fixed(bits, 3),
-                      fixed(minutes.total, 1), before.weighed[1]?.text ?? null]),
+            .map(
+                ({text, before, bits, minutes}) =>
+                    [capital(text), fixed(before.entropy_bits, 2), fixed(bits, 3),
+                     fixed(minutes.total, 1), before.weighed[1]?.text ?? null]),
 });
 
 registerSection({
@@ -66,20 +67,25 @@ registerSection({
   summary: (result) => {
     const {ended} = result;
     const runs = doneSteps(result).length;
-    if (!ended) return `${runs} runs so far; the investigation goes on.`;
+    if (!ended) return `${runText(runs)} so far; the investigation goes on.`;
     const sure = ended.certain ? 'certain' : 'not certain';
-    return `After ${fixed(ended.minutes, 0)} minutes and ${runs} runs the verdict is ` +
+    return `After ${fixed(ended.minutes, 1)} minutes and ${runText(runs)} the verdict is ` +
         `${ended.verdict}, ${sure}: ${ended.why}.`;
   },
   facts: () => [],
-  body: (result) => [timeLine(result), element(
-      'details', {class: 'fold group'},
-      element('summary', {}, 'What was weighed before each run'), weighedTable(result))],
+  body: (result) =>
+      [timeLine(result),
+       element(
+           'details', {class: 'fold group'},
+           element('summary', {}, 'What was weighed before each run'), weighedTable(result))],
   overview: {
     title: 'Investigation',
-    columns: [{head: 'Verdict'}, {head: 'Runs', numeric: true},
-              {head: 'Machine time', unit: 'min', numeric: true}],
-    row: (result) => [result.ended?.verdict ?? 'goes on', String(doneSteps(result).length),
-                      fixed(stepEnd(doneSteps(result), doneSteps(result).length - 1), 0)],
+    columns: [
+      {head: 'Verdict'}, {head: 'Runs', numeric: true},
+      {head: 'Machine time', unit: 'min', numeric: true}
+    ],
+    row: (result) =>
+        [capital(result.ended?.verdict ?? 'goes on'), String(doneSteps(result).length),
+         fixed(stepEnd(doneSteps(result), doneSteps(result).length - 1), 1)],
   },
 });

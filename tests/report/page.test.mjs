@@ -322,7 +322,7 @@ test(
           page.locator('section.result', {has: page.locator('ol.timeline')}));
       assert.match(
           await section.locator('.summary').textContent(),
-          /After 30 minutes and 2 runs the verdict is explained, certain/);
+          /After 30(\.0)? minutes and 2 runs the verdict is explained, certain/);
       const runs = section.locator('.timeline li');
       assert.equal(await runs.count(), 2);
       assert.match(await runs.nth(1).textContent(), /13 to 30.*Sweep X.*explained; backlash:X 1\.000/);
