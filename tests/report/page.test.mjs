@@ -83,7 +83,7 @@ test(
         'X axis', 'X axis', 'Y axis', 'Z axis', 'X axis: positioning', 'Circular test, XY plane',
         'Square path', 'Calibration of the linkage',
         'Performance simulation: circle', 'Corrected program: part_corrected.ngc', 'Export: isg',
-        'Plan: what these runs would show', 'Trend: EYX and C0Y',
+        'Investigation', 'Plan: what these runs would show', 'Trend: EYX and C0Y',
         'What changed: campaign 1 to 5',
         'rig-compare \u00b7 X'
       ]);
