@@ -306,12 +306,13 @@ Recording PlannedRecorder::OfLinkage(const Run& run) {
                                      : MovingCourse(run.path, run.places);
   const auto time = run.path.At("time_s");
   const double rate = (time.size() - 1) / (time.back() - time.front());
-  const std::string elbow = rig.linkage().settings().elbow_up ? "up" : "down";
+  // A run that says nothing of it is mounted as the ones before.
+  const auto elbow = run.path.HeaderText("elbow");
   return rig.Record(
       course, {.rate = stands_still ? kStandRate : rate,
                .run = run.run,
                .started = run.Started(),
-               .keys = fmt::format("elbow = \"{}\"\n", elbow),
+               .keys = elbow ? fmt::format("elbow = \"{}\"\n", *elbow) : "",
                .tables = fmt::format("[mounting]\nbase = {}\n", settings::Quoted(IdOf(run.base))),
                .sensors = machine_.sensors.columns,
                .step = kCourseStep,

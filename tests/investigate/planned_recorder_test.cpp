@@ -37,6 +37,8 @@ TEST_F(PlannedRecorder, GoesRoundACircle) {
   EXPECT_EQ(circle.Kind(), "linkage");
   EXPECT_EQ(circle.HeaderText("mounting.base"), "first");
   EXPECT_EQ(circle.HeaderText("started"), path.HeaderText("started"));
+  // Another circle needs no set-up.
+  EXPECT_EQ(investigate::PlaceOf(circle), investigate::PlaceOf(path));
   const auto x = circle.At("x_mm"), y = circle.At("y_mm"), pass = circle.At("pass");
   std::set<double> passes(pass.begin(), pass.end());
   EXPECT_THAT(passes, testing::ElementsAre(1.0, 2.0));
