@@ -54,26 +54,17 @@ Diagnosed DiagnosisOf(const std::vector<Recording>& recordings, const Subject& s
   return all;
 }
 
-// Whether the same channel or variable was left before the last run too.
-bool IsConfirmed(const Outcome& now, const std::vector<Outcome>& before) {
-  constexpr std::string_view kOver = " over ";
-  if (before.empty()) return false;
-  const auto object = [&](const std::string& left) { return left.substr(0, left.find(kOver)); };
-  const auto variable = [&](const std::string& left) { return left.substr(left.find(kOver)); };
+// Whether one channel was left over one variable by the last run too.
+bool IsLeftAgain(const Outcome& now, const Outcome& last) {
   return std::ranges::any_of(now.left, [&](const std::string& left) {
-    return std::ranges::any_of(before.back().left, [&](const std::string& other) {
-      return object(other) == object(left) || variable(other) == variable(left);
-    });
+    return std::ranges::find(last.left, left) != last.left.end();
   });
 }
 
-bool IsCertain(const diagnosis::Diagnosis& diagnosis, const Outcome& outcome,
-               const std::vector<Outcome>& before, const Choice& choice) {
+bool IsCertain(const diagnosis::Diagnosis& diagnosis, const Choice& choice) {
   switch (diagnosis.verdict) {
     case Verdict::kExplained:
       return true;
-    case Verdict::kUnexplained:
-      return IsConfirmed(outcome, before);
     case Verdict::kClean:
       return choice.nothing >= diagnosis::kCertain;
     default:
@@ -133,14 +124,16 @@ class Investigator {
     // A step that was diagnosed before an interruption is diagnosed again, and the same.
     if (before.size() == recordings_.size()) before.pop_back();
     Outcome outcome = OutcomeOf(*diagnosis_);
-    outcome.is_certain = IsCertain(*diagnosis_, outcome, before, choice);
+    outcome.is_certain = IsCertain(*diagnosis_, choice);
     certain_ = outcome.is_certain;
+    left_again_ = !before.empty() && IsLeftAgain(outcome, before.back());
     journal_.Diagnosed(outcome, &choice);
     Tell(fmt::format("  {}{}", outcome.verdict, certain_ ? ", certain" : ""));
   }
 
   std::optional<Why> WhyToEnd(const Choice& choice) const {
     if (certain_) return Why::kCertain;
+    if (left_again_) return Why::kLeftAgain;
     const bool is_left = diagnosis_ && diagnosis_->verdict == Verdict::kUnexplained;
     const WeighedRun& best = choice.weighed.front();
     // What is left unexplained once is asked for again.
@@ -193,7 +186,7 @@ class Investigator {
   double clock_ = 0.0;
   std::optional<diagnosis::Diagnosis> diagnosis_;
   diagnosis::HeldOutGain gain_;
-  bool certain_ = false;
+  bool certain_ = false, left_again_ = false;
 };
 
 }  // namespace
@@ -202,6 +195,8 @@ std::string Text(Why why) {
   switch (why) {
     case Why::kCertain:
       return "the verdict is certain";
+    case Why::kLeftAgain:
+      return "a further run leaves the same unexplained";
     case Why::kNothingMore:
       return "no run promises more";
     case Why::kBudget:

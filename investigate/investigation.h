@@ -1,13 +1,13 @@
 // An investigation: the run that tells most a minute is chosen, recorded and diagnosed, then the
-// next, until the verdict is certain, no run promises more, or the budget is spent.
+// next, until the verdict is certain, a further run leaves the same unexplained, no run promises
+// more, or the budget is spent.
 //
 //   const Ended ended = Investigate(subject, recorder, journal);
 //   ended.why;                             // Why::kCertain
 //
 // A verdict is certain when
-//   explained    each finding has a probability of 99 % and rows that were held out agree,
-//   unexplained  a further run has left the same channel or variable unexplained,
-//   clean        nothing is 99 % probable among all that the runs at hand could show.
+//   explained  each finding has a probability of 99 % and rows that were held out agree,
+//   clean      nothing is 99 % probable among all that the runs at hand could show.
 // Units: minutes, s since 1970. Shapes: one step a run.
 // Failure: that of the diagnosis and of the recorder; the journal holds all steps before.
 // Source: own; expected information: choice.h.
@@ -48,7 +48,7 @@ class Recorder {
   virtual double Begin(double planned) const { return planned; }
 };
 
-enum class Why { kCertain, kNothingMore, kBudget, kWaiting };
+enum class Why { kCertain, kLeftAgain, kNothingMore, kBudget, kWaiting };
 // "the verdict is certain".
 std::string Text(Why why);
 

