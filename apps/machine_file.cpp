@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/protocol.h"
+#include "certificate/administration.h"
 #include "history/limits.h"
 #include "machine/drift.h"
 #include "rig/rig_settings.h"
@@ -55,6 +56,7 @@ MachineFile ReadMachineFile(const std::filesystem::path& path) {
   rig::ReadRigSettings(root);
   ReadProtocol(root);
   history::ReadLimits(root);
+  if (root.Has("certificate")) certificate::ReadAdministration(root);
   machine::ReadDrift(root);
   root.RefuseUnknown();
   return file;
@@ -66,6 +68,7 @@ machine::Machine ReadMachineOf(const std::filesystem::path& path) {
   machine::Machine machine = machine::ReadMachine(document.Root());
   ReadProtocol(document.Root());
   history::ReadLimits(document.Root());
+  if (document.Root().Has("certificate")) certificate::ReadAdministration(document.Root());
   machine::ReadDrift(document.Root());
   document.Root().RefuseUnknown();
   return machine;
@@ -78,6 +81,7 @@ MachineAlone ReadMachineAlone(const settings::Document& document) {
   if (root.Has("linkage")) alone.linkage = relm::ReadLinkageSettings(root);
   ReadProtocol(root);
   history::ReadLimits(root);
+  if (root.Has("certificate")) certificate::ReadAdministration(root);
   machine::ReadDrift(root);
   root.RefuseUnknown();
   return alone;
