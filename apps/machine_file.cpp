@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/protocol.h"
+#include "certificate/administration.h"
 #include "history/limits.h"
 #include "investigate/cost.h"
 #include "machine/drift.h"
@@ -59,6 +60,7 @@ MachineFile ReadMachineFile(const settings::Document& document) {
   rig::ReadRigSettings(root);
   ReadProtocol(root);
   history::ReadLimits(root);
+  if (root.Has("certificate")) certificate::ReadAdministration(root);
   machine::ReadDrift(root);
   investigate::CheckCosts(root);
   root.RefuseUnknown();
@@ -71,6 +73,7 @@ machine::Machine ReadMachineOf(const std::filesystem::path& path) {
   machine::Machine machine = machine::ReadMachine(document.Root());
   ReadProtocol(document.Root());
   history::ReadLimits(document.Root());
+  if (document.Root().Has("certificate")) certificate::ReadAdministration(document.Root());
   machine::ReadDrift(document.Root());
   investigate::CheckCosts(document.Root());
   document.Root().RefuseUnknown();
@@ -84,6 +87,7 @@ MachineAlone ReadMachineAlone(const settings::Document& document) {
   if (root.Has("linkage")) alone.linkage = relm::ReadLinkageSettings(root);
   ReadProtocol(root);
   history::ReadLimits(root);
+  if (root.Has("certificate")) certificate::ReadAdministration(root);
   machine::ReadDrift(root);
   investigate::CheckCosts(root);
   root.RefuseUnknown();

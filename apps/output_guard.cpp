@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // The options of all commands that name an output.
-constexpr std::array<std::string_view, 5> kOutputs{"--out", "--json", "--truth", "--ready-file",
-                                                   "to"};
+constexpr std::array<std::string_view, 6> kOutputs{"--out",   "--json",       "--pdf",
+                                                   "--truth", "--ready-file", "to"};
 
 bool IsOutput(const CLI::Option& option) {
   const std::string name = option.get_name();

@@ -8,6 +8,7 @@
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/result_file.h"
+#include "report/print_pdf.h"
 #include "report/report_page.h"
 
 namespace abbe::apps {
@@ -15,7 +16,7 @@ namespace {
 
 struct ReportOptions {
   std::filesystem::path folder;
-  std::filesystem::path out;
+  std::filesystem::path out, pdf;
 };
 
 int MakeReport(const ReportOptions& options) {
@@ -24,6 +25,10 @@ int MakeReport(const ReportOptions& options) {
   WriteText(report.page, page);
   for (const std::string& note : report.notes) fmt::print(stderr, "abbe: {}\n", note);
   fmt::print("{}\n", page.string());
+  if (!options.pdf.empty()) {
+    WriteText(report::PrintPdf(page), options.pdf);
+    fmt::print("{}\n", options.pdf.string());
+  }
   return kDone;
 }
 
@@ -35,7 +40,8 @@ void AddReport(CLI::App& program, int& exit_code) {
       program.add_subcommand("report", "One HTML page of all results in an output folder");
   command->add_option("folder", options->folder, "Folder with the results (*.json)")->required();
   command->add_option("--out", options->out, "The page (default: report.html in the folder)");
-  command->footer("Example: abbe report out --out sweep.html");
+  command->add_option("--pdf", options->pdf, "Print the page too, by Chromium");
+  command->footer("Example: abbe report out --out sweep.html --pdf sweep.pdf");
   command->callback([options, &exit_code] { exit_code = MakeReport(*options); });
 }
 

@@ -19,6 +19,7 @@ import tempfile
 import tomllib
 import unittest
 
+from certificate_case import DATA
 from program_case import MACHINE, PROGRAM
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -180,7 +181,7 @@ class DocumentedCommands(unittest.TestCase):
         shutil.copytree(ROOT / "machines", cls.data / "machines")
         mill = pathlib.Path(MACHINE).read_text()
         (cls.data / "mill.toml").write_text(mill.replace("step_mm = 1.0", "step_mm = 5.0").replace("passes = 5", "passes = 2") +
-                                            "\n[limits]\nEYX = { straightness_um = 50.0 }\n" + DRIFT)
+                                            "\n[limits]\nEYX = { straightness_um = 50.0 }\n" + DRIFT + DATA)
         for name, text in (("turn.log", monitor_log()), ("b02_target_x.dat", target_table()), ("part.ngc", PART),
                            ("linuxcnc.var", "5220\t1\n5221\t30\n5222\t30\n5223\t20\n"), ("tool.tbl", "T1 P1 Z50 D6 ;\n"),
                            ("D1597A_redrilled_meas_2011.txt", hole_table()),
@@ -251,7 +252,7 @@ class DocumentedCommands(unittest.TestCase):
                     line = line.replace(key[1], smaller)
             # What a line writes is new there.
             folder = self.of_page(page)
-            for name in re.findall(r"(?:-o|--out|--json|--truth) (\S+\.\w+)|convert \S+ (\S+)", line):
+            for name in re.findall(r"(?:-o|--out|--json|--pdf|--truth) (\S+\.\w+)|convert \S+ (\S+)", line):
                 if line.count("".join(name)) == 1:  # else it is read too
                     (folder / "".join(name)).unlink(missing_ok=True)
             with self.subTest(f"{page}:{number}"):

@@ -57,6 +57,16 @@ constexpr char kMore[] = R"(
 EYX = { straightness_um = 3 }
 EAX = { range_urad = 30 }
 C0Y = { urad = 30 }
+[certificate]
+number = "1"
+performed = ["2026-11-21", "2026-11-22"]
+location = "other"
+laboratory = { name = "a", city = "b", country = "DE" }
+customer = { name = "a", city = "b", country = "DE" }
+item = { name = "a", manufacturer = "b", serial = "c" }
+person = [{ name = "a" }]
+instrument = [{ name = "a", serial = "b" }]
+condition = [{ name = "a", text = "b" }]
 [drift.temperature.table]
 scale_ppm = 12
 [devices.more]

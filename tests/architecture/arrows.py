@@ -30,6 +30,7 @@ ARROWS = {
     "relm": "failure random settings recording geometry estimation machine",
     "simulation": "failure random settings recording geometry estimation machine probes paths relm",
     "fusion": "failure settings recording geometry estimation standards machine map probes paths relm simulation",
+    "certificate": "failure standards settings recording estimation machine map relm fusion",
     "diagnosis": "failure standards settings recording estimation machine probes relm simulation fusion",
     "learned": "failure random settings standards estimation simulation diagnosis",
     "investigate": "failure random settings recording machine simulation diagnosis",
@@ -38,7 +39,7 @@ ARROWS = {
     "report": "failure",
     "live": "failure recording report",
     "rig": "failure random settings recording hal",
-    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion diagnosis learned investigate history track report live rig",
+    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion certificate diagnosis learned investigate history track report live rig",
     "python": "failure settings recording estimation machine map compensation probes paths relm simulation fusion diagnosis apps",
 }
 
@@ -55,6 +56,7 @@ GATES = {
     "toml++/": r"(settings|recording)/.*\.cpp",
     "soci/": r"history/database\.cpp",
     "openssl/": r"recording/file_hash\.cpp",
+    "libxml/": r"certificate/xml\.cpp",
     "httplib.h": r"live/page_server\.cpp",
 }
 
