@@ -23,6 +23,7 @@ struct CertificateSources {
   std::filesystem::path data;  // with the table [certificate]; empty: the machine file
 };
 
+// All of it, with the statements of conformity.
 certificate::Certificate MakeCertificate(const CertificateSources& sources,
                                          certificate::Sense sense, int points);
 

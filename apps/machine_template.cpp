@@ -225,7 +225,8 @@ std::string MachineText(const MachineDescription& machine) {
   constexpr double kSmoothShare = 0.25;
   text += fmt::format(kPopulation, kSmoothShare * longest);
   if (machine.has_head) text += HeadText(machine);
-  return text + "\n# For certificates: a table [certificate]; docs/certificate.md has one to copy.\n";
+  return text +
+         "\n# For certificates: a table [certificate]; docs/certificate.md has one to copy.\n";
 }
 
 }  // namespace abbe::apps

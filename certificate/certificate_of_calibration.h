@@ -13,6 +13,7 @@
 
 namespace abbe::certificate {
 
+// Title, methods, remarks and results; the rest is left empty.
 Certificate CertificateOfCalibration(const fusion::Calibration& calibration);
 
 }  // namespace abbe::certificate

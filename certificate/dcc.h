@@ -18,6 +18,7 @@
 
 namespace abbe::certificate {
 
+// The document, in UTF-8.
 std::string DccText(const Certificate& certificate);
 
 // `name` stands for the file in messages.

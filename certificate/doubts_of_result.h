@@ -14,6 +14,7 @@
 
 namespace abbe::certificate {
 
+// One sentence for each.
 std::vector<std::string> DoubtsOfResult(const nlohmann::ordered_json& result);
 
 }  // namespace abbe::certificate

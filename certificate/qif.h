@@ -22,7 +22,9 @@
 
 namespace abbe::certificate {
 
+// The document, in UTF-8.
 std::string QifText(const Certificate& certificate);
+// `name` stands for the file in messages.
 Certificate ReadQif(std::string_view text, const std::string& name);
 
 // What of a certificate stands in a QIF document: number, item, laboratory's and customer's name,

@@ -108,6 +108,8 @@ std::string XmlText(const XmlElement& root, const std::vector<XmlNamespace>& nam
     xmlAddChild(holder, child);
   }
   xmlFreeNode(made);
+  // A covariance has ten thousands of lines: one blank for each depth.
+  xmlTreeIndentString = " ";
   xmlChar* bytes = nullptr;
   int size = 0;
   xmlDocDumpFormatMemoryEnc(document.get(), &bytes, &size, "UTF-8", 1);

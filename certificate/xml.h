@@ -17,6 +17,7 @@ struct XmlNamespace {
   std::string prefix, uri;  // no prefix: the default
 };
 
+// The document, in UTF-8.
 std::string XmlText(const XmlElement& root, const std::vector<XmlNamespace>& namespaces);
 
 // Names of other namespaces keep none; `name` stands for the file in messages.

@@ -1,7 +1,7 @@
 // An XML document as a tree. For use within certificate/.
 //
 //   XmlElement name("dcc:name");
-//   name.Add({"dcc:content", "mill"});
+//   name.Add(XmlElement("dcc:content", "mill"));
 //
 // Names carry the prefix of the writer's table of namespaces ("dcc:name"; none for the default).
 // An element has children or text, not both. Failure: InputError where a reader asks for an element
@@ -16,6 +16,7 @@
 namespace abbe::certificate {
 
 struct XmlElement {
+  // An element, with a text or none.
   explicit XmlElement(std::string element_name, std::string element_text = {})
       : name(std::move(element_name)), text(std::move(element_text)) {}
 
@@ -26,13 +27,17 @@ struct XmlElement {
   }
   // The same with a text; an empty text adds nothing.
   XmlElement& AddText(std::string child, std::string child_text);
+  // Adds an attribute and returns this element.
   XmlElement& Set(std::string attribute, std::string value) {
     attributes.emplace_back(std::move(attribute), std::move(value));
     return *this;
   }
 
+  // The first child of that name, or null.
   const XmlElement* Find(std::string_view child) const;
+  // The same, which must be there.
   const XmlElement& At(std::string_view child) const;
+  // All children of that name, in order.
   std::vector<const XmlElement*> All(std::string_view child) const;
   // The text of a child; empty where there is none.
   std::string TextOf(std::string_view child) const;
@@ -49,10 +54,12 @@ struct XmlElement {
 std::string NumbersText(const std::vector<double>& values);
 // Failure: InputError with the line for what is no number.
 std::vector<double> NumbersOf(const XmlElement& element);
+// The same for one number.
 double NumberOf(const XmlElement& element);
 
 // Words without blanks and back: "%20" for a blank, "%25" for "%".
 std::string WordsText(const std::vector<std::string>& words);
+// The words of an element's text.
 std::vector<std::string> WordsOf(const XmlElement& element);
 
 }  // namespace abbe::certificate

@@ -6,7 +6,7 @@
 namespace abbe::fuzz::certificate {
 
 void Read(Bytes bytes) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string_view text = TextOf(bytes);
   if (text.find("QIFDocument") != std::string_view::npos) {
     abbe::certificate::ReadQif(text, "input");
   } else {
