@@ -73,6 +73,7 @@ std::string BytesOf(const fs::path& path) {
 // Runs a program with its output in `log`. Returns whether it ended with 0 in time.
 bool Run(std::vector<std::string> words, const fs::path& log) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
