@@ -115,7 +115,8 @@ std::string StatusOf(const history::Judged& judged) {
   return std::abs(judged.value) <= judged.limit.size ? "conditionalPass" : "conditionalFail";
 }
 
-// What ISO 14253-1 says of the limits of the machine file; nothing beside a doubt.
+// What ISO 14253-1 says of the limits of the machine file; nothing beside a doubt. A quantity may be
+// nothing but its unit: "urad" of a squareness.
 void AddConformities(const ordered_json& result, const history::Limits& limits, Certificate& made) {
   if (limits.empty() || made.administration.decision_rule != certificate::kIso14253) return;
   if (!made.doubts.empty()) {
@@ -137,8 +138,8 @@ void AddConformities(const ordered_json& result, const history::Limits& limits, 
     }
     made.conformities.push_back(
         {judged.conditions.empty() ? name : fmt::format("{}, {}", name, judged.conditions),
-         std::string(settings::UnitOf(judged.limit.quantity).name), StatusOf(judged), judged.value,
-         *judged.U95, judged.limit.size});
+         std::string(settings::UnitOf("_" + judged.limit.quantity).name), StatusOf(judged),
+         judged.value, *judged.U95, judged.limit.size});
   }
 }
 

@@ -87,6 +87,8 @@ class CertificateTest(CertificateCase):
             y, U, L = (float(text(value, "si:value")), float(text(value, ".//si:uncertainty")), float(text(limit, "si:value")))
             status = "pass" if abs(y) + U <= L else "fail" if abs(y) - U > L else "conditionalPass" if abs(y) <= L else "conditionalFail"
             name = text(meta, "dcc:name/dcc:content")
+            unit = r"\micro\radian" if name.split(",")[0].endswith("urad") else r"\micro\metre"
+            self.assertEqual([text(value, "si:unit"), text(limit, "si:unit")], [unit, unit], name)
             self.assertEqual(text(meta, "dcc:conformity"), status, name)
             self.assertIn(status, printed)
             seen[name.split(",")[0]] = status
