@@ -73,12 +73,12 @@ int Investigate(const InvestigateArguments& arguments) {
   investigate::Journal journal = investigate::Journal::In(
       arguments.out, {subject.instruments.machine.name, RecorderName(arguments),
                       recording::SecondsOf(recording::UtcNow()).value_or(0.0)});
-  const auto told = [&](const std::string& line) {
+  const auto show = [&](const std::string& line) {
     if (arguments.quiet) return;
     fmt::print("{}\n", line);
     std::fflush(stdout);
   };
-  const investigate::Ended ended = investigate::Investigate(subject, *recorder, journal, told);
+  const investigate::Ended ended = investigate::Investigate(subject, *recorder, journal, show);
   if (ended.diagnosis && ended.why != investigate::Why::kWaiting) {
     auto json = DiagnosisJson(*ended.diagnosis, ended.gain);
     json["abbe"] = ABBE_VERSION;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <utility>
 
 namespace abbe::certificate {
 namespace {
@@ -61,7 +62,6 @@ std::string Country(const Table& table) {
 Organization ReadOrganization(const Table& table) {
   Organization read;
   read.name = Required(table, "name");
-  read.code = Optional(table, "code");
   read.street = Optional(table, "street");
   read.post_code = Optional(table, "post_code");
   read.city = Required(table, "city");
@@ -69,6 +69,13 @@ Organization ReadOrganization(const Table& table) {
   read.email = Optional(table, "email");
   read.phone = Optional(table, "phone");
   table.RefuseUnknown();
+  return read;
+}
+
+Organization ReadLaboratory(const Table& table) {
+  std::string code = Optional(table, "code");
+  Organization read = ReadOrganization(table);
+  read.code = std::move(code);
   return read;
 }
 
@@ -139,7 +146,7 @@ Administration ReadAdministration(const Table& root) {
   read.location = table.Choice(
       "location", {"laboratory", "customer", "laboratoryBranch", "customerBranch", "other"}, true);
   read.decision_rule = table.Choice("decision_rule", {kIso14253, "none"});
-  read.laboratory = ReadOrganization(table.Child("laboratory"));
+  read.laboratory = ReadLaboratory(table.Child("laboratory"));
   read.customer = ReadOrganization(table.Child("customer"));
   for (const Table& each : table.Children("person")) read.people.push_back(ReadPerson(each));
   if (read.people.empty()) {

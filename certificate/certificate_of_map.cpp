@@ -100,7 +100,7 @@ Eigen::VectorXd ValuesOfTables(const map::ErrorMap& map, Eigen::Index count) {
   return values;
 }
 
-// Of a table of the tool, an error of a carriage adds to others: the turn of X about Z moves the
+// For a table of the tool, an error of a carriage adds to others: the turn of X about Z moves the
 // tool in Y, by the way that X has gone. First order, by central differences of one standard
 // uncertainty.
 Eigen::VectorXd UncertaintyOfTables(const map::ErrorMap& map, Eigen::Index count) {

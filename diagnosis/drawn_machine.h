@@ -20,7 +20,7 @@ inline constexpr double kAligned = 100e-6;  // rad, of a target that was set by 
 
 // `normal`: the next of independent standard normal numbers.
 Values DrawnMachine(const Campaign& campaign, const std::function<double()>& normal);
-// Of runs that are not in the campaign.
+// The same for runs that are not in the campaign.
 Values DrawnMachine(const Campaign& campaign, const std::vector<PreparedRun>& runs,
                     const std::function<double()>& normal);
 

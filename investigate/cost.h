@@ -57,7 +57,7 @@ struct Minutes {
 Minutes CostOf(const recording::Recording& path, const Place& before, double waiting,
                const Costs& costs);
 
-// Of recordings one after the other, as they were made.
+// The cost of recordings that were made one after the other.
 Minutes CostOfCampaign(const std::vector<recording::Recording>& recordings, const Costs& costs);
 
 }  // namespace abbe::investigate

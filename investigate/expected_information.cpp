@@ -42,7 +42,7 @@ class Judge {
  private:
   bool binary_ = false;
   VectorXd unit_;
-  // Of something at once: an empty one must not be copied.
+  // Computed at once: a factorisation without content must not be copied.
   Eigen::LLT<MatrixXd> factor_{MatrixXd::Identity(1, 1)};
   double constant_ = 0.0;
 };

@@ -75,8 +75,8 @@ bool IsCertain(const diagnosis::Diagnosis& diagnosis, const Choice& choice) {
 class Investigator {
  public:
   Investigator(const Subject& subject, Recorder& recorder, Journal& journal,
-               const std::function<void(const std::string&)>& told)
-      : subject_(subject), recorder_(recorder), journal_(journal), told_(told) {
+               const std::function<void(const std::string&)>& show)
+      : subject_(subject), recorder_(recorder), journal_(journal), show_(show) {
     for (const auto& path : journal.recordings()) Take(recording::Read(path));
   }
 
@@ -128,7 +128,7 @@ class Investigator {
     certain_ = outcome.is_certain;
     left_again_ = !before.empty() && IsLeftAgain(outcome, before.back());
     journal_.Diagnosed(outcome, &choice);
-    Tell(fmt::format("  {}{}", outcome.verdict, certain_ ? ", certain" : ""));
+    Show(fmt::format("  {}{}", outcome.verdict, certain_ ? ", certain" : ""));
   }
 
   std::optional<Why> WhyToEnd(const Choice& choice) const {
@@ -155,7 +155,7 @@ class Investigator {
     const double planned = simulation::StartedOf(best.path) + kMinute * best.minutes.set_up;
     best.path = simulation::BegunAt(std::move(best.path), recorder_.Begin(planned));
     journal_.Decide(choice);
-    Tell(fmt::format("{}. {} ({:.1f} min, {:.3f} bits)", journal_.number(), best.text,
+    Show(fmt::format("{}. {} ({:.1f} min, {:.3f} bits)", journal_.number(), best.text,
                      best.minutes.total(), best.bits));
   }
 
@@ -172,14 +172,14 @@ class Investigator {
     return {why, std::move(recordings_), std::move(diagnosis_), gain_};
   }
 
-  void Tell(const std::string& line) const {
-    if (told_) told_(line);
+  void Show(const std::string& line) const {
+    if (show_) show_(line);
   }
 
   const Subject& subject_;
   Recorder& recorder_;
   Journal& journal_;
-  const std::function<void(const std::string&)>& told_;
+  const std::function<void(const std::string&)>& show_;
   std::vector<Recording> recordings_;
   std::map<std::string, double> temperature_;
   Place place_;
@@ -208,8 +208,8 @@ std::string Text(Why why) {
 }
 
 Ended Investigate(const Subject& subject, Recorder& recorder, Journal& journal,
-                  const std::function<void(const std::string&)>& told) {
-  return Investigator(subject, recorder, journal, told).Run();
+                  const std::function<void(const std::string&)>& show) {
+  return Investigator(subject, recorder, journal, show).Run();
 }
 
 }  // namespace abbe::investigate

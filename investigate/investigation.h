@@ -59,8 +59,8 @@ struct Ended {
   diagnosis::HeldOutGain gain = {};
 };
 
-// `told`: after each change of the journal, for a person.
+// `show`: one line for a person after each change of the journal.
 Ended Investigate(const Subject& subject, Recorder& recorder, Journal& journal,
-                  const std::function<void(const std::string& line)>& told = {});
+                  const std::function<void(const std::string& line)>& show = {});
 
 }  // namespace abbe::investigate

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <utility>
 
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char *kData = "investigation.json", *kText = "investigation.txt";
-constexpr std::size_t kWeighedTold = 6;
+constexpr std::size_t kWeighedInText = 6;
 
 Json JsonOf(const Minutes& minutes) {
   return {{"set_up", minutes.set_up},
@@ -93,10 +94,9 @@ std::string StepText(const Json& step) {
       step.at("bits").get<double>(), step.at("minutes").at("total").get<double>(),
       step.at("minutes").at("set_up").get<double>(), step.at("minutes").at("waiting").get<double>(),
       step.at("minutes").at("run").get<double>());
-  std::size_t told = 0;
-  for (const Json& run : before.at("weighed")) {
-    if (told++ == 0) continue;  // the chosen one
-    if (told > kWeighedTold) break;
+  const Json& weighed = before.at("weighed");  // the chosen one first
+  for (std::size_t i = 1; i < std::min(weighed.size(), kWeighedInText); ++i) {
+    const Json& run = weighed[i];
     text += fmt::format("  weighed: {:.4f} bits/min  {}\n", run.at("bits_per_minute").get<double>(),
                         run.at("text").get<std::string>());
   }

@@ -61,15 +61,15 @@ class Journal {
   std::filesystem::path WaitingPath() const;  // of the planned path
   // For a reason that the last entry states.
   bool IsEnded() const;
-  // Of the steps that were diagnosed.
+  // One for each step that was diagnosed.
   std::vector<Outcome> outcomes() const;
-  // Of the last steps, those after which as much was open as before.
+  // How many of the last steps left as much open as before.
   int stalled() const;
   // What was done in the steps that were recorded.
   std::vector<std::string> texts() const;
   // The number of the next or of the waiting step, from 1.
   std::size_t number() const;
-  // Of all its files.
+  // Where all its files are.
   const std::filesystem::path& folder() const { return folder_; }
 
   // The first of the weighed runs. Writes its path too.

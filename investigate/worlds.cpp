@@ -159,8 +159,8 @@ Worlds OfFinding(const diagnosis::Finding& finding, const simulation::Scene& sce
   return worlds;
 }
 
-// What is left depends on one of these, each told from the others; or it was an accident of the
-// runs, and another one will not show it.
+// What is left depends on one of these variables, which are separate worlds; or it was an accident
+// of the runs, and another run will not show it.
 Worlds OfLeftovers(const Diagnosis& now, const simulation::Scene& scene) {
   constexpr double kAccident = 0.05;
   Worlds worlds;

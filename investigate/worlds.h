@@ -28,7 +28,7 @@ inline constexpr const char *kNothing = "nothing", *kUnknown = "something unknow
 
 struct World {
   std::string name;   // "backlash:X", kNothing, or of something unknown "EYX over x"
-  std::string group;  // worlds of one group need not be told apart
+  std::string group;  // between worlds of one group nothing is to be decided
   double probability = 0.0;
   // Empty of nothing: no candidate.
   std::shared_ptr<const diagnosis::Candidate> candidate = {};

@@ -23,7 +23,7 @@ MovingBody MovingNamed(const std::string& moving) {
   throw InputError(fmt::format("model: \"{}\"; give one of {}", model, names));
 }
 
-// Of (5, 2) numbers: u and s of A, B, C, u and n of D, E.
+// A layout from (5, 2) numbers: u and s of A, B, C, u and n of D, E.
 HeadLayout<> LayoutOf(const std::optional<Array>& layout) {
   if (!layout) return NominalLayout();
   const auto at = Columns<2>(*layout, "layout_m");

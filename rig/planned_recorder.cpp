@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "failure/failure.h"
@@ -54,7 +56,7 @@ double FeedOf(const Recording& path) {
   return std::ranges::max(feed) * settings::kMillimetrePerMinute;
 }
 
-// Each place of a row of stands once; a recorded one is still settling when its rows begin.
+// Each place where the machine stands, once; a recorded one still settles when its rows begin.
 std::vector<Vector3d> StandsOf(const std::vector<Vector3d>& places) {
   constexpr double kWindow = 20e-6;  // m
   std::vector<Vector3d> stands;
@@ -83,8 +85,8 @@ std::vector<double> StationsOf(const std::vector<Vector3d>& places, int axis, do
   return stations;
 }
 
-// Of a motion, with a run-in and a run-out: of a closed path a quarter of itself, of another one
-// straight on. So each axis has moved before it counts.
+// A motion with a run-in and a run-out: a quarter of itself for a closed path, straight on for
+// another one. So each axis has moved before it counts.
 struct Way {
   explicit Way(const std::vector<Vector3d>& points) {
     constexpr double kStraight = 2e-3;  // m
@@ -206,10 +208,27 @@ PlannedRecorder::PlannedRecorder(CampaignMachine machine, std::uint64_t seed, Hi
   SetInTime(hidden_, {{0.0, kHour, true, true}}, TurnsInTheMiddle(machine_, seed));
 }
 
+// Who records a kind of run, and with which instrument.
+struct PlannedRecorder::Kind {
+  std::string_view name;
+  bool takes_linkage;  // or the head
+  Recording (PlannedRecorder::*record)(const Run&);
+};
+
+const PlannedRecorder::Kind* PlannedRecorder::KindOf(const Recording& path) {
+  static constexpr std::array<Kind, 5> kKinds{{{"sweep", false, &PlannedRecorder::Sweep},
+                                               {"gap-steps", false, &PlannedRecorder::GapSteps},
+                                               {"dwell", false, &PlannedRecorder::Dwell},
+                                               {"linkage", true, &PlannedRecorder::OfLinkage},
+                                               {"length", true, &PlannedRecorder::Length}}};
+  const auto* kind = std::ranges::find(kKinds, std::string_view(path.Kind()), &Kind::name);
+  return kind == kKinds.end() ? nullptr : kind;
+}
+
 bool PlannedRecorder::Records(const Recording& path) const {
-  const std::string kind = path.Kind();
-  if (kind == "linkage" || kind == "length") return machine_.linkage.has_value();
-  if (kind != "sweep" && kind != "gap-steps" && kind != "dwell") return false;
+  const Kind* kind = KindOf(path);
+  if (kind == nullptr) return false;
+  if (kind->takes_linkage) return machine_.linkage.has_value();
   const char axis = path.HeaderText("axis").value_or("X").front();
   return machine_.rig.sweeps[AxisNumber(axis)] && !path.HeaderText("mounting.swapped");
 }
@@ -224,18 +243,12 @@ Recording PlannedRecorder::Record(const Recording& path, std::uint64_t number) {
     }
   }
   climate_.Warm(warmer > kClearlyWarmer ? std::round(warmer) : 0.0);
-  const std::map<std::string, Recording (PlannedRecorder::*)(const Run&)> kinds{
-      {"sweep", &PlannedRecorder::Sweep},
-      {"gap-steps", &PlannedRecorder::GapSteps},
-      {"dwell", &PlannedRecorder::Dwell},
-      {"linkage", &PlannedRecorder::OfLinkage},
-      {"length", &PlannedRecorder::Length}};
-  const auto kind = kinds.find(path.Kind());
-  if (kind == kinds.end()) {
+  const Kind* kind = KindOf(path);
+  if (kind == nullptr) {
     throw InputError(fmt::format("{}: the virtual rig records no {}; choose another run", path.name,
                                  path.Kind()));
   }
-  return (this->*kind->second)(run);
+  return (this->*kind->record)(run);
 }
 
 Mounting PlannedRecorder::MountingOf(const Run& run) const {

@@ -1,5 +1,4 @@
-// Recordings of planned paths on the rig: of a run that somebody chose, what its recorder would have
-// written. The machine is switched on when the first path begins.
+// Recordings of planned paths on the rig: what the recorder of a chosen run would have written. The machine is switched on when the first path begins.
 //
 //   PlannedRecorder recorder(ReadCampaignMachine(document.Root()), 7, hidden, started);
 //   if (recorder.Records(path)) recorder.Record(path, 3);
@@ -8,13 +7,13 @@
 // temperatures and header count, its readings do not. What is mounted anew (an id or a base that is
 // none of those before) is drawn by the number of the run and gets the id "mounted 3", so that later
 // paths can name it.
-// Frames: positions as the control counts. Units: s since 1970, columns as their names say. The same (machine file, seed, hidden effects, path, number) gives the same
-// recording. Failure: InputError for a kind that the rig does not record, or a place out of reach.
+// Frames: positions as the control counts. Units: s since 1970, columns as their names say.
+// The same machine file, seed, hidden effects, path and number give the same recording.
+// Failure: InputError for a kind that the rig does not record, or a place out of reach.
 // Validity: cables that are swapped at the amplifier are not recorded (Records() is false).
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 
 #include "recording/recording.h"
@@ -43,6 +42,8 @@ class PlannedRecorder {
 
  private:
   struct Run;
+  struct Kind;
+  static const Kind* KindOf(const recording::Recording& path);
   Mounting MountingOf(const Run& run) const;
   LinkageRig RigOf(const Run& run) const;
   recording::Recording Sweep(const Run& run);

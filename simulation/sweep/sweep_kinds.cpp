@@ -293,7 +293,7 @@ class SweepRuns : public HeadKind {
 
   RowRule HeldOut(const Recording& recording) const override { return EverySecondPass(recording); }
 
-  // Of each axis over its travel, there and back.
+  // A sweep of each axis over its travel, there and back.
   std::vector<NextRun> FirstRuns(const Instruments& on, const PathAbout& about) const override {
     std::vector<NextRun> runs;
     if (!on.head) return runs;

@@ -144,7 +144,7 @@ TEST(Qif, ASquarenessIsPositiveWhereTheAngleIsGreaterThanARightOne) {
   EXPECT_NE(text.find("<YZSquareness>2.5e-05<"), std::string::npos);
 }
 
-// Of a table that carries the workpiece, the turn about Z moves the tool in Y by the way of X: where
+// On a table that carries the workpiece, the turn about Z moves the tool in Y by the way of X: where
 // nothing but the turn is uncertain, u(EYX) of the tool is X times that of the turn.
 TEST(Qif, UncertaintyOfTheToolContainsTheTurnsOfTheCarriage) {
   const map::ErrorMap carriages = map::RandomMap(3);

@@ -28,7 +28,7 @@ World Nothing(double probability) {
   return {investigate::kNothing, investigate::kNothing, probability};
 }
 
-// Of unknown size.
+// A cause whose size is unknown.
 World Cause(const char* name, double probability) {
   World world{name, name, probability};
   world.candidate = std::make_shared<const diagnosis::Candidate>(
@@ -58,14 +58,14 @@ TEST(ExpectedInformation, IsTheEntropyOfARunThatShowsEverything) {
   EXPECT_NEAR(ExpectedInformation(none, all, worlds), Bits({0.8, 0.15, 0.05}), 1e-3);
 }
 
-// Two that do the same: what is told is whether one of them is there.
+// Two causes that do the same: a run can show only whether one of them is there.
 TEST(ExpectedInformation, LeavesOpenWhatDoesTheSame) {
   const std::vector<World> worlds{Nothing(0.8), Cause("X", 0.1), Cause("Y", 0.1)};
   const MatrixXd none = MatrixXd::Zero(2, 2), same = 1e12 * MatrixXd::Ones(2, 2);
   EXPECT_NEAR(ExpectedInformation(none, same, worlds), Bits({0.8, 0.2}), 1e-3);
 }
 
-// Worlds of one group need not be told apart.
+// Between worlds of one group nothing is to be decided.
 TEST(ExpectedInformation, CountsAGroupOnce) {
   std::vector<World> worlds{Nothing(0.8), Cause("X", 0.1), Cause("Y", 0.1)};
   worlds[1].group = worlds[2].group = "unknown";
