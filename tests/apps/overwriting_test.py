@@ -135,7 +135,8 @@ class OverwritingTest(ProgramCase):
 
     def test_out_of_memory_is_said_in_words(self):
         def small():
-            resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+            size = 300 << 20  # the program, but not the grid
+            resource.setrlimit(resource.RLIMIT_AS, (size, size))
         run = self.run_in("export", "map.toml", "--format", "csv", "--points", "210", "--out", "new.csv", preexec_fn=small)
         self.assertEqual(run.returncode, 2, run.stderr)
         self.assertNotIn("bad_alloc", run.stderr)
