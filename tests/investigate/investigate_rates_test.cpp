@@ -6,9 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
 #include <map>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rig/campaign.h"
@@ -114,6 +117,44 @@ TEST(Investigate, WorldsWithOneEffect) {
   });
   row.Print("one effect");
   EXPECT_LE(row.wrong_name.Low(), 0.02) << row.wrong_name.Text();
+}
+
+// The demonstration machine, rougher, with larger errors and noise than its file says.
+settings::Document UnlikeTheFile() {
+  std::ostringstream read;
+  read << std::ifstream(DemoFile()).rdbuf();
+  std::string text = read.str();
+  const std::vector<std::pair<std::string, std::string>> changes{
+      {"smoothness_mm = 15.0", "smoothness_mm = 8.0"},
+      {"straightness_um = 1.0", "straightness_um = 2.0"},
+      {"positioning_um = 2.0", "positioning_um = 4.0"},
+      {"probe_nm = 20.0", "probe_nm = 35.0"},
+      {"encoder_urad = 3.0", "encoder_urad = 5.0"}};
+  for (const auto& [stated, real] : changes) {
+    const std::size_t at = text.find(stated);
+    EXPECT_NE(at, std::string::npos) << stated;
+    text.replace(at, stated.size(), real);
+  }
+  return settings::Document::Parse(text, "world.toml");
+}
+
+TEST(Investigate, WorldsUnlikeTheFile) {
+  InvestigatedMachine machine(UnlikeTheFile());
+  Row with, without;
+  ForEachSeed([&](std::uint64_t seed) {
+    const random::CounterRandom random(seed, 0x41DE);
+    const auto hidden = machine.Hidden(seed, {DrawHidden(random, 0, true)});
+    if (IsOfData(hidden.front())) return;
+    const Result found = Investigated(machine, seed, hidden);
+    const auto& findings = found.ended.diagnosis->findings;
+    Add(found, findings.size() == 1 && Names(findings.front(), hidden.front()), with);
+    const Result nothing = Investigated(machine, seed, {});
+    Add(nothing, nothing.ended.diagnosis->findings.empty(), without);
+  });
+  with.Print("unlike the file, one effect");
+  without.Print("unlike the file, nothing");
+  EXPECT_LE(with.wrong_name.Low(), 0.02) << with.wrong_name.Text();
+  EXPECT_LE(without.wrong_name.Low(), 0.02) << without.wrong_name.Text();
 }
 
 TEST(Investigate, WorldsWithNothing) {

@@ -26,13 +26,18 @@ inline std::filesystem::path EmptyFolder(const std::string& name) {
   return folder;
 }
 
-// The demonstration machine, its ball without drag in the cap: that drag is a cause.
+inline std::filesystem::path DemoFile() {
+  return std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml";
+}
+
+// The demonstration machine, its ball without drag in the cap: that drag is a cause. The world is
+// as the machine file says, or as `world` does.
 class InvestigatedMachine {
  public:
-  InvestigatedMachine()
-      : document_(settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) /
-                                           "machines/demo_mill.toml")),
-        rig_(rig::ReadCampaignMachine(document_.Root())) {
+  InvestigatedMachine() : InvestigatedMachine(settings::Document::Read(DemoFile())) {}
+  explicit InvestigatedMachine(const settings::Document& world)
+      : document_(settings::Document::Read(DemoFile())),
+        rig_(rig::ReadCampaignMachine(world.Root())) {
     rig_.rig.cap = 0.0;
     subject_.instruments = {
         machine::ReadMachine(document_.Root()), probes::ReadHeadSettings(document_.Root()),
