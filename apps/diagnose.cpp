@@ -108,7 +108,8 @@ int Diagnose(const DiagnoseArguments& arguments) {
   for (const recording::Recording& recording : recordings) campaign.Add(recording);
   campaign.CarryOn(learned::CarriedFrom(arguments.learned));
   diagnosis::Diagnosis diagnosis = diagnosis::Diagnose(campaign);
-  diagnosis::AddNextRuns(campaign, recordings, diagnosis);
+  const diagnosis::Campaign& found = diagnosis::CampaignOf(diagnosis, campaign);
+  diagnosis::AddNextRuns(found, recordings, diagnosis);
   std::vector<diagnosis::Candidate> causes;
   for (const auto& finding : diagnosis.findings) {
     if (diagnosis::IsModelled(finding)) causes.push_back(finding.score.candidate);
@@ -116,11 +117,11 @@ int Diagnose(const DiagnoseArguments& arguments) {
   learned::Learning learning;
   if (arguments.learn) learning = learned::Learn(diagnosis);
   const diagnosis::HeldOutGain gain =
-      GainOf(campaign, recordings, learning.IsToBeDecided() ? learning.Candidates() : causes);
+      GainOf(found, recordings, learning.IsToBeDecided() ? learning.Candidates() : causes);
   diagnosis::AddDoubtsOfHeldOut(gain, diagnosis);
   learned::Decide(gain, learning, diagnosis);
   if (!arguments.out.empty()) {
-    simulation::ExtendedModel model = diagnosis::FoundModel(diagnosis, campaign, gain);
+    simulation::ExtendedModel model = diagnosis::FoundModel(diagnosis, found, gain);
     for (const learned::Learned& term : learning.terms) {
       if (term.IsFound()) model.causes.push_back(simulation::ModelledTerm(term.term()));
     }

@@ -32,6 +32,20 @@ void RequireAxes(const recording::Recording& recording, const simulation::RunKin
       recording.name));
 }
 
+// Each cause and object once.
+void AddTo(std::vector<InvalidReadings>& all, const InvalidReadings& readings) {
+  const auto known = std::find_if(all.begin(), all.end(), [&](const InvalidReadings& other) {
+    return other.cause == readings.cause && other.object == readings.object;
+  });
+  if (known == all.end()) {
+    all.push_back(readings);
+    return;
+  }
+  known->from = std::min(known->from, readings.from);
+  known->to = std::max(known->to, readings.to);
+  known->count += readings.count;
+}
+
 }  // namespace
 
 Campaign::Campaign(simulation::Instruments instruments)
@@ -42,22 +56,40 @@ Campaign::Campaign(simulation::Instruments instruments)
 
 Campaign Campaign::WithoutRuns() const {
   Campaign empty(instruments_);
+  empty.model_ = model_;
+  empty.prior_ = prior_;
   if (origin_ || !runs_.empty()) empty.origin_ = origin();
   empty.facts_ = facts_;
   empty.carried_ = carried_;
   return empty;
 }
 
+Campaign Campaign::With(const fusion::ErrorPopulation& population,
+                        const std::array<double, machine::kAxes>& knots,
+                        const machine::Population& lines) const {
+  Campaign other = WithoutRuns();
+  other.instruments_.machine.population = lines;
+  other.model_ = fusion::UnknownMachine(instruments_.machine, knots);
+  other.prior_ = {instruments_.machine, other.model_, population};
+  for (const Given& given : given_) other.Prepare({given.recording, given.flagged});
+  return other;
+}
+
 void Campaign::Add(recording::Recording recording) {
   recording::RefuseOtherMachine(recording, instruments_.machine.name);
   const simulation::RunKind& kind = simulation::KindOf(recording);
   RequireAxes(recording, kind, instruments_);
-  std::vector<InvalidReadings> invalid;
-  if (kind.RowsFollowEachOther()) invalid = FlagInvalidReadings(recording);
+  std::vector<InvalidReadings> flagged;
+  if (kind.RowsFollowEachOther()) flagged = FlagInvalidReadings(recording);
+  Prepare({std::make_shared<const recording::Recording>(std::move(recording)), std::move(flagged)});
+}
+
+void Campaign::Prepare(Given given) {
+  const recording::Recording& recording = *given.recording;
+  const simulation::RunKind& kind = simulation::KindOf(recording);
   simulation::PreparedRuns prepared = kind.Prepare(recording, model_, instruments_, facts_);
-  std::move(prepared.invalid.begin(), prepared.invalid.end(), std::back_inserter(invalid));
-  const double started = simulation::StartedOf(recording);
-  for (InvalidReadings& each : invalid) invalid_.push_back({started, std::move(each)});
+  given.in_preparing = std::move(prepared.invalid);
+  given_.push_back(std::move(given));
   if (prepared.facts) facts_.emplace(recording.name, std::move(prepared.facts));
   std::move(prepared.notes.begin(), prepared.notes.end(), std::back_inserter(notes_));
   for (PreparedRun& run : prepared.runs) {
@@ -118,21 +150,15 @@ void Campaign::SetMemory(std::size_t run, const estimation::NoiseMemory& noise) 
 
 std::vector<InvalidReadings> Campaign::invalid_readings() const {
   std::vector<InvalidReadings> all;
-  const double start = origin().started;
-  for (const auto& [started, found] : invalid_) {
-    InvalidReadings readings = found;
-    readings.from += started - start;
-    readings.to += started - start;
-    const auto known = std::find_if(all.begin(), all.end(), [&](const InvalidReadings& other) {
-      return other.cause == readings.cause && other.object == readings.object;
-    });
-    if (known == all.end()) {
-      all.push_back(readings);
-      continue;
+  for (const Given& given : given_) {
+    const double later = simulation::StartedOf(*given.recording) - origin().started;
+    for (const auto& some : {given.flagged, given.in_preparing}) {
+      for (InvalidReadings readings : some) {
+        readings.from += later;
+        readings.to += later;
+        AddTo(all, readings);
+      }
     }
-    known->from = std::min(known->from, readings.from);
-    known->to = std::max(known->to, readings.to);
-    known->count += readings.count;
   }
   return all;
 }

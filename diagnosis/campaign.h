@@ -14,6 +14,7 @@
 // Validity: runs of one machine in one state: what changes between them has to be a cause.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,6 +39,12 @@ class Campaign {
 
   // Takes its invalid readings out first.
   void Add(recording::Recording recording);
+
+  // The same runs on a machine whose errors are of other sizes and correlation lengths, its knots
+  // so far apart, m; `lines` of the machine file, for all that goes by these.
+  Campaign With(const fusion::ErrorPopulation& population,
+                const std::array<double, machine::kAxes>& knots,
+                const machine::Population& lines) const;
 
   // A campaign without runs, for parts of those of this one or further ones on the same clock.
   Campaign WithoutRuns() const;
@@ -74,11 +81,13 @@ class Campaign {
   std::vector<InvalidReadings> invalid_readings() const;
 
  private:
-  struct InvalidOfRun {
-    double started;  // s since 1970
-    InvalidReadings readings;
+  // A recording with its valid readings, and those that are not.
+  struct Given {
+    std::shared_ptr<const recording::Recording> recording;
+    std::vector<InvalidReadings> flagged, in_preparing = {};  // on its own clock
   };
 
+  void Prepare(Given given);
   void NumberRuns();
 
   simulation::Instruments instruments_;
@@ -86,8 +95,8 @@ class Campaign {
   fusion::MachinePrior prior_;
   std::optional<simulation::Origin> origin_;  // of the campaign that this is a part of
   simulation::FactsByRun facts_;
+  std::vector<Given> given_;
   std::vector<PreparedRun> runs_;
-  std::vector<InvalidOfRun> invalid_;
   std::vector<std::string> notes_;
   std::vector<std::shared_ptr<const simulation::LearnedCause>> carried_;
 };

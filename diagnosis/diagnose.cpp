@@ -2,9 +2,12 @@
 
 #include <cmath>
 #include <cstddef>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "diagnosis/noise_hypothesis.h"
+#include "diagnosis/population_hypothesis.h"
 #include "diagnosis/search.h"
 #include "simulation/excess_noise.h"
 
@@ -62,8 +65,14 @@ std::string_view Name(Verdict verdict) {
   return "";
 }
 
+const Campaign& CampaignOf(const Diagnosis& diagnosis, const Campaign& given) {
+  return diagnosis.campaign ? *diagnosis.campaign : given;
+}
+
 Diagnosis Diagnose(const Campaign& campaign) {
-  if (!campaign.EstimatesNoise()) return BesideMemory(campaign);
+  if (!campaign.EstimatesNoise()) {
+    return BesideMemory(BesidePopulation(std::make_shared<const Campaign>(campaign))).diagnosis;
+  }
   Campaign noisy = campaign;
   // Runs that do not go together leave much more than each does alone.
   noisy.SetExcess(ExcessOf(Fit(noisy)), Campaign::Change::kUp);

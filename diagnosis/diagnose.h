@@ -74,16 +74,20 @@ struct Diagnosis {
   std::vector<std::string> cannot_show;  // "probe-position:probe_a"
   std::vector<Score> evidence;           // of the first round: best shape of each name
   std::vector<Leftover> leftovers;
-  std::vector<std::string> notes;            // what was found of the noise
+  std::vector<std::string> notes;            // what was found of noise and errors
   double chi_before = 0.0, chi_after = 0.0;  // chi-square per row of all runs
   double map_change = 0.0;    // m: largest change of the volumetric error by the findings
   estimation::Result fitted;  // with all that was found
-  // With the noise that was found; and its fit without causes where something is left.
+  // With the noise and the errors of the axes that were found, empty for an arm; and its fit without
+  // causes where something is left.
   std::shared_ptr<const Campaign> campaign = {};
   std::shared_ptr<const Fit> base = {};
 };
 
 // The whole search.
 Diagnosis Diagnose(const Campaign& campaign);
+
+// What the diagnosis of `given` holds for, to hold it out and to plan further runs with.
+const Campaign& CampaignOf(const Diagnosis& diagnosis, const Campaign& given);
 
 }  // namespace abbe::diagnosis

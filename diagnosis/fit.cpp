@@ -223,12 +223,14 @@ void Fit::Linearize(const Problem& problem, FitSums at) {
   gradient_ = std::move(at.gradient);
   data_information_ = std::move(at.data_information);
   data_gradient_ = std::move(at.data_gradient);
+  prior_ = at.prior;
   scale_ = at.information.diagonal().cwiseSqrt().cwiseInverse();
   H_.compute(scale_.asDiagonal() * at.information * scale_.asDiagonal());
   // Normalising constants of the Gaussian priors; improper priors add the same constant to every
   // fit and are left out.
-  const auto known = (at.prior.array() > 0.0);
-  const double priors = known.select(at.prior.array(), 1.0).log().sum();
+  const auto known = (prior_.array() > 0.0);
+  const double priors =
+      known.select(prior_.array(), 1.0).log().sum() + 2.0 * campaign_.prior().LogWhitening();
   const double curvature = 2.0 * MatrixXd(H_.matrixL()).diagonal().array().log().sum() -
                            2.0 * scale_.array().log().sum();
   log_likelihood_ = -at.cost + 0.5 * (priors - curvature);

@@ -27,6 +27,7 @@
 #include "diagnosis/candidate.h"
 #include "diagnosis/extended_run.h"
 #include "estimation/problem.h"
+#include "fusion/population_evidence.h"
 
 namespace abbe::diagnosis {
 
@@ -49,6 +50,8 @@ class Fit {
   // Logarithm of the marginal likelihood of the data, by Laplace's approximation at the fit; all
   // fits to one campaign lack the same constant.
   double log_likelihood() const { return log_likelihood_; }
+  // The errors of the machine without their prior; all else is marginalised.
+  fusion::Quadratic OfMachine() const;
   Eigen::Index rows() const;
   // Coefficients of a cause that was taken in, and their covariance.
   Score ScoreOf(std::size_t taken_in) const;
@@ -126,7 +129,7 @@ class Fit {
   std::vector<std::string> names_;
   std::vector<RunRows> runs_;
   Eigen::MatrixXd data_information_;
-  Eigen::VectorXd data_gradient_, gradient_;
+  Eigen::VectorXd data_gradient_, gradient_, prior_;
   double log_likelihood_ = 0.0, left_out_ = 0.0;
   Eigen::VectorXd scale_;  // H = scale^-1 (scaled) scale^-1
   Eigen::LLT<Eigen::MatrixXd> H_;

@@ -15,17 +15,17 @@ using estimation::RestKind;
 using estimation::RestNoise;
 using recording::Recording;
 
-constexpr double kBelieved = 0.05, kCertain = 4.0;
+constexpr double kBelieved = 0.05, kDoubtSds = 4.0;
 
 // A recording and where it stands.
-struct AtRest {
+struct Standstill {
   const Recording& recording;
   simulation::Stays stays;
   bool shows_noise;
 };
 
-std::vector<AtRest> StandstillsOf(const std::vector<Recording>& recordings) {
-  std::vector<AtRest> all;
+std::vector<Standstill> StandstillsOf(const std::vector<Recording>& recordings) {
+  std::vector<Standstill> all;
   all.reserve(recordings.size());
   for (const Recording& recording : recordings) {
     const simulation::RunKind& kind = simulation::KindOf(recording);
@@ -34,9 +34,9 @@ std::vector<AtRest> StandstillsOf(const std::vector<Recording>& recordings) {
   return all;
 }
 
-RestNoise NoiseOf(const std::vector<AtRest>& all, const std::string& column, bool shows_noise) {
+RestNoise NoiseOf(const std::vector<Standstill>& all, const std::string& column, bool shows_noise) {
   std::vector<estimation::Stay> stays;
-  for (const AtRest& each : all) {
+  for (const Standstill& each : all) {
     if (each.shows_noise != shows_noise || !each.recording.Find(column)) continue;
     for (auto& stay : simulation::ReadingsIn(each.recording, column, each.stays)) {
       stays.push_back(std::move(stay));
@@ -46,25 +46,25 @@ RestNoise NoiseOf(const std::vector<AtRest>& all, const std::string& column, boo
 }
 
 bool IsOther(const RestNoise& noise, double stated) {
-  const double doubt = kCertain / std::sqrt(2.0 * noise.freedom);
+  const double doubt = kDoubtSds / std::sqrt(2.0 * noise.freedom);
   return noise.freedom >= 1.0 && noise.sd > 0.0 &&
          std::abs(noise.sd / stated - 1.0) > std::max(kBelieved, doubt);
 }
 
 bool IsFarMore(const RestNoise& noise, double stated) {
   return noise.freedom >= 1.0 && noise.kind != RestKind::kLine &&
-         noise.sd * (1.0 - kCertain / std::sqrt(2.0 * noise.freedom)) > kFarMore * stated;
+         noise.sd * (1.0 - kDoubtSds / std::sqrt(2.0 * noise.freedom)) > kFarMore * stated;
 }
 
 // Channels of one kind and what the machine file states of each.
-struct Kind {
+struct ChannelKind {
   std::string name, unit;
   double scale, stated;
   std::vector<std::string> columns, channels;
 };
 
 // What counts of each channel; sd 0: what is stated.
-std::vector<RestNoise> Measured(const std::vector<AtRest>& all, const Kind& kind,
+std::vector<RestNoise> Measured(const std::vector<Standstill>& all, const ChannelKind& kind,
                                 simulation::Instruments& instruments) {
   std::vector<RestNoise> found;
   std::string replaced;
@@ -102,8 +102,8 @@ std::vector<RestNoise> Measured(const std::vector<AtRest>& all, const Kind& kind
   return found;
 }
 
-void MeasureProbes(const std::vector<AtRest>& all, simulation::Instruments& on) {
-  Kind probes{"probes", "nm", 1e-9, on.noise.probe, {}, {}};
+void MeasureProbes(const std::vector<Standstill>& all, simulation::Instruments& on) {
+  ChannelKind probes{"probes", "nm", 1e-9, on.noise.probe, {}, {}};
   for (const char letter : {'a', 'b', 'c', 'd', 'e'}) {
     probes.columns.push_back(fmt::format("probe_{}_um", letter));
     probes.channels.push_back(fmt::format("probe_{}", letter));
@@ -121,9 +121,9 @@ void MeasureProbes(const std::vector<AtRest>& all, simulation::Instruments& on) 
   }
 }
 
-void MeasureEncoders(const std::vector<AtRest>& all, simulation::Instruments& on) {
+void MeasureEncoders(const std::vector<Standstill>& all, simulation::Instruments& on) {
   relm::LinkageNoise& noise = on.linkage->noise;
-  Kind encoders{"encoders", "urad", 1e-6, noise.encoder, {}, {}};
+  ChannelKind encoders{"encoders", "urad", 1e-6, noise.encoder, {}, {}};
   for (int i = 1; i <= on.linkage->chain.joints(); ++i) {
     encoders.columns.push_back(fmt::format("pivot_{}_rad", i));
     encoders.channels.push_back(fmt::format("pivot_{}", i));
@@ -148,7 +148,7 @@ RestNoise NoiseAtRest(const std::vector<Recording>& recordings, const std::strin
 
 void UseMeasuredNoise(const std::vector<Recording>& recordings,
                       simulation::Instruments& instruments) {
-  const std::vector<AtRest> all = StandstillsOf(recordings);
+  const std::vector<Standstill> all = StandstillsOf(recordings);
   if (instruments.head) MeasureProbes(all, instruments);
   if (instruments.linkage) MeasureEncoders(all, instruments);
 }

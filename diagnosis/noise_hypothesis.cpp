@@ -6,18 +6,15 @@
 #include <memory>
 #include <optional>
 
-#include "diagnosis/search.h"
 #include "simulation/remembered_noise.h"
 
 namespace abbe::diagnosis {
 namespace {
 
-constexpr double kShown = 10.0;       // logarithm of the likelihood
-constexpr double kMostSteps = 40.0;   // rows, of a memory
-constexpr double kFewestRows = 60.0;  // of a run that tells
-constexpr double kPerName = 100.0;    // candidates, about
-// Logarithms of the prior probability: of a memory in a run, of something that was taken in.
-const double kPriorOfMemory = std::log(kElse), kPriorOfMember = std::log(kPresent / kPerName);
+constexpr double kShown = 10.0;                 // logarithm of the likelihood
+constexpr double kMostSteps = 40.0;             // rows, of a memory
+constexpr double kFewestRows = 60.0;            // of a run that tells
+const double kPriorOfMemory = std::log(kElse);  // in a run
 
 std::optional<estimation::NoiseMemory> MemoryOf(const Fit& fit, std::size_t r) {
   const PreparedRun& run = fit.campaign().runs()[r];
@@ -32,18 +29,18 @@ std::optional<estimation::NoiseMemory> MemoryOf(const Fit& fit, std::size_t r) {
   return found.noise;
 }
 
-// Logarithm of the marginal likelihood with the prior of what was taken in, up to a constant.
-double Worth(const Search& search) {
-  double worth = search.fit().log_likelihood();
-  for (const PreparedRun& run : search.fit().campaign().runs()) {
+// Of all runs, with what whitening by a memory does to the likelihood.
+double PriorOfMemories(const Campaign& campaign) {
+  double prior = 0.0;
+  for (const PreparedRun& run : campaign.runs()) {
     if (!run.memory) continue;
     const auto& times = run.trace.time;
     const double values = run.simulated.residual->Rows();
     const double channels = values / times.size();
     const estimation::MemoryFilter filter(times, *run.memory);
-    worth += kPriorOfMemory - 0.5 * channels * filter.log_determinant();
+    prior += kPriorOfMemory - 0.5 * channels * filter.log_determinant();
   }
-  return worth + kPriorOfMember * search.fit().taken_in().size();
+  return prior;
 }
 
 std::string NoteOf(const PreparedRun& run, const estimation::NoiseMemory& noise) {
@@ -56,30 +53,26 @@ std::string NoteOf(const PreparedRun& run, const estimation::NoiseMemory& noise)
 
 }  // namespace
 
-Diagnosis BesideMemory(const Campaign& given) {
-  const auto own = std::make_shared<const Campaign>(given);
-  const Campaign& campaign = *own;
-  Search white(campaign);
-  Diagnosis diagnosis = white.Run();
-  diagnosis.campaign = own;
-  if (diagnosis.verdict != Verdict::kUnexplained) return diagnosis;
-  const auto other_noise = std::make_shared<Campaign>(campaign);
-  Campaign& remembering = *other_noise;
-  std::vector<std::string> notes;
+Answer BesideMemory(Answer white) {
+  if (white.diagnosis.verdict != Verdict::kUnexplained) return white;
+  const Campaign& campaign = *white.campaign;
+  const auto remembering = std::make_shared<Campaign>(campaign);
+  std::vector<std::string> notes = white.diagnosis.notes;
+  bool any = false;
   for (std::size_t run = 0; run < campaign.runs().size(); ++run) {
     // What structures explain was no memory.
-    if (!MemoryOf(white.fit(), run)) continue;
-    const auto memory = MemoryOf(white.base(), run);
+    if (!MemoryOf(white.search->fit(), run)) continue;
+    const auto memory = MemoryOf(white.search->base(), run);
     if (!memory) continue;
     notes.push_back(NoteOf(campaign.runs()[run], *memory));
-    remembering.SetMemory(run, *memory);
+    remembering->SetMemory(run, *memory);
+    any = true;
   }
-  if (notes.empty()) return diagnosis;
-  Search again(remembering);
-  Diagnosis other = again.Run();
-  if (Worth(again) < Worth(white)) return diagnosis;
-  other.notes = std::move(notes);
-  other.campaign = other_noise;
+  if (!any) return white;
+  Answer other = Ask(remembering, std::make_shared<Search>(*remembering),
+                     white.prior + PriorOfMemories(*remembering));
+  if (other.worth < white.worth) return white;
+  other.diagnosis.notes = std::move(notes);
   return other;
 }
 

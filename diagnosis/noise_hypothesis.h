@@ -1,6 +1,6 @@
 // The search for causes, with noise that has a memory as a hypothesis of its own.
 //
-//   const Diagnosis diagnosis = BesideMemory(campaign);
+//   answer = BesideMemory(std::move(answer));
 //
 // Where the search leaves nothing, its answer stands: nothing else is computed. Else the memory of
 // each run of the linkage and of each run with a reference instrument is estimated from what the
@@ -13,10 +13,10 @@
 // Failure: that of Fit.
 #pragma once
 
-#include "diagnosis/diagnose.h"
+#include "diagnosis/answer.h"
 
 namespace abbe::diagnosis {
 
-Diagnosis BesideMemory(const Campaign& campaign);
+Answer BesideMemory(Answer white);
 
 }  // namespace abbe::diagnosis

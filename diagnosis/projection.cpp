@@ -6,6 +6,7 @@
 
 #include "diagnosis/fit.h"
 #include "failure/interruption.h"
+#include "fusion/machine_problem.h"
 
 namespace abbe::diagnosis {
 
@@ -83,6 +84,19 @@ std::vector<Fit::Projection> Fit::Finish(const std::vector<MatrixXd>& C_C, const
     first += count;
   }
   return groups;
+}
+
+fusion::Quadratic Fit::OfMachine() const {
+  const std::vector<int> columns = fusion::ColumnsOf(names_, campaign_.model().Blocks());
+  VectorXd of_others = prior_, x = VectorXd::Zero(prior_.size());
+  VectorXd gradient = gradient_;
+  of_others(columns).setZero();
+  gradient(columns) = data_gradient_(columns);
+  x(columns) = fusion::ValuesFound(result_, campaign_.model().Blocks());
+  fusion::Quadratic all{data_information_, -gradient};
+  all.information.diagonal() += of_others;
+  all.vector += all.information * x;
+  return fusion::Marginalised(all, columns);
 }
 
 Fit::RowScores Fit::ScoresOf(std::size_t run, Index stage) const {

@@ -58,21 +58,37 @@ Diagnosis Search::Run() {
   return std::move(diagnosis_);
 }
 
-// Scores everything against the fit so far; false when nothing is probable enough.
-bool Search::TakeBest() {
+double Search::LogOddsOfFirst() {
+  ScoreRound();
+  const std::vector<double> logs = LogOdds(shortlist_);
+  return std::max(*std::ranges::max_element(logs), LogOddsOfSomethingElse());
+}
+
+// Scores everything against the fit so far.
+void Search::ScoreRound() {
   if (shortlist_.empty()) shortlist_ = Shortlist(*fit_, candidates_);
-  std::vector<Named> names = shortlist_;
-  if (diagnosis_.evidence.empty()) DescribeFirstRound(names);
-  if (rim_sensors_ > 0) NoteShown(names);
-  const std::vector<Candidate> taken = Taken();
-  std::erase_if(names, [&](const Named& named) {
-    return IsAmong(taken, named.best.candidate) || IsAmong(refused_, named.best.candidate);
-  });
+  if (diagnosis_.evidence.empty()) DescribeFirstRound(shortlist_);
+  if (rim_sensors_ > 0) NoteShown(shortlist_);
   // What no model of an arm reaches is in its noise, and a cause has to predict there.
   if (structures_.empty() && !(fit_->left_out() > 0.0)) {
     structures_ = FindStructures(*fit_);
     other_ = MostProbable(*fit_, structures_);
   }
+}
+
+std::vector<Named> Search::NamesLeft() const {
+  std::vector<Named> names = shortlist_;
+  const std::vector<Candidate> taken = Taken();
+  std::erase_if(names, [&](const Named& named) {
+    return IsAmong(taken, named.best.candidate) || IsAmong(refused_, named.best.candidate);
+  });
+  return names;
+}
+
+// False when nothing is probable enough.
+bool Search::TakeBest() {
+  ScoreRound();
+  std::vector<Named> names = NamesLeft();
   FitPointer decided = MayOutweigh(names) ? DecideByFits(names) : nullptr;
   std::vector<double> logs = LogOdds(names);
   logs.push_back(LogOddsOfSomethingElse());

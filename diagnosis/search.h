@@ -33,6 +33,9 @@ class Search {
   explicit Search(const Campaign& campaign);
 
   Diagnosis Run();
+  // Logarithm of the odds of the most probable cause or structure against nothing, to first order,
+  // before anything is taken in.
+  double LogOddsOfFirst();
   // With all that was taken in.
   const Fit& fit() const { return *fit_; }
   const Fit& base() const { return *base_; }  // without causes
@@ -49,6 +52,8 @@ class Search {
   };
 
   // search.cpp: what is taken in.
+  void ScoreRound();
+  std::vector<Named> NamesLeft() const;
   bool TakeBest();
   bool TakeCause(const std::vector<Named>& names, FitPointer decided);
   bool TakeSomethingElse(Found found);

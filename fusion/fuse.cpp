@@ -29,9 +29,6 @@ using estimation::Problem;
 using estimation::Result;
 using simulation::SimulatedRun;
 
-// Knots may be so many correlation lengths apart before finer ones are made, and are then made so.
-constexpr double kCoarse = 0.6, kFine = 0.4;
-constexpr double kFinest = 1.0 / 12.0;  // of the correlation length of the machine file
 constexpr std::array kMounted{"target_tilt", "head_turn", "head_place", "base"};
 constexpr double kUnknown = std::numeric_limits<double>::infinity();  // of an uncertainty
 constexpr Index kFewRows = 50;          // too few to tell a correlation
@@ -40,19 +37,6 @@ constexpr double kNoiseSettled = 0.05;  // of its logarithm
 // Standard uncertainties from the solution: of the last fit, and of those before it, whose priors
 // and knots may be wrong.
 constexpr double kSettled = 1e-4, kFirstLook = 0.03, kTolerated = 3.0;
-
-// The parameters of these blocks among all columns of a problem.
-std::vector<int> ColumnsOf(const estimation::Layout& layout,
-                           const std::vector<estimation::ParameterBlock>& blocks) {
-  std::vector<int> columns;
-  for (const auto& block : blocks) {
-    for (std::size_t i = 0; i < block.entries.size(); ++i) {
-      const auto at = std::find(layout.names.begin(), layout.names.end(), block.FullName(i));
-      columns.push_back(static_cast<int>(at - layout.names.begin()));
-    }
-  }
-  return columns;
-}
 
 map::Source SourceOf(const std::string& kind) {
   const auto found = std::find(map::kSourceNames.begin(), map::kSourceNames.end(), kind);
@@ -85,10 +69,9 @@ class FuseJob {
         runs_(std::move(runs)),
         options_(options),
         model_(UnknownMachine(machine)),
+        knots_(KnotsOf(machine)),
         population_(PopulationOf(machine)),
         noise_(runs_.size(), 1.0) {
-    const double apart = 0.5 * machine.population.smoothness;
-    knots_ = {apart, apart, apart};
     AllowReversals();
     if (options_.choose_smoothness) AllowForm();
   }
@@ -169,7 +152,7 @@ class FuseJob {
                     .noise = noise_,
                     .theta = theta_,
                     .squareness = population_.squareness,
-                    .machine = ColumnsOf(layout, model_.Blocks()),
+                    .machine = ColumnsOf(layout.names, model_.Blocks()),
                     .form = {},
                     .form_stated = 0.0,
                     .form_times = form_,
@@ -182,7 +165,7 @@ class FuseJob {
       std::copy_if(runs_[r].blocks.begin(), runs_[r].blocks.end(), std::back_inserter(forms),
                    IsForm);
     }
-    runs.form = ColumnsOf(layout, forms);
+    runs.form = ColumnsOf(layout.names, forms);
     runs.form_values = ValuesFound(now.fit, forms);
     PopulationEstimate seen = EstimatePopulation(machine_, model_, runs);
     bool noise = false;
@@ -219,15 +202,9 @@ class FuseJob {
   // Finer knots where a function needs them; false where none does.
   bool Refine() {
     if (!options_.runs_on) return false;
-    bool finer = false;
-    for (int axis = 0; axis < machine::kAxes; ++axis) {
-      const double length = population_.length.row(axis).minCoeff();
-      const double least = kFinest * machine_.population.smoothness;
-      if (!(kCoarse * length < knots_[axis]) || knots_[axis] <= least) continue;
-      knots_[axis] = std::max(least, kFine * length);
-      finer = true;
-    }
-    if (!finer) return false;
+    const auto finer = KnotsFor(machine_, population_, knots_);
+    if (finer == knots_) return false;
+    knots_ = finer;
     model_ = UnknownMachine(machine_, knots_);
     runs_ = options_.runs_on(model_);
     SetPlateForm(holes_, 1.0, runs_);
@@ -241,7 +218,7 @@ class FuseJob {
     found.SetParameters(ValuesFound(now.fit, model_.Blocks()));
     SeenErrors seen =
         SeeErrors(machine_, found, runs_,
-                  ColumnsOf(estimation::Layout(now.problem), model_.Blocks()), now.at);
+                  ColumnsOf(estimation::Layout(now.problem).names, model_.Blocks()), now.at);
     std::vector<RunConsistency> consistency = CheckRuns(now.problem, now.at);
     const int contradicting = Contradicting(consistency);
     const double widened = contradicting < 0 ? 1.0 : BirgeRatio(consistency[contradicting]);
@@ -346,7 +323,7 @@ class FuseJob {
     const estimation::Layout layout(now.problem);
     map::MapState state{.time = options_.measured, .sensors = options_.sensors};
     std::vector<double> values;
-    std::vector<int> columns = ColumnsOf(layout, model_.Blocks());
+    std::vector<int> columns = ColumnsOf(layout.names, model_.Blocks());
     const std::set<int> machine(columns.begin(), columns.end());
     for (const auto& block : now.fit.blocks) {
       if (IsForm(block) || !OutlivesRuns(block, runs_)) continue;

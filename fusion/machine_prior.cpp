@@ -19,6 +19,9 @@ using geometry::BSplineBasis;
 
 constexpr int kDegree = 5;
 constexpr double kKnotsPerLength = 2.0;
+// Knots may be so many correlation lengths apart before finer ones are made, and are then made so.
+constexpr double kCoarse = 0.6, kFine = 0.4;
+constexpr double kFinest = 1.0 / 12.0;  // of the correlation length of the machine file
 constexpr int kPointsPerCoefficient = 6;
 constexpr double kHardlyAllowed = 1e-7;  // least eigenvalue, of the largest variance
 
@@ -43,9 +46,26 @@ ErrorPopulation PopulationOf(const machine::Machine& machine) {
   return population;
 }
 
-machine::VolumetricModel UnknownMachine(const machine::Machine& machine) {
+std::array<double, machine::kAxes> KnotsOf(const machine::Machine& machine) {
   const double knots = machine.population.smoothness / kKnotsPerLength;
-  return UnknownMachine(machine, {knots, knots, knots});
+  return {knots, knots, knots};
+}
+
+std::array<double, machine::kAxes> KnotsFor(const machine::Machine& machine,
+                                            const ErrorPopulation& population,
+                                            const std::array<double, machine::kAxes>& knots) {
+  const double least = kFinest * machine.population.smoothness;
+  std::array<double, machine::kAxes> finer = knots;
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    const double length = population.length.row(axis).minCoeff();
+    if (!(kCoarse * length < knots[axis]) || knots[axis] <= least) continue;
+    finer[axis] = std::max(least, kFine * length);
+  }
+  return finer;
+}
+
+machine::VolumetricModel UnknownMachine(const machine::Machine& machine) {
+  return UnknownMachine(machine, KnotsOf(machine));
 }
 
 machine::VolumetricModel UnknownMachine(const machine::Machine& machine,
@@ -118,6 +138,17 @@ MachinePrior::Spread MachinePrior::SpreadOf(int axis, int motion) const {
 MatrixXd MachinePrior::Whitening(int axis, int motion) const {
   const Spread spread = SpreadOf(axis, motion);
   return spread.deviations.cwiseInverse().asDiagonal() * spread.axes.transpose();
+}
+
+double MachinePrior::LogWhitening() const {
+  double log = 0.0;
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    if (axes_[axis].x.size() == 0) continue;
+    for (int motion = 0; motion < machine::kMotions; ++motion) {
+      log -= SpreadOf(axis, motion).deviations.array().log().sum();
+    }
+  }
+  return log;
 }
 
 }  // namespace abbe::fusion

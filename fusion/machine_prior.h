@@ -44,6 +44,14 @@ machine::VolumetricModel UnknownMachine(const machine::Machine& machine);
 machine::VolumetricModel UnknownMachine(const machine::Machine& machine,
                                         const std::array<double, machine::kAxes>& knots);
 
+// As far apart as the shortest correlation length of each axis asks for, m, but not finer than a
+// twelfth of that of the machine file; `knots` where these do.
+std::array<double, machine::kAxes> KnotsFor(const machine::Machine& machine,
+                                            const ErrorPopulation& population,
+                                            const std::array<double, machine::kAxes>& knots);
+// Half the correlation length of the machine file, m.
+std::array<double, machine::kAxes> KnotsOf(const machine::Machine& machine);
+
 class MachinePrior {
  public:
   MachinePrior(const machine::Machine& machine, const machine::VolumetricModel& model,
@@ -73,6 +81,8 @@ class MachinePrior {
   Spread SpreadOf(int axis, int motion) const;
   // W with W' W the inverse of the covariance.
   Eigen::MatrixXd Whitening(int axis, int motion) const;
+  // The logarithm of the determinant of the whitening of all functions.
+  double LogWhitening() const;
 
  private:
   struct Projected {

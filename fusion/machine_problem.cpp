@@ -78,6 +78,18 @@ estimation::Problem MakeMachineProblem(const machine::Machine& /*machine*/,
   return problem;
 }
 
+std::vector<int> ColumnsOf(const std::vector<std::string>& names,
+                           const std::vector<ParameterBlock>& blocks) {
+  std::vector<int> columns;
+  for (const auto& block : blocks) {
+    for (std::size_t i = 0; i < block.entries.size(); ++i) {
+      const auto at = std::find(names.begin(), names.end(), block.FullName(i));
+      columns.push_back(static_cast<int>(at - names.begin()));
+    }
+  }
+  return columns;
+}
+
 Eigen::VectorXd ValuesFound(const estimation::Result& fit,
                             const std::vector<ParameterBlock>& blocks) {
   std::vector<double> values;

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -32,6 +33,10 @@ estimation::Problem MakeMachineProblem(const machine::Machine& machine,
 // The estimates of all entries of these blocks, in their order.
 Eigen::VectorXd ValuesFound(const estimation::Result& fit,
                             const std::vector<estimation::ParameterBlock>& blocks);
+
+// Where the entries of these blocks stand among the names of all columns.
+std::vector<int> ColumnsOf(const std::vector<std::string>& names,
+                           const std::vector<estimation::ParameterBlock>& blocks);
 
 // Whether a block may return in a later run: of the machine, an instrument, or a mounting with a
 // name; not a base without one, nor what a run has for itself.

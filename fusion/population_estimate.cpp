@@ -17,20 +17,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::array kCommonLengths{0.25, 0.35, 0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0};
 // Form of the target, times what the file states.
 constexpr std::array kForms{kHardlyMoreForm, 1.41, 2.0, 2.83, 4.0, 5.66};
 constexpr double kFormSize = 0.7;  // standard deviation of its logarithm
-constexpr double kLongestStep = 0.7;
-constexpr double kGainSettled = 0.01;  // of log Z
-constexpr int kSteps = 12, kRounds = 4;
+constexpr int kRounds = 4;
 constexpr double kRowsOfPrior = 20.0;  // n
 constexpr double kNoiseSeen = 4.0;     // standard deviations
-// Standard deviations: of a logarithm above, and below, where that of a size of a few degrees of
-// freedom scatters further.
-constexpr double kRefutedAbove = 3.5, kRefutedBelow = 5.0;
-constexpr double kTold = 0.5;  // u of a logarithm, at most
-const double kHardlyOff = std::log(1.33);
 
 class Estimate {
  public:
@@ -44,7 +36,6 @@ class Estimate {
         theta_(runs.theta) {}
 
   PopulationEstimate Run() {
-    if (theta_.size() == 0) StartAtBestLength();
     for (int round = 0; round < kRounds; ++round) {
       Maximise();
       const bool form = SetForm();
@@ -52,13 +43,13 @@ class Estimate {
     }
     PopulationEstimate seen{theta_, evidence_.PopulationAt(theta_), noise_, form_, Statements(),
                             {}};
-    const MatrixXd C = (local_.fisher + evidence_.precision()).inverse();
+    const MatrixXd C = (highest_.local.fisher + evidence_.precision()).inverse();
     seen.by_theta = evidence_.MovedByTheta(of_machine_, theta_, C);
     for (Index i = 0; i < theta_.size(); ++i) {
       const auto [line, axis, motion] = evidence_.knobs()[i];
       if (axis < 0 || line == kSmoothness) continue;
       // The share of the variance of a size of nu degrees of freedom: 1 / (2 nu) by the data.
-      const double by_data = local_.fisher(i, i) * C(i, i) * C(i, i);
+      const double by_data = highest_.local.fisher(i, i) * C(i, i) * C(i, i);
       seen.population.deviation(axis, motion) *= std::exp(2.0 * by_data);
     }
     return seen;
@@ -97,67 +88,16 @@ class Estimate {
   }
 
   Quadratic OfMachine() const {
-    const Quadratic all = All();
-    std::vector<bool> is_machine(all.vector.size(), false);
-    for (const int column : runs_.machine) is_machine[column] = true;
-    std::vector<int> others;
-    for (int i = 0; i < all.vector.size(); ++i) {
-      if (!is_machine[i] && all.information(i, i) > 0.0) others.push_back(i);
-    }
-    const VectorXd scale = all.information.diagonal()(others).cwiseSqrt().cwiseInverse();
-    MatrixXd inner = scale.asDiagonal() * all.information(others, others) * scale.asDiagonal();
-    inner.diagonal().array() += 1e-12;  // rounding
-    const MatrixXd cross = scale.asDiagonal() * all.information(others, runs_.machine);
-    const VectorXd right = scale.asDiagonal() * all.vector(others);
-    const Eigen::LLT<MatrixXd> factor(inner);
-    const MatrixXd half = factor.matrixL().solve(cross);
-    const VectorXd left = factor.matrixL().solve(right);
-    const double log =
-        0.5 * left.squaredNorm() - factor.matrixLLT().diagonal().array().log().sum() +
-        scale.array().log().sum() + 0.5 * runs_.form.size() * std::log(FormPrecision(form_));
-    return {all.information(runs_.machine, runs_.machine) - half.transpose() * half,
-            all.vector(runs_.machine) - half.transpose() * left, log};
-  }
-
-  void StartAtBestLength() {
-    theta_ = VectorXd::Zero(evidence_.count());
-    of_machine_ = OfMachine();
-    double best = -std::numeric_limits<double>::infinity();
-    VectorXd chosen = theta_;
-    for (const double factor : kCommonLengths) {
-      VectorXd theta = theta_;
-      for (std::size_t i = 0; i < evidence_.knobs().size(); ++i) {
-        if (evidence_.knobs()[i].line == kSmoothness) theta[i] = std::log(factor);
-      }
-      const double log = evidence_.At(of_machine_, theta).log;
-      if (log > best) {
-        best = log;
-        chosen = theta;
-      }
-    }
-    theta_ = chosen;
+    Quadratic seen = Marginalised(All(), runs_.machine);
+    seen.log += 0.5 * runs_.form.size() * std::log(FormPrecision(form_));
+    return seen;
   }
 
   void Maximise() {
     of_machine_ = OfMachine();
-    auto now = evidence_.At(of_machine_, theta_);
-    for (int step = 0; step < kSteps; ++step) {
-      MayBeInterrupted();
-      local_ = evidence_.SlopesAt(of_machine_, theta_, now);
-      const VectorXd slope = local_.gradient - evidence_.precision() * theta_;
-      VectorXd way = (local_.fisher + evidence_.precision()).ldlt().solve(slope);
-      const double gain = 0.5 * slope.dot(way);
-      if (gain < kGainSettled) return;
-      way *= std::min(1.0, kLongestStep / way.cwiseAbs().maxCoeff());
-      auto next = evidence_.At(of_machine_, theta_ + way);
-      for (int halves = 0; halves < 5 && !(next.log > now.log); ++halves) {
-        way *= 0.4;
-        next = evidence_.At(of_machine_, theta_ + way);
-      }
-      if (!(next.log > now.log)) return;
-      theta_ += way;
-      now = std::move(next);
-    }
+    if (theta_.size() == 0) theta_ = evidence_.AtBestLength(of_machine_);
+    highest_ = evidence_.Maximise(of_machine_, theta_, evidence_.count());
+    theta_ = highest_.theta;
   }
 
   // False where nothing changes.
@@ -220,34 +160,8 @@ class Estimate {
     return changed;
   }
 
-  // The line that all its errors share, with all lines free: each weighted by what the runs tell.
   std::vector<Statement> Statements() const {
-    const machine::Population& p = machine_.population;
-    using settings::kMicro;
-    std::vector<Statement> statements;
-    const auto add = [&](std::string_view key, double unit, double stated) {
-      statements.push_back({.key = key, .unit = unit, .stated = stated});
-    };
-    add("population.positioning_um", kMicro, p.positioning);
-    add("population.straightness_um", kMicro, p.straightness);
-    add("population.roll_urad", kMicro, p.roll);
-    add("population.pitch_urad", kMicro, p.pitch);
-    add("population.yaw_urad", kMicro, p.yaw);
-    add("population.squareness_urad", kMicro, p.squareness);
-    add("population.scale_ppm", kMicro, p.scale);
-    add(kSmoothnessKey, settings::kMillimetre, p.smoothness);
-    MatrixXd X = MatrixXd::Zero(evidence_.knobs().size(), kLines);
-    for (std::size_t i = 0; i < evidence_.knobs().size(); ++i)
-      X(i, evidence_.knobs()[i].line) = 1.0;
-    MatrixXd information = X.transpose() * local_.fisher * X;
-    information.diagonal().array() += 1e-9;
-    const MatrixXd C = information.inverse();
-    const VectorXd logs = C * X.transpose() * ((local_.fisher + evidence_.precision()) * theta_);
-    for (Index line = 0; line < kLines; ++line) {
-      Statement& each = statements[line];
-      each.u_log = std::sqrt(C(line, line));
-      each.seen = each.stated * std::exp(logs[line]);
-    }
+    std::vector<Statement> statements = evidence_.Statements(highest_);
     if (!runs_.form.empty()) {
       const double off = std::log(form_);
       statements.push_back({.key = "target.form_nm",
@@ -267,16 +181,10 @@ class Estimate {
   double form_gain_ = 0.0;  // of log Z, against the form that is stated
   VectorXd theta_;
   Quadratic of_machine_;
-  PopulationEvidence::Slopes local_;
+  PopulationEvidence::Maximum highest_;
 };
 
 }  // namespace
-
-bool Statement::Refuted() const {
-  const double off = std::log(seen / stated);
-  const double bound = (off > 0.0 ? kRefutedAbove : kRefutedBelow) * u_log;
-  return u_log < kTold && std::abs(off) > std::max(kHardlyOff, bound);
-}
 
 PopulationEstimate EstimatePopulation(const machine::Machine& machine,
                                       const machine::VolumetricModel& model,

@@ -33,26 +33,12 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <string_view>
 #include <vector>
 
 #include "estimation/linearization.h"
-#include "fusion/machine_prior.h"
+#include "fusion/population_evidence.h"
 
 namespace abbe::fusion {
-
-inline constexpr std::string_view kSmoothnessKey = "population.smoothness_mm";
-
-// A line of the machine file and what the runs say of it.
-struct Statement {
-  std::string_view key;  // "population.smoothness_mm"
-  double unit;           // of the key, SI
-  double stated;         // SI
-  double seen = 0.0;     // SI
-  double u_log = 0.0;    // of the logarithm of `seen`; infinite: the runs do not tell
-  // Off by more than its uncertainty explains, and by more than a third.
-  bool Refuted() const;
-};
 
 struct PopulationEstimate {
   Eigen::VectorXd theta;

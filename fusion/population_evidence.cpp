@@ -2,7 +2,11 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "failure/interruption.h"
+#include "settings/unit.h"
 
 namespace abbe::fusion {
 namespace {
@@ -16,6 +20,16 @@ using Eigen::VectorXd;
 constexpr double kCommonSize = 0.57, kOwnSize = 0.4;
 constexpr double kCommonLength = 0.65, kOwnLength = 0.25;
 constexpr double kHardlyAllowed = 4e-4;  // deviation, of the largest of a function: taken as 0
+constexpr std::array kCommonLengths{0.25, 0.35, 0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0};
+constexpr double kLongestStep = 0.7;
+constexpr double kGainSettled = 0.01;  // of log Z
+constexpr int kSteps = 12;
+// Standard deviations: of a logarithm above, and below, where that of a size of a few degrees of
+// freedom scatters further.
+constexpr double kRefutedAbove = 3.5, kRefutedBelow = 5.0;
+constexpr double kTold = 0.5;  // u of a logarithm, at most
+const double kHardlyOff = std::log(1.33);
+
 Line LineOf(int axis, int motion) {
   if (motion < 3) return motion == axis ? kPositioning : kStraightness;
   if (motion - 3 == axis) return kRoll;
@@ -23,6 +37,33 @@ Line LineOf(int axis, int motion) {
 }
 
 }  // namespace
+
+bool Statement::Refuted() const {
+  const double off = std::log(seen / stated);
+  const double bound = (off > 0.0 ? kRefutedAbove : kRefutedBelow) * u_log;
+  return u_log < kTold && std::abs(off) > std::max(kHardlyOff, bound);
+}
+
+Quadratic Marginalised(const Quadratic& all, const std::vector<int>& of_machine) {
+  std::vector<bool> is_machine(all.vector.size(), false);
+  for (const int column : of_machine) is_machine[column] = true;
+  std::vector<int> others;
+  for (int i = 0; i < all.vector.size(); ++i) {
+    if (!is_machine[i] && all.information(i, i) > 0.0) others.push_back(i);
+  }
+  const VectorXd scale = all.information.diagonal()(others).cwiseSqrt().cwiseInverse();
+  MatrixXd inner = scale.asDiagonal() * all.information(others, others) * scale.asDiagonal();
+  inner.diagonal().array() += 1e-12;  // rounding
+  const MatrixXd cross = scale.asDiagonal() * all.information(others, of_machine);
+  const VectorXd right = scale.asDiagonal() * all.vector(others);
+  const Eigen::LLT<MatrixXd> factor(inner);
+  const MatrixXd half = factor.matrixL().solve(cross);
+  const VectorXd left = factor.matrixL().solve(right);
+  const double log = 0.5 * left.squaredNorm() - factor.matrixLLT().diagonal().array().log().sum() +
+                     scale.array().log().sum();
+  return {all.information(of_machine, of_machine) - half.transpose() * half,
+          all.vector(of_machine) - half.transpose() * left, log};
+}
 
 PopulationEvidence::PopulationEvidence(const machine::Machine& machine,
                                        const machine::VolumetricModel& model)
@@ -156,6 +197,79 @@ PopulationEvidence::Slopes PopulationEvidence::SlopesAt(const Quadratic& of_mach
     }
   }
   return local;
+}
+
+VectorXd PopulationEvidence::AtBestLength(const Quadratic& of_machine) const {
+  double best = -std::numeric_limits<double>::infinity();
+  VectorXd chosen = VectorXd::Zero(count());
+  for (const double factor : kCommonLengths) {
+    VectorXd theta = VectorXd::Zero(count());
+    for (Index i = 0; i < count(); ++i) {
+      if (IsLength(i)) theta[i] = std::log(factor);
+    }
+    const double log = At(of_machine, theta).log;
+    if (log > best) {
+      best = log;
+      chosen = theta;
+    }
+  }
+  return chosen;
+}
+
+PopulationEvidence::Maximum PopulationEvidence::Maximise(const Quadratic& of_machine,
+                                                         const VectorXd& theta, Index free) const {
+  Maximum highest{theta, 0.0, {}};
+  Evidence now = At(of_machine, theta);
+  for (int step = 0; step < kSteps; ++step) {
+    MayBeInterrupted();
+    highest.local = SlopesAt(of_machine, highest.theta, now);
+    const VectorXd slope = highest.local.gradient - pi_ * highest.theta;
+    VectorXd way = VectorXd::Zero(count());
+    way.head(free) =
+        (highest.local.fisher + pi_).topLeftCorner(free, free).ldlt().solve(slope.head(free));
+    const double gain = 0.5 * slope.dot(way);
+    if (gain < kGainSettled) break;
+    way *= std::min(1.0, kLongestStep / way.cwiseAbs().maxCoeff());
+    Evidence next = At(of_machine, highest.theta + way);
+    for (int halves = 0; halves < 5 && !(next.log > now.log); ++halves) {
+      way *= 0.4;
+      next = At(of_machine, highest.theta + way);
+    }
+    if (!(next.log > now.log)) break;
+    highest.theta += way;
+    now = std::move(next);
+  }
+  highest.log = now.log;
+  return highest;
+}
+
+std::vector<Statement> PopulationEvidence::Statements(const Maximum& at) const {
+  const machine::Population& p = machine_.population;
+  using settings::kMicro;
+  std::vector<Statement> statements;
+  const auto add = [&](std::string_view key, double unit, double stated) {
+    statements.push_back({.key = key, .unit = unit, .stated = stated});
+  };
+  add("population.positioning_um", kMicro, p.positioning);
+  add("population.straightness_um", kMicro, p.straightness);
+  add("population.roll_urad", kMicro, p.roll);
+  add("population.pitch_urad", kMicro, p.pitch);
+  add("population.yaw_urad", kMicro, p.yaw);
+  add("population.squareness_urad", kMicro, p.squareness);
+  add("population.scale_ppm", kMicro, p.scale);
+  add(kSmoothnessKey, settings::kMillimetre, p.smoothness);
+  MatrixXd X = MatrixXd::Zero(count(), kLines);
+  for (Index i = 0; i < count(); ++i) X(i, knobs_[i].line) = 1.0;
+  MatrixXd information = X.transpose() * at.local.fisher * X;
+  information.diagonal().array() += 1e-9;
+  const MatrixXd C = information.inverse();
+  const VectorXd logs = C * X.transpose() * ((at.local.fisher + pi_) * at.theta);
+  for (Index line = 0; line < kLines; ++line) {
+    Statement& each = statements[line];
+    each.u_log = std::sqrt(C(line, line));
+    each.seen = each.stated * std::exp(logs[line]);
+  }
+  return statements;
 }
 
 MatrixXd PopulationEvidence::MovedByTheta(const Quadratic& of_machine, const VectorXd& theta,

@@ -11,11 +11,25 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <string_view>
 #include <vector>
 
 #include "fusion/machine_prior.h"
 
 namespace abbe::fusion {
+
+inline constexpr std::string_view kSmoothnessKey = "population.smoothness_mm";
+
+// A line of the machine file and what the runs say of it.
+struct Statement {
+  std::string_view key;  // "population.smoothness_mm"
+  double unit;           // of the key, SI
+  double stated;         // SI
+  double seen = 0.0;     // SI
+  double u_log = 0.0;    // of the logarithm of `seen`; infinite: the runs do not tell
+  // Off by more than its uncertainty explains, and by more than a third.
+  bool Refuted() const;
+};
 
 // The lines of [population]; each size belongs to one.
 enum Line {
@@ -42,6 +56,9 @@ struct Quadratic {
   Eigen::VectorXd vector;
   double log = 0.0;  // of the evidence: what marginalising the others contributes
 };
+
+// H and h of the columns `of_machine`, marginalised over all others that have any information.
+Quadratic Marginalised(const Quadratic& all, const std::vector<int>& of_machine);
 
 class PopulationEvidence {
  public:
@@ -70,6 +87,22 @@ class PopulationEvidence {
   };
   Slopes SlopesAt(const Quadratic& of_machine, const Eigen::VectorXd& theta,
                   const Evidence& evidence) const;
+
+  // Knobs of functions; those of the squarenesses and of the slopes follow.
+  Eigen::Index of_functions() const { return count() - 2; }
+  // Where log Z is largest, from `theta` on; `local`: of the last step. The first `free` of theta
+  // are free, the others stay.
+  struct Maximum {
+    Eigen::VectorXd theta;
+    double log = 0.0;
+    Slopes local;
+  };
+  Maximum Maximise(const Quadratic& of_machine, const Eigen::VectorXd& theta,
+                   Eigen::Index free) const;
+  // The most probable of several common lengths, all sizes as stated.
+  Eigen::VectorXd AtBestLength(const Quadratic& of_machine) const;
+  // Each line that its errors share, with all lines free: each weighted by what the runs tell.
+  std::vector<Statement> Statements(const Maximum& at) const;
 
   // How the estimates move with theta of covariance `cov`, to first order (I - V A) V_i b: columns
   // that are independent of each other, of one standard deviation.

@@ -50,6 +50,7 @@ Diagnosed DiagnosisOf(const std::vector<Recording>& recordings, const Subject& s
   Diagnosed all{CampaignOf(recordings, subject.instruments), {}};
   if (recordings.empty()) return all;
   all.diagnosis = diagnosis::Diagnose(all.campaign);
+  all.campaign = diagnosis::CampaignOf(*all.diagnosis, diagnosis::Campaign(all.campaign));
   if (all.diagnosis->verdict == Verdict::kExplained) HoldOut(recordings, all);
   return all;
 }

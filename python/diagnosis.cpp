@@ -28,13 +28,14 @@ Diagnosed Diagnose(const Recordings& recordings, const MachineFile& machine) {
   Diagnosed done{std::make_shared<diagnosis::Campaign>(std::move(instruments)), {}, {}};
   for (const recording::Recording& each : recordings) done.campaign->Add(each);
   done.diagnosis = diagnosis::Diagnose(*done.campaign);
-  diagnosis::AddNextRuns(*done.campaign, recordings, done.diagnosis);
+  const diagnosis::Campaign& found = diagnosis::CampaignOf(done.diagnosis, *done.campaign);
+  diagnosis::AddNextRuns(found, recordings, done.diagnosis);
   std::vector<diagnosis::Candidate> causes;
   for (const Finding& finding : done.diagnosis.findings) {
     if (diagnosis::IsModelled(finding)) causes.push_back(finding.score.candidate);
   }
   std::string why_not;
-  done.gain = diagnosis::HoldOutWhereTheySuffice(*done.campaign, recordings, causes, why_not);
+  done.gain = diagnosis::HoldOutWhereTheySuffice(found, recordings, causes, why_not);
   if (!why_not.empty()) done.diagnosis.notes.push_back(why_not);
   diagnosis::AddDoubtsOfHeldOut(done.gain, done.diagnosis);
   return done;

@@ -87,6 +87,20 @@ TEST_P(UnknownEffects, AreSaidToBeUnexplained) {
   }
 }
 
+// Up to four causes that are not there had been named on such a machine, at 0.9.
+TEST(MachineUnlikeItsFile, IsNoCause) {
+  const HiddenWorlds worlds = HiddenWorlds(rig::CampaignKind::kStandard).Unlike(kRougher);
+  const std::uint64_t seed = 1;
+  const auto world = worlds.Record(seed, {"backlash:object=X:width_um=3"});
+  const Diagnosis diagnosis = DiagnosisOf(worlds, seed, world);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
+  ASSERT_EQ(diagnosis.findings.size(), 1U);
+  EXPECT_TRUE(Names(diagnosis.findings.front(), world.hidden.front()));
+  ASSERT_EQ(diagnosis.notes.size(), 1U);
+  EXPECT_NE(diagnosis.notes.front().find("population.smoothness_mm"), std::string::npos)
+      << diagnosis.notes.front();
+}
+
 // Six wrong causes, each at 1.000, had stood beside effects of this kind.
 TEST(EffectsOfNoCatalogue, LeaveNothingToOtherNames) {
   const HiddenWorlds worlds(rig::CampaignKind::kStandard);

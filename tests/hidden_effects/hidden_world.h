@@ -5,6 +5,8 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +22,12 @@
 #include "settings/document.h"
 
 namespace abbe {
+
+// Lines of the machine file, and what is true of a machine that is rougher than it says.
+inline const std::vector<std::pair<std::string, std::string>> kRougher{
+    {"smoothness_mm = 15.0", "smoothness_mm = 8.0"},
+    {"straightness_um = 1.0", "straightness_um = 2.0"},
+    {"positioning_um = 2.0", "positioning_um = 4.0"}};
 
 // The demonstration machine, reduced, its ball without drag in the cap: that drag is a cause.
 class HiddenWorlds {
@@ -37,6 +45,22 @@ class HiddenWorlds {
         kind_(kind) {
     machine_.rig.cap = 0.0;
     if (noise == Noise::kWhite) machine_.rig.drift = 0.0;
+  }
+
+  // A machine of other errors and noise than the file says: lines of the file and what is true.
+  HiddenWorlds Unlike(const std::vector<std::pair<std::string, std::string>>& lines) const {
+    const auto path = std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml";
+    std::ostringstream read;
+    read << std::ifstream(path).rdbuf();
+    std::string text = read.str();
+    for (const auto& [stated, real] : lines) text.replace(text.find(stated), stated.size(), real);
+    HiddenWorlds worlds = *this;
+    const double drift = worlds.machine_.rig.drift;
+    worlds.machine_ =
+        rig::ReadCampaignMachine(settings::Document::Parse(text, "world.toml").Root());
+    worlds.machine_.rig.cap = 0.0;
+    worlds.machine_.rig.drift = drift;
+    return worlds;
   }
 
   const rig::CampaignMachine& machine() const { return machine_; }

@@ -1,0 +1,25 @@
+// The search for causes, with errors of the axes of other sizes and correlation lengths than those of
+// the machine file as a hypothesis of its own.
+//
+//   const Answer answer = BesidePopulation(campaign);
+//
+// A machine that is rougher than its file leaves something in every run; up to six causes that are
+// not there had been named for it, each by itself more probable than errors of the stated kind.
+// Where other sizes and lengths, one of each error function, may raise the likelihood by
+// kWorthASearch, they are estimated from the simulation without causes
+// (fusion/population_evidence.h); knots follow. Where they are more probable than the first cause
+// or structure, the search goes by them; else it goes by the file, and by them again where its
+// answer leaves something or lets them rise. A search by them is repeated with the sizes and
+// lengths that its causes leave, at most kSearches times. The answer with the larger worth stands,
+// sizes and lengths counted with their prior probability and their own uncertainty (Laplace). Squarenesses and slopes of the positioning errors keep the sizes of the
+// file: causes widen these. Failure: that of Fit.
+// Source: docs/theory-diagnosis.md.
+#pragma once
+
+#include "diagnosis/answer.h"
+
+namespace abbe::diagnosis {
+
+Answer BesidePopulation(std::shared_ptr<const Campaign> campaign);
+
+}  // namespace abbe::diagnosis
