@@ -14,7 +14,7 @@ if(Python3_FOUND)
   # Target site: the manual that can be searched, with the reference and a page for each cause, in site/index.html of
   # the build folder. Needs mkdocs-material, python3-matplotlib and python3-h5py.
   add_custom_target(site
-    COMMAND ${Python3_EXECUTABLE} -B docs/site/build_site.py --abbe $<TARGET_FILE:abbe_program>
+    COMMAND /usr/bin/python3 -B docs/site/build_site.py --abbe $<TARGET_FILE:abbe_program>
             --reference ${PROJECT_BINARY_DIR}/reference/html --out ${PROJECT_BINARY_DIR}/site
     DEPENDS reference abbe_program
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}

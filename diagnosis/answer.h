@@ -1,7 +1,6 @@
 // What a search answers under one simulation, and how probable that simulation and its answer are.
 //
-//   Answer answer = BesidePopulation(campaign);        // population_hypothesis.h
-//   answer = BesideMemory(std::move(answer));          // noise_hypothesis.h
+//   const Answer answer = Ask(campaign, std::make_shared<Search>(*campaign), 0.0);
 //
 // `worth`: logarithm of the marginal likelihood with the prior probabilities of the simulation
 // (`prior`) and of all that was taken in, up to a constant of the readings; the greater one is the

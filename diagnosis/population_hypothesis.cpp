@@ -22,11 +22,30 @@ using Eigen::VectorXd;
 using fusion::PopulationEvidence;
 
 constexpr double kWorthASearch = 10.0;  // logarithm of the likelihood
-constexpr double kAsBefore = 2.0;       // the same
-constexpr int kSearches = 3, kFinerKnots = 3;
+constexpr double kAsBefore = 5.0;       // the same
+constexpr int kFinerKnots = 3;
 
 double LogDeterminant(const MatrixXd& positive) {
   return 2.0 * positive.llt().matrixLLT().diagonal().array().log().sum();
+}
+
+// The lines of [population] that the functions follow.
+struct OfLine {
+  fusion::Line line;
+  double machine::Population::*of;
+  const char* key;
+  double unit;
+};
+constexpr std::array kOfLines{
+    OfLine{fusion::kPositioning, &machine::Population::positioning, "positioning_um", 1e-6},
+    OfLine{fusion::kStraightness, &machine::Population::straightness, "straightness_um", 1e-6},
+    OfLine{fusion::kRoll, &machine::Population::roll, "roll_urad", 1e-6},
+    OfLine{fusion::kPitch, &machine::Population::pitch, "pitch_urad", 1e-6},
+    OfLine{fusion::kYaw, &machine::Population::yaw, "yaw_urad", 1e-6},
+    OfLine{fusion::kSmoothness, &machine::Population::smoothness, "smoothness_mm", 1e-3}};
+
+Answer MoreProbable(Answer one, Answer other) {
+  return other.worth > one.worth ? std::move(other) : std::move(one);
 }
 
 // By how much the likelihood may rise from where sizes and lengths are as in the file, by its slopes
@@ -44,36 +63,19 @@ double PossibleGain(const Fit& fit) {
              (local.fisher + evidence.precision()).topLeftCorner(free, free).ldlt().solve(slope));
 }
 
-machine::Population LinesOf(const machine::Population& stated,
-                            const std::vector<fusion::Statement>& seen) {
-  machine::Population lines = stated;
-  lines.positioning = seen[fusion::kPositioning].seen;
-  lines.straightness = seen[fusion::kStraightness].seen;
-  lines.roll = seen[fusion::kRoll].seen;
-  lines.pitch = seen[fusion::kPitch].seen;
-  lines.yaw = seen[fusion::kYaw].seen;
-  lines.smoothness = seen[fusion::kSmoothness].seen;
-  return lines;
-}
-
 // Sizes and lengths of the errors as the runs show them.
 class Population {
  public:
-  // `stated`: the campaign as the machine file has it; from its simulation without causes.
-  Population(const Campaign& stated, const Fit& base)
+  // `stated`: the campaign as the machine file has it; `fit`: of its runs, with the causes found.
+  Population(const Campaign& stated, const Fit& fit)
       : stated_(stated), machine_(stated.instruments().machine), knots_(fusion::KnotsOf(machine_)) {
-    {
-      const PopulationEvidence evidence(machine_, stated.model());
-      theta_ = evidence.AtBestLength(base.OfMachine());
-    }
-    Follow(base);
-    for (int i = 0; i < kFinerKnots; ++i) {
-      const auto coarser = knots_;
-      MakeCampaign();
-      if (knots_ == coarser) break;
-      Follow(Fit(*campaign_));
-    }
+    const PopulationEvidence evidence(machine_, stated.model());
+    theta_ = evidence.AtBestLength(fit.OfMachine());
+    Follow(fit);
   }
+
+  // Of these sizes and lengths against the stated ones, to first order at the last fit.
+  double LogOdds() const { return gain_ + prior_; }
 
   // Those that a fit, with its causes, leaves; by how much the evidence rises.
   double Follow(const Fit& fit) {
@@ -84,23 +86,26 @@ class Population {
     const auto highest = evidence.Maximise(of_machine, theta_, free);
     theta_ = highest.theta;
     population_ = evidence.PopulationAt(theta_);
-    statements_ = evidence.Statements(highest);
+    SetLines(evidence);
     const MatrixXd pi = evidence.precision().topLeftCorner(free, free);
     const MatrixXd known = pi + highest.local.fisher.topLeftCorner(free, free);
     const VectorXd at = theta_.head(free);
-    prior_ = 0.5 * (LogDeterminant(pi) - LogDeterminant(known) - at.dot(pi * at));
+    const double of_theta = -0.5 * at.dot(pi * at);
+    prior_ = of_theta + 0.5 * (LogDeterminant(pi) - LogDeterminant(known));
+    gain_ = highest.log - of_theta - evidence.At(of_machine, VectorXd::Zero(theta_.size())).log;
     return highest.log - before;
   }
 
-  void MakeCampaign() {
-    knots_ = fusion::KnotsFor(machine_, population_, knots_);
-    campaign_ = std::make_shared<const Campaign>(
-        stated_.With(population_, knots_, LinesOf(machine_.population, statements_)));
+  // On knots that are close enough, without causes.
+  void FollowOnFinerKnots() {
+    for (int i = 0; i < kFinerKnots && MakeCampaign(); ++i) Follow(Fit(*campaign_));
   }
 
-  // Of the simulation without causes with these sizes and lengths, against the stated ones.
-  double LogOdds(const Fit& stated) const {
-    return prior_ + Fit(*campaign_).log_likelihood() - stated.log_likelihood();
+  // False where the knots are as before.
+  bool MakeCampaign() {
+    const auto coarser = std::exchange(knots_, fusion::KnotsFor(machine_, population_, knots_));
+    campaign_ = std::make_shared<const Campaign>(stated_.With(population_, knots_, lines_));
+    return knots_ != coarser;
   }
 
   Answer Asked() const {
@@ -110,12 +115,28 @@ class Population {
   }
 
  private:
+  // What the lines of the machine file would be: of all errors that a line is for, the mean.
+  void SetLines(const PopulationEvidence& evidence) {
+    std::array<double, fusion::kLines> sums{}, counts{};
+    for (Index i = 0; i < evidence.of_functions(); ++i) {
+      sums[evidence.knobs()[i].line] += theta_[i];
+      counts[evidence.knobs()[i].line] += 1.0;
+    }
+    lines_ = machine_.population;
+    for (const OfLine& line : kOfLines) {
+      if (counts[line.line] > 0.0) lines_.*line.of *= std::exp(sums[line.line] / counts[line.line]);
+    }
+  }
+
   std::string Note() const {
+    constexpr double kThird = 1.33;
     std::string lines;
-    for (const fusion::Statement& line : statements_) {
-      if (!line.Refuted()) continue;
-      lines += fmt::format("{}{} {:.2g} (machine file: {:.2g})", lines.empty() ? "" : ", ",
-                           line.key, line.seen / line.unit, line.stated / line.unit);
+    for (const OfLine& line : kOfLines) {
+      const double seen = lines_.*line.of, stated = machine_.population.*line.of;
+      if (std::abs(std::log(seen / stated)) < std::log(kThird)) continue;
+      lines +=
+          fmt::format("{}population.{} {:.2g} (machine file: {:.2g})", lines.empty() ? "" : ", ",
+                      line.key, seen / line.unit, stated / line.unit);
     }
     if (lines.empty()) lines = "some are larger or smaller, smoother or rougher";
     return fmt::format(
@@ -127,53 +148,40 @@ class Population {
   const machine::Machine& machine_;
   std::array<double, machine::kAxes> knots_;
   VectorXd theta_;
-  double prior_ = 0.0;
+  double gain_ = 0.0, prior_ = 0.0;
   fusion::ErrorPopulation population_;
-  std::vector<fusion::Statement> statements_;
+  machine::Population lines_ = {};
   std::shared_ptr<const Campaign> campaign_;
 };
 
-// The answer that goes by what the runs show; `population`: of the simulation without causes.
+// The answer that goes by what the runs show.
 Answer AsSeen(Population population) {
+  population.MakeCampaign();
   Answer best = population.Asked();
-  for (int search = 1;; ++search) {
-    const bool settled = population.Follow(best.search->fit()) < kAsBefore;
-    if (settled || search == kSearches) return best;
-    population.MakeCampaign();
-    Answer next = population.Asked();
-    if (next.worth < best.worth) return best;
-    best = std::move(next);
-  }
-}
-
-bool IsUnexplained(const Answer& answer) {
-  return answer.diagnosis.verdict == Verdict::kUnexplained;
-}
-
-Answer MoreProbable(Answer one, Answer other) {
-  return other.worth > one.worth ? std::move(other) : std::move(one);
+  if (population.Follow(best.search->fit()) < kAsBefore) return best;
+  population.MakeCampaign();
+  return MoreProbable(std::move(best), population.Asked());
 }
 
 }  // namespace
 
 Answer BesidePopulation(std::shared_ptr<const Campaign> campaign) {
   const auto as_stated = std::make_shared<Search>(*campaign);
-  const Fit& base = as_stated->base();
   const bool has_axes = campaign->instruments().HasAxes();
-  const bool may_differ = has_axes && PossibleGain(base) > kWorthASearch;
-  if (may_differ) {
-    Population seen(*campaign, base);
-    if (seen.LogOdds(base) > as_stated->LogOddsOfFirst()) {
-      Answer answer = AsSeen(std::move(seen));
-      if (!IsUnexplained(answer)) return answer;
-      return MoreProbable(Ask(campaign, as_stated, 0.0), std::move(answer));
+  if (has_axes && PossibleGain(as_stated->base()) > kWorthASearch) {
+    Population seen(*campaign, as_stated->base());
+    if (seen.LogOdds() > as_stated->LogOddsOfFirst()) {
+      seen.FollowOnFinerKnots();
+      return AsSeen(std::move(seen));
     }
   }
   Answer answer = Ask(campaign, as_stated, 0.0);
+  const Fit& fit = answer.search->fit();
   if (!has_axes || answer.diagnosis.verdict == Verdict::kClean) return answer;
-  if (PossibleGain(answer.search->fit()) < kWorthASearch && !(may_differ && IsUnexplained(answer)))
-    return answer;
-  return MoreProbable(std::move(answer), AsSeen(Population(*campaign, base)));
+  if (PossibleGain(fit) < kWorthASearch) return answer;
+  Population seen(*campaign, fit);
+  if (seen.LogOdds() < kWorthASearch) return answer;
+  return MoreProbable(std::move(answer), AsSeen(std::move(seen)));
 }
 
 }  // namespace abbe::diagnosis

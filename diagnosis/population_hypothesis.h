@@ -8,11 +8,13 @@
 // Where other sizes and lengths, one of each error function, may raise the likelihood by
 // kWorthASearch, they are estimated from the simulation without causes
 // (fusion/population_evidence.h); knots follow. Where they are more probable than the first cause
-// or structure, the search goes by them; else it goes by the file, and by them again where its
-// answer leaves something or lets them rise. A search by them is repeated with the sizes and
-// lengths that its causes leave, at most kSearches times. The answer with the larger worth stands,
-// sizes and lengths counted with their prior probability and their own uncertainty (Laplace). Squarenesses and slopes of the positioning errors keep the sizes of the
-// file: causes widen these. Failure: that of Fit.
+// or structure, the search goes by them; else it goes by the file, and once more by them where
+// beside its causes they are more probable than the stated ones by kWorthASearch. A search by them
+// is repeated once with the sizes and lengths that its causes leave. The answer with the larger
+// worth stands, sizes and lengths counted with their prior probability and their own uncertainty
+// (Laplace). Squarenesses and slopes of the positioning errors keep the sizes of the file: causes
+// widen these.
+// Units: SI. Failure: that of Fit.
 // Source: docs/theory-diagnosis.md.
 #pragma once
 

@@ -44,23 +44,23 @@ TEST(HiddenRates, OfFalseAlarmsInNoiseThatDrifts) {
   EXPECT_LE(alarms.Low(), 0.02) << alarms.Text();
 }
 
-const std::vector<std::pair<std::string, std::string>> kSmoother {
-  {{"smoothness_mm = 15.0", "smoothness_mm = 40.0"},
-   {"straightness_um = 1.0", "straightness_um = 0.4"},
-   {"positioning_um = 2.0", "positioning_um = 0.8"},
-   {"pitch_urad = 20.0", "pitch_urad = 7.0"}};
+const std::vector<std::pair<std::string, std::string>> kSmoother{
+    {"smoothness_mm = 15.0", "smoothness_mm = 40.0"},
+    {"straightness_um = 1.0", "straightness_um = 0.4"},
+    {"positioning_um = 2.0", "positioning_um = 0.8"},
+    {"pitch_urad = 20.0", "pitch_urad = 7.0"}};
 
-  TEST(HiddenRates, OfFalseAlarmsOnARougherMachine) {
-    const Rate alarms = FalseAlarms(HiddenWorlds(kCampaign).Unlike(kRougher));
-    EXPECT_LE(alarms.Low(), 0.02) << alarms.Text();
-  }
+TEST(HiddenRates, OfFalseAlarmsOnARougherMachine) {
+  const Rate alarms = FalseAlarms(HiddenWorlds(kCampaign).Unlike(kRougher));
+  EXPECT_LE(alarms.Low(), 0.02) << alarms.Text();
+}
 
-  TEST(HiddenRates, OfFalseAlarmsOnASmootherMachine) {
-    const Rate alarms = FalseAlarms(HiddenWorlds(kCampaign).Unlike(kSmoother));
-    EXPECT_LE(alarms.Low(), 0.02) << alarms.Text();
-  }
+TEST(HiddenRates, OfFalseAlarmsOnASmootherMachine) {
+  const Rate alarms = FalseAlarms(HiddenWorlds(kCampaign).Unlike(kSmoother));
+  EXPECT_LE(alarms.Low(), 0.02) << alarms.Text();
+}
 
-  // The same effect with the largest sizes that the rig hides.
+// The same effect with the largest sizes that the rig hides.
   std::string Largest(const rig::HiddenEffect& effect) {
     std::string text = fmt::format("{}:object={}", effect.entry->name, effect.object);
     for (const rig::KeyEntry& key : effect.entry->keys) {
