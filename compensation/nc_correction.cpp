@@ -80,6 +80,25 @@ class ProgramCorrection : public NcHost {
     return *options_.deletes_blocks;
   }
 
+  void TakeKept(std::string_view line, std::size_t line_number) override {
+    line_number_ = line_number;
+    ReadBlock(line, line_number, parameters_, block_);
+    if (block_.is_deletable && Deletes(line_number)) return;
+    const NcMeaning meaning = MeaningOf(block_, line_number, options_.allowed);
+    if (!block_.settings.empty() || !LeavesNothing(block_, options_.allowed.copied)) {
+      Refuse(
+          "whether this acts is known only at the control; there only messages, stops, waits and "
+          "outputs may stand; give --parameters or --ini, or correct the ways apart");
+    }
+    CopyLine(line, meaning);
+  }
+
+  void WriteKept(std::string_view line) override {
+    has_acted_ = true;
+    writer_.Word(line);
+    writer_.EndLine();
+  }
+
   void Enter() override { levels_.push_back({}); }
 
   void Leave(std::size_t line_number) override {

@@ -244,8 +244,8 @@ class Meaning {
       Refuse("L is not supported here");
     }
     if (meaning_.nonmodal == 40 && meaning_.HasCentre()) Refuse("a dwell together with an arc");
-    if (meaning_.HasRotary() && meaning_.nonmodal != kNoMotion) {
-      Refuse("A, B and C belong to a move");
+    if (meaning_.HasRotary() && !IsOneOf(meaning_.nonmodal, {kNoMotion, 100, 920})) {
+      Refuse("A, B and C belong to a move, to G10 or to G92");
     }
     if (meaning_.motion == 800 && meaning_.HasAxes() && meaning_.nonmodal == kNoMotion) {
       Refuse("axis words without G0, G1, G2 or G3 in force (G80)");
@@ -314,6 +314,16 @@ std::optional<NcGroup> ModalGroup(const NcWord& word) {
 
 NcMeaning MeaningOf(const NcBlock& block, std::size_t line_number, const NcAllowed& allowed) {
   return Meaning(line_number, allowed).Of(block);
+}
+
+bool LeavesNothing(const NcBlock& block, const std::set<int>& copied) {
+  return std::all_of(block.words.begin(), block.words.end(), [&](const NcWord& word) {
+    const int code = CodeTimes10(word);
+    if (word.letter == 'G') return code == 40;
+    if (word.letter != 'M') return std::string_view("(NPQLE").find(word.letter) != std::string::npos;
+    return IsOneOf(code, {0, 10, 20, 300, 600}) || (code >= 620 && code <= 680) ||
+           copied.contains(code / 10);
+  });
 }
 
 std::string TextOf(const NcWord& word, std::size_t line_number) {

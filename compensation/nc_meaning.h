@@ -53,6 +53,10 @@ struct NcAllowed {
 // What a block says; modes that are in force from earlier blocks play no part.
 NcMeaning MeaningOf(const NcBlock& block, std::size_t line_number, const NcAllowed& allowed);
 
+// Whether nothing that follows depends on whether the block acted: messages, a dwell, stops, the
+// end of the program, outputs and waits for inputs, M codes of `copied`.
+bool LeavesNothing(const NcBlock& block, const std::set<int>& copied);
+
 // The word as it stands in the corrected program: as written, or with the value of its expression.
 std::string TextOf(const NcWord& word, std::size_t line_number);
 

@@ -173,7 +173,13 @@ void NcSetup::TakeG92(int code, const NcMeaning& meaning) {
     }
   }
   state_.place = state_.wanted.ToProgram(machine);
-  state_.rotary.fill(kRuntime);
+  TakeAngles(meaning, code == kSet);
+}
+
+void NcSetup::TakeAngles(const NcMeaning& meaning, bool is_here) {
+  for (int k = 0; k < 3; ++k) {
+    state_.rotary[k] = is_here ? meaning.rotary[k].value_or(kRuntime) : kRuntime;
+  }
 }
 
 void NcSetup::TakeG10(const NcMeaning& meaning) {
@@ -207,7 +213,7 @@ void NcSetup::TakeG10(const NcMeaning& meaning) {
   }
   if (state_.wanted.IsTurned() && !state_.KnowsPlace()) state_.is_known.fill(false);
   state_.place = state_.wanted.ToProgram(machine);
-  state_.rotary.fill(kRuntime);
+  TakeAngles(meaning, is_here && system == state_.wanted.active);
 }
 
 void NcSetup::TakeHome(int home) {

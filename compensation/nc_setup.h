@@ -34,6 +34,8 @@ class NcSetup {
   void TakeG92(int code, const NcMeaning& meaning);
   void TakeG10(const NcMeaning& meaning);
   void TakeHome(int home);
+  // The control has other offsets of A, B and C; where `is_here`, their places became the given.
+  void TakeAngles(const NcMeaning& meaning, bool is_here);
   // Lengths of a block that sets offsets; not a number where none is given.
   Eigen::Vector3d Given(const NcMeaning& meaning) const;
   void MustKnow(const NcMeaning& meaning) const;

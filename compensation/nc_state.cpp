@@ -54,7 +54,18 @@ bool Has(const NcState& state, NcGroup group, std::string_view word) {
   return found != state.words.end() && found->second.starts_with(word);
 }
 
-std::optional<double> LiveName(const NcState& state, const std::string& name) {
+// "_ini[section]key": LinuxCNC looks for both in upper case.
+std::optional<double> OfIni(const std::map<std::string, double>& ini, const std::string& name) {
+  std::string key = name.substr(std::string_view("_ini[").size());
+  for (char& c : key) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  const auto found = ini.find(key);
+  if (found == ini.end()) return std::nullopt;
+  return found->second;
+}
+
+std::optional<double> LiveName(const NcState& state, const NcTables& tables,
+                               const std::string& name) {
+  if (name.starts_with("_ini[") && tables.ini) return OfIni(*tables.ini, name);
   // Values of the control at the time.
   if (name.starts_with("_hal[") || name.starts_with("_ini[")) return kRuntime;
   if (name == "_metric") return !state.is_inch;
@@ -170,7 +181,7 @@ double NcState::Unit() const { return is_inch ? kInchInMetres : settings::kMilli
 
 NcLive LiveOf(const NcState& state, const NcTables& tables) {
   return {[&](int number) { return LiveNumber(state, tables, number); },
-          [&](const std::string& name) { return LiveName(state, name); }};
+          [&](const std::string& name) { return LiveName(state, tables, name); }};
 }
 
 std::vector<std::string> Restoring(const NcModalWords& before, const NcModalWords& now) {
