@@ -112,10 +112,21 @@ class Flow {
         return GoBehind(branch);
       }
       const double value = ValueOrRuntime(control);
-      if (std::isnan(value)) return GoBehind(kept_.Keep(*Top().file, branch));
+      if (std::isnan(value)) return Keep(branch);
       if (value != 0.0) return GoBehind(branch);
       branch = control.next;
     }
+  }
+
+  // The control chooses from `branch` on.
+  void Keep(int branch) {
+    const int end = kept_.Keep(*Top().file, branch);
+    if (At(end).control != NcControl::kEndSub) return GoBehind(end);
+    const std::size_t line_number = At(end).line + 1;
+    if (!Top().is_call) RefuseLine(line_number, "a return outside a subroutine");
+    parameters_.SetNamed("_value", kRuntime);
+    parameters_.SetNamed("_value_returned", kRuntime);
+    Return(line_number);
   }
 
   void Follow(int index) {

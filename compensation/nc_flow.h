@@ -29,8 +29,8 @@ class NcHost {
   // Whether a block that begins with / is left out; InputError where that is not known.
   virtual bool Deletes(std::size_t /*line_number*/) { return false; }
   // A line in a branch that is kept, whether or not the control takes it; InputError for one after
-  // which the way that was taken matters.
-  virtual void TakeKept(std::string_view line, std::size_t line_number) = 0;
+  // which the way that was taken matters. `is_last`: up to the end of the subroutine.
+  virtual void TakeKept(std::string_view line, std::size_t line_number, bool is_last) = 0;
   // A line of the kept structure itself.
   virtual void WriteKept(std::string_view line) = 0;
   // A subroutine begins and ends.

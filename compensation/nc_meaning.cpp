@@ -38,18 +38,12 @@ int GroupOf(int code) {
   if (IsOneOf(code, {960, 970})) return 14;
   if (IsOneOf(code, {610, 611, 640})) return 13;
   if (IsOneOf(code, {70, 80})) return 15;
-  if (code == 400) return 7;
+  if (IsOneOf(code, {400, 410, 411, 420, 421})) return 7;
   return code == 530 || code == 800 ? code : -1;
 }
 
 std::string_view WhyNot(int code) {
   switch (code) {
-    case 410:
-    case 411:
-    case 420:
-    case 421:
-      return "cutter compensation moves the tool off the programmed path; let the CAM system write "
-             "tool centre paths";
     case 330:
     case 331:
     case 760:
@@ -139,7 +133,8 @@ class Meaning {
       meaning_.modes.push_back(code);
     }
     takes_p_ = takes_p_ || code == 40 || code == 100 || code == 640;
-    takes_d_ = takes_d_ || code == 960;
+    meaning_.is_beside = meaning_.is_beside || IsOneOf(code, {410, 411, 420, 421});
+    takes_d_ = takes_d_ || code == 960 || meaning_.is_beside;
     takes_h_ = takes_h_ || code == 430 || code == 432;
   }
 
@@ -314,6 +309,11 @@ std::optional<NcGroup> ModalGroup(const NcWord& word) {
 
 NcMeaning MeaningOf(const NcBlock& block, std::size_t line_number, const NcAllowed& allowed) {
   return Meaning(line_number, allowed).Of(block);
+}
+
+bool IsOfBeside(const NcWord& word) {
+  return word.letter == 'D' ||
+         (word.letter == 'G' && IsOneOf(CodeTimes10(word), {410, 411, 420, 421}));
 }
 
 bool LeavesNothing(const NcBlock& block, const std::set<int>& copied) {

@@ -72,6 +72,10 @@ bool NcParameters::IsOfControl(const std::string& name) const {
   return value && (std::isnan(*value) || name == "_task");  // 0 where a program is only drawn
 }
 
+bool NcParameters::IsOfSubroutine(const std::string& name, int number) {
+  return name.empty() ? number <= kArguments : !IsGlobal(name);
+}
+
 // Whether a probe has touched; the last answer of M66.
 bool NcParameters::IsOfControl(int number) {
   constexpr int kHasTouched = 5070, kInput = 5399;

@@ -52,6 +52,8 @@ class NcParameters {
   // program finds it as the program does.
   bool IsOfControl(const std::string& name) const;
   static bool IsOfControl(int number);
+  // Whether it ends with its level of calls: a name (empty: none) without _, or #1 to #30.
+  static bool IsOfSubroutine(const std::string& name, int number);
   // Makes it if it is new.
   void SetNamed(const std::string& name, double value);
 

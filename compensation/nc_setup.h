@@ -31,6 +31,11 @@ class NcSetup {
   const NcTool& ToolOf(double number);
   void TakeTool(const NcBlock& block, const NcMeaning& meaning);
   void TakeToolLength(int code, const NcMeaning& meaning);
+  // G40 to G42.1.
+  void TakeBeside(int code, const NcMeaning& meaning);
+  // InputError for what must not change between G41 or G42 and G40.
+  void MustStayBeside(const NcMeaning& meaning) const;
+  bool Changes(int code) const;
   void TakeG92(int code, const NcMeaning& meaning);
   void TakeG10(const NcMeaning& meaning);
   void TakeHome(int home);

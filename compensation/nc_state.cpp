@@ -35,7 +35,7 @@ std::optional<double> Stored(const NcState& state, const NcTables& tables, int n
 }
 
 std::optional<double> Coordinate(const NcState& state, int axis) {
-  if (!state.is_known[axis]) return std::nullopt;
+  if (!state.is_known[axis] || state.IsBeside() || state.stands) return std::nullopt;
   return state.place[axis] / state.Unit();
 }
 
@@ -98,7 +98,10 @@ std::optional<double> LiveName(const NcState& state, const NcTables& tables,
   if (name == "_spindle_cw") return Has(state, NcGroup::kSpindle, "M3");
   if (name == "_mist") return Has(state, NcGroup::kMist, "M7");
   if (name == "_flood") return Has(state, NcGroup::kFlood, "M8");
-  if (name == "_ccomp") return 400.0;  // refused otherwise
+  if (name == "_ccomp") {
+    constexpr double kNone = 400.0, kLeft = 410.0, kRight = 420.0;
+    return state.beside.side == 0.0 ? kNone : state.beside.side > 0.0 ? kLeft : kRight;
+  }
   if (name == "_feed") return state.feed;
   if (name == "_rpm") return state.speed;
   if (name == "_task") return 1.0;  // a control runs the program
@@ -107,7 +110,7 @@ std::optional<double> LiveName(const NcState& state, const NcTables& tables,
   }
   if (name == "_abs_x" || name == "_abs_y" || name == "_abs_z") {
     const int axis = name.back() - 'x';
-    if (!state.KnowsPlace()) return kRuntime;
+    if (!state.KnowsPlace() || state.IsBeside() || state.stands) return kRuntime;
     return state.wanted.ToMachine(state.place)[axis] / state.Unit();
   }
   if (name == "_current_tool") return state.tool ? *state.tool : kRuntime;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -80,6 +81,7 @@ std::map<int, NcTool> ReadTools(const std::filesystem::path& path) {
       const double value = PlainNumber(cursor);
       if (letter == 'T') number = value;
       if (letter == 'D') tool.diameter = value;
+      if (letter == 'Q') tool.orientation = static_cast<int>(std::clamp(value, 0.0, 9.0));
       if (letter >= 'X' && letter <= 'Z') tool.offset[letter - 'X'] = value;
       if (std::string_view("TPDXYZABCUVWIJQ").find(letter) == std::string_view::npos) {
         cursor.Refuse(fmt::format("{} is no word of a tool table", letter));

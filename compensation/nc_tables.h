@@ -24,6 +24,7 @@ namespace abbe::compensation {
 struct NcTool {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   double diameter = 0.0;
+  int orientation = 0;  // of a turning tool, Q
 };
 
 struct NcTables {
