@@ -86,9 +86,12 @@ NcBeside::Curve NcBeside::CurveOf(const NcPiece& move, const Vector2d& corner) c
   const Vector3d place = WithNormal(corner, 0.0);
   const Vector2d direction = DirectionAt(move, place), centre = InPlane(move.arc.centre);
   const double inside = InsideOf(move);
-  return {move.IsArc(), Offset(corner, direction),
-          direction,    centre,
-          (corner - centre).norm() - inside * setting_.radius, inside};
+  return {move.IsArc(),
+          Offset(corner, direction),
+          direction,
+          centre,
+          (corner - centre).norm() - inside * setting_.radius,
+          inside};
 }
 
 void NcBeside::MustFit(const NcPiece& move) const {
@@ -100,14 +103,13 @@ void NcBeside::MustFit(const NcPiece& move) const {
   }
 }
 
-// A move that the corners leave nothing of would go back; `whole` is the move without them.
-void NcBeside::MustAdvance(const NcPiece& piece, const NcPiece& whole) const {
+// A move that the corners leave nothing of would go back: an arc becomes longer.
+void NcBeside::MustAdvance(const NcPiece& piece, double slack) const {
   bool goes_back = false;
   if (piece.IsArc()) {
-    goes_back = std::abs(SweepOf(piece)) > std::abs(SweepOf(whole)) + 2 * kStraight;
+    goes_back = std::abs(SweepOf(piece)) > whole_sweep_ + slack;
   } else {
-    const Vector2d left = InPlane(piece.to) - InPlane(piece.from);
-    goes_back = left.dot(DirectionAt(whole, whole.to)) <= 0.0;
+    goes_back = (InPlane(piece.to) - InPlane(piece.from)).dot(whole_direction_) <= 0.0;
   }
   if (goes_back) {
     RefuseLine(piece.line_number,
@@ -116,12 +118,21 @@ void NcBeside::MustAdvance(const NcPiece& piece, const NcPiece& whole) const {
   }
 }
 
+// A full circle whose ends are not quite one place beside it would not be made.
+void NcBeside::MustTurn(const NcPiece& piece) const {
+  if (piece.IsArc() && whole_sweep_ - std::abs(SweepOf(piece)) > std::numbers::pi) {
+    RefuseLine(piece.line_number,
+               "a circle that begins and ends at places that differ by rounding beside it: the "
+               "control may leave it out; write it as two arcs");
+  }
+}
+
 // The first move, from beside no path.
 void NcBeside::Enter(const NcPiece& move) {
   const Vector2d from = InPlane(at_), to = InPlane(move.to);
   NcPiece entry = move;
   entry.from = at_;
-  if ((to - from).norm() <= setting_.radius && !move.IsArc()) {
+  if ((to - from).norm() <= setting_.radius) {
     RefuseLine(move.line_number,
                "the first move after G41 or G42 must be longer than the radius of the tool, in the "
                "plane of its compensation");
@@ -143,6 +154,8 @@ void NcBeside::Enter(const NcPiece& move) {
     entry.arc.turns = move.arc.turns;
     last_.arc.centre = entry.arc.centre;
   }
+  whole_direction_ = (end - from).normalized();
+  if (move.IsArc()) whole_sweep_ = std::abs(SweepOf(entry));
   open_ = {{entry}};
   at_ = entry.to;
   is_first_ = false;
@@ -158,9 +171,8 @@ bool NcBeside::IsConcave(double turn) const {
 // The end of the moves that are open, where the next begins.
 void NcBeside::EndAt(const Vector2d& place) {
   NcPiece& moved = open_.front().back();
-  const NcPiece before = moved;
-  moved.to = WithNormal(place, before.to[w_]);
-  MustAdvance(moved, before);
+  moved.to = WithNormal(place, moved.to[w_]);
+  MustAdvance(moved, setting_.slack);
   for (std::size_t i = 1; i < open_.size(); ++i) {
     NcPiece& along_normal = open_[i].back();
     along_normal.from = WithNormal(place, along_normal.from[w_]);
@@ -173,8 +185,7 @@ std::optional<Vector2d> NcBeside::Meeting(const Curve& a, const Curve& b, const 
   if (a.is_arc && b.is_arc) return Meet(a.centre, a.radius, b.centre, b.radius, corner);
   if (a.is_arc) return Meet(a.centre, a.radius, b.point, b.direction, -a.inside);
   if (b.is_arc) return Meet(b.centre, b.radius, a.point, a.direction, b.inside);
-  const double part =
-      Cross(b.point - a.point, b.direction) / Cross(a.direction, b.direction);
+  const double part = Cross(b.point - a.point, b.direction) / Cross(a.direction, b.direction);
   return a.point + part * a.direction;
 }
 
@@ -206,6 +217,8 @@ void NcBeside::Follow(const NcPiece& move, const Use& use) {
                  "let the CAM system write tool centre paths");
     }
     EndAt(*meeting);
+  } else {
+    MustTurn(open_.front().back());
   }
   for (const auto& pieces : open_) use(pieces);
   std::vector<NcPiece> pieces;
@@ -216,11 +229,9 @@ void NcBeside::Follow(const NcPiece& move, const Use& use) {
   NcPiece own = move;
   own.from = at_;
   own.to = WithNormal(Offset(InPlane(move.to), DirectionAt(move, move.to)), move.to[w_]);
-  if (move.IsArc() && !is_concave) {  // a full circle stays one
-    const double missing = std::abs(SweepOf(move)) - std::abs(SweepOf(own));
-    if (missing > std::numbers::pi) own.arc.turns += 1.0;
-  }
-  MustAdvance(own, move);
+  whole_direction_ = after;
+  if (move.IsArc()) whole_sweep_ = std::abs(SweepOf(move));
+  MustAdvance(own, 2 * kStraight);
   pieces.push_back(own);
   at_ = own.to;
   last_ = move;
@@ -238,6 +249,10 @@ void NcBeside::Add(const NcPiece& move, const Use& use) {
 }
 
 void NcBeside::Finish(const Use& use) {
+  if (!open_.empty()) {
+    MustTurn(open_.front().back());
+    MustAdvance(open_.front().back(), setting_.slack);
+  }
   for (const auto& pieces : open_) use(pieces);
   open_.clear();
   is_on_ = false;

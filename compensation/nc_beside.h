@@ -41,6 +41,7 @@ struct NcBesideSetting {
   double side = 1.0;  // left of the path; right: -1
   double radius = 0.0;
   int plane = 17;
+  double slack = 0.0254;  // rad, by which corners may lengthen an arc; LinuxCNC's, 0.001 in G20
 };
 
 class NcBeside {
@@ -83,13 +84,17 @@ class NcBeside {
   bool IsConcave(double turn) const;
   void EndAt(const Vector2& place);
   void MustFit(const NcPiece& move) const;
-  void MustAdvance(const NcPiece& piece, const NcPiece& whole) const;
+  void MustAdvance(const NcPiece& piece, double slack) const;
+  void MustTurn(const NcPiece& piece) const;
 
   NcBesideSetting setting_;
   int u_ = 0, v_ = 1, w_ = 2;
   bool is_on_ = false, is_first_ = true;
   Eigen::Vector3d at_;
   NcPiece last_;  // as programmed; the last that moved in the plane
+  // Of that one, without corners: of a line and of an arc.
+  Vector2 whole_direction_ = Vector2::Zero();
+  double whole_sweep_ = 0.0;
   // For each programmed move that is not handed on; they end at one place of the plane.
   std::vector<std::vector<NcPiece>> open_;
 };

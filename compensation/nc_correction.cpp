@@ -85,10 +85,10 @@ class ProgramCorrection : public NcHost {
     ReadBlock(line, line_number, parameters_, block_);
     if (block_.is_deletable && Deletes(line_number)) return;
     const NcMeaning meaning = MeaningOf(block_, line_number, options_.allowed);
-    const bool forgets = std::all_of(
-        block_.settings.begin(), block_.settings.end(), [&](const NcSetting& setting) {
-          return is_last && NcParameters::IsOfSubroutine(setting.parameter.name,
-                                                         setting.parameter.number);
+    const bool forgets =
+        std::all_of(block_.settings.begin(), block_.settings.end(), [&](const NcSetting& setting) {
+          return is_last &&
+                 NcParameters::IsOfSubroutine(setting.parameter.name, setting.parameter.number);
         });
     if (!forgets || !LeavesNothing(block_, options_.allowed.copied)) {
       Refuse(

@@ -320,7 +320,8 @@ bool LeavesNothing(const NcBlock& block, const std::set<int>& copied) {
   return std::all_of(block.words.begin(), block.words.end(), [&](const NcWord& word) {
     const int code = CodeTimes10(word);
     if (word.letter == 'G') return code == 40;
-    if (word.letter != 'M') return std::string_view("(NPQLE").find(word.letter) != std::string::npos;
+    if (word.letter != 'M')
+      return std::string_view("(NPQLE").find(word.letter) != std::string::npos;
     return IsOneOf(code, {0, 10, 20, 300, 600}) || (code >= 620 && code <= 680) ||
            copied.contains(code / 10);
   });

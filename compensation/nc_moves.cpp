@@ -142,9 +142,9 @@ void NcMoves::Divide(const NcPiece& move) {
 
 void NcMoves::WriteWords(const NcBlock& block) {
   const bool has_values = IsArc(state_.motion) || IsCycle(state_.motion);
-  const bool has_cutter = std::any_of(
-      block.words.begin(), block.words.end(),
-      [](const NcWord& word) { return word.letter != 'D' && IsOfBeside(word); });
+  const bool has_cutter =
+      std::any_of(block.words.begin(), block.words.end(),
+                  [](const NcWord& word) { return word.letter != 'D' && IsOfBeside(word); });
   for (const NcWord& word : block.words) {
     if (has_cutter && IsOfBeside(word)) continue;
     if (IsReplaced(word, has_values) || ActsAfterTheMove(word) || IsLineComment(word)) continue;

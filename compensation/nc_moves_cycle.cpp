@@ -1,10 +1,9 @@
-#include "compensation/nc_moves.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "compensation/nc_cycles.h"
+#include "compensation/nc_moves.h"
 
 namespace abbe::compensation {
 

@@ -1,8 +1,7 @@
-#include "compensation/nc_moves.h"
-
 #include <algorithm>
 
 #include "compensation/nc_block.h"
+#include "compensation/nc_moves.h"
 
 namespace abbe::compensation {
 

@@ -177,15 +177,16 @@ void NcSetup::TakeBeside(int code, const NcMeaning& meaning) {
       const NcTool& tool = ToolOf(number);
       constexpr int kRound = 9;
       if (tool.orientation != 0 && tool.orientation != kRound) {
-        Refuse(fmt::format("tool {:g} has an orientation (Q{}); let the CAM system write the path "
-                           "of its point",
-                           number, tool.orientation));
+        Refuse(
+            fmt::format("tool {:g} has an orientation (Q{}); let the CAM system write the path "
+                        "of its point",
+                        number, tool.orientation));
       }
       diameter = options_.tables.unit * tool.diameter;
     }
   }
   state_.beside = {is_left == (diameter >= 0.0) ? 1.0 : -1.0, std::abs(diameter) / 2.0,
-                   state_.plane};
+                   state_.plane, state_.is_inch ? 1e-3 : 25.4e-3};
 }
 
 bool NcSetup::Changes(int code) const {
@@ -270,12 +271,14 @@ void NcSetup::TakeG92(int code, const NcMeaning& meaning) {
     }
   }
   state_.place = state_.wanted.ToProgram(machine);
-  TakeAngles(meaning, code == kSet);
+  if (code != kSet) state_.rotary.fill(kRuntime);
+  TakeAngles(meaning, true);
 }
 
+// An axis that is not given stays where it is in program coordinates.
 void NcSetup::TakeAngles(const NcMeaning& meaning, bool is_here) {
   for (int k = 0; k < 3; ++k) {
-    state_.rotary[k] = is_here ? meaning.rotary[k].value_or(kRuntime) : kRuntime;
+    if (meaning.rotary[k]) state_.rotary[k] = is_here ? *meaning.rotary[k] : kRuntime;
   }
 }
 
@@ -310,7 +313,7 @@ void NcSetup::TakeG10(const NcMeaning& meaning) {
   }
   if (state_.wanted.IsTurned() && !state_.KnowsPlace()) state_.is_known.fill(false);
   state_.place = state_.wanted.ToProgram(machine);
-  TakeAngles(meaning, is_here && system == state_.wanted.active);
+  if (system == state_.wanted.active) TakeAngles(meaning, is_here);
 }
 
 void NcSetup::TakeHome(int home) {

@@ -39,7 +39,7 @@ class NcSetup {
   void TakeG92(int code, const NcMeaning& meaning);
   void TakeG10(const NcMeaning& meaning);
   void TakeHome(int home);
-  // The control has other offsets of A, B and C; where `is_here`, their places became the given.
+  // The offsets of the A, B, C that are given changed; where `is_here`, their places are the given.
   void TakeAngles(const NcMeaning& meaning, bool is_here);
   // Lengths of a block that sets offsets; not a number where none is given.
   Eigen::Vector3d Given(const NcMeaning& meaning) const;

@@ -65,7 +65,7 @@ class NcWriter {
     bool is_at_start;
   };
   std::deque<Gap> gaps_;
-  std::string behind_;  // the gap that is written
+  std::string behind_;       // the gap that is written
   bool is_at_start_ = true;  // of a line
   int motion_ = kNoMotion;
   Eigen::Vector3d at_ = Eigen::Vector3d::Zero();
