@@ -138,7 +138,7 @@ void AddConvert(CLI::App& program, int& exit_code) {
       "A recording from CSV to HDF5 or back, from a table or a log, or to a log of candump");
   command
       ->add_option("from", options->from,
-                   "A recording (.csv, .h5, .hdf5), a table (.dat, .txt, .csv), a log (.log)")
+                   "A recording (.csv, .h5, .hdf5), a table (.dat, .rtl, .txt, .csv), a log (.log)")
       ->required();
   command->add_option("to", options->to, "The new recording (.csv, .h5, .hdf5), or log (.log)")
       ->required();
