@@ -82,6 +82,12 @@ int NcKept::EndOfSub(const NcFile& file, int control) {
 }
 
 int NcKept::Keep(const NcFile& file, int first) {
+  constexpr int kDeepestBranch = 64;
+  if (depth_ == kDeepestBranch) {
+    RefuseLine(file.controls[first].line + 1,
+               fmt::format("branches of the control nested more than {} deep", kDeepestBranch));
+  }
+  ++depth_;
   const std::string name = fmt::format("O<kept{}>", ++count_);
   int branch = first, branches = 0, returns = 0;
   bool has_else = false;
@@ -109,6 +115,7 @@ int NcKept::Keep(const NcFile& file, int first) {
     KeepLines(file, file.controls[branch].line + 1, file.controls[end].line, true);
   }
   host_.WriteKept(name + " endif");
+  --depth_;
   return end;
 }
 

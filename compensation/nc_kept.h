@@ -41,6 +41,7 @@ class NcKept {
   const NcParameters& parameters_;
   NcHost& host_;
   int count_ = 0;  // of structures, which name them
+  int depth_ = 0;  // of those around
 };
 
 }  // namespace abbe::compensation

@@ -225,6 +225,9 @@ class Meaning {
   // Values whose code is in force from earlier blocks are looked at by the motion.
   void Check() const {
     if (has_e_ && !takes_e_) Refuse("E is not supported here");
+    if (meaning_.d && meaning_.is_beside && meaning_.HasMode(960)) {
+      Refuse("D belongs to G96 or to G41 and G42; write them in two lines");
+    }
     if (meaning_.h && !takes_h_) Refuse("H is not supported here: it belongs to G43");
     if (meaning_.d && !takes_d_) Refuse("D is not supported here");
     if (has_late_p_ && !takes_p_) Refuse("P is known only at the control");

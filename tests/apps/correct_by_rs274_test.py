@@ -68,8 +68,10 @@ class Contour:
 
     def text(self):
         draw, side = self.draw, self.draw.choice(["G41", "G42"])
-        tool = f"{side}.1 D{2 * draw.choice([0.3, 1.0, 2.5])}" if draw.random() < 0.7 else f"{side} D{draw.randrange(9)}"
-        lines = ["T3 M6", "G21 G90 G94 F200", self.plane, f"G0 {self.first}0 {self.second}0 {self.normal}1", tool, self.line("G1")]
+        by_diameter = draw.random() < 0.7
+        tool = f"{side}.1 D{2 * draw.choice([0.3, 1.0, 2.5])}" if by_diameter else f"{side} D{draw.randrange(9)}"
+        start = f"G0 {self.first}0 {self.second}0 {self.normal}1"
+        lines = ["T3 M6", "G21 G90 G94 F200", self.plane, start, tool, self.line("G1")]
         if draw.random() < 0.2:
             lines[-1] = self.arc()
         lines += [self.move() for _ in range(draw.randrange(2, 8))]
