@@ -37,7 +37,7 @@ std::string NcKept::Condition(const NcControlLine& control) const {
   std::string condition;
   for (std::size_t at = 0; at < text.size();) {
     NcCursor cursor(text.substr(at), control.line + 1, parameters_);
-    const bool is_value = text[at] == '#' || cursor.TakeWord("EXISTS");
+    const bool is_value = text[at] == '#' || (text[at] != ' ' && cursor.TakeWord("EXISTS"));
     if (is_value) {
       condition += Value(text.substr(at), control.line + 1, at);
     } else {

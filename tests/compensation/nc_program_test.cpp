@@ -141,7 +141,7 @@ TEST(NcProgram, ABranchByAValueOfTheControlIsKeptForIt) {
   // A return leaves out the rest of its subroutine alone.
   EXPECT_EQ(WrittenOut("o<s> sub\no1 if [#5399 lt 0]\no1 return [-1]\no1 endif\n#<p> = 3\n"
                        "M64 P#<p>\no<s> endsub\nM66 P0 L0\no<s> call\nM0\n"),
-            "M66 P0 L0\nO<kept1> if [#5399 lt [0.000000000]]\nO<kept1> else\nM64 P3\n"
+            "M66 P0 L0\nO<kept1> if [#5399 lt 0]\nO<kept1> else\nM64 P3\n"
             "O<kept1> endif\nM0\n");
 }
 
