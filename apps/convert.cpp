@@ -12,6 +12,7 @@
 #include "apps/machine_file.h"
 #include "hal/can/candump_recording.h"
 #include "hal/can/canopen_device.h"
+#include "recording/ballbar.h"
 #include "recording/csv_table.h"
 #include "recording/import.h"
 #include "recording/monitor_log.h"
@@ -30,6 +31,7 @@ struct ConvertOptions {
   std::vector<double> sensor_degrees;
   std::vector<std::string> where;  // COLUMN=VALUE
   std::string kind;
+  recording::BallbarCircle ballbar;
   std::string machine;
   std::string device;
   bool shuffled = false;
@@ -89,7 +91,8 @@ recording::Recording ReadTable(const ConvertOptions& options) {
   for (const std::string& text : options.where) {
     table.where.push_back(SplitAt("--where", text, "COLUMN=VALUE, for example arm=2"));
   }
-  return recording::ReadCsvTable(options.from, table);
+  const recording::Recording read = recording::ReadCsvTable(options.from, table);
+  return options.ballbar.radius_mm > 0.0 ? recording::BallbarOf(read, options.ballbar) : read;
 }
 
 recording::Recording ReadAny(const ConvertOptions& options) {
@@ -138,7 +141,7 @@ void AddConvert(CLI::App& program, int& exit_code) {
       "A recording from CSV to HDF5 or back, from a table or a log, or to a log of candump");
   command
       ->add_option("from", options->from,
-                   "A recording (.csv, .h5, .hdf5), a table (.dat, .txt, .csv), a log (.log)")
+                   "A recording (.csv, .h5, .hdf5), a table (.dat, .rtl, .txt, .csv), a log (.log)")
       ->required();
   command->add_option("to", options->to, "The new recording (.csv, .h5, .hdf5), or log (.log)")
       ->required();
@@ -167,6 +170,16 @@ void AddConvert(CLI::App& program, int& exit_code) {
   command->add_flag("--shuffled", options->shuffled,
                     "Tables in CSV: the rows are in no order of measurement, and none is recorded "
                     "(an index column is given by --column order=NAME)");
+  command
+      ->add_option("--ballbar-mm", options->ballbar.radius_mm,
+                   "Tables in CSV with angle_deg and deviation_um: the programmed radius of a "
+                   "ballbar's circle")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--plane", options->ballbar.plane, "Ballbars: the plane, XY, YZ or ZX (XY)")
+      ->check(CLI::IsMember({"XY", "YZ", "ZX"}));
+  command
+      ->add_option("--feed-mm-min", options->ballbar.feed_mm_min, "Ballbars: the programmed feed")
+      ->check(CLI::PositiveNumber);
   command->add_option("--kind", options->kind, "Tables in CSV: the kind of the recording (linkage)")
       ->default_val("linkage");
   command

@@ -41,7 +41,7 @@ struct CorrectCommand {
   double length_mm = 0.0;  // 0: from the map
   bool quiet = false;
   // What a program leaves to its control.
-  std::filesystem::path tools, parameters;
+  std::filesystem::path tools, parameters, ini;
   std::string control_units = "mm", block_delete, rotary;
   std::vector<std::filesystem::path> subroutines;
   std::vector<std::string> copied;
@@ -197,6 +197,7 @@ compensation::NcTables TablesOf(const CorrectCommand& options) {
   if (!options.parameters.empty()) {
     tables.parameters = compensation::ReadParameters(options.parameters);
   }
+  if (!options.ini.empty()) tables.ini = compensation::ReadIniNumbers(options.ini);
   return tables;
 }
 
@@ -301,9 +302,11 @@ void AddCorrect(CLI::App& program, int& exit_code) {
       ->excludes(work_offset);
   command->add_option("--tools", options->tools,
                       "Programs: the control's tool table, for G43 (tool.tbl)");
+  command->add_option("--ini", options->ini,
+                      "Programs: the control's INI file, for #<_ini[SECTION]KEY> (mill.ini)");
   command
       ->add_option("--control-units", options->control_units,
-                   "Programs: units of these two files, mm or inch (mm)")
+                   "Programs: units of parameters and tools, mm or inch (mm)")
       ->check(CLI::IsMember({"mm", "inch"}));
   command->add_option("--subroutines", options->subroutines,
                       "Programs: folders of subroutines NAME.ngc besides the program's own");

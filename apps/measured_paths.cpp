@@ -54,10 +54,11 @@ void Add(const Recording& read, Machine& machine, MeasuredPaths& paths) {
   const Recording recording = machine.causes ? machine.causes->Take(read) : read;
   const bool angles = recording.Find("pivot_1_rad").has_value();
   const bool reference = paths::HasReference(recording);
-  if (!angles && !reference) {
+  const bool radius = paths::HasRadius(recording);
+  if (!angles && !reference && !radius) {
     throw InputError(
         fmt::format("{}: has neither encoder angles (pivot_1_rad ...) nor reference positions "
-                    "(ref_x_mm ...): no path to evaluate",
+                    "(ref_x_mm ...) nor radii (ref_radius_mm): no path to evaluate",
                     recording.name));
   }
   if (machine.file)
@@ -69,6 +70,7 @@ void Add(const Recording& read, Machine& machine, MeasuredPaths& paths) {
     }
   }
   if (reference) paths.reference.push_back(paths::ReferencePath(recording));
+  if (radius) paths.reference.push_back(paths::BallbarPath(recording));
   for (const char* key : {"machine", "started"}) {
     const auto text = recording.HeaderText(key);
     if (text && !paths.head.contains(key)) paths.head[key] = *text;
@@ -81,7 +83,7 @@ void Add(const Recording& read, Machine& machine, MeasuredPaths& paths) {
 void AddPathSources(CLI::App& command, PathSources& sources) {
   command
       .add_option("recordings", sources.recordings,
-                  "Recordings of kind linkage or reference, any number")
+                  "Recordings of kind linkage, reference or ballbar, any number")
       ->required();
   command.add_option("--machine", sources.machine, "Machine file; the linkage needs it");
   command.add_option("--calibration", sources.calibration,

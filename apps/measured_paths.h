@@ -43,7 +43,7 @@ struct MeasuredPaths {
 };
 
 // A recording with encoder angles gives a path of the linkage, one with reference positions a path
-// of the reference, one with both gives both. Warnings of a file go to standard error. InputError
+// of the reference, one with both gives both, radii of a ballbar a path too. Warnings of a file go to standard error. InputError
 // for a recording with neither, a linkage without --machine, a calibration without a linkage, or a
 // machine file of another machine.
 MeasuredPaths ReadMeasuredPaths(const PathSources& sources);

@@ -121,6 +121,11 @@ class PathTests {
           shifted[i].push_back(Evaluate(command_, moved[i]));
         }
       }
+      for (const paths::MeasuredPath& path : all) {
+        if (path.instrument != paths::kByBallbar) continue;
+        throw InputError(path.recording +
+                         ": a ballbar knows radii only; abbe circle evaluates its circle");
+      }
       for (std::size_t i = 0; i < all.size(); ++i) {
         TestResult test = Evaluate(command_, all[i]);
         AddCalibrationUncertainty(shifted[i], LeftIn(all[i], paths.unexplained), test);

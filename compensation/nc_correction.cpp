@@ -80,6 +80,31 @@ class ProgramCorrection : public NcHost {
     return *options_.deletes_blocks;
   }
 
+  void TakeKept(std::string_view line, std::size_t line_number, bool is_last) override {
+    line_number_ = line_number;
+    ReadBlock(line, line_number, parameters_, block_);
+    if (block_.is_deletable && Deletes(line_number)) return;
+    const NcMeaning meaning = MeaningOf(block_, line_number, options_.allowed);
+    const bool forgets =
+        std::all_of(block_.settings.begin(), block_.settings.end(), [&](const NcSetting& setting) {
+          return is_last &&
+                 NcParameters::IsOfSubroutine(setting.parameter.name, setting.parameter.number);
+        });
+    if (!forgets || !LeavesNothing(block_, options_.allowed.copied)) {
+      Refuse(
+          "whether this acts is known only at the control; there only messages, stops, waits and "
+          "outputs may stand; give --parameters or --ini, or correct the ways apart");
+    }
+    CopyLine(line, meaning);
+    for (const NcSetting& setting : block_.settings) Set(setting);
+  }
+
+  void WriteKept(std::string_view line) override {
+    has_acted_ = true;
+    writer_.Word(line);
+    writer_.EndLine();
+  }
+
   void Enter() override { levels_.push_back({}); }
 
   void Leave(std::size_t line_number) override {
@@ -112,6 +137,7 @@ class ProgramCorrection : public NcHost {
     if (meaning.context != kNoMotion) {
       ActOnContext(meaning);
     } else {
+      if (meaning.HasMode(400)) moves_.EndBeside();
       setup_.TakeModes(block_, meaning, line_number_);
       ActOnMotion(line, meaning);
     }
@@ -143,6 +169,7 @@ class ProgramCorrection : public NcHost {
         std::all_of(block_.words.begin(), block_.words.end(), [](const NcWord& word) {
           return word.letter == 'M' || word.letter == 'N' || word.letter == '(';
         });
+    if (state_.IsBeside()) Refuse("M70 to M73 between G41 or G42 and G40");
     if (!is_alone)
       Refuse("M70 to M73 together with other words; write them in a line of their own");
     Level& level = levels_.back();
@@ -165,14 +192,12 @@ class ProgramCorrection : public NcHost {
   void ActOnMotion(std::string_view line, const NcMeaning& meaning) {
     constexpr int kDwell = 40;
     const bool takes_axes = meaning.nonmodal != kNoMotion && meaning.nonmodal != kDwell;
-    const bool is_dynamic_length =
-        std::find(meaning.modes.begin(), meaning.modes.end(), 431) != meaning.modes.end();
+    const bool is_dynamic_length = meaning.HasMode(431);
     const bool is_arc = state_.motion == 20 || state_.motion == 30;
     const bool moves =
         (meaning.HasAxes() || meaning.HasRotary() || (is_arc && meaning.HasCentre())) &&
         !takes_axes && !is_dynamic_length;
     if (moves) return moves_.Move(block_, meaning, line_number_);
-    if (meaning.is_g53) Refuse("G53 without X, Y or Z");
     if (IsCycle(meaning.motion)) Refuse("a cycle without X, Y or Z");
     const bool is_free = takes_axes || is_dynamic_length;
     if (!is_free && (meaning.HasCentre() || meaning.radius)) {
@@ -192,7 +217,7 @@ class ProgramCorrection : public NcHost {
       writer_.InForce(meaning.motion == kCancel ? kNoMotion : meaning.motion);
     }
     const bool is_literal =
-        !block_.is_deletable && block_.settings.empty() &&
+        !block_.is_deletable && !meaning.is_beside && block_.settings.empty() &&
         std::all_of(block_.words.begin(), block_.words.end(), [](const NcWord& word) {
           return word.is_literal && word.text.find('#') == std::string_view::npos &&
                  word.text.find(',') == std::string_view::npos;
@@ -209,6 +234,7 @@ class ProgramCorrection : public NcHost {
       is_empty = false;
     }
     for (const NcWord& word : block_.words) {
+      if (meaning.is_beside && IsOfBeside(word)) continue;
       writer_.Word(word.letter == '(' ? CommentText(word.text, line_number_, parameters_)
                                       : TextOf(word, line_number_));
       is_empty = false;
@@ -218,6 +244,7 @@ class ProgramCorrection : public NcHost {
 
   // What stands behind M2 or M30 does not act; the last % stays.
   void Close() {
+    moves_.EndBeside();
     const NcFile& main = source_.main();
     if (line_of_end_) {
       for (std::size_t i = main.starts.size(); is_open_ && i-- > 0;) {

@@ -238,7 +238,7 @@ double NcCursor::Function() {
       if (!Take('#')) Refuse("EXISTS takes a named parameter");
       const Parameter parameter = ParameterName();
       if (parameter.name.empty() || !Take(']')) Refuse("EXISTS takes one named parameter");
-      return parameters_.Named(parameter.name).has_value();
+      return parameters_.Exists(parameter.name);
     }
     const double x = Expression();
     double value;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compensation/nc_block.h"
+#include "compensation/nc_kept.h"
 #include "failure/failure.h"
 
 namespace abbe::compensation {
@@ -25,10 +26,14 @@ struct Frame {
   std::vector<Repeat> repeats;
 };
 
+constexpr std::string_view kOnlyAtControl =
+    "the way of the program depends on a value that is known only at the control (a probe, an "
+    "input, a parameter without a value); give --parameters or --ini, or correct the ways apart";
+
 class Flow {
  public:
   Flow(NcSource& source, NcParameters& parameters, NcHost& host)
-      : source_(source), parameters_(parameters), host_(host) {
+      : source_(source), parameters_(parameters), host_(host), kept_(parameters, host) {
     frames_.push_back({&source.main(), 0, false, {}});
   }
 
@@ -71,16 +76,18 @@ class Flow {
   void GoBehind(int control) { Top().line = At(control).line + 1; }
   void GoTo(int control) { Top().line = At(control).line; }
 
-  double Value(const NcControlLine& control) {
+  // kRuntime where only the control knows it.
+  double ValueOrRuntime(const NcControlLine& control) {
     NcCursor cursor(control.rest, control.line + 1, parameters_);
     if (cursor.Peek() != '[') cursor.Refuse("a condition or a number in [ ] is missing");
     const double value = cursor.Value();
     MustEnd(cursor);
-    if (std::isnan(value)) {
-      cursor.Refuse(
-          "the way of the program depends on a value that is known only at the control (a probe, "
-          "an input, a parameter without a value); give --parameters, or correct the ways apart");
-    }
+    return value;
+  }
+
+  double Value(const NcControlLine& control) {
+    const double value = ValueOrRuntime(control);
+    if (std::isnan(value)) RefuseLine(control.line + 1, std::string(kOnlyAtControl));
     return value;
   }
 
@@ -101,11 +108,25 @@ class Flow {
   void Choose(int branch) {
     while (true) {
       const NcControlLine& control = At(branch);
-      const bool is_taken = control.control == NcControl::kElse ||
-                            control.control == NcControl::kEndIf || Value(control) != 0.0;
-      if (is_taken) return GoBehind(branch);
+      if (control.control == NcControl::kElse || control.control == NcControl::kEndIf) {
+        return GoBehind(branch);
+      }
+      const double value = ValueOrRuntime(control);
+      if (std::isnan(value)) return Keep(branch);
+      if (value != 0.0) return GoBehind(branch);
       branch = control.next;
     }
+  }
+
+  // The control chooses from `branch` on.
+  void Keep(int branch) {
+    const int end = kept_.Keep(*Top().file, branch);
+    if (At(end).control != NcControl::kEndSub) return GoBehind(end);
+    const std::size_t line_number = At(end).line + 1;
+    if (!Top().is_call) RefuseLine(line_number, "a return outside a subroutine");
+    parameters_.SetNamed("_value", kRuntime);
+    parameters_.SetNamed("_value_returned", kRuntime);
+    Return(line_number);
   }
 
   void Follow(int index) {
@@ -210,6 +231,7 @@ class Flow {
   NcSource& source_;
   NcParameters& parameters_;
   NcHost& host_;
+  NcKept kept_;
   std::vector<Frame> frames_;
   std::size_t steps_ = 0;
 };

@@ -5,9 +5,10 @@
 // The host gets every line that acts, in order, with loops and calls written out. Limits: kLevels
 // of calls, as in LinuxCNC, and NcHost::MostSteps() lines in all, after which a loop is taken for
 // endless. Failure: InputError with the line (and the file, for a subroutine of another one), also
-// for a branch that depends on a value that is known only at the control.
-// Source: LinuxCNC 2.9, O codes. Validity: branches by known values. Units: conditions as the
-// program writes them.
+// for a way that depends on a value that is known only at the control.
+// Source: LinuxCNC 2.9, O codes. Validity: ways by known values; an `if` by a value that the
+// control alone knows is kept for it where the host can keep what stands in it (nc_kept.h).
+// Units: conditions as the program writes them.
 #pragma once
 
 #include <cstddef>
@@ -27,6 +28,11 @@ class NcHost {
   virtual bool Take(std::string_view line, std::size_t line_number) = 0;
   // Whether a block that begins with / is left out; InputError where that is not known.
   virtual bool Deletes(std::size_t /*line_number*/) { return false; }
+  // A line in a branch that is kept, whether or not the control takes it; InputError for one after
+  // which the way that was taken matters. `is_last`: up to the end of the subroutine.
+  virtual void TakeKept(std::string_view line, std::size_t line_number, bool is_last) = 0;
+  // A line of the kept structure itself.
+  virtual void WriteKept(std::string_view line) = 0;
   // A subroutine begins and ends.
   virtual void Enter() {}
   // The end of it, with the line of its return.

@@ -38,18 +38,12 @@ int GroupOf(int code) {
   if (IsOneOf(code, {960, 970})) return 14;
   if (IsOneOf(code, {610, 611, 640})) return 13;
   if (IsOneOf(code, {70, 80})) return 15;
-  if (code == 400) return 7;
+  if (IsOneOf(code, {400, 410, 411, 420, 421})) return 7;
   return code == 530 || code == 800 ? code : -1;
 }
 
 std::string_view WhyNot(int code) {
   switch (code) {
-    case 410:
-    case 411:
-    case 420:
-    case 421:
-      return "cutter compensation moves the tool off the programmed path; let the CAM system write "
-             "tool centre paths";
     case 330:
     case 331:
     case 760:
@@ -139,7 +133,8 @@ class Meaning {
       meaning_.modes.push_back(code);
     }
     takes_p_ = takes_p_ || code == 40 || code == 100 || code == 640;
-    takes_d_ = takes_d_ || code == 960;
+    meaning_.is_beside = meaning_.is_beside || IsOneOf(code, {410, 411, 420, 421});
+    takes_d_ = takes_d_ || code == 960 || meaning_.is_beside;
     takes_h_ = takes_h_ || code == 430 || code == 432;
   }
 
@@ -230,6 +225,9 @@ class Meaning {
   // Values whose code is in force from earlier blocks are looked at by the motion.
   void Check() const {
     if (has_e_ && !takes_e_) Refuse("E is not supported here");
+    if (meaning_.d && meaning_.is_beside && meaning_.HasMode(960)) {
+      Refuse("D belongs to G96 or to G41 and G42; write them in two lines");
+    }
     if (meaning_.h && !takes_h_) Refuse("H is not supported here: it belongs to G43");
     if (meaning_.d && !takes_d_) Refuse("D is not supported here");
     if (has_late_p_ && !takes_p_) Refuse("P is known only at the control");
@@ -244,8 +242,8 @@ class Meaning {
       Refuse("L is not supported here");
     }
     if (meaning_.nonmodal == 40 && meaning_.HasCentre()) Refuse("a dwell together with an arc");
-    if (meaning_.HasRotary() && meaning_.nonmodal != kNoMotion) {
-      Refuse("A, B and C belong to a move");
+    if (meaning_.HasRotary() && !IsOneOf(meaning_.nonmodal, {kNoMotion, 100, 920})) {
+      Refuse("A, B and C belong to a move, to G10 or to G92");
     }
     if (meaning_.motion == 800 && meaning_.HasAxes() && meaning_.nonmodal == kNoMotion) {
       Refuse("axis words without G0, G1, G2 or G3 in force (G80)");
@@ -314,6 +312,22 @@ std::optional<NcGroup> ModalGroup(const NcWord& word) {
 
 NcMeaning MeaningOf(const NcBlock& block, std::size_t line_number, const NcAllowed& allowed) {
   return Meaning(line_number, allowed).Of(block);
+}
+
+bool IsOfBeside(const NcWord& word) {
+  return word.letter == 'D' ||
+         (word.letter == 'G' && IsOneOf(CodeTimes10(word), {410, 411, 420, 421}));
+}
+
+bool LeavesNothing(const NcBlock& block, const std::set<int>& copied) {
+  return std::all_of(block.words.begin(), block.words.end(), [&](const NcWord& word) {
+    const int code = CodeTimes10(word);
+    if (word.letter == 'G') return code == 40;
+    if (word.letter != 'M')
+      return std::string_view("(NPQLE").find(word.letter) != std::string::npos;
+    return IsOneOf(code, {0, 10, 20, 300, 600}) || (code >= 620 && code <= 680) ||
+           copied.contains(code / 10);
+  });
 }
 
 std::string TextOf(const NcWord& word, std::size_t line_number) {

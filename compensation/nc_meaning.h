@@ -9,6 +9,7 @@
 // Validity: modes from earlier blocks are not known here.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -34,9 +35,13 @@ struct NcMeaning {
   bool is_end = false;      // M2, M30
   int context = kNoMotion;  // M70 to M73
   bool changes_tool = false;
+  bool is_beside = false;  // G41 to G42.1
   // Whether anything but comments and a line number stands in the block.
   bool acts = false;
 
+  bool HasMode(int code) const {
+    return std::find(modes.begin(), modes.end(), code) != modes.end();
+  }
   // X, Y, Z or polar.
   bool HasAxes() const { return axes[0] || axes[1] || axes[2] || polar_radius || polar_angle; }
   // A, B or C.
@@ -52,6 +57,13 @@ struct NcAllowed {
 
 // What a block says; modes that are in force from earlier blocks play no part.
 NcMeaning MeaningOf(const NcBlock& block, std::size_t line_number, const NcAllowed& allowed);
+
+// Whether nothing that follows depends on whether the block acted: messages, a dwell, stops, the
+// end of the program, outputs and waits for inputs, M codes of `copied`.
+bool LeavesNothing(const NcBlock& block, const std::set<int>& copied);
+
+// Whether a word of a block with G41 to G42.1 belongs to them.
+bool IsOfBeside(const NcWord& word);
 
 // The word as it stands in the corrected program: as written, or with the value of its expression.
 std::string TextOf(const NcWord& word, std::size_t line_number);

@@ -125,25 +125,28 @@ Arc NcMoves::ArcOf(const NcMeaning& meaning) const {
 
 // Ends and extremes are checked before a path is divided: a wrong unit would make a thousand times
 // as many points.
-void NcMoves::Divide(const NcMeaning& meaning, const Vector3d& target) {
+void NcMoves::Divide(const NcPiece& move) {
   points_.clear();
-  if (state_.motion == 0) {
-    points_.push_back(target);
-  } else if (state_.motion == 10) {
-    if (!((target - state_.place).norm() <= options_.limits.length)) MustReach(target);
-    AddLine(state_.place, target, options_.limits, line_number_, points_);
+  if (move.motion == 0) {
+    points_.push_back(move.to);
+  } else if (!move.IsArc()) {
+    if (!((move.to - move.from).norm() <= options_.limits.length)) MustReach(move.to);
+    AddLine(move.from, move.to, options_.limits, move.line_number, points_);
   } else {
-    const Arc arc = ArcOf(meaning);
-    for (const Vector3d& point : Extremes(state_.place, target, arc, line_number_)) {
+    for (const Vector3d& point : Extremes(move.from, move.to, move.arc, move.line_number)) {
       MustReach(point);
     }
-    AddArc(state_.place, target, arc, options_.limits, line_number_, points_);
+    AddArc(move.from, move.to, move.arc, options_.limits, move.line_number, points_);
   }
 }
 
 void NcMoves::WriteWords(const NcBlock& block) {
   const bool has_values = IsArc(state_.motion) || IsCycle(state_.motion);
+  const bool has_cutter =
+      std::any_of(block.words.begin(), block.words.end(),
+                  [](const NcWord& word) { return word.letter != 'D' && IsOfBeside(word); });
   for (const NcWord& word : block.words) {
+    if (has_cutter && IsOfBeside(word)) continue;
     if (IsReplaced(word, has_values) || ActsAfterTheMove(word) || IsLineComment(word)) continue;
     if (word.letter == 'F' && state_.HasInverseFeed() && state_.motion != 0) continue;
     writer_.Word(TextOf(word, line_number_));
@@ -219,127 +222,21 @@ void NcMoves::TakeAngles(const NcMeaning& meaning) {
   }
 }
 
-void NcMoves::CopyUncorrected(const NcBlock& block, bool is_rapid, const char* why) {
-  const auto& known = counts_.uncorrected;
-  const bool is_new = std::none_of(known.begin(), known.end(),
-                                   [&](const NcAssumption& one) { return one.what == why; });
-  if (is_new) counts_.uncorrected.push_back({why, line_number_});
-  ++counts_.copied_moves;
-  const bool has_motion = std::any_of(block.words.begin(), block.words.end(), [](const auto& word) {
-    return word.letter == 'G' && CodeTimes10(word) == 0;
-  });
-  bool needs_motion = is_rapid && !has_motion;
-  for (const NcWord& word : block.words) {
-    if (word.letter != 'N' && needs_motion) {
-      writer_.Motion(0);
-      needs_motion = false;
-    }
-    writer_.Word(TextOf(word, line_number_));
+// A line or an arc as programmed.
+void NcMoves::MoveAlong(const NcBlock& block, const NcMeaning& meaning, const Vector3d& target) {
+  NcPiece move{state_.motion, line_number_, state_.stands.value_or(state_.place), target};
+  if (move.IsArc()) {
+    if (state_.stands) Refuse("an arc right after G40; let a line lead away first");
+    move.arc = ArcOf(meaning);
   }
-  writer_.EndLine();
-}
-
-// A rapid to some axes while the others are not known: it is copied, and makes its own axes known.
-void NcMoves::Approach(const NcBlock& block, const NcMeaning& meaning) {
-  const NcOffsets& offsets = state_.wanted;
-  const Vector3d target = Target(meaning);
-  const Vector3d machine = offsets.ToMachine(target);
-  Vector3d at = writer_.at();
-  for (int k = 0; k < 3; ++k) {
-    if (meaning.rotary[k]) state_.rotary[k] = state_.is_relative ? kRuntime : *meaning.rotary[k];
-    if (!meaning.axes[k]) continue;
-    state_.place[k] = target[k];
-    state_.is_known[k] = true;
-    at[k] = machine[k];
-  }
-  CopyUncorrected(block, true, "G0 before the place of X, Y and Z is known");
-  writer_.StandAt(at);
-  writer_.InForce(0);
-}
-
-NcCycle NcMoves::CycleOf(const NcMeaning& meaning) {
-  const auto [u, v, w] = AxesOfPlane(state_.plane);
-  NcCycle cycle;
-  cycle.code = state_.motion / 10;
-  cycle.plane = state_.plane;
-  cycle.retracts_to_r = state_.retracts_to_r;
-  const auto keep = [](const NcMeaning::Value& given, double& kept, double times = 1.0) {
-    if (given) kept = times * *given;
-    return kept;
-  };
-  const double unit = state_.Unit(), half = state_.is_diameter ? 0.5 : 1.0;
-  const auto factor = [&](int k) { return k == 0 ? half : 1.0; };
-  cycle.r = keep(meaning.radius, state_.cycle_r);
-  cycle.bottom = keep(meaning.axes[w], state_.cycle_bottom, factor(w));
-  cycle.peck = keep(meaning.q, state_.cycle_peck);
-  cycle.dwell = keep(meaning.p, state_.cycle_dwell);
-  if (std::isnan(cycle.r)) Refuse("the cycle has no R");
-  if (std::isnan(cycle.bottom)) Refuse(fmt::format("the cycle has no {}", "XYZ"[w]));
-  const bool dwells = cycle.code == 82 || cycle.code == 86 || cycle.code == 89;
-  if (dwells && std::isnan(cycle.dwell)) Refuse("the cycle has no P");
-  if (std::isnan(state_.cycle_initial)) state_.cycle_initial = state_.place[w] / unit;
-  cycle.initial = state_.cycle_initial;
-  if (state_.is_relative) cycle.r += cycle.initial;  // counted from there; the bottom from R
-  if (state_.is_relative) cycle.bottom += cycle.r;
-  if (state_.is_inch) cycle.gap = 0.010;
-  const double holes = meaning.l.value_or(1.0);
-  if (!(holes >= 1.0 && holes <= kMostLines) || holes != std::round(holes)) {
-    Refuse(fmt::format("L {:.9g} is no number of holes from 1 to {:.0e}", holes, kMostLines));
-  }
-  const Vector3d before = state_.place;
-  for (double i = 0.0; i < holes; ++i) {
-    const Vector3d to = Target(meaning);
-    state_.place[u] = to[u];
-    state_.place[v] = to[v];
-    // As written where it is: without rounding by the unit.
-    const auto where = [&](int k) {
-      if (meaning.axes[k] && !state_.is_relative) return factor(k) * *meaning.axes[k];
-      return to[k] / unit;
-    };
-    cycle.holes.emplace_back(where(u), where(v));
-  }
-  state_.place = before;
-  return cycle;
-}
-
-void NcMoves::WriteCycle(const NcBlock& block, const NcMeaning& meaning) {
-  const NcCycle cycle = CycleOf(meaning);
-  const double unit = state_.Unit();
-  if (cycle.code == 86) {
-    const auto spindle = state_.words.find(NcGroup::kSpindle);
-    if (spindle == state_.words.end() || spindle->second == "M5") {
-      Refuse("G86 stops the spindle and starts it again, but it does not turn; set M3 or M4");
-    }
-  }
+  Divide(move);
+  const bool turns_in_machine = meaning.is_g53 && meaning.HasRotary();
+  if (!turns_in_machine) TakeAngles(meaning);
+  state_.place = target;
+  state_.stands.reset();
   WriteWords(block);
-  bool is_first = true;
-  for (const NcCycleStep& step : StepsOf(cycle, state_.place / unit, line_number_)) {
-    if (!is_first) writer_.EndLine();
-    is_first = false;
-    switch (step.step) {
-      case NcStep::kDwell:
-        writer_.Word(fmt::format("G4 P{:.6g}", cycle.dwell));
-        continue;
-      case NcStep::kSpindleStop:
-        writer_.Word("M5");
-        continue;
-      case NcStep::kSpindleStart:
-        writer_.Word(state_.words.at(NcGroup::kSpindle));
-        continue;
-      default:
-        break;
-    }
-    const Vector3d to = unit * step.to;
-    points_.clear();
-    if (step.step == NcStep::kRapid) {
-      points_.push_back(to);
-    } else {
-      MustReach(to);
-      AddLine(state_.place, to, options_.limits, line_number_, points_);
-    }
-    WritePath(step.step == NcStep::kRapid ? 0 : 10);
-    state_.place = to;
-  }
+  turns_in_machine ? WriteInMachine(meaning) : WritePath(state_.motion == 0 ? 0 : 10);
+  WriteStops(block);
 }
 
 void NcMoves::Move(const NcBlock& block, const NcMeaning& meaning, std::size_t line_number) {
@@ -351,8 +248,7 @@ void NcMoves::Move(const NcBlock& block, const NcMeaning& meaning, std::size_t l
       (meaning.radius && !IsArc(motion) && !IsCycle(motion))) {
     Refuse("I, J, K and R belong to an arc");
   }
-  const bool has_path_mode =
-      std::find(meaning.modes.begin(), meaning.modes.end(), 640) != meaning.modes.end();
+  const bool has_path_mode = meaning.HasMode(640);
   constexpr int kDwell = 40;
   if (meaning.nonmodal == kDwell) {
     // LinuxCNC moves only where the block says how.
@@ -396,62 +292,14 @@ void NcMoves::Move(const NcBlock& block, const NcMeaning& meaning, std::size_t l
   if (IsCycle(motion)) {
     if (meaning.HasRotary()) Refuse("a rotary axis in a cycle");
     WriteCycle(block, meaning);
+    WriteStops(block);
+  } else if (state_.IsBeside()) {
+    MoveBeside(block, meaning, Target(meaning));
   } else {
-    const Vector3d target = Target(meaning);
-    Divide(meaning, target);
-    const bool turns_in_machine = meaning.is_g53 && meaning.HasRotary();
-    if (!turns_in_machine) TakeAngles(meaning);
-    state_.place = target;
-    WriteWords(block);
-    turns_in_machine ? WriteInMachine(meaning) : WritePath(motion == 0 ? 0 : 10);
+    MoveAlong(block, meaning, Target(meaning));
   }
   state_.is_known = known;
-  WriteStops(block);
   ++counts_.moves;
-}
-
-void NcMoves::GoHome(const NcBlock& block, const NcMeaning& meaning, int home,
-                     std::size_t line_number) {
-  line_number_ = line_number;
-  if (meaning.HasCentre() || meaning.radius) Refuse("I, J, K and R belong to an arc");
-  NcOffsets& offsets = state_.wanted;
-  std::array<bool, 3> goes;
-  for (int k = 0; k < 3; ++k) goes[k] = !meaning.HasAxes() || meaning.axes[k].has_value();
-  Assume(false);
-  ++counts_.moves;
-  const bool is_known = offsets.home_is_known[home];
-  if (!is_known || !state_.KnowsPlace()) {
-    CopyUncorrected(block, false,
-                    is_known ? "G28 or G30 from a place that is not known"
-                             : "G28 or G30 to a place that only the control knows (--parameters)");
-    const bool is_all = goes[0] && goes[1] && goes[2];
-    Vector3d machine = offsets.ToMachine(state_.place), at = writer_.at();
-    for (int k = 0; k < 3; ++k) {
-      if (!goes[k]) {
-        if (offsets.IsTurned()) state_.is_known[k] = false;
-        continue;
-      }
-      state_.is_known[k] = is_known && (is_all || !offsets.IsTurned());
-      machine[k] = at[k] = offsets.homes[home][k];
-    }
-    state_.place = offsets.ToProgram(machine);
-    writer_.StandAt(at);
-    writer_.InForce(kNoMotion);
-    return;
-  }
-  turns_ = {};
-  state_.rotary.fill(kRuntime);
-  points_.clear();
-  if (meaning.HasAxes()) points_.push_back(Target(meaning));
-  Vector3d machine = offsets.ToMachine(points_.empty() ? state_.place : points_.back());
-  for (int k = 0; k < 3; ++k) {
-    if (goes[k]) machine[k] = offsets.homes[home][k];
-  }
-  points_.push_back(offsets.ToProgram(machine));
-  state_.place = points_.back();
-  WriteWords(block);
-  WritePath(0);
-  WriteStops(block);
 }
 
 }  // namespace abbe::compensation

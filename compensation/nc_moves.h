@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compensation/corrector.h"
+#include "compensation/nc_beside.h"
 #include "compensation/nc_correction.h"
 #include "compensation/nc_cycles.h"
 #include "compensation/nc_meaning.h"
@@ -27,6 +28,8 @@ class NcMoves {
   void Move(const NcBlock& block, const NcMeaning& meaning, std::size_t line_number);
   // G28 (home 0) or G30 (1).
   void GoHome(const NcBlock& block, const NcMeaning& meaning, int home, std::size_t line_number);
+  // G40, or the end of the program: writes the moves beside the path that are open.
+  void EndBeside();
   // InputError if the axes cannot stand there; program coordinates.
   void MustReach(const Eigen::Vector3d& wanted) const;
 
@@ -34,9 +37,12 @@ class NcMoves {
   Eigen::Vector3d Target(const NcMeaning& meaning);
   Arc ArcOf(const NcMeaning& meaning) const;
   NcCycle CycleOf(const NcMeaning& meaning);
-  void Divide(const NcMeaning& meaning, const Eigen::Vector3d& target);
+  void Divide(const NcPiece& move);
   void Assume(bool needs_plane);
   void Approach(const NcBlock& block, const NcMeaning& meaning);
+  void MoveAlong(const NcBlock& block, const NcMeaning& meaning, const Eigen::Vector3d& target);
+  void MoveBeside(const NcBlock& block, const NcMeaning& meaning, const Eigen::Vector3d& target);
+  void FillGap(const std::vector<NcPiece>& pieces);
   void WriteCycle(const NcBlock& block, const NcMeaning& meaning);
   void CopyUncorrected(const NcBlock& block, bool is_rapid, const char* why);
   void WriteWords(const NcBlock& block);
@@ -52,6 +58,7 @@ class NcMoves {
   NcState& state_;
   NcWriter& writer_;
   NcCounts& counts_;
+  NcBeside beside_;
   std::size_t line_number_ = 0;
   std::vector<Eigen::Vector3d> points_;    // program coordinates
   std::array<NcMeaning::Value, 3> turns_;  // where A, B, C turn in this block

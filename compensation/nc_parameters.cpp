@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "failure/failure.h"
@@ -57,6 +58,28 @@ std::optional<double> NcParameters::Named(const std::string& name) const {
   if (name == "_call_level") return static_cast<double>(level());
   if (name == "_remap_level") return 0.0;
   return IsGlobal(name) && live_.name ? live_.name(name) : std::nullopt;
+}
+
+double NcParameters::Exists(const std::string& name) const {
+  const auto value = Named(name);
+  const bool may_lack = name.starts_with("_hal[") || name.starts_with("_ini[");
+  return may_lack && value && std::isnan(*value) ? kRuntime : value.has_value();
+}
+
+bool NcParameters::IsOfControl(const std::string& name) const {
+  if (!IsGlobal(name) || names_.contains(name) || !live_.name) return false;
+  const auto value = live_.name(name);
+  return value && (std::isnan(*value) || name == "_task");  // 0 where a program is only drawn
+}
+
+bool NcParameters::IsOfSubroutine(const std::string& name, int number) {
+  return name.empty() ? number <= kArguments : !IsGlobal(name);
+}
+
+// Whether a probe has touched; the last answer of M66.
+bool NcParameters::IsOfControl(int number) {
+  constexpr int kHasTouched = 5070, kInput = 5399;
+  return number == kHasTouched || number == kInput;
 }
 
 void NcParameters::SetNamed(const std::string& name, double value) {

@@ -46,6 +46,14 @@ class NcParameters {
   void SetNumber(int number, double value);
   // Nothing if there is no such parameter. `name` in lower case without blanks.
   std::optional<double> Named(const std::string& name) const;
+  // Whether there is one, 1 or 0; kRuntime for a pin or an entry of the INI file that may lack.
+  double Exists(const std::string& name) const;
+  // Whether the control holds the value of this name or number at the time, and the corrected
+  // program finds it as the program does.
+  bool IsOfControl(const std::string& name) const;
+  static bool IsOfControl(int number);
+  // Whether it ends with its level of calls: a name (empty: none) without _, or #1 to #30.
+  static bool IsOfSubroutine(const std::string& name, int number);
   // Makes it if it is new.
   void SetNamed(const std::string& name, double value);
 

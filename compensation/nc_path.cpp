@@ -130,6 +130,19 @@ void AddArc(const Vector3d& from, const Vector3d& to, const Arc& arc, const Path
   points.push_back(to);
 }
 
+double Sweep(const Vector3d& from, const Vector3d& to, const Arc& arc, std::size_t line_number) {
+  return CourseOf(from, to, arc, line_number).sweep;
+}
+
+Arc WithCentre(const Vector3d& from, const Vector3d& to, const Arc& arc, std::size_t line_number) {
+  const Course course = CourseOf(from, to, arc, line_number);
+  Arc centred = arc;
+  centred.radius.reset();
+  centred.centre[course.u] = course.centre.x();
+  centred.centre[course.v] = course.centre.y();
+  return centred;
+}
+
 std::vector<Vector3d> Extremes(const Vector3d& from, const Vector3d& to, const Arc& arc,
                                std::size_t line_number) {
   constexpr double kQuarter = std::numbers::pi / 2;

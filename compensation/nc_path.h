@@ -40,6 +40,14 @@ void AddArc(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Arc& a
             const PathLimits& limits, std::size_t line_number,
             std::vector<Eigen::Vector3d>& points);
 
+// The angle that an arc turns by, rad; counter-clockwise is positive.
+double Sweep(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Arc& arc,
+             std::size_t line_number);
+
+// The arc with its centre instead of its radius.
+Arc WithCentre(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Arc& arc,
+               std::size_t line_number);
+
 // The end of an arc and its extreme points along the axes of its plane: the arc is inside the
 // bounding box of `from` and these.
 std::vector<Eigen::Vector3d> Extremes(const Eigen::Vector3d& from, const Eigen::Vector3d& to,

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "compensation/nc_cycles.h"
 
 namespace abbe::compensation {
 
@@ -11,6 +14,7 @@ using Eigen::Vector3d;
 
 void NcSetup::TakeModes(const NcBlock& block, const NcMeaning& meaning, std::size_t line_number) {
   line_number_ = line_number;
+  if (state_.IsBeside() || state_.stands) MustStayBeside(meaning);
   TakeTool(block, meaning);
   for (const int code : meaning.modes) TakeMode(code, meaning);
   KeepModalWords(block, line_number, state_);
@@ -57,6 +61,12 @@ void NcSetup::TakeMode(int code, const NcMeaning& meaning) {
     case 432:
     case 490:
       return TakeToolLength(code, meaning);
+    case 400:
+    case 410:
+    case 411:
+    case 420:
+    case 421:
+      return TakeBeside(code, meaning);
     default:
       break;
   }
@@ -75,7 +85,7 @@ void NcSetup::TakeMode(int code, const NcMeaning& meaning) {
 
 const NcTool& NcSetup::ToolOf(double number) {
   if (!options_.tables.tools) {
-    Refuse("a tool length offset depends on the tool table; name it with --tools tool.tbl");
+    Refuse("length and radius of a tool are in the tool table; name it with --tools tool.tbl");
   }
   const auto found = options_.tables.tools->find(static_cast<int>(number));
   if (number != std::round(number) || found == options_.tables.tools->end()) {
@@ -86,13 +96,19 @@ const NcTool& NcSetup::ToolOf(double number) {
 
 void NcSetup::TakeTool(const NcBlock& block, const NcMeaning& meaning) {
   for (const NcWord& word : block.words) {
+    // M6 and M66 make the control look where the axes are.
+    const int code = word.letter == 'M' ? CodeTimes10(word) : kNoMotion;
+    if (state_.stands && (code == 60 || code == 660)) {
+      state_.place = *state_.stands;
+      state_.stands.reset();
+    }
     constexpr double kLargestTool = 1e6;
     const bool is_tool = word.value >= 0.0 && word.value < kLargestTool;
     if (word.letter == 'T') {
       state_.selected.reset();
       if (is_tool) state_.selected = static_cast<int>(word.value);
     }
-    if (word.letter == 'M' && CodeTimes10(word) == 610) {
+    if (code == 610) {
       state_.tool.reset();
       if (meaning.q && *meaning.q >= 0.0 && *meaning.q < kLargestTool) {
         state_.tool = static_cast<int>(*meaning.q);
@@ -136,6 +152,88 @@ void NcSetup::TakeToolLength(int code, const NcMeaning& meaning) {
   }
 }
 
+// The radius is of the tool D, of the tool in the spindle without D, of the diameter D in G41.1.
+void NcSetup::TakeBeside(int code, const NcMeaning& meaning) {
+  constexpr int kEnd = 400, kLeft = 410, kLeftByDiameter = 411;
+  if (code == kEnd) return;
+  if (state_.beside.side != 0.0) Refuse("G41 or G42 while one is in force; write G40 before it");
+  if (state_.plane == 19) Refuse("G41 and G42 belong to the planes G17 and G18");
+  if (state_.HasInverseFeed()) Refuse("G41 and G42 in G93; write feeds in G94");
+  if (!state_.KnowsPlace()) {
+    Refuse("G41 or G42 while the position of the machine is unknown; begin with G0 to X, Y and Z");
+  }
+  const bool is_left = code == kLeft || code == kLeftByDiameter;
+  double diameter = 0.0;
+  if (code % 10 == 1) {
+    if (!meaning.d) Refuse("G41.1 and G42.1 take D, the diameter of the tool");
+    diameter = state_.Unit() * *meaning.d;
+  } else {
+    double number = meaning.d.value_or(0.0);
+    if (number == 0.0 && !state_.tool) {
+      Refuse("G41 or G42 without D, and no tool was changed before it (M6); write D with a tool");
+    }
+    if (number == 0.0) number = *state_.tool;
+    if (number != 0.0) {
+      const NcTool& tool = ToolOf(number);
+      constexpr int kRound = 9;
+      if (tool.orientation != 0 && tool.orientation != kRound) {
+        Refuse(
+            fmt::format("tool {:g} has an orientation (Q{}); let the CAM system write the path "
+                        "of its point",
+                        number, tool.orientation));
+      }
+      diameter = options_.tables.unit * tool.diameter;
+    }
+  }
+  state_.beside = {is_left == (diameter >= 0.0) ? 1.0 : -1.0, std::abs(diameter) / 2.0,
+                   state_.plane, state_.is_inch ? 1e-3 : 25.4e-3};
+}
+
+bool NcSetup::Changes(int code) const {
+  switch (code) {
+    case 170:
+    case 180:
+    case 190:
+      return state_.plane != code / 10;
+    case 200:
+    case 210:
+      return state_.is_inch != (code == 200);
+    case 900:
+    case 910:
+      return state_.is_relative != (code == 910);
+    case 901:
+    case 911:
+      return state_.centre_is_absolute != (code == 901);
+    case 400:
+    case 940:
+    case 960:
+    case 970:
+      return false;
+    default:
+      return true;
+  }
+}
+
+void NcSetup::MustStayBeside(const NcMeaning& meaning) const {
+  constexpr int kDwell = 40, kCancel = 800;
+  const bool is_nonmodal =
+      meaning.nonmodal != kNoMotion && (meaning.nonmodal != kDwell || meaning.HasAxes());
+  if (!state_.IsBeside()) {  // after G40
+    if (is_nonmodal || meaning.is_beside || IsCycle(meaning.motion)) {
+      Refuse("the tool still stands beside the path that G40 ended; let G0 or G1 lead away first");
+    }
+    return;
+  }
+  const bool changes = std::any_of(meaning.modes.begin(), meaning.modes.end(),
+                                   [this](int code) { return Changes(code); });
+  if (changes || is_nonmodal || meaning.is_g53 || meaning.changes_tool || meaning.HasRotary() ||
+      meaning.motion == kCancel || IsCycle(meaning.motion)) {
+    Refuse(
+        "between G41 or G42 and G40 only lines and arcs are supported, and modes, offsets and the "
+        "tool stay; write G40 before it");
+  }
+}
+
 Vector3d NcSetup::Given(const NcMeaning& meaning) const {
   Vector3d given;
   for (int k = 0; k < 3; ++k) {
@@ -173,7 +271,15 @@ void NcSetup::TakeG92(int code, const NcMeaning& meaning) {
     }
   }
   state_.place = state_.wanted.ToProgram(machine);
-  state_.rotary.fill(kRuntime);
+  if (code != kSet) state_.rotary.fill(kRuntime);
+  TakeAngles(meaning, true);
+}
+
+// An axis that is not given stays where it is in program coordinates.
+void NcSetup::TakeAngles(const NcMeaning& meaning, bool is_here) {
+  for (int k = 0; k < 3; ++k) {
+    if (meaning.rotary[k]) state_.rotary[k] = is_here ? *meaning.rotary[k] : kRuntime;
+  }
 }
 
 void NcSetup::TakeG10(const NcMeaning& meaning) {
@@ -207,7 +313,7 @@ void NcSetup::TakeG10(const NcMeaning& meaning) {
   }
   if (state_.wanted.IsTurned() && !state_.KnowsPlace()) state_.is_known.fill(false);
   state_.place = state_.wanted.ToProgram(machine);
-  state_.rotary.fill(kRuntime);
+  if (system == state_.wanted.active) TakeAngles(meaning, is_here);
 }
 
 void NcSetup::TakeHome(int home) {

@@ -31,9 +31,16 @@ class NcSetup {
   const NcTool& ToolOf(double number);
   void TakeTool(const NcBlock& block, const NcMeaning& meaning);
   void TakeToolLength(int code, const NcMeaning& meaning);
+  // G40 to G42.1.
+  void TakeBeside(int code, const NcMeaning& meaning);
+  // InputError for what must not change between G41 or G42 and G40.
+  void MustStayBeside(const NcMeaning& meaning) const;
+  bool Changes(int code) const;
   void TakeG92(int code, const NcMeaning& meaning);
   void TakeG10(const NcMeaning& meaning);
   void TakeHome(int home);
+  // The offsets of the A, B, C that are given changed; where `is_here`, their places are the given.
+  void TakeAngles(const NcMeaning& meaning, bool is_here);
   // Lengths of a block that sets offsets; not a number where none is given.
   Eigen::Vector3d Given(const NcMeaning& meaning) const;
   void MustKnow(const NcMeaning& meaning) const;

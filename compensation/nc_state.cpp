@@ -35,7 +35,7 @@ std::optional<double> Stored(const NcState& state, const NcTables& tables, int n
 }
 
 std::optional<double> Coordinate(const NcState& state, int axis) {
-  if (!state.is_known[axis]) return std::nullopt;
+  if (!state.is_known[axis] || state.IsBeside() || state.stands) return std::nullopt;
   return state.place[axis] / state.Unit();
 }
 
@@ -54,7 +54,18 @@ bool Has(const NcState& state, NcGroup group, std::string_view word) {
   return found != state.words.end() && found->second.starts_with(word);
 }
 
-std::optional<double> LiveName(const NcState& state, const std::string& name) {
+// "_ini[section]key": LinuxCNC looks for both in upper case.
+std::optional<double> OfIni(const std::map<std::string, double>& ini, const std::string& name) {
+  std::string key = name.substr(std::string_view("_ini[").size());
+  for (char& c : key) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  const auto found = ini.find(key);
+  if (found == ini.end()) return std::nullopt;
+  return found->second;
+}
+
+std::optional<double> LiveName(const NcState& state, const NcTables& tables,
+                               const std::string& name) {
+  if (name.starts_with("_ini[") && tables.ini) return OfIni(*tables.ini, name);
   // Values of the control at the time.
   if (name.starts_with("_hal[") || name.starts_with("_ini[")) return kRuntime;
   if (name == "_metric") return !state.is_inch;
@@ -87,7 +98,10 @@ std::optional<double> LiveName(const NcState& state, const std::string& name) {
   if (name == "_spindle_cw") return Has(state, NcGroup::kSpindle, "M3");
   if (name == "_mist") return Has(state, NcGroup::kMist, "M7");
   if (name == "_flood") return Has(state, NcGroup::kFlood, "M8");
-  if (name == "_ccomp") return 400.0;  // refused otherwise
+  if (name == "_ccomp") {
+    constexpr double kNone = 400.0, kLeft = 410.0, kRight = 420.0;
+    return state.beside.side == 0.0 ? kNone : state.beside.side > 0.0 ? kLeft : kRight;
+  }
   if (name == "_feed") return state.feed;
   if (name == "_rpm") return state.speed;
   if (name == "_task") return 1.0;  // a control runs the program
@@ -96,7 +110,7 @@ std::optional<double> LiveName(const NcState& state, const std::string& name) {
   }
   if (name == "_abs_x" || name == "_abs_y" || name == "_abs_z") {
     const int axis = name.back() - 'x';
-    if (!state.KnowsPlace()) return kRuntime;
+    if (!state.KnowsPlace() || state.IsBeside() || state.stands) return kRuntime;
     return state.wanted.ToMachine(state.place)[axis] / state.Unit();
   }
   if (name == "_current_tool") return state.tool ? *state.tool : kRuntime;
@@ -170,7 +184,7 @@ double NcState::Unit() const { return is_inch ? kInchInMetres : settings::kMilli
 
 NcLive LiveOf(const NcState& state, const NcTables& tables) {
   return {[&](int number) { return LiveNumber(state, tables, number); },
-          [&](const std::string& name) { return LiveName(state, name); }};
+          [&](const std::string& name) { return LiveName(state, tables, name); }};
 }
 
 std::vector<std::string> Restoring(const NcModalWords& before, const NcModalWords& now) {

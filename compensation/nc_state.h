@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "compensation/nc_beside.h"
 #include "compensation/nc_offsets.h"
 #include "compensation/nc_parameters.h"
 #include "compensation/nc_tables.h"
@@ -61,7 +62,12 @@ struct NcState {
   double feed = 0.0, speed = 0.0;
   std::optional<int> tool, selected;  // numbers
   double tool_diameter = 0.0;
+  NcBesideSetting beside{0.0, 0.0};  // G41, G42; side 0: G40
+  // Where the tool's centre stands after G40, until the next move: beside `place`.
+  std::optional<Eigen::Vector3d> stands;
 
+  // G41 or G42 with a tool that has a radius.
+  bool IsBeside() const { return beside.side != 0.0 && beside.radius > 0.0; }
   double Unit() const;  // of lengths in the program, m
   // G93.
   bool HasInverseFeed() const;
@@ -70,10 +76,11 @@ struct NcState {
   // Changes an offset; the axes stay.
   template <typename Change>
   void ChangeOffsets(Change change) {
-    const Eigen::Vector3d machine = wanted.ToMachine(place);
+    const NcOffsets before = wanted;
     change(wanted);
     change(control);
-    place = wanted.ToProgram(machine);
+    place = wanted.ToProgram(before.ToMachine(place));
+    if (stands) stands = wanted.ToProgram(before.ToMachine(*stands));
     rotary.fill(kRuntime);
   }
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -80,6 +81,7 @@ std::map<int, NcTool> ReadTools(const std::filesystem::path& path) {
       const double value = PlainNumber(cursor);
       if (letter == 'T') number = value;
       if (letter == 'D') tool.diameter = value;
+      if (letter == 'Q') tool.orientation = static_cast<int>(std::clamp(value, 0.0, 9.0));
       if (letter >= 'X' && letter <= 'Z') tool.offset[letter - 'X'] = value;
       if (std::string_view("TPDXYZABCUVWIJQ").find(letter) == std::string_view::npos) {
         cursor.Refuse(fmt::format("{} is no word of a tool table", letter));
@@ -93,6 +95,39 @@ std::map<int, NcTool> ReadTools(const std::filesystem::path& path) {
     }
   });
   return tools;
+}
+
+std::map<std::string, double> ReadIniNumbers(const std::filesystem::path& path) {
+  std::map<std::string, double> numbers;
+  std::string section;
+  bool has_section = false;
+  EachTableLine(path, [&](std::string_view line, std::size_t line_number) {
+    NcCursor cursor(line, line_number, kEmpty);
+    const char first = cursor.Peek();
+    if (first == '#') return;
+    const std::string_view text = cursor.Rest();
+    const std::size_t split = text.find(first == '[' ? ']' : '=');
+    if (split == std::string_view::npos) {
+      if (first == '[') cursor.Refuse("a section without ]");
+      return;  // of a value that goes on
+    }
+    if (first == '[') {
+      section = text.substr(1, split - 1);
+      has_section = true;
+      return;
+    }
+    if (!has_section) cursor.Refuse("KEY = VALUE before any [SECTION]; is it an INI file?");
+    const std::string_view key = text.substr(0, text.find_last_not_of(" \t", split - 1) + 1);
+    NcCursor value(text.substr(split + 1), line_number, kEmpty);
+    const char begin = value.Peek();
+    if (begin == '#' || begin == '[' || !value.IsAtValue()) return;
+    const double number = value.Value();
+    const char behind = value.Peek();
+    if (behind == '\0' || behind == '#') {
+      numbers.try_emplace(fmt::format("{}]{}", section, key), number);
+    }
+  });
+  return numbers;
 }
 
 NcOffsets OffsetsOf(const NcTables& tables) {

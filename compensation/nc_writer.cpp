@@ -55,7 +55,27 @@ void NcWriter::EndLine() {
                     "longer ones, or larger chords, or correct it in parts",
                     most_lines_));
   }
-  if (text_.size() >= kPiece) Flush();
+  if (text_.size() >= kPiece && gaps_.empty() && behind_.empty()) Flush();
+}
+
+void NcWriter::LeaveGap() {
+  gaps_.push_back({text_.size(), is_at_start_});
+  is_at_start_ = false;
+}
+
+void NcWriter::BeginGap() {
+  behind_ = text_.substr(gaps_.front().at);
+  text_.resize(gaps_.front().at);
+  is_at_start_ = gaps_.front().is_at_start;
+}
+
+void NcWriter::EndGap() {
+  const std::size_t begin = gaps_.front().at;
+  gaps_.pop_front();
+  for (Gap& gap : gaps_) gap.at += text_.size() - begin;
+  text_ += behind_;
+  behind_.clear();
+  is_at_start_ = text_.ends_with('\n');
 }
 
 void NcWriter::Flush() {

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,11 @@ class NcWriter {
   void Motion(int motion);
   // The code that is in force in the output, ten times; kNoMotion after G80.
   void InForce(int motion) { motion_ = motion; }
+  // The path of a move whose end is not known yet stands here; it is written later, between
+  // BeginGap and EndGap, in the order of the gaps. Until then nothing is handed on.
+  void LeaveGap();
+  void BeginGap();
+  void EndGap();
   // The three words of a position of the axes; with G53 in machine coordinates.
   void Position(const Eigen::Vector3d& machine, bool is_g53 = false);
   // "A12.5": degrees, to 1e-6.
@@ -54,6 +60,12 @@ class NcWriter {
   double most_lines_;
   NcSink sink_;
   std::string text_;
+  struct Gap {
+    std::size_t at;  // in text_
+    bool is_at_start;
+  };
+  std::deque<Gap> gaps_;
+  std::string behind_;       // the gap that is written
   bool is_at_start_ = true;  // of a line
   int motion_ = kNoMotion;
   Eigen::Vector3d at_ = Eigen::Vector3d::Zero();

@@ -41,6 +41,7 @@ void Read(Bytes bytes) {
                                [&](std::string_view piece) { out += piece; });
   compensation::NcBlock block;
   EachLine(out, [&](std::string_view line, std::size_t number) {
+    if (line.starts_with("O<kept")) return;  // a branch of the control
     compensation::ReadBlock(line, number, compensation::NcParameters(), block);
   });
 }

@@ -18,6 +18,8 @@ using recording::Recording;
 using Rows = std::vector<std::size_t>;
 using Column = std::optional<std::span<const double>>;
 
+constexpr const char* kRadiusName = "ref_radius_mm";
+
 std::string PositionName(int axis) { return fmt::format("{}_mm", "xyz"[axis]); }
 std::string ReferenceName(int axis) { return fmt::format("ref_{}_mm", "xyz"[axis]); }
 
@@ -104,6 +106,30 @@ MeasuredPath ReferencePath(const Recording& recording) {
   }
   return path;
 }
+
+MeasuredPath BallbarPath(const Recording& recording) {
+  MeasuredPath path = Commanded(recording, recording::GoodRows(recording));
+  path.instrument = kByBallbar;
+  for (int axis = 0; axis < 3; ++axis) {
+    path.seen[axis] = recording.Find(PositionName(axis)).has_value();
+  }
+  const Eigen::VectorXd radius =
+      Values(recording, path.rows, kRadiusName, settings::kMillimetre, 0.0);
+  for (Eigen::Index i = 0; i < path.poses(); ++i) {
+    const double nominal = path.commanded.col(i).norm();
+    if (!(nominal > 0.0) || !(radius[i] > 0.0)) {
+      throw InputError(fmt::format(
+          "{}: row {}: a radius of {} mm at {} mm from the centre; positions of a ballbar count "
+          "from its centre",
+          recording.name, path.rows[i] + 1, radius[i] / settings::kMillimetre,
+          nominal / settings::kMillimetre));
+    }
+    path.measured.col(i) = radius[i] / nominal * path.commanded.col(i);
+  }
+  return path;
+}
+
+bool HasRadius(const Recording& recording) { return recording.Find(kRadiusName).has_value(); }
 
 bool HasReference(const Recording& recording) {
   return recording.Find(ReferenceName(0)) || recording.Find(ReferenceName(1)) ||

@@ -2,6 +2,7 @@
 //
 //   const MeasuredPath path = LinkagePath(recording, chain, rows, p_MT);
 //   const MeasuredPath reference = ReferencePath(recording);
+//   const MeasuredPath ballbar = BallbarPath(recording);
 //
 // Frames: axis coordinates [x y z], as the columns x_mm y_mm z_mm have them: an error is measured -
 // commanded along each axis. The linkage gives p_MT in the machine frame as the workpiece carries
@@ -23,12 +24,13 @@
 namespace abbe::paths {
 
 inline constexpr const char* kByLinkage = "linkage";
+inline constexpr const char* kByBallbar = "ballbar";
 
 struct MeasuredPath {
   static constexpr int kDirectionNotStated = 2;  // the column has -1, 0 and 1
 
   std::string recording;
-  std::string instrument;         // kByLinkage, "reference"
+  std::string instrument;         // kByLinkage, kByBallbar, "reference"
   std::string plane;              // of the header, may be empty
   double radius = 0.0;            // m: programmed radius of a circle, of the header; 0: not stated
   std::vector<std::size_t> rows;  // of the recording
@@ -48,6 +50,13 @@ MeasuredPath LinkagePath(const recording::Recording& recording, const machine::C
                          const std::vector<std::size_t>& rows, const Eigen::Matrix3Xd& p_MT);
 
 MeasuredPath ReferencePath(const recording::Recording& recording);
+
+// A ballbar knows the distance from its centre, at 0 of the positions: the measured point lies in
+// the commanded direction. What moves along the circle is not seen.
+MeasuredPath BallbarPath(const recording::Recording& recording);
+
+// Whether the recording has radii of a ballbar.
+bool HasRadius(const recording::Recording& recording);
 
 // Whether the recording has positions of a reference instrument.
 bool HasReference(const recording::Recording& recording);

@@ -39,6 +39,7 @@ const std::vector<KindRule>& KindRules() {
         {"z_mm", "ref_z_mm"},
         {"pivot_1_rad"}}},
       {"reference", {{"x_mm", "y_mm", "z_mm"}, {"ref_x_mm", "ref_y_mm", "ref_z_mm"}}},
+      {"ballbar", {{"x_mm", "y_mm"}, {"y_mm", "z_mm"}, {"x_mm", "z_mm"}, {"ref_radius_mm"}}},
       {"length", {{"x_mm"}, {"y_mm"}, {"z_mm"}, {"length_mm"}}},
       {"plate",
        {{"x_mm"}, {"y_mm"}, {"z_mm"}, {"setup"}, {"hole"}, {"plate_x_mm"}, {"plate_y_mm"}}},

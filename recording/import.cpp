@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "recording/hole_table.h"
+#include "recording/laser_table.h"
 #include "recording/target_table.h"
 
 namespace abbe::recording {
@@ -20,6 +21,8 @@ const std::vector<Importer>& Importers() {
        [](const std::filesystem::path& path, const ImportOptions& options) {
          return ReadTargetTable(path, options.axis.empty() ? "X" : options.axis);
        }},
+      {".rtl", [](const std::filesystem::path& path,
+                  const ImportOptions& options) { return ReadLaserTable(path, options.axis); }},
       {".txt",
        [](const std::filesystem::path& path, const ImportOptions& options) {
          return ReadHoleTable(path, options.u_probing_um);

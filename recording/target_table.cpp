@@ -9,24 +9,14 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
+#include "recording/target_test.h"
 #include "settings/toml_text.h"
 #include "settings/unit.h"
 
 namespace abbe::recording {
 namespace {
-
-constexpr int kMaxCycles = 10'000;  // far above any test, to catch typing errors
-
-struct Place {
-  int position;
-  int cycle;
-  bool operator<(const Place& other) const {
-    return std::tie(position, cycle) < std::tie(other.position, other.cycle);
-  }
-};
 
 struct TargetTable {
   std::string file;
@@ -35,7 +25,7 @@ struct TargetTable {
   int positions = 0;  // 0: not stated
   std::string target_source, reference_source;
   std::map<int, double> targets;
-  std::map<Place, double> forward, backward;
+  std::map<TargetPlace, double> forward, backward;
   std::vector<std::string> warnings;
 };
 
@@ -78,7 +68,7 @@ class Assignment {
     if (indices_.size() != 1) Refuse("needs one index, the position");
     return Index(indices_[0]);
   }
-  Place PositionAndCycle() const {
+  TargetPlace PositionAndCycle() const {
     if (indices_.size() != 2) Refuse("needs two indices, position and cycle");
     return {Index(indices_[0]), Index(indices_[1])};
   }
@@ -184,11 +174,6 @@ void Complete(TargetTable& table) {
         "{}: no REF_DATA_FWD or REF_DATA_BWD: not a target and cycle table", table.file));
   }
   if (table.cycles == 0) table.cycles = cycles;
-  if (table.cycles > kMaxCycles) {
-    throw InputError(
-        fmt::format("{}: {} cycles: at most {} are read; correct CYCLES or the indices", table.file,
-                    table.cycles, kMaxCycles));
-  }
   if (cycles > table.cycles) {
     throw InputError(fmt::format("{}: a reading of cycle {}, but CYCLES={}: correct one of them",
                                  table.file, cycles, table.cycles));
@@ -202,26 +187,10 @@ void Complete(TargetTable& table) {
   }
 }
 
-double ForwardDirection(const TargetTable& table) {
-  const double sign = table.targets.rbegin()->second > table.targets.begin()->second ? 1 : -1;
-  for (int position = 2; position <= table.positions; ++position) {
-    const double before = table.targets.at(position - 1), here = table.targets.at(position);
-    if (sign * (here - before) <= 0) {
-      throw InputError(
-          fmt::format("{}: TGT_DATA[{}]={} after {}: targets must ascend, or descend, all the way",
-                      table.file, position, here, before));
-    }
-  }
-  return sign;
-}
-
-std::string Header(const TargetTable& table, const std::string& axis, char small) {
-  std::string header = fmt::format(
-      "kind = \"reference\"\naxis = \"{}\"\ntime = \"order\"\nimported_from = "
-      "{}\n",
-      axis, settings::Quoted(std::filesystem::path(table.file).filename().string()));
-  if (table.target_source.empty() && table.reference_source.empty()) return header;
-  header += "[sources]\n";
+std::string Sources(const TargetTable& table, const std::string& axis) {
+  if (table.target_source.empty() && table.reference_source.empty()) return "";
+  const char small = static_cast<char>(axis[0] - 'A' + 'a');
+  std::string header = "[sources]\n";
   if (!table.target_source.empty()) {
     header += fmt::format("{}_mm = {}\n", small, settings::Quoted(table.target_source));
   }
@@ -234,51 +203,22 @@ std::string Header(const TargetTable& table, const std::string& axis, char small
 }  // namespace
 
 Recording ReadTargetTable(const std::filesystem::path& path, const std::string& axis) {
-  if (axis != "X" && axis != "Y" && axis != "Z") {
-    throw InputError(fmt::format("{}: axis \"{}\": choose X, Y or Z", path.string(), axis));
-  }
+  MustBeLinear(path.string(), axis);
   TargetTable table = ReadTable(path);
   Complete(table);
-  const double forward = ForwardDirection(table);
-  const char small = static_cast<char>(axis[0] - 'A' + 'a');
-
-  Recording recording;
-  recording.name = table.file;
-  recording.header = Header(table, axis, small);
-  recording.columns = {{"time_s", {}},    {fmt::format("{}_mm", small), {}},     {"pass", {}},
-                       {"direction", {}}, {fmt::format("ref_{}_mm", small), {}}, {"flags", {}}};
-  recording.warnings = std::move(table.warnings);
-  int order = 0, missing = 0;
-  std::string first_missing;
-  const auto add = [&](std::string_view name, const auto& readings, Place place, double direction) {
-    const double time = order++;
-    const auto reading = readings.find(place);
-    if (reading == readings.end()) {
-      if (missing++ == 0)
-        first_missing = fmt::format("{}[{},{}]", name, place.position, place.cycle);
-      return;
-    }
-    const double row[] = {time,
-                          table.targets.at(place.position) * table.mm_per_unit,
-                          static_cast<double>(place.cycle),
-                          direction,
-                          reading->second * table.mm_per_unit,
-                          0.0};
-    for (std::size_t i = 0; i < std::size(row); ++i) recording.columns[i].values.push_back(row[i]);
-  };
-  for (int cycle = 1; cycle <= table.cycles; ++cycle) {
-    for (int position = 1; position <= table.positions; ++position) {
-      add("REF_DATA_FWD", table.forward, {position, cycle}, forward);
-    }
-    for (int position = table.positions; position >= 1; --position) {
-      add("REF_DATA_BWD", table.backward, {position, cycle}, -forward);
-    }
-  }
-  if (missing > 0) {
-    recording.warnings.push_back(fmt::format("{}: {} of {} readings are missing, the first is {}",
-                                             table.file, missing, order, first_missing));
-  }
-  return recording;
+  TargetTest test{table.file,
+                  axis,
+                  std::move(table.targets),
+                  std::move(table.forward),
+                  std::move(table.backward),
+                  table.cycles,
+                  table.mm_per_unit};
+  test.more_header = Sources(table, axis);
+  test.target_name = "TGT_DATA";
+  test.forward_name = "REF_DATA_FWD";
+  test.backward_name = "REF_DATA_BWD";
+  test.warnings = std::move(table.warnings);
+  return RecordingOf(std::move(test));
 }
 
 }  // namespace abbe::recording

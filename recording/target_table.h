@@ -15,10 +15,7 @@
 // CYCLES and POSITIONS may be absent. REF_PV and TGT_SET_PV become [sources] of the header; any
 // other name is ignored with a warning.
 //
-// The recording has the columns time_s, x_mm (the target), pass (the cycle), direction, ref_x_mm
-// and flags; with axis Y they are y_mm and ref_y_mm, and so on. The table has no times: time_s is
-// the order of measurement, 1 per reading, and the header has time = "order". A reading that is
-// missing in the table (an interrupted test) is missing in the recording, with a warning.
+// The recording is that of target_test.h.
 //
 // Failure: InputError with file and line for a line that is not an assignment, a value that
 // is not a finite number, an unknown unit, an index out of range or given twice; InputError

@@ -128,7 +128,7 @@ class CorrectTest(unittest.TestCase):
 
     def test_what_cannot_be_corrected_leaves_no_file(self):
         machine = MapMachine(5)
-        for text, words in (("G0 X1 Y1 Z1\nG41 D1 X5\n", "part.ngc: line 2: G41"),
+        for text, words in (("G0 X1 Y1 Z1\nG41 D1 X5\n", "part.ngc: line 2: length and radius of a tool"),
                             ("G0 X1 Y1 Z1\nG33 Z0 K1\n", "line 2: G33"),
                             ("G0 X1 Y1 Z99\n", "line 1: Z = 99 mm lies outside")):
             (self.folder / "part.ngc").write_text(text)

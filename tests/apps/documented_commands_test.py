@@ -99,6 +99,29 @@ def target_table():
     return "\n".join(lines) + "\n"
 
 
+def laser_table():
+    """Five targets in three cycles of an axis Y."""
+    draw, targets = random.Random(6), range(-100, 101, 50)
+    lines = ["HEADER::", "File type  : rtl", "", "TARGET DATA::", "Filetype  : ISO", "Target-count: 5", "Targets :",
+             "  ".join(f"{target:.3f}" for target in targets), "Flags: 0 0 2 0", "", "USER-TEXT::", "Axis:Y", "",
+             "RUNS::", "Run-count:6", "", "DEVIATIONS::", "Run Target Data:"]
+    for run in range(1, 7):
+        order = range(1, 6) if run % 2 else range(5, 0, -1)
+        lines += [f"{run}   {i}      {0.8 * i + (run % 2) + draw.gauss(0, 0.2):.3f}" for i in order]
+    return "\n".join([*lines, "", "EOF::", ""])
+
+
+def ballbar_table():
+    """Both senses of a circle of axes that are not square, with lost motion in X."""
+    turn = [*range(0, 361), *range(359, -1, -1)]
+    lines = ["angle;deviation"]
+    for i, degrees in enumerate(turn):
+        t, sense = math.radians(degrees), 1 if i <= 360 else -1
+        lost = 2.0 * sense * math.cos(t) * (1 if math.sin(t) > 0 else -1)
+        lines.append(f"{degrees};{-8.0 * math.sin(2 * t) + lost + 1.5:.3f}".replace(".", ","))
+    return "\n".join(lines) + "\n"
+
+
 def hole_table():
     """A plate of holes that is 100 ppm too long in X, in the columns of a measuring machine."""
     draw, lines = random.Random(5), ["    Meas X    Meas Y     Nom X     Nom Y     Err X     Err Y  Meas D   Nom D   Round"]
@@ -182,7 +205,8 @@ class DocumentedCommands(unittest.TestCase):
         mill = pathlib.Path(MACHINE).read_text()
         (cls.data / "mill.toml").write_text(mill.replace("step_mm = 1.0", "step_mm = 5.0").replace("passes = 5", "passes = 2") +
                                             "\n[limits]\nEYX = { straightness_um = 50.0 }\n" + DRIFT + DATA)
-        for name, text in (("turn.log", monitor_log()), ("b02_target_x.dat", target_table()), ("part.ngc", PART),
+        for name, text in (("turn.log", monitor_log()), ("b02_target_x.dat", target_table()),
+                           ("axis_y.rtl", laser_table()), ("ballbar.csv", ballbar_table()), ("part.ngc", PART),
                            ("linuxcnc.var", "5220\t1\n5221\t30\n5222\t30\n5223\t20\n"), ("tool.tbl", "T1 P1 Z50 D6 ;\n"),
                            ("D1597A_redrilled_meas_2011.txt", hole_table()),
                            ("leica_left_hand_6x6x6_dataset_poses.csv", arm_table()), ("stage.toml", BARE.format("stage")),

@@ -32,6 +32,7 @@ PARAMETERS = {5161: 3, 5162: -4, 5163: 5, 5181: -3.5, 5182: 4.5, 5183: 6, 5210: 
               **{5221 + 20 * i + k: (1 + 0.3 * i, 2 - 0.2 * i, -0.5 + 0.1 * i)[k] for i in range(9) for k in range(3)}}
 START = "-25.4,-50.8,12.7"  # the axes at 0 in G54
 TOOLS = [*range(1, 100), 2345]
+COPIED = ["M128", "M129"]  # of a mill-turn: soft limits by the kinematics in force
 # rs274 by itself, without a machine: does not load a tool with M61; gives no value of the time of a probe.
 NOT_COMPARED = {"offsets.ngc": "M61", "roparams.ngc": "_vmajor and others of the control in messages"}
 
@@ -90,7 +91,8 @@ class Bench:
         done = subprocess.run(
             [ABBE, "correct", self.map, source, "--out", out, "--tools", self.folder / "tool.tbl", "--parameters",
              self.folder / "control.var", "--control-units", "inch", "--tool", "10,-20,-80", f"--start={START}",
-             "--block-delete", "off", "--rotary", "table", "--subroutines", path.parent],
+             "--block-delete", "off", "--rotary", "table", "--subroutines", path.parent, "--ini",
+             self.folder / "rs274.ini", *(word for code in COPIED for word in ("--copy", code))],
             capture_output=True, text=True, errors="replace", timeout=100)
         if done.returncode != 0:
             lines = done.stderr.strip().splitlines()
@@ -126,12 +128,14 @@ class Bench:
 
 def reason_of(text):
     """A refusal in a few words."""
-    for words, reason in (("cutter comp", "cutter compensation"), ("probe stops", "probe (G38)"),
+    for words, reason in (("probe stops", "probe (G38)"), ("#5070", "sets the result of a probe"),
                           ("geared to the spindle", "thread or tap"), ("turning cycle", "turning cycle (G70 to G72)"),
                           ("splines", "spline (G5.1)"), ("only at the control", "a value of the control"),
                           ("effect on the machine", "M code of the machine's own"),
                           ("no subroutine", "missing subroutine"), ("ends itself", "the program aborts"),
-                          ("tool table of the control", "writes the tool table"), ("G53", "G53 without axes")):
+                          ("tool table of the control", "writes the tool table"),
+                          ("moves nothing by itself", "subroutines alone"), ("Om103 ends", "endsub of another name"),
+                          ("has no value", "name without a value")):
         if words in text:
             return reason
     return re.sub(r".*line \d+: ", "", text)[:60]
@@ -167,8 +171,9 @@ class ProgramsOfLinuxcncTest(unittest.TestCase):
             counts, reasons, wrong = judge_all(folder)
         print(dict(counts), dict(reasons))
         self.assertEqual(wrong, [])
-        right = sum(n for key, n in counts.items() if "right" in key and "moves" in key)
-        self.assertGreater(right, 40)
+        judged = {key: n for key, n in counts.items() if "moves" in key and {"right", "refused"} & set(key)}
+        right = sum(n for key, n in judged.items() if "right" in key)
+        self.assertGreaterEqual(right, 0.9 * sum(judged.values()))
 
 
 if __name__ == "__main__":

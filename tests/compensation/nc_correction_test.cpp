@@ -159,8 +159,9 @@ TEST(NcCorrection, IncrementsAddUpWithoutDrift) {
 }
 
 TEST(NcCorrection, WhatItCannotCorrectIsRefusedWithItsLine) {
-  map::ExpectHas(Refusal("G0 X1\nG41 D1\n"), "line 2: G41 is not supported: cutter compensation");
-  map::ExpectHas(Refusal("G43 H1\n"), "line 1: a tool length offset depends on the tool table");
+  map::ExpectHas(Refusal("G0 X1\nG41 D1\n"),
+                 "line 2: length and radius of a tool are in the tool table");
+  map::ExpectHas(Refusal("G43 H1\n"), "line 1: length and radius of a tool are in the tool table");
   for (const char* const word :
        {"G81 Z-3", "G81 X1 Z-3 R-4", "G93 G1 X1", "G10 L2", "G10 L1 P1 X1", "G5", "G33", "G38.2 Z1",
         "G2.1", "G55", "M98", "M110", "A10", "U1", "E3", "H1", "G80 X1", "G1 G0 X1", "G30.1 A1"}) {

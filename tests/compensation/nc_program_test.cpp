@@ -120,11 +120,56 @@ TEST(NcProgram, WhatNeverEndsIsRefusedInTime) {
   map::ExpectHas(RefusalOf("G2 I1 P1000000000\n"), "is no number of turns");
 }
 
-TEST(NcProgram, ABranchByAValueOfTheControlIsRefused) {
+TEST(NcProgram, AWayByAValueOfTheControlIsRefused) {
   map::ExpectHas(RefusalOf("M66 P0 L0\no1 if [#5399 gt 0]\nG0 X1\no1 endif\n"),
+                 "line 3: whether this acts is known only at the control");
+  map::ExpectHas(RefusalOf("M66 P0 L0\no1 while [#5399 gt 0]\nM0\no1 endwhile\n"),
                  "line 2: the way of the program depends on a value that is known only at the");
   map::ExpectHas(RefusalOf("G0 X#<_hal[a.b]>\n"), "line 1: X#<_hal[a.b]> depends on a value");
   EXPECT_EQ(WrittenOut("F#<_hal[a.b]>\n"), "F#<_hal[a.b]>\n");
+}
+
+// As LinuxCNC reads it: correct_by_rs274_test.py.
+TEST(NcProgram, ABranchByAValueOfTheControlIsKeptForIt) {
+  const std::string program =
+      "#<limit> = 2\no1 if [#<_hal[lamp.level]> GT #<limit>]\n(debug, above #<limit>)\n"
+      "o1 elseif [EXISTS[#<_hal[lamp.level]>] AND EXISTS[#<limit>]]\nM65 P1\no1 endif\nG0 X1\n";
+  EXPECT_EQ(WrittenOut(program),
+            "O<kept1> if [#<_hal[lamp.level]> GT [2.000000000]]\n(debug, above 2.000000)\n"
+            "O<kept1> elseif [EXISTS[#<_hal[lamp.level]>] AND [1.000000000]]\nM65 P1\n"
+            "O<kept1> endif\nG0 X1 Y0 Z0\n");
+  // A return leaves out the rest of its subroutine alone.
+  EXPECT_EQ(WrittenOut("o<s> sub\no1 if [#5399 lt 0]\no1 return [-1]\no1 endif\n#<p> = 3\n"
+                       "M64 P#<p>\no<s> endsub\nM66 P0 L0\no<s> call\nM0\n"),
+            "M66 P0 L0\nO<kept1> if [#5399 lt 0]\nO<kept1> else\nM64 P3\n"
+            "O<kept1> endif\nM0\n");
+}
+
+// A tool of 2 mm beside corners to either side and an arc; places by hand.
+TEST(NcProgram, TheToolGoesBesideThePath) {
+  NcOptions options = Options();
+  options.limits.chord = 1.0;  // an arc of up to half a turn is one chord
+  EXPECT_EQ(WrittenOut("G41.1 D4 (on)\nG1 X10 F100 (in)\nG1 Y10\nF50\nX-5 M0\nG40\nX0\n", options),
+            "(on)\nF100 (in) G1 X8 Y2 Z0\nX8 Y8 Z0\nF50\nX-5 Y8 Z0 M0\nG40\nX0 Y10 Z0\n");
+  EXPECT_EQ(WrittenOut("G42.1 D4\nG1 X10\nY10\nG0 Z3\nG3 X-10 I-10\n", options),
+            "G1 X10 Y-2 Z0\nX12 Y0 Z0\nX12 Y10 Z0\nG0 X12 Y10 Z3\nG1 X-12 Y10 Z3\n");
+  // A negative diameter is on the other side.
+  EXPECT_EQ(WrittenOut("G42.1 D-4\nG1 X10\nM2\n", options), "G1 X10 Y2 Z0\nM2\n");
+}
+
+TEST(NcProgram, AToolThatDoesNotFitIsRefused) {
+  const std::string on = "G41.1 D4\nG1 X10\n";
+  map::ExpectHas(RefusalOf("G41.1 D4\nG1 X2\n"), "line 2: the first move after G41 or G42 must be");
+  map::ExpectHas(RefusalOf(on + "G3 Y2 J1\nG40\n"), "line 3: the tool does not fit into the arc");
+  map::ExpectHas(RefusalOf(on + "Y3\nX0\nG40\n"), "line 3: the tool does not fit between");
+  map::ExpectHas(RefusalOf(on + "G40\nG2 X0 I-5\n"), "line 4: an arc right after G40");
+  map::ExpectHas(RefusalOf(on + "G40\nG92 X0\n"), "line 4: the tool still stands beside");
+  map::ExpectHas(RefusalOf("G41\n"), "line 1: G41 or G42 without D");
+  map::ExpectHas(RefusalOf("G19 G41.1 D4\n"), "line 1: G41 and G42 belong to the planes");
+  for (const char* const word : {"G42.1 D4", "G20", "G91", "G18", "G55", "G92 X1", "G10 L2 P1 X1",
+                                 "G53 G0 X1", "G28", "G81 Z-1 R1", "T1 M6", "G49", "M70", "G80"}) {
+    map::ExpectHas(RefusalOf(on + word + "\n"), "line 3: ");
+  }
 }
 
 TEST(NcProgram, BlocksThatMayBeLeftOutNeedTheSwitch) {
