@@ -29,11 +29,11 @@ extern "C" {
 #endif
 
 enum {
-  ABBE_GRID_VALUES = 6,      /* of a point */
-  ABBE_GRID_COUNT = 1000000, /* most points of a file: 48 MB */
-  ABBE_GRID_LARGEST = 10,    /* mm: a larger error is that of a wrong tool or map, and refused */
-  ABBE_GRID_REASON = 200     /* bytes of a reason */
+  ABBE_GRID_VALUES = 6,  /* of a point */
+  ABBE_GRID_REASON = 200 /* bytes of a reason */
 };
+static const double abbe_grid_most = 1e6;     /* points of a file: 48 MB */
+static const double abbe_grid_largest = 10.0; /* mm: of a wrong tool or map, and refused */
 
 typedef struct {
   double first[3], last[3];     /* of the grid, mm */
@@ -101,7 +101,7 @@ static inline int abbe_grid_take_axis(const char* line, int axis, abbe_grid* gri
   if (!abbe_grid_entry(line, keys[axis], n, 5)) return 0;
   grid->first[axis] = n[0];
   grid->last[axis] = n[1];
-  if (!(n[2] >= 2 && n[2] <= ABBE_GRID_COUNT)) return 0;
+  if (!(n[2] >= 2 && n[2] <= abbe_grid_most)) return 0;
   grid->count[axis] = (int)n[2];
   grid->lowest[axis] = n[3];
   grid->highest[axis] = n[4];
@@ -127,7 +127,7 @@ static inline int abbe_grid_take_head(const char* line, int index, abbe_grid* gr
 
 static inline long abbe_grid_points(const abbe_grid* grid) {
   const double points = (double)grid->count[0] * grid->count[1] * grid->count[2];
-  return points <= ABBE_GRID_COUNT ? (long)points : 0;
+  return points <= abbe_grid_most ? (long)points : 0;
 }
 
 /* The values of the points and the last line; 0 with the reason. */
@@ -241,7 +241,7 @@ static inline int abbe_grid_target(const abbe_grid* grid, const abbe_period* per
   }
   if (!abbe_grid_error(grid, at, Q, error)) return 0;
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(error[axis] > -ABBE_GRID_LARGEST && error[axis] < ABBE_GRID_LARGEST)) return 0;
+    if (!(error[axis] > -abbe_grid_largest && error[axis] < abbe_grid_largest)) return 0;
   }
   for (int axis = 0; axis < 3; ++axis) target[axis] = -grid->sense[axis] * error[axis];
   return 1;
