@@ -27,7 +27,7 @@ MODULES = pathlib.Path("/usr/lib/linuxcnc/modules")
 PROGRAMS = pathlib.Path("/usr/share/doc/linuxcnc/examples/nc_files")
 # Drilling cycles in polar places; helices in three planes; a part with arcs, cycles and a tool length.
 NAMES = ["polar", "tort", "cds"]
-LINES = {"tort": 50}  # of 282: 30 s more
+LINES = {"tort": 50, "cds": 140}  # of 282 and 284: the test is not to last minutes
 MODES = "G21 G90 G17 G49 G61"
 RATE = 0.5       # mm/s, of the component
 TRAVEL_MM = (-60.0, 140.0)
@@ -248,6 +248,38 @@ def drive():
     pathlib.Path("done.txt").write_text("done\n")
 
 
+# ---- LinuxCNC with the component -----------------------------------------------------------------------------------
+
+def in_namespace(*command):
+    """The command, in a mount namespace in which ./modules stands for LinuxCNC's folder of modules."""
+    mount = f"mount --bind modules {MODULES} && exec "
+    if os.getuid() == 0:
+        return ["unshare", "-m", "sh", "-c", mount + '"$@"', "sh", *command]
+    ids = ["unshare", "--user", f"--map-user={os.getuid()}", f"--map-group={os.getgid()}"]
+    return ["unshare", "-rm", "sh", "-c", mount + '"$@"', "sh", *ids, *command]
+
+
+def environment(folder):
+    values = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
+    values["HOME"] = str(folder)
+    if os.getuid() == 0:
+        values["RTAPI_UID"] = "65534"  # the realtime part runs as somebody else
+    return values
+
+
+def install(folder):
+    """The component and LinuxCNC's modules in folder/modules; what halcompile complains of."""
+    for name in ("abbe_map.comp", "abbe_grid.h"):
+        shutil.copy(pathlib.Path(os.environ["ABBE_SOURCE"]) / "control/linuxcnc" / name, folder)
+    done = subprocess.run(["halcompile", "--compile", "abbe_map.comp"], cwd=folder, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError("halcompile: " + done.stdout + done.stderr)
+    shutil.copytree(MODULES, folder / "modules")
+    shutil.copy(folder / "abbe_map.so", folder / "modules")
+    subprocess.run(["chmod", "-R", "a+rwX", folder], check=True)
+    return done.stderr
+
+
 # ---- the test: what was recorded -----------------------------------------------------------------------------------
 
 def smoothed(rows):
@@ -293,14 +325,6 @@ class Simulation:
         self.map = self.machine.write(folder / "map.toml")
         self.exported = self.abbe("export", self.map, "--format", "linuxcnc-hal", "--points", "51", "--out",
                                   folder / "mill.hal").stdout
-        for name in ("abbe_map.comp", "abbe_grid.h"):
-            shutil.copy(pathlib.Path(os.environ["ABBE_SOURCE"]) / "control/linuxcnc" / name, folder)
-        done = subprocess.run(["halcompile", "--compile", "abbe_map.comp"], cwd=folder, capture_output=True, text=True)
-        if done.returncode != 0:
-            raise RuntimeError("halcompile: " + done.stdout + done.stderr)
-        self.warnings = done.stderr
-        shutil.copytree(MODULES, folder / "modules")
-        shutil.copy(folder / "abbe_map.so", folder / "modules")
         for name, text in (("sim.ini", INI), ("sim.hal", HAL), ("watch.hal", watch_hal()), ("tool.tbl", f"T1 P1 Z{TOOL_MM} D6 ;\n"),
                            ("display", f"#!/bin/sh\nexec {sys.executable} {__file__} drive\n")):
             (folder / name).write_text(text)
@@ -310,7 +334,7 @@ class Simulation:
             text = "\n".join([line for line in lines if line.strip() != "m0"] + ["m2"] * (name in LINES))
             (folder / f"{name}.ngc").write_text(text + "\n")
         (folder / "display").chmod(0o755)
-        subprocess.run(["chmod", "-R", "a+rwX", folder], check=True)  # as root the realtime part runs as somebody else
+        self.warnings = install(folder)
         self.simulate()
 
     def abbe(self, *words):
@@ -320,14 +344,10 @@ class Simulation:
         return done
 
     def simulate(self):
-        environment = {**os.environ, "HOME": str(self.folder)}
-        environment.pop("DISPLAY", None)
-        if os.getuid() == 0:
-            environment["RTAPI_UID"] = "65534"
         with open(self.folder / "log.txt", "w") as log:
-            subprocess.run(["timeout", "-k", "5", "100", *namespace(),
-                            f"mount --bind modules {MODULES} && exec linuxcnc -r sim.ini"], cwd=self.folder,
-                           env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)
+            subprocess.run(["timeout", "-k", "5", "100", *in_namespace("linuxcnc", "-r", "sim.ini")], cwd=self.folder,
+                           env=environment(self.folder), stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+                           start_new_session=True)
         if not (self.folder / "done.txt").exists():
             raise RuntimeError("LinuxCNC did not finish: " + (self.folder / "log.txt").read_text()[-3000:])
         names = ["start", *NAMES, "switched", "outside", "touched", "off", "again"]
@@ -356,18 +376,16 @@ class Simulation:
         return 4 * np.array([change[max(0, i - 3):i + 4].max() for i in range(len(change))])
 
 
-def namespace():
-    return ["unshare", "-m", "sh", "-c"] if os.getuid() == 0 else ["unshare", "-rm", "sh", "-c"]
-
-
 def missing():
     """What keeps the test from running; empty: nothing."""
     for program, package in (("linuxcnc", "linuxcnc-uspace"), ("rs274", "linuxcnc-uspace"),
                              ("halcompile", "linuxcnc-uspace-dev")):
         if not shutil.which(program):
             return f"{package} is not installed"
-    if subprocess.run([*namespace(), "mount --bind /tmp /tmp"], capture_output=True).returncode != 0:
-        return "no mount namespace may be made here (unshare -m)"
+    with tempfile.TemporaryDirectory() as folder:
+        (pathlib.Path(folder) / "modules").mkdir()
+        if subprocess.run(in_namespace("true"), cwd=folder, capture_output=True).returncode != 0:
+            return "no mount namespace may be made here (unshare -m)"
     return ""
 
 
@@ -504,6 +522,60 @@ class LinuxcncTest(unittest.TestCase):
         clocks = np.concatenate([run.clocks for run in self.runs.values()])
         # The median: without a realtime kernel others take the processor away in the midst of some.
         self.assertLess(np.median(clocks) / clock_hz(self.runs), 20e-6)
+
+
+POINT_UM_URAD = np.array([[1000.0 * (k + 1) + 100 * x - 50 * y + 25 * z for k in range(3)] + [0, 0, 0]
+                          for z in (0, 1) for y in (0, 1) for x in (0, 1)])
+
+
+class HalTest(unittest.TestCase):
+    """The component without a machine: halrun."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        install(cls.folder)
+
+    def write(self, *tail):
+        axis = [f"{a}_mm 0 100 2 -1 101" for a in "xyz"]
+        points = [" ".join(f"{value:.6f}" for value in row) for row in POINT_UM_URAD]
+        (self.folder / "mill.grid").write_text("\n".join(["abbe-map-grid 1", "sense 1 -1 1", "tool_mm 0 0 0", *axis,
+                                                         *points, *tail]) + "\n")
+
+    def hal(self, *lines):
+        (self.folder / "one.hal").write_text("\n".join(lines) + "\n")
+        return subprocess.run(["timeout", "-k", "5", "30", *in_namespace("halrun", "-f", "one.hal")], cwd=self.folder,
+                              env=environment(self.folder), stdin=subprocess.DEVNULL, capture_output=True, text=True)
+
+    def test_inches_are_counted_as_the_machine_does(self):
+        self.write("end")
+        place = np.array([25.4, 50.8, 76.2])
+        for unit in (1.0, 25.4):
+            done = self.hal("loadrt abbe_map grid=mill.grid", "loadrt threads name1=t period1=1000000",
+                            "addf abbe-map t", f"setp abbe-map.unit-mm {unit}", "setp abbe-map.rate 1000",
+                            *[f"setp abbe-map.{a} {q / unit:.12g}" for a, q in zip("xyz", place)],
+                            *[f"setp abbe-map.{pin} 1" for pin in ("machine-on", "homed", "enable")], "start",
+                            "loadusr -w sleep 0.3", "show pin abbe-map")
+            pins = {name: value for value, name in re.findall(r"(\S+)\s+abbe-map\.(\S+)", done.stdout)}
+            self.assertEqual(pins.get("applied"), "TRUE", done.stdout + done.stderr)
+            self.assertAlmostEqual(float(pins["scale"]), 1e-6 / unit, 12)
+            at = place.copy()
+            for _ in range(5):  # the error of the place that is commanded
+                part = at / 100
+                error = 1e-3 * np.array([1000 * (k + 1) + 100 * part[0] - 50 * part[1] + 25 * part[2]
+                                         for k in range(3)])
+                offset = -np.array([1, -1, 1]) * error
+                at = place + offset
+            for a, value in zip("xyz", offset):
+                self.assertLessEqual(abs(int(pins[f"{a}-counts"]) - 1e6 * value), 1.0)
+
+    def test_a_grid_that_is_cut_off_or_missing_is_not_loaded(self):
+        self.write()
+        done = self.hal("loadrt abbe_map grid=mill.grid")
+        self.assertIn('abbe_map: mill.grid:14: no "end" behind the points', done.stdout + done.stderr)
+        self.assertNotEqual(done.returncode, 0)
+        done = self.hal("loadrt abbe_map grid=other.grid")
+        self.assertIn("abbe_map: other.grid: cannot be read", done.stdout + done.stderr)
 
 
 def figures():
