@@ -128,6 +128,7 @@ std::string HalText(const ErrorMap& map, const std::string& grid) {
         "net abbe-{0} axis.{0}.pos-cmd => abbe-map.{0}\n"
         "net abbe-tool-{0} motion.tooloffset.{0} => abbe-map.tool-{0}\n"
         "net abbe-counts-{0} abbe-map.{0}-counts => axis.{0}.eoffset-counts\n"
+        "net abbe-eoffset-{0} axis.{0}.eoffset => abbe-map.{0}-eoffset\n"
         "net abbe-scale abbe-map.scale => axis.{0}.eoffset-scale\n"
         "net abbe-eoffset abbe-map.eoffset-enable => axis.{0}.eoffset-enable\n",
         axis);
@@ -135,7 +136,9 @@ std::string HalText(const ErrorMap& map, const std::string& grid) {
   return text +
          "# Applied from the first homing on. A switch or a program decides instead with\n"
          "#   net abbe-enable motion.digital-out-00 => abbe-map.enable\n"
-         "setp abbe-map.enable 1\n";
+         "setp abbe-map.enable 1\n"
+         "# Feed waits while the map is not applied, also for the offset of another tool:\n"
+         "#   net abbe-wait abbe-map.not-applied => motion.feed-inhibit\n";
 }
 
 }  // namespace

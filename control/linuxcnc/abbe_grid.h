@@ -29,8 +29,9 @@ extern "C" {
 #endif
 
 enum {
-  ABBE_GRID_VALUES = 6,  /* of a point */
-  ABBE_GRID_REASON = 200 /* bytes of a reason */
+  ABBE_GRID_VALUES = 6,     /* of a point */
+  ABBE_GRID_REASON = 200,   /* bytes of a reason */
+  ABBE_MISSED_PERIODS = 100 /* in a row until the control counts as one that applies nothing */
 };
 static const double abbe_grid_most = 1e6;     /* points of a file: 48 MB */
 static const double abbe_grid_largest = 10.0; /* mm: of a wrong tool or map, and refused */
@@ -50,12 +51,15 @@ typedef struct {
   double target[3]; /* that of the last place in the map, mm */
   int is_outside;   /* the place is not in the map: the target is held */
   int is_limited;   /* the rate held an offset back */
+  int is_missed;    /* the control does not apply what was asked for */
+  int missed;       /* periods since it does not */
 } abbe_offsets;
 
 /* What a period applies depends on it. */
 typedef struct {
   double position[3];    /* of the axes without offsets, mm */
   double tool_offset[3]; /* of the control, mm */
+  double applied[3];     /* by the control, mm */
   double step;           /* most that an offset changes, mm */
   int machine_on;        /* else all offsets are zero at once, as in the control */
   int homed;             /* else nothing changes: the control ignores it */
@@ -262,6 +266,22 @@ static inline int abbe_approach(double* value, double target, double step) {
   return 0;
 }
 
+/* Whether the control has applied what the last period asked for: it follows within three periods. */
+static inline void abbe_offsets_check(const abbe_period* period, abbe_offsets* now) {
+  const double most = 1e-3 + 4.0 * period->step;
+  int is_there = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double left = now->offset[axis] - period->applied[axis];
+    is_there &= left >= -most && left <= most;
+  }
+  if (is_there) {
+    now->missed = 0;
+  } else if (now->missed < ABBE_MISSED_PERIODS) {
+    ++now->missed;
+  }
+  now->is_missed = now->missed == ABBE_MISSED_PERIODS;
+}
+
 /* One period. */
 static inline void abbe_offsets_step(const abbe_grid* grid, const abbe_period* period,
                                      abbe_offsets* now) {
@@ -269,6 +289,7 @@ static inline void abbe_offsets_step(const abbe_grid* grid, const abbe_period* p
     memset(now, 0, sizeof(*now));
     return;
   }
+  abbe_offsets_check(period, now);
   now->is_outside = !abbe_grid_target(grid, period, now->target);
   if (!period->homed) return;
   now->is_limited = 0;

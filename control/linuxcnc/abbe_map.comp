@@ -24,6 +24,9 @@ pin in float z "The same of Z";
 pin in float tool_x "Tool offset in effect, in machine units; from motion.tooloffset.x";
 pin in float tool_y "The same of Y";
 pin in float tool_z "The same of Z";
+pin in float x_eoffset "Offset that LinuxCNC applies, in machine units; from axis.x.eoffset";
+pin in float y_eoffset "The same of Y";
+pin in float z_eoffset "The same of Z";
 pin in bit machine_on "From motion.motion-enabled: the offsets are zero while it is not";
 pin in bit homed "From motion.is-all-homed: nothing changes while it is not";
 pin in bit enable "Apply the map; the offsets ramp to the map's and back to zero";
@@ -37,7 +40,9 @@ pin out float y_offset "The same of Y";
 pin out float z_offset "The same of Z";
 pin out bit outside "The axes are where the map does not reach, and the last offsets are held";
 pin out bit limited "The rate holds an offset back: while the map is being applied or taken away, or rate is too small";
-pin out bit applied "The map is applied: enabled, in the map, and not limited";
+pin out bit missed "LinuxCNC has not applied the offsets for 100 periods: OFFSET_AV_RATIO is 0, or a soft limit is near";
+pin out bit applied "The map is applied: enabled, in the map, not limited and not missed";
+pin out bit not_applied "Enabled and not applied; may be connected to motion.feed-inhibit";
 param rw float rate = 0.5 "Most speed of an offset, mm/s";
 param rw float unit_mm = 1.0 "Millimetres in a machine unit: 25.4 where LINEAR_UNITS = inch";
 include "abbe_grid.h";
@@ -69,8 +74,10 @@ static int counts_of(double mm) {
 
 FUNCTION(_) {
   const double mm = unit_mm;
-  abbe_period given = {{x * mm, y * mm, z * mm}, {tool_x * mm, tool_y * mm, tool_z * mm}, rate * fperiod,
-                       machine_on, homed, enable};
+  abbe_period given = {{x * mm, y * mm, z * mm},
+                       {tool_x * mm, tool_y * mm, tool_z * mm},
+                       {x_eoffset * mm, y_eoffset * mm, z_eoffset * mm},
+                       rate * fperiod, machine_on, homed, enable};
   if (!(given.step >= 0.0)) given.step = 0.0;
   abbe_offsets_step(&map, &given, &now);
   x_counts = counts_of(now.offset[0]);
@@ -83,5 +90,7 @@ FUNCTION(_) {
   eoffset_enable = machine_on;
   outside = now.is_outside;
   limited = now.is_limited;
-  applied = machine_on && homed && enable && !now.is_outside && !now.is_limited;
+  missed = now.is_missed;
+  applied = machine_on && homed && enable && !now.is_outside && !now.is_limited && !now.is_missed;
+  not_applied = enable && !applied;
 }

@@ -100,7 +100,7 @@ class AbbeGrid : public testing::Test {
   }
 
   static abbe_period Period(const Place& p, double step = 1e9, const Place& tool = {0, 0, 0}) {
-    return {{p[0], p[1], p[2]}, {tool[0], tool[1], tool[2]}, step, 1, 1, 1};
+    return {{p[0], p[1], p[2]}, {tool[0], tool[1], tool[2]}, {}, step, 1, 1, 1};
   }
 
   std::filesystem::path path_;
@@ -207,6 +207,35 @@ TEST_F(AbbeGrid, NothingChangesUnhomedAndAllIsZeroWithoutTheMachine) {
   period.machine_on = 0;
   abbe_offsets_step(&grid_, &period, &now);
   for (const double offset : now.offset) EXPECT_EQ(offset, 0.0);
+}
+
+// [AXIS_X] without OFFSET_AV_RATIO, a soft limit: the control says nothing of it.
+TEST_F(AbbeGrid, AControlThatAppliesNothingIsMissedAfterAHundredPeriods) {
+  ASSERT_EQ(Read(Head() + Points() + "end\n"), "");
+  abbe_period period = Period({120, 77, -111}, 1e-4);
+  abbe_offsets now = {};
+  const auto advance = [&](int periods, bool follows) {
+    for (int i = 0; i < periods; ++i) {
+      for (int k = 0; follows && k < 3; ++k) period.applied[k] = now.offset[k];
+      abbe_offsets_step(&grid_, &period, &now);
+      if (follows) {
+        EXPECT_EQ(now.is_missed, 0);
+      }
+    }
+  };
+  advance(1000, true);
+  EXPECT_EQ(now.is_limited, 0);
+  // More than 1 um and four steps.
+  EXPECT_GT(std::max(std::abs(now.offset[1]), std::abs(now.offset[2])), 1.5e-3);
+  for (double& applied : period.applied) applied = 0.0;
+  advance(99, false);
+  EXPECT_EQ(now.is_missed, 0);
+  advance(1, false);
+  EXPECT_EQ(now.is_missed, 1);
+  period.applied[0] = std::numeric_limits<double>::quiet_NaN();
+  advance(1, false);
+  EXPECT_EQ(now.is_missed, 1);
+  advance(1, true);
 }
 
 TEST_F(AbbeGrid, AToolThatMakesAnErrorOfMoreThanTenMillimetresIsRefused) {

@@ -30,7 +30,7 @@ class Component {
   // m.
   Vector3d Command(const Vector3d& wanted, const Vector3d& tool_offset) const {
     abbe_offsets now = {};
-    abbe_period period = {{}, {}, 1e9, 1, 1, 1};
+    abbe_period period = {{}, {}, {}, 1e9, 1, 1, 1};
     for (int k = 0; k < 3; ++k) {
       period.position[k] = 1e3 * wanted[k];
       period.tool_offset[k] = 1e3 * tool_offset[k];
