@@ -305,7 +305,8 @@ class Run:
     def __init__(self, path):
         text = path.read_text()
         self.lost = text.removeprefix("overrun\n").count("overrun")  # halsampler begins with one
-        table = np.array([[float(word) for word in line.split()] for line in text.splitlines() if "overrun" not in line])
+        rows = [line.split() for line in text.splitlines() if "overrun" not in line]
+        table = np.array(rows, float)
         self.numbers, table = table[:, 0], table[:, 1:]
         self.commanded, self.at, self.applied_offset, self.asked = (table[:, 3 * i:3 * i + 3] for i in range(4))
         self.wanted = smoothed(self.commanded)
@@ -335,7 +336,8 @@ class Simulation:
         self.map = self.machine.write(folder / "map.toml")
         self.exported = self.abbe("export", self.map, "--format", "linuxcnc-hal", "--points", "51", "--out",
                                   folder / "mill.hal").stdout
-        for name, text in (("sim.ini", INI), ("sim.hal", HAL), ("watch.hal", watch_hal()), ("tool.tbl", f"T1 P1 Z{TOOL_MM} D6 ;\n"),
+        for name, text in (("sim.ini", INI), ("sim.hal", HAL), ("watch.hal", watch_hal()),
+                           ("tool.tbl", f"T1 P1 Z{TOOL_MM} D6 ;\n"),
                            ("display", f"#!/bin/sh\nexec {sys.executable} {__file__} drive\n")):
             (folder / name).write_text(text)
         for name in NAMES:
@@ -473,7 +475,8 @@ class LinuxcncTest(unittest.TestCase):
             # On its way with feed: rapids the program leaves whole, the component corrects them too.
             fed = np.flatnonzero(run.feeding() & run.steady())[::5]
             self.assertGreater(len(fed), 200)
-            beside = np.concatenate([distances(run.at[part], path) for part in np.array_split(fed, 1 + len(fed) // 500)])
+            parts = np.array_split(fed, 1 + len(fed) // 500)
+            beside = np.concatenate([distances(run.at[part], path) for part in parts])
             worst = np.argmax(beside - allowed[fed])
             self.assertLess(beside[worst], allowed[fed[worst]], f"{name}, period {fed[worst]} at {run.at[fed[worst]]}")
             # Every corner of the corrected program is reached: no further than the joints go in a period.
