@@ -8,6 +8,7 @@
 #include "failure/failure.h"
 #include "map/export_axis_comp.h"
 #include "map/export_grid.h"
+#include "map/export_linuxcnc_hal.h"
 #include "map/export_tables.h"
 #include "map/map_file.h"
 #include "map/text_file.h"
@@ -35,6 +36,10 @@ const std::vector<Format>& Formats() {
        "straightness, angles, squareness and the uncertainty: it carries the position error of "
        "each axis along one line through the middle of the travels, no backlash",
        WriteLinuxcnc, ReadBackLinuxcnc, nullptr},
+      {"linuxcnc-hal", ".hal",
+       "the uncertainty, what determined each error, the error between the points; it carries any "
+       "tool",
+       WriteLinuxcncHal, ReadBackLinuxcncHal, nullptr},
       {"sinumerik", ".ini",
        "all that depends on two axes at once (the angles times their arms) and the uncertainty: it "
        "carries the three components along three lines through the middle of the travels",

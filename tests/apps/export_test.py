@@ -69,6 +69,24 @@ class ExportTest(unittest.TestCase):
             self.assertEqual(file.attrs["chain"].decode(), self.machine.chain)
             np.testing.assert_allclose(file["tool_mm"][:], 1e3 * self.machine.tool, rtol=1e-15)
 
+    def test_the_grid_for_linuxcnc_holds_the_error_for_every_tool(self):
+        out = self.export("linuxcnc-hal", "m.hal", "--points", "4")
+        self.assertIn("loadrt abbe_map grid=m.grid\n", out.read_text())
+        lines = [line for line in (self.folder / "m.grid").read_text().splitlines() if not line.startswith("#")]
+        self.assertEqual(lines[0], "abbe-map-grid 1")
+        np.testing.assert_array_equal(np.array(lines[1].split()[1:], float), self.machine.signs)
+        np.testing.assert_allclose(np.array(lines[2].split()[1:], float), 1e3 * self.machine.tool, rtol=1e-12)
+        np.testing.assert_allclose(np.array(lines[3].split()[1:], float), (0, 60, 4, -0.1, 60.1), atol=1e-9)
+        self.assertEqual(lines[-1], "end")
+        table = np.array([line.split() for line in lines[6:-1]], float)
+        # Written to 1e-6 um and urad. For another tool the grid leaves out turn^2 times the difference: some nm.
+        turn = 1e-6 * np.linalg.norm(table[:, 3:], axis=1).max()
+        self.assertLess(turn, 1e-3)
+        for tool in (self.machine.tool, np.array([0.1, 0.05, -0.3])):
+            second = 1e6 * turn ** 2 * np.linalg.norm(tool - self.machine.tool)
+            errors = table[:, :3] + np.cross(table[:, 3:], tool)
+            self.assertLess(np.abs(errors - self.errors_um(4, tool)).max(), 2e-6 + second)
+
     @unittest.skipIf(vtkXMLRectilinearGridReader is None, "python3-vtk9 is not installed")
     def test_vtk_reads_the_vtr(self):
         reader = vtkXMLRectilinearGridReader()
