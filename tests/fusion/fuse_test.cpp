@@ -147,6 +147,28 @@ TEST_F(FuseOfRig, NamesASweepWithAnotherMounting) {
 
 // Calibrated on a machine that is taken as perfect, the linkage learns much of the machine's
 // errors, even where these change within 15 mm and the cube is 25 x 25 x 50 mm.
+// The form of the target is the same each time: one sweep without any noise shows all of it.
+TEST_F(FuseOfRig, KnowsNoMoreByManySweepsThanByOneWithoutNoise) {
+  constexpr std::uint64_t kSweeps = 12;
+  const FuseOptions options{.choose_smoothness = false};
+  const Campaign quiet(CampaignMachine({{"probe_nm = 20.0", "probe_nm = 0.5"},
+                                        {"drift_nm = 30.0", "drift_nm = 0.5"}}),
+                       5);
+  std::vector<SimulatedRun> many;
+  for (std::uint64_t run = 1; run <= kSweeps; ++run) {
+    auto recording = World().SweepRecording('X', run);
+    recording.name = fmt::format("sweep {}", run);
+    many.push_back(World().Sweep(recording));
+  }
+  const FuseReport one = Fuse(World().machine, {many.front()}, options),
+                   all = Fuse(World().machine, many, options),
+                   without_noise = Fuse(quiet.machine, {quiet.Sweep('X')}, options);
+  for (const char* name : {"EYX", "EZX", "EAX", "EBX", "ECX"}) {
+    EXPECT_GT(Seen(all, name).u, 0.999 * Seen(without_noise, name).u) << name;
+    EXPECT_LT(Seen(all, name).u, Seen(one, name).u) << name;
+  }
+}
+
 TEST_F(FuseOfRig, ShowsThatALinkageAloneSwallowsTheMachine) {
   const auto course = rig::DwellCourse(
       rig::GridPlaces(Vector3d::Constant(0.030), {0.025, 0.025, 0.050}, {5, 5, 7}), 0.1, 0.1, 1);
