@@ -16,7 +16,7 @@
 // Failure: none; without blocks where no form is stated, or where it is so short beside the travel
 // that it takes more than 200 humps.
 // Source: Higdon, "Space and space-time modeling using process convolutions" (2002).
-// Validity: correlations to 1.5 %, variances exact; one target, placed to some tenths of l.
+// Validity: correlations to 0.018, variances exact; one target, placed to some tenths of l.
 #pragma once
 
 #include <Eigen/Core>
