@@ -10,7 +10,7 @@
 // these errors otherwise, tell the two apart.
 // Units: m. Shapes: one block of one entry for each place (simulation/sweep/form_of_target.h).
 // Failure: none; runs without a target, or whose file states no form, stay as they are.
-// Source: form_of_target.h.
+// Source: simulation/sweep/form_of_target.h.
 // Validity: one target for all sweeps, whatever its mounting.
 #pragma once
 

@@ -1,7 +1,7 @@
 // The form of the faces of the target as numbers that all sweeps of one axis share.
 //
 //   const FormOfTarget form = FormOfTargetIn(chain, instrument, run);
-//   gap of each reading + form.columns * (the entries of form.blocks, m)
+//   gap += form.columns * heights;      // the entries of form.blocks, m
 //
 // A form of one standard deviation that correlates by exp(-d^2 / (2 l^2)) is made of humps along
 // the sweep, at places u_j = j l that belong to the face and not to the recording, and of the lines
