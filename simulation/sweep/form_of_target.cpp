@@ -20,7 +20,8 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 constexpr double kReach = 2.0;        // lengths: there a hump is 2 % of its top
-constexpr double kMostHumps = 200.0;  // on a line
+constexpr double kApart = 0.8;        // lengths, from hump to hump
+constexpr double kLongest = 160.0;    // lengths, of a travel
 constexpr double kSameLine = 0.1e-3;  // m
 constexpr double kRoundingOfLines = 1e-9;
 const estimation::PrintUnit kNanometres{"nm", 1e-9};
@@ -74,7 +75,7 @@ class Lines {
 MatrixXd HumpsAt(const RowVectorXd& along, double length, Index first, Index count) {
   MatrixXd humps(along.size(), count);
   for (Index j = 0; j < count; ++j) {
-    const double middle = static_cast<double>(first + j);
+    const double middle = kApart * static_cast<double>(first + j);
     humps.col(j) = (-(along.array() / length - middle).square()).exp().matrix().transpose();
   }
   return humps.rowwise().normalized();
@@ -86,8 +87,8 @@ struct Window {
 
 Window WindowOf(const MatrixXd& spots, const Unit& unit, double length) {
   const auto along = spots(Eigen::seqN(2 * unit.first, unit.count, Index{2}), Eigen::all);
-  const auto first = static_cast<Index>(std::floor(along.minCoeff() / length - kReach));
-  const auto last = static_cast<Index>(std::ceil(along.maxCoeff() / length + kReach));
+  const auto first = static_cast<Index>(std::floor((along.minCoeff() / length - kReach) / kApart));
+  const auto last = static_cast<Index>(std::ceil((along.maxCoeff() / length + kReach) / kApart));
   return {first, last - first + 1};
 }
 
@@ -130,7 +131,7 @@ FormOfTarget FormOfTargetIn(const machine::Chain& chain, const SweepInstrument& 
   const MatrixXd spots = SpotsOnTarget(chain, instrument.head, run);
   for (const Unit& unit : UnitsOf(run)) {
     const auto along = spots(Eigen::seqN(2 * unit.first, unit.count, Index{2}), Eigen::all);
-    if (along.maxCoeff() - along.minCoeff() > kMostHumps * instrument.target.form_length) return {};
+    if (along.maxCoeff() - along.minCoeff() > kLongest * instrument.target.form_length) return {};
   }
   for (const Unit& unit : UnitsOf(run)) AddUnit(unit, spots, instrument, run, form);
   return form;

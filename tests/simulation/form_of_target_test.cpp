@@ -18,10 +18,10 @@ using Eigen::VectorXd;
 
 constexpr double kForm = 25e-9, kLength = 15e-3, kArm = 10e-3;
 constexpr Index kStations = 9;
-// Humps are one length apart: sums of their products are constant within r = 2 exp(-pi^2 / 2) by
-// Poisson's formula, and divided by such sums of squares. Two spots one length apart, where both are
-// off, correlate by exp(-1/2) to twice r of it.
-const double kOff = 1.05 * 2.0 * std::exp(-0.5) * 2.0 * std::exp(-std::pow(M_PI, 2) / 2.0);
+// Humps are 0.8 lengths apart: sums of their products are constant within r = 2 exp(-(pi / 0.8)^2 / 2)
+// by Poisson's formula, and divided by such sums of squares. Two spots 0.8 lengths apart, where both
+// are off, correlate by exp(-0.8^2 / 2) to twice r of it; a third for the humps that are too far away to be there.
+const double kOff = 1.33 * 2.0 * std::exp(-0.32) * 2.0 * std::exp(-std::pow(M_PI / 0.8, 2) / 2.0);
 
 SweepInstrument Instrument() {
   SweepInstrument instrument{};
