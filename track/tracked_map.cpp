@@ -234,13 +234,13 @@ Taken TrackedMap::Take(const std::vector<simulation::SimulatedRun>& runs, double
               .agreement = AgreementOf(linear.test, state_),
               .log = 0.0,
               .test = std::move(linear.test)};
-  if (taken.noise > kDoesNotFit) {
+  if (linear.unexplained > kDoesNotFit) {
     throw InputError(fmt::format(
         "{}: its rows scatter {:.1f} times the noise that is stated: it is no measurement of this "
         "machine as the map has it; diagnose it, or state its noise",
-        runs.front().name, taken.noise));
+        runs.front().name, linear.unexplained));
   }
-  if (taken.agreement.probability < kContradiction) {
+  if (taken.noise > kDoesNotFit || taken.agreement.probability < kContradiction) {
     throw InputError(fmt::format(
         "{}: contradicts the map (chi-square {:.0f} for {} directions, p = {:.2g}): more than "
         "[drift] explains has changed, by a collision or service, or the test has another mounting "

@@ -172,6 +172,39 @@ TEST_F(FuseOfRig, KeepsTheFormOfTheTargetHoweverOftenItIsSwept) {
   }
 }
 
+// The rig shifts and reverses its target: three sweeps must show one form, and tell it from the axis.
+TEST_F(FuseOfRig, TellsTheFormOfTheTargetWhereItIsShiftedAndReversed) {
+  const settings::Document document = CampaignMachine({{"form_nm = 10.0", "form_nm = 200.0"}});
+  const Campaign campaign(document, 5);
+  const auto swept = [&](const rig::Mounting& mounting, std::uint64_t run) {
+    const rig::World world(rig::ReadRigSettings(document.Root()), 5, {}, mounting);
+    auto recording = rig::RecordSweep(
+        world, 'X', campaign.channels,
+        {.rate = 50.0,
+         .moving = false,
+         .run = run,
+         .mounting = fmt::format("{}", mounting.number),
+         .more = fmt::format("head = \"0deg\"\ntarget_shift_mm = {}\ntarget_reversed = {}\n",
+                             1e3 * mounting.target_shift, mounting.target_reversed)});
+    recording.name = fmt::format("sweep {}", run);
+    return campaign.Sweep(recording);
+  };
+  const auto fused = [&](const std::vector<SimulatedRun>& runs) {
+    return Fuse(campaign.machine, runs, {.choose_smoothness = false});
+  };
+  const FuseReport same = fused({swept({}, 1), swept({}, 2), swept({}, 3)}),
+                   moved = fused({swept({}, 1), swept({.number = 1, .target_shift = 20e-3}, 2),
+                                  swept({.number = 2, .target_reversed = true}, 3)});
+  for (const auto& source : moved.fit.sources) {
+    if (source.is_prior) continue;
+    EXPECT_LT(source.chi_square / source.redundancy, 1.0 + 3.3 * std::sqrt(2.0 / source.redundancy))
+        << source.name;
+  }
+  for (const char* name : {"EYX", "EZX", "EAX", "EBX", "ECX"}) {
+    EXPECT_LT(Seen(moved, name).u, 0.6 * Seen(same, name).u) << name;
+  }
+}
+
 TEST_F(FuseOfRig, ShowsThatALinkageAloneSwallowsTheMachine) {
   const auto course = rig::DwellCourse(
       rig::GridPlaces(Vector3d::Constant(0.030), {0.025, 0.025, 0.050}, {5, 5, 7}), 0.1, 0.1, 1);
