@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "apps/command.h"
 #include "apps/commands.h"
@@ -87,11 +89,11 @@ void AddExport(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand(
       "export", "Writes an error map in the format of a control or of another program");
   options->map.AddTo(*command);
-  std::string formats;
-  for (const map::Format& format : map::Formats()) {
-    formats += fmt::format("{}{}", formats.empty() ? "" : ", ", format.name);
-  }
-  command->add_option("--format", options->format, formats)->required();
+  std::vector<std::string> formats;
+  for (const map::Format& format : map::Formats()) formats.emplace_back(format.name);
+  command->add_option("--format", options->format, "Of which control or program")
+      ->required()
+      ->check(CLI::IsMember(formats));
   command->add_option("--out", options->out, "The file to write (beside the map)");
   command->add_option("--points", options->points, "Points along an axis, or along X,Y,Z (31)")
       ->delimiter(',');

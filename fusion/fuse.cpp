@@ -72,8 +72,7 @@ class FuseJob {
         knots_(KnotsOf(machine)),
         population_(PopulationOf(machine)),
         noise_(runs_.size(), 1.0) {
-    AllowReversals();
-    if (options_.choose_smoothness) AllowForm();
+    AllowFormAndReversals();
   }
 
   FuseReport Run() {
@@ -114,14 +113,11 @@ class FuseJob {
     return fitted;
   }
 
-  void AllowReversals() {
-    for (SimulatedRun& run : runs_) WithReversals(machine_, run);
-  }
-
-  void AllowForm() {
+  void AllowFormAndReversals() {
     for (SimulatedRun& run : runs_) {
       WithForm(run);
       SetForm(form_, run);
+      WithReversals(machine_, run);
     }
   }
 
@@ -162,9 +158,8 @@ class FuseJob {
       runs.runs.push_back(now.at.sources[r]);
       runs.rows.push_back(now.problem.sources()[r].rows);
       runs.form_stated = std::max(runs.form_stated, runs_[r].form_stated);
-      std::copy_if(runs_[r].blocks.begin(), runs_[r].blocks.end(), std::back_inserter(forms),
-                   IsForm);
     }
+    std::copy_if(now.fit.blocks.begin(), now.fit.blocks.end(), std::back_inserter(forms), IsForm);
     runs.form = ColumnsOf(layout.names, forms);
     runs.form_values = ValuesFound(now.fit, forms);
     PopulationEstimate seen = EstimatePopulation(machine_, model_, runs);
@@ -208,8 +203,7 @@ class FuseJob {
     model_ = UnknownMachine(machine_, knots_);
     runs_ = options_.runs_on(model_);
     SetPlateForm(holes_, 1.0, runs_);
-    AllowReversals();
-    AllowForm();
+    AllowFormAndReversals();
     return true;
   }
 
@@ -326,7 +320,7 @@ class FuseJob {
     std::vector<int> columns = ColumnsOf(layout.names, model_.Blocks());
     const std::set<int> machine(columns.begin(), columns.end());
     for (const auto& block : now.fit.blocks) {
-      if (IsForm(block) || !OutlivesRuns(block, runs_)) continue;
+      if (!OutlivesRuns(block, runs_)) continue;
       for (std::size_t i = 0; i < block.entries.size(); ++i) {
         const auto at = std::find(layout.names.begin(), layout.names.end(), block.FullName(i));
         const int column = static_cast<int>(at - layout.names.begin());
@@ -370,8 +364,8 @@ class FuseJob {
   ErrorPopulation population_;
   VectorXd theta_;  // population_estimate.h
   std::vector<double> noise_;
-  double form_ = kHardlyMoreForm;  // of the target, over what the file states
-  double holes_ = 1.0;             // of the form of a plate, the same
+  double form_ = 1.0;   // of the target, over what the file states
+  double holes_ = 1.0;  // of the form of a plate, the same
   std::vector<Statement> statements_;
   Eigen::MatrixXd by_theta_;  // population_estimate.h
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -40,6 +41,13 @@ SimulatedRun Part(const SimulatedRun& run, int n, bool held) {
   return part;
 }
 
+// r' (1 + J C J')^-1 r, of H = J'J and g = J'r (Woodbury).
+double Predicted(const estimation::SourceSums& held, const Eigen::MatrixXd& C) {
+  Eigen::MatrixXd known = C * held.information;
+  known.diagonal().array() += 1.0;
+  return held.chi_square - held.gradient.dot(known.partialPivLu().solve(C * held.gradient));
+}
+
 }  // namespace
 
 std::vector<HeldOut> HoldOut(int n, const std::vector<SimulatedRun>& runs,
@@ -62,9 +70,9 @@ std::vector<HeldOut> HoldOut(int n, const std::vector<SimulatedRun>& runs,
     HeldOut& out = result.emplace_back();
     out.name = problem.sources()[r].name;
     out.rows = problem.sources()[r].rows;
-    out.chi_square = at.sources[r].chi_square;
-    out.expected = out.rows + fit.covariance.cwiseProduct(at.sources[r].information).sum();
-    out.rms = out.rows == 0 ? 0.0 : std::sqrt(out.chi_square / out.rows);
+    out.chi_square = Predicted(at.sources[r], fit.covariance);
+    out.expected = static_cast<double>(out.rows);
+    out.rms = out.rows == 0 ? 0.0 : std::sqrt(at.sources[r].chi_square / out.rows);
   }
   return result;
 }

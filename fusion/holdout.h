@@ -4,14 +4,15 @@
 //
 // The whitened rows of a run are independent, so any of them can be held out. They are cut into
 // blocks of rows / (4 n), at least one; of every n blocks the last is held out. The whitened
-// residual of a held-out row at the fit of the others has the variance 1 + j C j': its own noise
-// and the uncertainty of the prediction. `expected` is the sum of these; chi_square / expected is
-// near 1 when noise and priors are stated correctly, for any number of rows. No robust loss is
-// applied: outliers count in full.
+// residuals r of the held-out rows at the fit of the others have the covariance 1 + J C J': their
+// own noise and the uncertainty of the prediction, which they share. chi_square is
+// r' (1 + J C J')^-1 r, `expected` the number of rows; the ratio is near 1 when noise and priors are
+// stated correctly, also where the others leave something quite open. No robust loss is applied:
+// outliers count in full.
 // Units: standard deviations of the rows. Shapes: one HeldOut a run, in their order.
 // Failure: InputError for n below 2 or above the rows of a run; NumericalError when the fit of the
 // others does not converge.
-// Source: cross-validation; variance of a prediction, GUM (2008) 5.1.2.
+// Source: cross-validation; covariance of a prediction, GUM Supplement 2 (2011) 6.2.
 // Validity: first order at the fit; rows whose noise goes on from one to the next predict too well
 // unless a block outlasts it.
 #pragma once

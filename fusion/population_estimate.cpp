@@ -7,7 +7,6 @@
 
 #include "failure/interruption.h"
 #include "fusion/population_evidence.h"
-#include "fusion/target_form.h"
 #include "settings/unit.h"
 
 namespace abbe::fusion {
@@ -18,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Form of the target, times what the file states.
-constexpr std::array kForms{kHardlyMoreForm, 1.41, 2.0, 2.83, 4.0, 5.66};
+constexpr std::array kForms{1.0, 1.41, 2.0, 2.83, 4.0, 5.66};
 constexpr double kFormSize = 0.7;  // standard deviation of its logarithm
 constexpr int kRounds = 4;
 constexpr double kRowsOfPrior = 20.0;  // n
@@ -56,8 +55,10 @@ class Estimate {
   }
 
  private:
-  // Prior precision of the draws that, beside the form stated, make k times the form.
-  static double FormPrecision(double k) { return 1.0 / (k * k - 1.0); }
+  // Of the prior of a place of the target with k times the form stated.
+  double FormPrecision(double k) const {
+    return runs_.form.empty() ? 1.0 : std::pow(k * runs_.form_stated, -2);
+  }
 
   // Over all parameters, without the prior of the functions and squarenesses. These and the form
   // count from 0, all others from x.

@@ -44,7 +44,7 @@ struct PopulationEstimate {
   Eigen::VectorXd theta;
   ErrorPopulation population;
   std::vector<double> noise;  // of each run
-  double form = 1.0;          // of the target, over what is stated; at least kHardlyMoreForm
+  double form = 1.0;          // of the target, over what is stated; at least 1
   std::vector<Statement> statements;
   // By how much the functions and squarenesses move with theta: columns that are independent of
   // each other, of one standard deviation.
@@ -60,9 +60,9 @@ struct LinearRuns {
   Eigen::VectorXd theta;                // of an estimate before, to start from; or empty
   double squareness;                    // rad: standard deviation in `prior`
   std::vector<int> machine;             // columns of the functions and the squarenesses
-  std::vector<int> form;                // columns of more form of the target: target_form.h
+  std::vector<int> form;                // columns of the form of the target: target_form.h
   double form_stated;                   // m
-  double form_times;                    // of all form, over what is stated, in their prior
+  double form_times;                    // over what is stated, in their prior
   Eigen::VectorXd values, form_values;  // of these, at x
 };
 

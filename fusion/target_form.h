@@ -1,21 +1,23 @@
-// A target that is less flat than the machine file says, as parameters of a sweep.
+// The form of the target as parameters that all sweeps of an axis share, in place of noise.
 //
-//   WithForm(run);                        // adds the block "target_form sweep_X.csv"
-//   SetForm(3.0, run);                    // three times as much form as stated, in all
+//   WithForm(run);          // adds the blocks "target_form X top 0 -3", ..., before WithReversals
+//   SetForm(3.0, run);      // three times as much form as stated
 //
-// The noise of a sweep contains the form that the file states. The block adds independent draws
-// with the standard deviation sqrt(k^2 - 1) for a target of k times that form. Each sweep has a
-// form of its own. In a single mounting it cannot be told from the straightness and the angles of
-// the axis; only runs that see these otherwise, or see another part of the target, can tell k.
+// The noise of a sweep contains the form that the file states: right for one sweep, and wrong for
+// several, in which it is the same. As parameters it is one form for all of them. In a single
+// mounting it cannot be told from the straightness and the angles of the axis, however often that is
+// swept, and their uncertainty keeps it; a target that is shifted or reversed, and runs that see
+// these errors otherwise, tell the two apart.
+// Units: m. Shapes: one block of one entry for each place (simulation/sweep/form_of_target.h).
 // Failure: none; runs without a target, or whose file states no form, stay as they are.
+// Source: simulation/sweep/form_of_target.h.
+// Validity: one target for all sweeps, whatever its mounting.
 #pragma once
 
 #include "estimation/parameter.h"
 #include "simulation/simulated_run.h"
 
 namespace abbe::fusion {
-
-inline constexpr double kHardlyMoreForm = 1.02;  // the least k of a run with such a block
 
 void WithForm(simulation::SimulatedRun& run);
 void SetForm(double k, simulation::SimulatedRun& run);

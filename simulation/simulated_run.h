@@ -62,6 +62,14 @@ class Responsive : public estimation::Residual {
   virtual std::shared_ptr<const Response> At(const Eigen::VectorXd& x) const = 0;
 };
 
+// A run whose noise does not contain the form of the target: its residual has that as the last of
+// its parameters, one block for each place of the faces, which all sweeps of an axis share.
+struct FormApart {
+  std::vector<estimation::ParameterBlock> blocks;
+  std::shared_ptr<const estimation::Residual> residual;
+  std::shared_ptr<const Responsive> response;
+};
+
 struct SimulatedRun {
   std::string name;  // of the recording
   std::string kind;  // how a report calls it: "sweep"
@@ -74,10 +82,9 @@ struct SimulatedRun {
   Eigen::Matrix3Xd heading = {};
   std::function<std::shared_ptr<const estimation::Residual>(const Eigen::VectorXd& x)> condense =
       {};
-  // Whitened columns of the form of the target, as large as the machine file states
-  // (target.form_nm): independent, each of one standard deviation. The noise of the run contains
-  // them already. Empty: none is stated.
-  std::function<Eigen::MatrixXd()> form = {};
+  // With the form of the target beside the noise, which else contains as much of it as the machine
+  // file states (target.form_nm). Empty: none is stated, or the run has it apart.
+  std::function<FormApart()> form_apart = {};
   double form_stated = 0.0;  // m
   // The same run with the noise of two channels exchanged: noise belongs to the sensor, not to the
   // name of its channel. Empty: all channels have one noise.

@@ -23,11 +23,17 @@ struct Whitened {
   VectorXd score;
 };
 
-Whitened Whiten(const LinearTest& test, const Gaussian& state) {
-  const MatrixXd S = state.root(test.entries, Eigen::all);
+// `S`: the rows of the root for the entries of the test.
+Whitened Whiten(const LinearTest& test, const MatrixXd& S, const Gaussian& state) {
   const VectorXd mean = state.mean(test.entries);
   return {S.transpose() * test.information * S,
           S.transpose() * (test.vector - test.information * mean)};
+}
+
+// Upper triangular, of the same covariance.
+MatrixXd UpperRootOf(const MatrixXd& root) {
+  const MatrixXd backward = root.colwise().reverse();
+  return RootOfSum(backward, MatrixXd(root.rows(), 0)).reverse();
 }
 
 }  // namespace
@@ -49,7 +55,7 @@ MatrixXd RootOf(const MatrixXd& covariance) {
 }
 
 Gaussian MakeGaussian(const VectorXd& mean, const MatrixXd& covariance) {
-  return {mean, RootOf(covariance)};
+  return {mean, UpperRootOf(RootOf(covariance))};
 }
 
 MatrixXd RootOfSum(const MatrixXd& a, const MatrixXd& b) {
@@ -69,7 +75,9 @@ LinearTest WithNoise(LinearTest test, double noise) {
 }
 
 Agreement AgreementOf(const LinearTest& test, const Gaussian& state) {
-  const Whitened seen = Whiten(test, state);
+  // Whatever the size of the state, a test has as many directions as entries.
+  const MatrixXd S = state.root(test.entries, Eigen::all);
+  const Whitened seen = Whiten(test, RootOfSum(S, MatrixXd(S.rows(), 0)), state);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(seen.information);
   const VectorXd y = eigen.eigenvectors().transpose() * seen.score;
   Agreement agreement;
@@ -87,7 +95,7 @@ Agreement AgreementOf(const LinearTest& test, const Gaussian& state) {
 }
 
 double Measure(const LinearTest& test, Gaussian& state) {
-  Whitened seen = Whiten(test, state);
+  Whitened seen = Whiten(test, state.root(test.entries, Eigen::all), state);
   const VectorXd before = state.mean(test.entries);
   const double cost = before.dot(0.5 * test.information * before - test.vector);
   seen.information.diagonal().array() += 1.0;

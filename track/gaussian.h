@@ -34,6 +34,7 @@ struct Gaussian {
 
 // A root of a covariance, which may be singular.
 Eigen::MatrixXd RootOf(const Eigen::MatrixXd& covariance);
+// With a root that is upper triangular. Measure keeps zeros at the left end of its rows.
 Gaussian MakeGaussian(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance);
 
 // The root of A A' + B B', lower triangular; n x a and n x b.

@@ -28,7 +28,8 @@ using simulation::SimulatedRun;
 constexpr const char* kStateSource = "state";
 constexpr double kSettled = 1e-3, kTolerated = 0.3;  // standard uncertainties
 constexpr double kRowsOfPrior = 20.0, kNoiseSeen = 4.0;
-constexpr double kRounding = 1e-12;  // of correlations
+constexpr double kRounding = 1e-12;    // of correlations
+constexpr double kHardlyKnown = 1e-4;  // of the weight of what is known
 
 using Numbers = std::map<std::string, int>;  // name -> entry of the state
 
@@ -74,8 +75,9 @@ class Fit {
     if (!at.trouble.empty()) throw NumericalError(at.trouble);
     LinearRun linear;
     fusion::Score all{at.prior.information, at.prior.gradient};
+    linear.unexplained = Unexplained(at, runs);
     for (std::size_t r = 0; r < runs; ++r) {
-      const double noise = NoiseOf(fit_.sources[r]);
+      const double noise = NoiseOf(fit_.sources[r].chi_square, fit_.sources[r].redundancy);
       all.information += at.sources[r].information / (noise * noise);
       all.score += at.sources[r].gradient / (noise * noise);
       linear.noise = std::max(linear.noise, noise);
@@ -147,9 +149,35 @@ class Fit {
                  inputs, 1.0);
   }
 
-  static double NoiseOf(const estimation::SourceResult& source) {
-    const double redundancy = std::max(source.redundancy, 0.0) + kRowsOfPrior;
-    const double square = (source.chi_square + kRowsOfPrior) / redundancy;
+  // One step to the fit of the rows with hardly any prior.
+  double Unexplained(const estimation::Linearization& at, std::size_t runs) const {
+    MatrixXd information = kHardlyKnown * (at.prior.information + at.sources.back().information);
+    VectorXd gradient = kHardlyKnown * (at.prior.gradient + at.sources.back().gradient);
+    double chi_square = 0.0, rows = 0.0;
+    MatrixXd of_rows = MatrixXd::Zero(information.rows(), information.cols());
+    VectorXd by_rows = VectorXd::Zero(gradient.size());
+    for (std::size_t r = 0; r < runs; ++r) {
+      of_rows += at.sources[r].information;
+      by_rows += at.sources[r].gradient;
+      chi_square += at.sources[r].chi_square;
+      rows += static_cast<double>(problem_.sources()[r].rows);
+    }
+    information += of_rows;
+    gradient += by_rows;
+    const VectorXd scale = (information.diagonal().array() > 0.0)
+                               .select(information.diagonal().cwiseSqrt().cwiseInverse(), 1.0);
+    MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+    scaled.diagonal().array() += kRounding;
+    const Eigen::LLT<MatrixXd> factor(scaled);
+    const VectorXd step = -scale.cwiseProduct(factor.solve(scale.cwiseProduct(gradient)));
+    const double told =
+        factor.solve(MatrixXd(scale.asDiagonal() * of_rows * scale.asDiagonal())).trace();
+    return NoiseOf(chi_square + 2.0 * by_rows.dot(step) + step.dot(of_rows * step), rows - told);
+  }
+
+  static double NoiseOf(double chi_square, double rows) {
+    const double redundancy = std::max(rows, 0.0) + kRowsOfPrior;
+    const double square = (chi_square + kRowsOfPrior) / redundancy;
     return std::abs(square - 1.0) * std::sqrt(redundancy / 2.0) > kNoiseSeen ? std::sqrt(square)
                                                                              : 1.0;
   }

@@ -27,6 +27,8 @@ namespace abbe::track {
 struct LinearRun {
   LinearTest test;
   double noise = 1.0;  // over the stated one
+  // What would be left of the rows over their stated noise if the state could be anything.
+  double unexplained = 1.0;
 };
 
 LinearRun Linearize(std::vector<simulation::SimulatedRun> runs,

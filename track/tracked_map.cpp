@@ -10,6 +10,7 @@
 #include "failure/failure.h"
 #include "fusion/machine_problem.h"
 #include "fusion/reversals.h"
+#include "fusion/target_form.h"
 #include "recording/instant.h"
 #include "track/drift_model.h"
 #include "track/first_order_lag.h"
@@ -166,23 +167,28 @@ void TrackedMap::Follow(const Conditions& conditions) {
 
 void TrackedMap::Move() {
   const Index parameters = day_.rows();
-  MatrixXd moved = state_.root;
   for (std::size_t s = 0; s < sensors_.size(); ++s) {
     const double warmer = sensors_[s].lagged - at_[s];
     at_[s] = sensors_[s].lagged;
     if (warmer == 0.0) continue;
     const Index count = shapes_[s].cols();
     state_.mean.head(parameters) += warmer * shapes_[s] * state_.mean.segment(gains_[s], count);
-    moved.topRows(parameters) += warmer * shapes_[s] * moved.middleRows(gains_[s], count);
+    state_.root.topRows(parameters) +=
+        warmer * shapes_[s] * state_.root.middleRows(gains_[s], count);
   }
   const double days = (time_ - moved_) / kSecondsOfDay;
   moved_ = time_;
-  MatrixXd walked = MatrixXd::Zero(moved.rows(), parameters);
-  walked.topRows(parameters) = std::sqrt(days) * day_;
-  state_.root = RootOfSum(moved, walked);
+  // What does not walk has no part in the first columns (MakeGaussian).
+  state_.root.topLeftCorner(parameters, parameters) =
+      RootOfSum(state_.root.topLeftCorner(parameters, parameters), std::sqrt(days) * day_);
 }
 
-void TrackedMap::Know(const std::vector<simulation::SimulatedRun>& runs) {
+void TrackedMap::Know(std::vector<simulation::SimulatedRun> runs) {
+  for (simulation::SimulatedRun& run : runs) fusion::WithForm(run);
+  AddInstruments(runs);
+}
+
+void TrackedMap::AddInstruments(const std::vector<simulation::SimulatedRun>& runs) {
   std::vector<std::string> names;
   std::vector<double> mean, deviations;
   for (const simulation::SimulatedRun& run : runs) {
@@ -208,12 +214,12 @@ void TrackedMap::Know(const std::vector<simulation::SimulatedRun>& runs) {
                 Eigen::Map<const VectorXd>(deviations.data(), more));
 }
 
-LinearRun TrackedMap::Test(const std::vector<simulation::SimulatedRun>& runs) {
-  Know(runs);
+LinearRun TrackedMap::Test(std::vector<simulation::SimulatedRun> runs) {
+  for (simulation::SimulatedRun& run : runs) fusion::WithForm(run);
+  AddInstruments(runs);
   Move();
-  std::vector<simulation::SimulatedRun> reversing = runs;
-  for (simulation::SimulatedRun& run : reversing) fusion::WithReversals(machine_, run);
-  return Linearize(std::move(reversing), names_, state_);
+  for (simulation::SimulatedRun& run : runs) fusion::WithReversals(machine_, run);
+  return Linearize(std::move(runs), names_, state_);
 }
 
 Taken TrackedMap::Take(const std::vector<simulation::SimulatedRun>& runs, double began) {
@@ -228,13 +234,13 @@ Taken TrackedMap::Take(const std::vector<simulation::SimulatedRun>& runs, double
               .agreement = AgreementOf(linear.test, state_),
               .log = 0.0,
               .test = std::move(linear.test)};
-  if (taken.noise > kDoesNotFit) {
+  if (linear.unexplained > kDoesNotFit) {
     throw InputError(fmt::format(
         "{}: its rows scatter {:.1f} times the noise that is stated: it is no measurement of this "
         "machine as the map has it; diagnose it, or state its noise",
-        runs.front().name, taken.noise));
+        runs.front().name, linear.unexplained));
   }
-  if (taken.agreement.probability < kContradiction) {
+  if (taken.noise > kDoesNotFit || taken.agreement.probability < kContradiction) {
     throw InputError(fmt::format(
         "{}: contradicts the map (chi-square {:.0f} for {} directions, p = {:.2g}): more than "
         "[drift] explains has changed, by a collision or service, or the test has another mounting "

@@ -6,8 +6,8 @@
 //   const map::ErrorMap now = tracked.Map();
 //
 // State: the parameters of the map at the present time and temperatures, their gains by each sensor
-// (drift_model.h), the parameters of instruments and named mountings that its runs shared. From one
-// instant to the next
+// (drift_model.h), the parameters of instruments and named mountings that its runs shared, and the
+// form of the target at the places that they saw (fusion/target_form.h). From one instant to the next
 //
 //   p -> p + sum over sensors R_s g_s (y_s' - y_s) + w        cov w = (days) V
 //
@@ -74,9 +74,9 @@ class TrackedMap {
   // The same test again.
   double Take(const LinearTest& test);
   // What outlives the runs becomes part of the state, with the priors of the machine file.
-  void Know(const std::vector<simulation::SimulatedRun>& runs);
+  void Know(std::vector<simulation::SimulatedRun> runs);
   // The runs as a linear test, which is not taken.
-  LinearRun Test(const std::vector<simulation::SimulatedRun>& runs);
+  LinearRun Test(std::vector<simulation::SimulatedRun> runs);
 
   // Another walk, and other lags in the order of the sensors, before anything is followed.
   void SetWalk(const machine::Population& walk);
@@ -87,6 +87,7 @@ class TrackedMap {
  private:
   void AddParameters(const std::vector<std::string>& names, const Eigen::VectorXd& mean,
                      const Eigen::VectorXd& deviations);
+  void AddInstruments(const std::vector<simulation::SimulatedRun>& runs);
   void AddSensors(const machine::Drift& drift, const Conditions& begin);
   void Move();
 

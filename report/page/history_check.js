@@ -41,7 +41,7 @@ function checkSummary(result) {
     part('undecided', 'undecided: the uncertainty reaches across the limit, or none is stated'),
     part('not measured', 'not measured')
   ].filter(Boolean);
-  return `Of ${checksOf(result).length} limits ${joinWords(parts)}.`;
+  return `Of ${counted(checksOf(result).length, 'limit')} ${joinWords(parts)}.`;
 }
 
 registerSection({

@@ -6,7 +6,6 @@ const stepEnd = (steps, index) =>
 
 const doneSteps = (result) => (result.steps ?? []).filter(({file}) => file);
 
-const runText = (count) => count === 1 ? '1 run' : `${count} runs`;
 
 const cameText = ({after}) => {
   if (!after) return 'not diagnosed yet';
@@ -67,9 +66,9 @@ registerSection({
   summary: (result) => {
     const {ended} = result;
     const runs = doneSteps(result).length;
-    if (!ended) return `${runText(runs)} so far; the investigation goes on.`;
+    if (!ended) return `${counted(runs, 'run')} so far; the investigation goes on.`;
     const sure = ended.certain ? 'certain' : 'not certain';
-    return `After ${fixed(ended.minutes, 1)} minutes and ${runText(runs)} the verdict is ` +
+    return `After ${fixed(ended.minutes, 1)} minutes and ${counted(runs, 'run')} the verdict is ` +
         `${ended.verdict}, ${sure}: ${ended.why}.`;
   },
   facts: () => [],

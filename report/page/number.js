@@ -24,6 +24,9 @@ const shownUnit = (si) => SHOWN_UNITS[si] ?? {name: si ?? '', scale: 1};
 // Lengths of probes: nanometres while all of them are below a micrometre.
 const lengthUnit = (largest) => Math.abs(largest) < 1e-6 ? NANOMETRE : SHOWN_UNITS.m;
 
+// "1 limit", "3 limits".
+const counted = (count, what) => `${count} ${what}${count === 1 ? '' : 's'}`;
+
 // Rounded to `decimals` places (negative: tens, hundreds), with a proper minus sign and none on
 // zero.
 function fixed(value, decimals) {

@@ -15,6 +15,10 @@ const latest = (sections) => sections.reduce(
     undefined);
 const linkTo = (section, text) => element('a', {href: `#${section.id}`}, text);
 
+const keptText = (count) => count === 1 ?
+    'the one limit that was measured is kept' :
+    `all ${counted(count, 'limit')} that were measured are kept`;
+
 // [{verdict, section, text}] of limits, map and diagnosis.
 function limitLine(sections) {
   const checks = sections.filter(
@@ -28,8 +32,8 @@ function limitLine(sections) {
   const names = mine.slice(0, LARGEST_SHOWN).map(({one}) => one.name);
   const rest = mine.length - names.length;
   const text = worst === 'pass' ?
-      `all ${judged.length} limits that were measured are kept` :
-      `${mine.length} of ${judged.length} limits: ${joinWords(names)}${
+      keptText(judged.length) :
+      `${mine.length} of ${counted(judged.length, 'limit')}: ${joinWords(names)}${
           rest > 0 ? ` and ${rest} more` : ''}`;
   return {verdict: worst, section: mine[0].section, text};
 }

@@ -84,7 +84,7 @@ function protocolText(sections) {
 function writeTitle(folder, sections) {
   const machines = [...new Set(sections.map(({result}) => result.machine).filter(Boolean))];
   const title = machines.length ? `Geometric errors of ${joinWords(machines)}` : 'Geometric errors';
-  const count = `${sections.length} result${sections.length === 1 ? '' : 's'}`;
+  const count = counted(sections.length, 'result');
   const version = sections.map(({result}) => result.abbe).find((abbe) => typeof abbe === 'string');
   document.title = title;
   document.getElementById('title').textContent = title;

@@ -61,25 +61,6 @@ MatrixXd FaceCovariance(const SweepPlan& plan, const SweepInstrument& instrument
   return V;
 }
 
-// L with L L' = K but for what is below kHardly of its diagonal, which is 1: a Cholesky factor with
-// pivots (Higham, "Analysis of the Cholesky decomposition of a semi-definite matrix", 1990).
-template <typename Element>
-MatrixXd LowRankFactor(Index n, const Element& K) {
-  constexpr double kHardly = 1e-4;
-  MatrixXd L(n, 0);
-  VectorXd left = VectorXd::Ones(n);
-  for (Index pivot = 0; left.maxCoeff(&pivot) > kHardly;) {
-    VectorXd column = -L * L.row(pivot).transpose();
-    for (Index row = 0; row < n; ++row) column[row] += K(row, pivot);
-    column /= std::sqrt(left[pivot]);
-    L.conservativeResize(Eigen::NoChange, L.cols() + 1);
-    L.rightCols<1>() = column;
-    left -= column.cwiseAbs2();
-    left[pivot] = 0.0;
-  }
-  return L;
-}
-
 // The diagonal of the inverse, L^-T L^-1: the columns of L^-1 begin with zeros.
 VectorXd InverseDiagonal(const Eigen::LLT<MatrixXd>& factor) {
   constexpr Index kTogether = 64;
@@ -111,24 +92,6 @@ FaceNoise FaceNoiseOf(const SweepPlan& plan, const SweepInstrument& instrument,
     noise.weights.segment(first * run.rows(), factor.rows()) = InverseDiagonal(factor);
   }
   return noise;
-}
-
-MatrixXd FormColumns(const SweepPlan& plan, const SweepInstrument& instrument, const SweepRun& run,
-                     double deviation) {
-  const FormOfFace form(plan, instrument, run);
-  const Index n = run.rows();
-  MatrixXd columns(kProbes * n, 0);
-  for (std::size_t face = 0; face + 1 < kFaceBounds.size(); ++face) {
-    const Index first = kFaceBounds[face], count = kFaceBounds[face + 1] - first;
-    const MatrixXd L = LowRankFactor(count * n, [&](Index i, Index j) {
-      return form(first + i / n, i % n, first + j / n, j % n);
-    });
-    const Index before = columns.cols();
-    columns.conservativeResize(Eigen::NoChange, before + L.cols());
-    columns.rightCols(L.cols()).setZero();
-    columns.block(first * n, before, count * n, L.cols()) = deviation * L;
-  }
-  return columns;
 }
 
 ReadingResponse::ReadingResponse(MatrixXd by_motions, MatrixXd gaps, MatrixXd tilts,

@@ -25,11 +25,6 @@ struct FaceNoise {
 FaceNoise FaceNoiseOf(const SweepPlan& plan, const SweepInstrument& instrument,
                       const SweepRun& run);
 
-// What the form of the target may do to the readings beyond what the noise contains: independent
-// columns of one standard deviation each for a form of `deviation`, m; not whitened.
-Eigen::MatrixXd FormColumns(const SweepPlan& plan, const SweepInstrument& instrument,
-                            const SweepRun& run, double deviation);
-
 template <typename Columns>
 void WhitenRows(const FaceNoise& noise, Columns& columns) {
   Eigen::Index first = 0;

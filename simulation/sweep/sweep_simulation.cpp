@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "estimation/dual_number.h"
+#include "estimation/extended_residual.h"
 #include "failure/failure.h"
 #include "simulation/axes_in_travel.h"
+#include "simulation/sweep/form_of_target.h"
 #include "simulation/sweep/sweep_reading.h"
 #include "simulation/sweep/sweep_response.h"
 #include "simulation/trace_columns.h"
@@ -82,10 +84,16 @@ class SweepResidual : public Responsive {
 
   std::shared_ptr<const Response> At(const VectorXd& x) const override;
 
-  MatrixXd FormOfTarget(const SweepInstrument& instrument) const {
-    MatrixXd columns = FormColumns(plan_, instrument, run_, instrument.target.form);
-    WhitenRows(*noise_, columns);
-    return columns;
+  // Beside `form`, which the noise then does not contain.
+  FormApart Apart(SweepInstrument instrument, FormOfTarget form) const {
+    auto without = std::make_shared<SweepResidual>(*this);
+    instrument.target.form = 0.0;
+    without->noise_ = std::make_shared<const FaceNoise>(FaceNoiseOf(plan_, instrument, run_));
+    WhitenRows(*without->noise_, form.columns);
+    return {std::move(form.blocks),
+            std::make_shared<estimation::ExtendedResidual>(
+                without, VectorXd::Zero(form.columns.rows()), std::move(form.columns)),
+            without};
   }
 
  private:
@@ -337,8 +345,9 @@ SimulatedRun SimulateSweep(const machine::VolumetricModel& model, const Vector3d
   simulated.residual = simulated.response = residual;
   simulated.heading = Eigen::Matrix3Xd::Zero(3, run.rows());
   simulated.heading.row(run.axis - 'X') = ApproachOf(run.direction);
-  if (instrument.target.form > 0.0) {
-    simulated.form = [=] { return residual->FormOfTarget(instrument); };
+  FormOfTarget form = FormOfTargetIn(model.chain(), instrument, run);
+  if (!form.blocks.empty()) {
+    simulated.form_apart = [=] { return residual->Apart(instrument, form); };
     simulated.form_stated = instrument.target.form;
   }
   return simulated;

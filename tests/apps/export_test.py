@@ -142,7 +142,7 @@ class ExportTest(unittest.TestCase):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
             self.assertIn(words, done.stderr)
-        refused("not a format of a map", self.map, "--format", "xls")
+        refused("xls not in {", self.map, "--format", "xls")
         refused("cannot be read", self.folder / "none.toml", "--format", "csv")
         refused("2 to 256", self.map, "--format", "linuxcnc", "--points", "300,2,2")
         refused("at least 2 points", self.map, "--format", "csv", "--points", "1")

@@ -182,7 +182,7 @@ TEST(FuseHoldout, PredictsTheRowsThatItHasNotSeen) {
   ASSERT_EQ(report.held_out.size(), runs.size());
   for (const HeldOut& run : report.held_out) {
     ASSERT_GT(run.rows, 0) << run.name;
-    EXPECT_GE(run.expected, static_cast<double>(run.rows));
+    EXPECT_EQ(run.expected, static_cast<double>(run.rows));
     // Four standard deviations of a chi-square.
     EXPECT_NEAR(run.chi_square / run.expected, 1.0,
                 4.0 * std::sqrt(2.0 / static_cast<double>(run.rows)))

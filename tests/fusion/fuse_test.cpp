@@ -147,6 +147,64 @@ TEST_F(FuseOfRig, NamesASweepWithAnotherMounting) {
 
 // Calibrated on a machine that is taken as perfect, the linkage learns much of the machine's
 // errors, even where these change within 15 mm and the cube is 25 x 25 x 50 mm.
+// The form of the target is the same each time. What it adds to a variance stays, but for what the
+// prior of the errors takes of it, which is more where there is more noise.
+TEST_F(FuseOfRig, KeepsTheFormOfTheTargetHoweverOftenItIsSwept) {
+  constexpr std::uint64_t kSweeps = 12;
+  const auto fused = [](const Campaign& world, std::uint64_t sweeps) {
+    std::vector<SimulatedRun> runs;
+    for (std::uint64_t run = 1; run <= sweeps; ++run) {
+      auto recording = world.SweepRecording('X', run);
+      recording.name = fmt::format("sweep {}", run);
+      runs.push_back(world.Sweep(recording));
+    }
+    return Fuse(world.machine, runs, {.choose_smoothness = false});
+  };
+  const Campaign flat(CampaignMachine({{"form_nm = 10.0", "form_nm = 0.0"}}), 5);
+  const FuseReport one = fused(World(), 1), many = fused(World(), kSweeps),
+                   flat_one = fused(flat, 1), flat_many = fused(flat, kSweeps);
+  for (const char* name : {"EYX", "EZX", "EAX", "EBX", "ECX"}) {
+    const auto by_form = [&](const FuseReport& with, const FuseReport& without) {
+      return std::pow(Seen(with, name).u, 2) - std::pow(Seen(without, name).u, 2);
+    };
+    EXPECT_GT(by_form(many, flat_many), 0.9 * by_form(one, flat_one)) << name;
+    EXPECT_LT(Seen(many, name).u, Seen(one, name).u) << name;
+  }
+}
+
+// The rig shifts and reverses its target: three sweeps must show one form, and tell it from the axis.
+TEST_F(FuseOfRig, TellsTheFormOfTheTargetWhereItIsShiftedAndReversed) {
+  const settings::Document document = CampaignMachine({{"form_nm = 10.0", "form_nm = 200.0"}});
+  const Campaign campaign(document, 5);
+  const auto swept = [&](const rig::Mounting& mounting, std::uint64_t run) {
+    const rig::World world(rig::ReadRigSettings(document.Root()), 5, {}, mounting);
+    auto recording = rig::RecordSweep(
+        world, 'X', campaign.channels,
+        {.rate = 50.0,
+         .moving = false,
+         .run = run,
+         .mounting = fmt::format("{}", mounting.number),
+         .more = fmt::format("head = \"0deg\"\ntarget_shift_mm = {}\ntarget_reversed = {}\n",
+                             1e3 * mounting.target_shift, mounting.target_reversed)});
+    recording.name = fmt::format("sweep {}", run);
+    return campaign.Sweep(recording);
+  };
+  const auto fused = [&](const std::vector<SimulatedRun>& runs) {
+    return Fuse(campaign.machine, runs, {.choose_smoothness = false});
+  };
+  const FuseReport same = fused({swept({}, 1), swept({}, 2), swept({}, 3)}),
+                   moved = fused({swept({}, 1), swept({.number = 1, .target_shift = 20e-3}, 2),
+                                  swept({.number = 2, .target_reversed = true}, 3)});
+  for (const auto& source : moved.fit.sources) {
+    if (source.is_prior) continue;
+    EXPECT_LT(source.chi_square / source.redundancy, 1.0 + 3.3 * std::sqrt(2.0 / source.redundancy))
+        << source.name;
+  }
+  for (const char* name : {"EYX", "EZX", "EAX", "EBX", "ECX"}) {
+    EXPECT_LT(Seen(moved, name).u, 0.6 * Seen(same, name).u) << name;
+  }
+}
+
 TEST_F(FuseOfRig, ShowsThatALinkageAloneSwallowsTheMachine) {
   const auto course = rig::DwellCourse(
       rig::GridPlaces(Vector3d::Constant(0.030), {0.025, 0.025, 0.050}, {5, 5, 7}), 0.1, 0.1, 1);

@@ -26,6 +26,8 @@ constexpr double kTool = 0.05;         // m: largest coordinate of the tool vect
 constexpr std::uint64_t kPlaces = 30;  // in the volume of each machine
 constexpr double kIndependent = 4.0;   // of these, in their coverage
 
+constexpr int kMany = 8;  // sweeps of an axis
+
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
 Changes Sizes(double factor) {
@@ -49,6 +51,7 @@ struct Row {
   Changes changes;                 // of the machine, not of its file
   std::vector<std::string> named;  // one of these lines is to be named; empty: none of them
   bool takes_long = false;
+  int sweeps = 1;  // of each axis, with one mounting
 };
 
 const std::vector<std::string> kSizes{"population.positioning_um", "population.straightness_um",
@@ -67,6 +70,8 @@ std::vector<Row> Rows() {
       {"sizes x 3", Sizes(3.0), kSizes},
       {"sizes / 3", Sizes(1.0 / 3.0), kSizes},
       {"form 40 nm for 10", {{"form_nm = 10.0", "form_nm = 40.0"}}, {form}},
+      {"swept eight times", {}, {}, true, kMany},
+      {"form 40 nm, swept 8 times", {{"form_nm = 10.0", "form_nm = 40.0"}}, {form}, true, kMany},
       {"encoders x 3", {{"encoder_urad = 3.0", "encoder_urad = 9.0"}}, {"noise of linkage"}},
       {"encoders / 3", {{"encoder_urad = 3.0", "encoder_urad = 1.0"}}, {"noise of linkage"}},
       {"probes x 3",
@@ -80,11 +85,17 @@ Vector3d Draw(const random::CounterRandom& random, std::uint64_t first, double l
           random.Uniform(first + 2, low, high)};
 }
 
-FuseReport Fused(const Campaign& world) {
-  auto linkage = world.LinkageRecording();
-  linkage.name = "linkage";
-  return world.Fused({world.SweepRecording('X'), world.SweepRecording('Y'),
-                      world.SweepRecording('Z'), linkage, world.LengthRecording('X')});
+FuseReport Fused(const Campaign& world, int sweeps) {
+  std::vector<recording::Recording> recordings{world.LinkageRecording(),
+                                               world.LengthRecording('X')};
+  recordings.front().name = "linkage";
+  for (int run = 1; run <= sweeps; ++run) {
+    for (const char axis : {'X', 'Y', 'Z'}) {
+      recordings.push_back(world.SweepRecording(axis, static_cast<std::uint64_t>(run)));
+      if (run > 1) recordings.back().name += fmt::format(" {}", run);
+    }
+  }
+  return world.Fused(recordings);
 }
 
 // The share of places, tools and components where the truth is within U95.
@@ -128,7 +139,7 @@ TEST(MapOfAnotherMachine, StatesTrueUncertaintiesAndNamesWhatIsWrong) {
     std::map<std::string, int> all;
     for (std::uint64_t seed = seeds.first; seed <= seeds.last; seed += seeds.step) {
       const Campaign world(truth, stated, seed);
-      const FuseReport report = Fused(world);
+      const FuseReport report = Fused(world, row.sweeps);
       inside.Add(Inside(world, report, seed));
       contradictions.Add(report.contradicting >= 0 ? 1.0 : 0.0);
       const auto named = NamedBy(report);

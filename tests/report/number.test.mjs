@@ -1,13 +1,14 @@
-// How the page writes numbers: node number.test.mjs NUMBER_JS.
+// How the page writes numbers: node number.test.mjs NUMBER_JS ONE_MINUTE_JS.
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {test} from 'node:test';
 import vm from 'node:vm';
 
-const source = readFileSync(process.argv[2], 'utf8');
-const {fixed, placesFor, rounded, significant, typical, lengthUnit, positionText, unitText} =
+const source = process.argv.slice(2).map((file) => readFileSync(file, 'utf8')).join('\n');
+const {fixed, placesFor, rounded, significant, typical, lengthUnit, positionText, unitText, counted,
+       keptText} =
     vm.runInNewContext(`${source};({fixed, placesFor, rounded, significant, typical, lengthUnit,
-        positionText, unitText})`);
+        positionText, unitText, counted, keptText})`);
 const pair = (value, U) => {
   const text = rounded(value, U);
   return [text.value, text.U];
@@ -62,4 +63,11 @@ test('units are written as standards write them', () => {
       ['um', 'urad', 'Hz', 'rad', 'mm', 'ms', 'mm/min', 'ppm/degC', 'nm/mm^2'].map(unitText),
       ['\u00b5m', '\u00b5rad', 'Hz', 'rad', 'mm', 'ms', 'mm/min', 'ppm/\u00b0C', 'nm/mm\u00b2']);
   assert.equal(unitText(undefined), undefined);
+});
+
+test('one thing has no plural', () => {
+  assert.deepEqual(
+      [0, 1, 2].map((count) => counted(count, 'limit')), ['0 limits', '1 limit', '2 limits']);
+  assert.equal(keptText(1), 'the one limit that was measured is kept');
+  assert.equal(keptText(2), 'all 2 limits that were measured are kept');
 });
