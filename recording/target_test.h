@@ -18,10 +18,10 @@
 // Source: ISO 230-2. For the importers of this folder.
 #pragma once
 
-#include <compare>
 #include <map>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "recording/recording.h"
@@ -30,7 +30,9 @@ namespace abbe::recording {
 
 struct TargetPlace {
   int position, cycle;  // from 1
-  auto operator<=>(const TargetPlace&) const = default;
+  bool operator<(const TargetPlace& other) const {
+    return std::tie(position, cycle) < std::tie(other.position, other.cycle);
+  }
 };
 
 struct TargetTest {
