@@ -77,9 +77,11 @@ def varying_play(draw, runs):
 def product_of_positions(draw, runs):
     i, j = draw.permutation(3)[:2]
     c, h = draw.integers(3), size(draw, 1e-6, 1e-5)
-    found = sorted((0.8 * h * 1e9 / 3600, 1.2 * h * 1e9 / 3600))  # nm over the travels of 60 mm by 60 mm
-    same = tuple(("load-coupling", AXES[a] + AXES[b], {"coefficient_nm_per_mm2": tuple(found)})
-                 for a, b in ((i, j), (j, i)))
+    # The third axis moved alike, were it that: X and Y carry the workpiece, Z the tool.
+    k = h if (i == 2) != (c == 2) else -h
+    found = tuple(sorted((0.8 * k * 1e9 / 3600, 1.2 * k * 1e9 / 3600)))  # nm over the travels of 60 mm by 60 mm
+    same = tuple(("load-coupling", AXES[a] + AXES[b], {"coefficient_nm_per_mm2": found})
+                 for a, b in ((i, j), (j, i)) if c not in (i, j))
     return Effect({"carriage": lambda r: motion(i, c, h * (r.q[:, i] / TRAVEL) * (r.q[:, j] / TRAVEL))},
                   f"{AXES[i]} moves along {AXES[c]} by {h * 1e6:.1f} um times both positions, {AXES[i]} and {AXES[j]}",
                   ("xyz"[i], "xyz"[j]), same)
