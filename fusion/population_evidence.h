@@ -66,10 +66,12 @@ class PopulationEvidence {
 
   const std::vector<Knob>& knobs() const { return knobs_; }
   Eigen::Index count() const { return knobs_.size(); }
+  // Whether one of theta is a correlation length.
   bool IsLength(Eigen::Index knob) const { return knobs_[knob].line == kSmoothness; }
   Eigen::Index squareness() const { return squareness_; }   // where the squarenesses begin
   const Eigen::MatrixXd& precision() const { return pi_; }  // Pi: of the prior of theta
 
+  // Sizes and lengths by theta.
   ErrorPopulation PopulationAt(const Eigen::VectorXd& theta) const;
   // L with L L' = V but for what a function hardly does; a column of zeros for each of that.
   Eigen::MatrixXd FactorAt(const Eigen::VectorXd& theta) const;
@@ -79,24 +81,25 @@ class PopulationEvidence {
     Eigen::MatrixXd half;  // (1 + L' H L)^-1/2 L' H
     Eigen::VectorXd b;
   };
+  // At theta; `b`: h - H C h.
   Evidence At(const Quadratic& of_machine, const Eigen::VectorXd& theta) const;
 
   struct Slopes {
     Eigen::VectorXd gradient;  // of log Z without the prior of theta
     Eigen::MatrixXd fisher;    // F
   };
+  // By theta, where `evidence` is that of `theta`.
   Slopes SlopesAt(const Quadratic& of_machine, const Eigen::VectorXd& theta,
                   const Evidence& evidence) const;
 
   // Knobs of functions; those of the squarenesses and of the slopes follow.
   Eigen::Index of_functions() const { return count() - 2; }
-  // Where log Z is largest, from `theta` on; `local`: of the last step. The first `free` of theta
-  // are free, the others stay.
   struct Maximum {
     Eigen::VectorXd theta;
-    double log = 0.0;
-    Slopes local;
+    double log = 0.0;  // log Z with the prior of theta
+    Slopes local;      // of the last step
   };
+  // From `theta` on, of which the first `free` are free and the others stay.
   Maximum Maximise(const Quadratic& of_machine, const Eigen::VectorXd& theta,
                    Eigen::Index free) const;
   // The most probable of several common lengths, all sizes as stated.

@@ -19,7 +19,9 @@
 
 namespace abbe::fusion {
 
+// Adds the form as parameters of a sweep.
 void WithForm(simulation::SimulatedRun& run);
+// Lets the form be k times what the file states.
 void SetForm(double k, simulation::SimulatedRun& run);
 
 // Whether a block of parameters is such a form.

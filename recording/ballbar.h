@@ -25,6 +25,7 @@ struct BallbarCircle {
   double feed_mm_min = 0.0;  // 0: not stated
 };
 
+// `table`: angle_deg, with deviation_um or ref_radius_mm.
 Recording BallbarOf(const Recording& table, const BallbarCircle& circle);
 
 }  // namespace abbe::recording

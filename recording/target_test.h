@@ -50,6 +50,7 @@ struct TargetTest {
 // InputError unless `axis` is X, Y or Z.
 void MustBeLinear(const std::string& file, const std::string& axis);
 
+// One row for each target that was reached, in the order of measurement.
 Recording RecordingOf(TargetTest test);
 
 }  // namespace abbe::recording

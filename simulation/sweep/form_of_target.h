@@ -34,6 +34,7 @@ struct FormOfTarget {
   Eigen::MatrixXd columns;  // not whitened
 };
 
+// As one sweep sees it.
 FormOfTarget FormOfTargetIn(const machine::Chain& chain, const SweepInstrument& instrument,
                             const SweepRun& run);
 
