@@ -172,7 +172,10 @@ Answer BesidePopulation(std::shared_ptr<const Campaign> campaign) {
     Population seen(*campaign, as_stated->base());
     if (seen.LogOdds() > as_stated->LogOddsOfFirst()) {
       seen.FollowOnFinerKnots();
-      return AsSeen(std::move(seen));
+      Answer answer = AsSeen(std::move(seen));
+      if (answer.diagnosis.verdict != Verdict::kUnexplained) return answer;
+      // What is in no catalogue may look like rougher errors, until it is taken in.
+      return MoreProbable(Ask(campaign, as_stated, 0.0), std::move(answer));
     }
   }
   Answer answer = Ask(campaign, as_stated, 0.0);

@@ -66,12 +66,19 @@ std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
   return checks;
 }
 
+namespace {
+
+// The logarithm of a probability of chi-square that underflows: the first term of its expansion.
+double FarOut(const RunConsistency& run) {
+  const double half = 0.5 * run.statistic, a = 0.5 * run.directions;
+  return (a - 1.0) * std::log(half) - half - std::lgamma(a);
+}
+
+}  // namespace
+
 int Contradicting(const std::vector<RunConsistency>& runs) {
   const auto worst = std::min_element(runs.begin(), runs.end(), [](const auto& a, const auto& b) {
-    // Where both probabilities underflow, the statistic decides.
-    if (a.probability == 0.0 && b.probability == 0.0) {
-      return a.statistic / a.directions > b.statistic / b.directions;
-    }
+    if (a.probability == 0.0 && b.probability == 0.0) return FarOut(a) < FarOut(b);
     return a.probability < b.probability;
   });
   if (worst == runs.end()) return -1;

@@ -235,7 +235,7 @@ class WordsTest(ProgramCase):
         self.assertEqual(sorted(self.completed("abbe init --kind ")), ["arm", "axis", "gantry", "lathe", "mill", "shaft"])
         self.assertEqual(self.completed("abbe correct --block-delete o"), ["on", "off"])
         self.assertTrue({"bash", "fish", "zsh"} <= set(self.completed("abbe completion ")))
-        self.assertEqual(self.completed("abbe export map.toml --format li"), ["linuxcnc"])
+        self.assertEqual(self.completed("abbe export map.toml --format li"), ["linuxcnc", "linuxcnc-hal"])
 
     def test_fish_and_zsh_have_the_same_words(self):
         fish = self.done("fish", command="completion")

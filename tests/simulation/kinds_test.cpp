@@ -26,6 +26,7 @@ TEST(RunKinds, AreThoseOfRecordings) {
   for (const RunKind* kind : RunKinds()) of_registry.insert(kind->name());
   std::set<std::string_view> of_recordings{"arm"};  // a linkage without axes
   for (const std::string_view kind : recording::KnownKinds()) {
+    if (kind == "ballbar") continue;  // evaluated by its radius alone, not simulated
     of_recordings.insert(kind);
     EXPECT_EQ(KindOf(HeadOf(kind, recording::RequiredColumns(kind))).name(), kind);
   }
