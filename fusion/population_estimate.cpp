@@ -27,8 +27,7 @@ class Estimate {
  public:
   Estimate(const machine::Machine& machine, const machine::VolumetricModel& model,
            const LinearRuns& runs)
-      : machine_(machine),
-        evidence_(machine, model),
+      : evidence_(machine, model),
         runs_(runs),
         noise_(runs.noise),
         form_(runs.form_times),
@@ -174,7 +173,6 @@ class Estimate {
     return statements;
   }
 
-  const machine::Machine& machine_;
   const PopulationEvidence evidence_;
   const LinearRuns& runs_;
   std::vector<double> noise_;
