@@ -43,9 +43,9 @@ struct MeasuredPaths {
 };
 
 // A recording with encoder angles gives a path of the linkage, one with reference positions a path
-// of the reference, one with both gives both, radii of a ballbar a path too. Warnings of a file go to standard error. InputError
-// for a recording with neither, a linkage without --machine, a calibration without a linkage, or a
-// machine file of another machine.
+// of the reference, one with both gives both, radii of a ballbar a path too. Warnings of a file go
+// to standard error. InputError for a recording with none of these, a linkage without --machine, a
+// calibration without a linkage, or a machine file of another machine.
 MeasuredPaths ReadMeasuredPaths(const PathSources& sources);
 
 // The head of the results of both commands.

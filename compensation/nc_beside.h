@@ -92,7 +92,7 @@ class NcBeside {
   bool is_on_ = false, is_first_ = true;
   Eigen::Vector3d at_;
   NcPiece last_;  // as programmed; the last that moved in the plane
-  // Of that one, without corners: of a line and of an arc.
+  // The path of the tool's centre beside a line and an arc, without corners.
   Vector2 whole_direction_ = Vector2::Zero();
   double whole_sweep_ = 0.0;
   // For each programmed move that is not handed on; they end at one place of the plane.

@@ -57,7 +57,10 @@ bool Has(const NcState& state, NcGroup group, std::string_view word) {
 // "_ini[section]key": LinuxCNC looks for both in upper case.
 std::optional<double> OfIni(const std::map<std::string, double>& ini, const std::string& name) {
   std::string key = name.substr(std::string_view("_ini[").size());
-  for (char& c : key) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  for (char& c : key) {
+    if (c == ']') c = '.';
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  }
   const auto found = ini.find(key);
   if (found == ini.end()) return std::nullopt;
   return found->second;

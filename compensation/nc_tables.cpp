@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -13,6 +14,7 @@
 #include "compensation/nc_expression.h"
 #include "failure/failure.h"
 #include "map/text_file.h"
+#include "settings/ini_text.h"
 
 namespace abbe::compensation {
 namespace {
@@ -99,34 +101,14 @@ std::map<int, NcTool> ReadTools(const std::filesystem::path& path) {
 
 std::map<std::string, double> ReadIniNumbers(const std::filesystem::path& path) {
   std::map<std::string, double> numbers;
-  std::string section;
-  bool has_section = false;
-  EachTableLine(path, [&](std::string_view line, std::size_t line_number) {
-    NcCursor cursor(line, line_number, kEmpty);
-    const char first = cursor.Peek();
-    if (first == '#') return;
-    const std::string_view text = cursor.Rest();
-    const std::size_t split = text.find(first == '[' ? ']' : '=');
-    if (split == std::string_view::npos) {
-      if (first == '[') cursor.Refuse("a section without ]");
-      return;  // of a value that goes on
-    }
-    if (first == '[') {
-      section = text.substr(1, split - 1);
-      has_section = true;
-      return;
-    }
-    if (!has_section) cursor.Refuse("KEY = VALUE before any [SECTION]; is it an INI file?");
-    const std::string_view key = text.substr(0, text.find_last_not_of(" \t", split - 1) + 1);
-    NcCursor value(text.substr(split + 1), line_number, kEmpty);
-    const char begin = value.Peek();
-    if (begin == '#' || begin == '[' || !value.IsAtValue()) return;
-    const double number = value.Value();
-    const char behind = value.Peek();
-    if (behind == '\0' || behind == '#') {
-      numbers.try_emplace(fmt::format("{}]{}", section, key), number);
-    }
-  });
+  for (const auto& [key, value] : settings::ParseIni(map::ReadWhole(path), path.string())) {
+    std::string_view digits = value;
+    if (digits.starts_with('+')) digits.remove_prefix(1);
+    double number = 0.0;
+    const char* const last = digits.data() + digits.size();
+    const auto [end, error] = std::from_chars(digits.data(), last, number);
+    if (error == std::errc() && end == last) numbers.emplace(key, number);
+  }
   return numbers;
 }
 

@@ -40,7 +40,7 @@ std::map<int, double> ReadParameters(const std::filesystem::path& path);
 // By the number of the tool, T.
 std::map<int, NcTool> ReadTools(const std::filesystem::path& path);
 
-// "[SECTION]" and "KEY = number" lines; other values are left out. The first of a key counts.
+// "SECTION.KEY" -> number; other values are left out (settings/ini_text.h).
 std::map<std::string, double> ReadIniNumbers(const std::filesystem::path& path);
 
 // The offsets that a control with these parameters starts with.

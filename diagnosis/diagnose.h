@@ -78,8 +78,8 @@ struct Diagnosis {
   double chi_before = 0.0, chi_after = 0.0;  // chi-square per row of all runs
   double map_change = 0.0;    // m: largest change of the volumetric error by the findings
   estimation::Result fitted;  // with all that was found
-  // With the noise and the errors of the axes that were found, empty for an arm; and its fit without
-  // causes where something is left.
+  // With the noise and the errors of the axes that were found, empty for an arm; and its fit
+  // without causes where something is left.
   std::shared_ptr<const Campaign> campaign = {};
   std::shared_ptr<const Fit> base = {};
 };

@@ -29,7 +29,7 @@ std::optional<estimation::NoiseMemory> MemoryOf(const Fit& fit, std::size_t r) {
   return found.noise;
 }
 
-// Of all runs, with what whitening by a memory does to the likelihood.
+// The prior of the memories of all runs, with what whitening by them does to the likelihood.
 double PriorOfMemories(const Campaign& campaign) {
   double prior = 0.0;
   for (const PreparedRun& run : campaign.runs()) {

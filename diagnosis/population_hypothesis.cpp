@@ -29,27 +29,11 @@ double LogDeterminant(const MatrixXd& positive) {
   return 2.0 * positive.llt().matrixLLT().diagonal().array().log().sum();
 }
 
-// The lines of [population] that the functions follow.
-struct OfLine {
-  fusion::Line line;
-  double machine::Population::*of;
-  const char* key;
-  double unit;
-};
-constexpr std::array kOfLines{
-    OfLine{fusion::kPositioning, &machine::Population::positioning, "positioning_um", 1e-6},
-    OfLine{fusion::kStraightness, &machine::Population::straightness, "straightness_um", 1e-6},
-    OfLine{fusion::kRoll, &machine::Population::roll, "roll_urad", 1e-6},
-    OfLine{fusion::kPitch, &machine::Population::pitch, "pitch_urad", 1e-6},
-    OfLine{fusion::kYaw, &machine::Population::yaw, "yaw_urad", 1e-6},
-    OfLine{fusion::kSmoothness, &machine::Population::smoothness, "smoothness_mm", 1e-3}};
-
 Answer MoreProbable(Answer one, Answer other) {
   return other.worth > one.worth ? std::move(other) : std::move(one);
 }
 
-// By how much the likelihood may rise from where sizes and lengths are as in the file, by its slopes
-// there.
+// The most that the likelihood may rise from where sizes and lengths are as stated, by its slopes.
 double PossibleGain(const Fit& fit) {
   const Campaign& campaign = fit.campaign();
   const PopulationEvidence evidence(campaign.instruments().machine, campaign.model());
@@ -74,7 +58,7 @@ class Population {
     Follow(fit);
   }
 
-  // Of these sizes and lengths against the stated ones, to first order at the last fit.
+  // These sizes and lengths against the stated ones, to first order at the last fit.
   double LogOdds() const { return gain_ + prior_; }
 
   // Those that a fit, with its causes, leaves; by how much the evidence rises.
@@ -96,9 +80,9 @@ class Population {
     return highest.log - before;
   }
 
-  // On knots that are close enough, without causes.
+  // On knots that are close enough, without causes; the campaign is made then.
   void FollowOnFinerKnots() {
-    for (int i = 0; i < kFinerKnots && MakeCampaign(); ++i) Follow(Fit(*campaign_));
+    for (int i = 0; MakeCampaign() && i < kFinerKnots; ++i) Follow(Fit(*campaign_));
   }
 
   // False where the knots are as before.
@@ -123,20 +107,20 @@ class Population {
       counts[evidence.knobs()[i].line] += 1.0;
     }
     lines_ = machine_.population;
-    for (const OfLine& line : kOfLines) {
-      if (counts[line.line] > 0.0) lines_.*line.of *= std::exp(sums[line.line] / counts[line.line]);
+    for (std::size_t line = 0; line < sums.size(); ++line) {
+      double& value = lines_.*fusion::LinesInFile()[line].value;
+      if (counts[line] > 0.0) value *= std::exp(sums[line] / counts[line]);
     }
   }
 
   std::string Note() const {
     constexpr double kThird = 1.33;
     std::string lines;
-    for (const OfLine& line : kOfLines) {
-      const double seen = lines_.*line.of, stated = machine_.population.*line.of;
+    for (const fusion::LineInFile& line : fusion::LinesInFile()) {
+      const double seen = lines_.*line.value, stated = machine_.population.*line.value;
       if (std::abs(std::log(seen / stated)) < std::log(kThird)) continue;
-      lines +=
-          fmt::format("{}population.{} {:.2g} (machine file: {:.2g})", lines.empty() ? "" : ", ",
-                      line.key, seen / line.unit, stated / line.unit);
+      lines += fmt::format("{}{} {:.2g} (machine file: {:.2g})", lines.empty() ? "" : ", ",
+                           line.key, seen / line.unit, stated / line.unit);
     }
     if (lines.empty()) lines = "some are larger or smaller, smoother or rougher";
     return fmt::format(
@@ -154,9 +138,8 @@ class Population {
   std::shared_ptr<const Campaign> campaign_;
 };
 
-// The answer that goes by what the runs show.
+// The answer that goes by what the runs show; the campaign is made.
 Answer AsSeen(Population population) {
-  population.MakeCampaign();
   Answer best = population.Asked();
   if (population.Follow(best.search->fit()) < kAsBefore) return best;
   population.MakeCampaign();
@@ -184,6 +167,7 @@ Answer BesidePopulation(std::shared_ptr<const Campaign> campaign) {
   if (PossibleGain(fit) < kWorthASearch) return answer;
   Population seen(*campaign, fit);
   if (seen.LogOdds() < kWorthASearch) return answer;
+  seen.MakeCampaign();
   return MoreProbable(std::move(answer), AsSeen(std::move(seen)));
 }
 

@@ -1,5 +1,5 @@
-// The search for causes, with errors of the axes of other sizes and correlation lengths than those of
-// the machine file as a hypothesis of its own.
+// The search for causes, with errors of the axes of other sizes and correlation lengths than the
+// machine file states as a hypothesis of its own.
 //
 //   const Answer answer = BesidePopulation(campaign);
 //

@@ -6,9 +6,9 @@
 // blocks of rows / (4 n), at least one; of every n blocks the last is held out. The whitened
 // residuals r of the held-out rows at the fit of the others have the covariance 1 + J C J': their
 // own noise and the uncertainty of the prediction, which they share. chi_square is
-// r' (1 + J C J')^-1 r, `expected` the number of rows; the ratio is near 1 when noise and priors are
-// stated correctly, also where the others leave something quite open. No robust loss is applied:
-// outliers count in full.
+// r' (1 + J C J')^-1 r, `expected` the number of rows; the ratio is near 1 when noise and priors
+// are stated correctly, also where the others leave something quite open. No robust loss is
+// applied: outliers count in full.
 // Units: standard deviations of the rows. Shapes: one HeldOut a run, in their order.
 // Failure: InputError for n below 2 or above the rows of a run; NumericalError when the fit of the
 // others does not converge.

@@ -54,7 +54,7 @@ class Estimate {
   }
 
  private:
-  // Of the prior of a place of the target with k times the form stated.
+  // Precision of the prior of a place of the target, with k times the form stated.
   double FormPrecision(double k) const {
     return runs_.form.empty() ? 1.0 : std::pow(k * runs_.form_stated, -2);
   }

@@ -44,6 +44,21 @@ bool Statement::Refuted() const {
   return u_log < kTold && std::abs(off) > std::max(kHardlyOff, bound);
 }
 
+const std::array<LineInFile, kLines>& LinesInFile() {
+  using settings::kMicro;
+  using P = machine::Population;
+  static constexpr std::array<LineInFile, kLines> kAll{
+      {{"population.positioning_um", kMicro, &P::positioning},
+       {"population.straightness_um", kMicro, &P::straightness},
+       {"population.roll_urad", kMicro, &P::roll},
+       {"population.pitch_urad", kMicro, &P::pitch},
+       {"population.yaw_urad", kMicro, &P::yaw},
+       {"population.squareness_urad", kMicro, &P::squareness},
+       {"population.scale_ppm", kMicro, &P::scale},
+       {kSmoothnessKey, settings::kMillimetre, &P::smoothness}}};
+  return kAll;
+}
+
 Quadratic Marginalised(const Quadratic& all, const std::vector<int>& of_machine) {
   std::vector<bool> is_machine(all.vector.size(), false);
   for (const int column : of_machine) is_machine[column] = true;
@@ -244,20 +259,11 @@ PopulationEvidence::Maximum PopulationEvidence::Maximise(const Quadratic& of_mac
 }
 
 std::vector<Statement> PopulationEvidence::Statements(const Maximum& at) const {
-  const machine::Population& p = machine_.population;
-  using settings::kMicro;
   std::vector<Statement> statements;
-  const auto add = [&](std::string_view key, double unit, double stated) {
-    statements.push_back({.key = key, .unit = unit, .stated = stated});
-  };
-  add("population.positioning_um", kMicro, p.positioning);
-  add("population.straightness_um", kMicro, p.straightness);
-  add("population.roll_urad", kMicro, p.roll);
-  add("population.pitch_urad", kMicro, p.pitch);
-  add("population.yaw_urad", kMicro, p.yaw);
-  add("population.squareness_urad", kMicro, p.squareness);
-  add("population.scale_ppm", kMicro, p.scale);
-  add(kSmoothnessKey, settings::kMillimetre, p.smoothness);
+  for (const LineInFile& line : LinesInFile()) {
+    statements.push_back(
+        {.key = line.key, .unit = line.unit, .stated = machine_.population.*line.value});
+  }
   MatrixXd X = MatrixXd::Zero(count(), kLines);
   for (Index i = 0; i < count(); ++i) X(i, knobs_[i].line) = 1.0;
   MatrixXd information = X.transpose() * at.local.fisher * X;

@@ -44,6 +44,15 @@ enum Line {
   kLines
 };
 
+// How the machine file states a line.
+struct LineInFile {
+  std::string_view key;  // "population.smoothness_mm"
+  double unit;
+  double machine::Population::*value;
+};
+// In the order of Line.
+const std::array<LineInFile, kLines>& LinesInFile();
+
 // One of theta.
 struct Knob {
   Line line;

@@ -1,5 +1,5 @@
-// The map for LinuxCNC's HAL component control/linuxcnc/abbe_map.comp: a grid that it reads, for any
-// tool, and a HAL file that loads and connects it.
+// The map for LinuxCNC's HAL component control/linuxcnc/abbe_map.comp: a grid that it reads, for
+// any tool, and a HAL file that loads and connects it.
 //
 // NAME.hal and, beside it, NAME.grid, a text of numbers in mm, um and urad:
 //
@@ -13,8 +13,8 @@
 // Lines that begin with # are comments.
 // Frames: the error in W and the turn of the tool in it; error for p_TQ = error + turn x p_TQ.
 // Units: SI here. Failure: InputError for more points than the component takes, for a name that HAL
-// cannot hold, for errors above 10 mm, which the component refuses, and for files that the component
-// would refuse, with its own reason.
+// cannot hold, for errors above 10 mm, which the component refuses, and for files that the
+// component would refuse, with its own reason.
 // Source: own.
 // Validity: exact at the points for the tool of the options; for one that is longer by l it leaves
 // out half the square of the turn times l: 0.5 nm for 100 urad and 100 mm.

@@ -1,4 +1,4 @@
-// Lines, words and numbers of the text formats of maps.
+// Lines and numbers of the text formats of maps.
 //
 // Units: none; numbers as they stand.
 // Failure: InputError that begins with `where`, for a word that is not a finite number.
@@ -11,15 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "settings/words.h"
+
 namespace abbe::map {
 
-// Without the blanks at both ends.
-std::string_view Trimmed(std::string_view text);
-
-// The words between blanks and tabs, or the trimmed parts between separators.
-std::vector<std::string_view> WordsOf(std::string_view text);
-// Empty parts too.
-std::vector<std::string_view> PartsOf(std::string_view text, char separator);
+using settings::PartsOf;
+using settings::Trimmed;
+using settings::WordsOf;
 
 // Numbers up to kLargest only, with a decimal point.
 inline constexpr double kLargest = 1e15;

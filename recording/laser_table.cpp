@@ -14,29 +14,13 @@
 #include "recording/line_reader.h"
 #include "recording/target_test.h"
 #include "settings/unit.h"
+#include "settings/words.h"
 
 namespace abbe::recording {
 namespace {
 
 constexpr double kMmPerMicrometre = settings::kMicrometre / settings::kMillimetre;
 constexpr int kMostLaserTargets = 1'000'000;
-
-std::string_view TrimmedLaser(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-// The words of a line between blanks.
-std::vector<std::string_view> WordsOf(std::string_view line) {
-  std::vector<std::string_view> words;
-  while (!(line = TrimmedLaser(line)).empty()) {
-    const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
-    words.push_back(line.substr(0, end));
-    line.remove_prefix(end);
-  }
-  return words;
-}
 
 class LaserTable {
  public:
@@ -45,7 +29,7 @@ class LaserTable {
 
   TargetTest Read() {
     while (const auto line = lines_.Next()) {
-      const std::string_view text = TrimmedLaser(*line);
+      const std::string_view text = settings::Trimmed(*line);
       if (text.empty()) continue;
       if (text.ends_with("::")) {
         section_ = text.substr(0, text.size() - 2);
@@ -87,8 +71,8 @@ class LaserTable {
   void Take(std::string_view text) {
     const std::size_t colon = text.find(':');
     const bool has_key = colon != std::string_view::npos;
-    const std::string_view key = TrimmedLaser(text.substr(0, colon));
-    const std::string_view value = has_key ? TrimmedLaser(text.substr(colon + 1)) : "";
+    const std::string_view key = settings::Trimmed(text.substr(0, colon));
+    const std::string_view value = has_key ? settings::Trimmed(text.substr(colon + 1)) : "";
     if (section_ == "HEADER" && has_key) return TakeHeader(key, value);
     if (section_ == "TARGET DATA") return has_key ? TakeTargetKey(key, value) : TakeTargets(text);
     if (section_ == "USER-TEXT" && key == "Axis") return TakeAxis(value);
@@ -112,7 +96,7 @@ class LaserTable {
     if (key == "Target-count") count_ = Count(value, kMostLaserTargets);
     if (takes_targets_ && !value.empty()) TakeTargets(value);
     if (key != "Flags") return;
-    const auto flags = WordsOf(value);
+    const auto flags = settings::WordsOf(value);
     if (flags.size() < 2 || (flags[1] != "0" && flags[1] != "1")) {
       RefuseHere(
           fmt::format("flags \"{}\", the second of which is neither 0 (both directions) nor "
@@ -129,7 +113,7 @@ class LaserTable {
 
   void TakeTargets(std::string_view text) {
     if (!takes_targets_) RefuseHere(fmt::format("\"{}\" before \"Targets :\"", text));
-    for (const std::string_view word : WordsOf(text)) {
+    for (const std::string_view word : settings::WordsOf(text)) {
       test_.targets.emplace(static_cast<int>(test_.targets.size()) + 1, Number(word));
     }
   }
@@ -145,7 +129,7 @@ class LaserTable {
 
   void TakeDeviation(std::string_view text) {
     if (!takes_deviations_) RefuseHere(fmt::format("\"{}\" before \"Run Target Data:\"", text));
-    const auto words = WordsOf(text);
+    const auto words = settings::WordsOf(text);
     if (words.size() != 3) RefuseHere(fmt::format("\"{}\" is not run, target, deviation", text));
     if (runs_ == 0 || test_.targets.empty()) RefuseHere("deviations before runs and targets");
     const int run = Count(words[0], runs_);

@@ -1,5 +1,5 @@
-// Import of the tables of laser interferometers (.rtl: linear positioning by Renishaw's programs and
-// others that write its form) into a recording of kind "reference" with one axis.
+// Import of the tables of laser interferometers (.rtl: linear positioning by Renishaw's programs
+// and others that write its form) into a recording of kind "reference" with one axis.
 //
 //   HEADER::
 //   File type  : rtl

@@ -14,6 +14,7 @@
 #include "recording/target_test.h"
 #include "settings/toml_text.h"
 #include "settings/unit.h"
+#include "settings/words.h"
 
 namespace abbe::recording {
 namespace {
@@ -29,12 +30,6 @@ struct TargetTable {
   std::vector<std::string> warnings;
 };
 
-std::string_view Trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 // One line "NAME[i,j] = value".
 class Assignment {
  public:
@@ -45,18 +40,18 @@ class Assignment {
       throw InputError(
           fmt::format("{}: \"{}\" is not NAME=value; write comments after #", at_, text));
     }
-    value_ = Trim(text.substr(equals + 1));
-    std::string_view left = Trim(text.substr(0, equals));
+    value_ = settings::Trimmed(text.substr(equals + 1));
+    std::string_view left = settings::Trimmed(text.substr(0, equals));
     const auto bracket = left.find('[');
     name_ = left.substr(0, bracket);
     if (bracket == std::string_view::npos) return;
     if (left.back() != ']') Refuse("has no closing ]");
     left = left.substr(bracket + 1, left.size() - bracket - 2);
     for (auto comma = left.find(','); comma != std::string_view::npos; comma = left.find(',')) {
-      indices_.push_back(Parse<int>(Trim(left.substr(0, comma))));
+      indices_.push_back(Parse<int>(settings::Trimmed(left.substr(0, comma))));
       left.remove_prefix(comma + 1);
     }
-    indices_.push_back(Parse<int>(Trim(left)));
+    indices_.push_back(Parse<int>(settings::Trimmed(left)));
   }
 
   const std::string& name() const { return name_; }
@@ -144,9 +139,10 @@ TargetTable ReadTable(const std::filesystem::path& path) {
   table.file = path.string();
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
-    std::string_view text = Trim(line);
+    std::string_view text = settings::Trimmed(line);
     constexpr std::string_view kPrefix = "TEST_DATA=";
-    if (number == 1 && text.starts_with(kPrefix)) text = Trim(text.substr(kPrefix.size()));
+    if (number == 1 && text.starts_with(kPrefix))
+      text = settings::Trimmed(text.substr(kPrefix.size()));
     if (text.empty() || text.starts_with('#')) continue;
     Take(Assignment(table.file, number, text), table);
   }

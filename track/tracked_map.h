@@ -7,7 +7,8 @@
 //
 // State: the parameters of the map at the present time and temperatures, their gains by each sensor
 // (drift_model.h), the parameters of instruments and named mountings that its runs shared, and the
-// form of the target at the places that they saw (fusion/target_form.h). From one instant to the next
+// form of the target at the places that they saw (fusion/target_form.h). From one instant to the
+// next
 //
 //   p -> p + sum over sensors R_s g_s (y_s' - y_s) + w        cov w = (days) V
 //

@@ -1,15 +1,15 @@
 /* The error map on a grid as a control applies it: its file, the error at a place for any tool, and
- * the offsets of X, Y and Z that a period may apply. Plain C: abbe_map.comp includes it in LinuxCNC,
- * map/export_linuxcnc_hal.cpp reads back with it what it wrote.
+ * the offsets of X, Y and Z that a period may apply. Plain C: abbe_map.comp includes it in
+ * LinuxCNC, map/export_linuxcnc_hal.cpp reads back with it what it wrote.
  *
  * abbe_grid_read() opens the file and allocates; everything else does neither and suits a realtime
  * thread.
  *
- * Frames: positions are those of the axes as the control shows them; errors are those of the tool in
- * the workpiece, actual minus nominal, along its axes; with s the sense of an axis (+1 if the tool
- * goes towards + against the workpiece as the number rises, else -1) the control adds -s times the
- * error. The tool vector is the tool point Q seen from the reference point, that of the file for a
- * tool whose length offset is zero; an offset t of the control moves it by -s t.
+ * Frames: positions are those of the axes as the control shows them; errors are those of the tool
+ * in the workpiece, actual minus nominal, along its axes; with s the sense of an axis (+1 if the
+ * tool goes towards + against the workpiece as the number rises, else -1) the control adds -s times
+ * the error. The tool vector is the tool point Q seen from the reference point, that of the file
+ * for a tool whose length offset is zero; an offset t of the control moves it by -s t.
  * Units: mm; in the file um for errors and urad for turns.
  * Shapes: a point has 6 values, error d for Q = 0 and turn r; error = d + r x Q. x runs fastest.
  * Failure: abbe_grid_read() gives 0 and a reason with the line; a place outside the limits, or one
@@ -234,8 +234,8 @@ static inline int abbe_grid_error(const abbe_grid* grid, const double position[3
 }
 
 /* The offset that puts the tool in its place at `period->position`, as abbe correct does: c = p +
- * offset with offset = -s E(c). One step from the offset of the last period: E changes by less than a
- * thousandth of what is left. 0 outside. */
+ * offset with offset = -s E(c). One step from the offset of the last period: E changes by less than
+ * a thousandth of what is left. 0 outside. */
 static inline int abbe_grid_target(const abbe_grid* grid, const abbe_period* period,
                                    double target[3]) {
   double at[3], Q[3], error[3];

@@ -23,8 +23,8 @@
 // and the error of the machine at the start, so a sweep says nothing of these.
 //
 // The form of the faces is a Gaussian process (target.form); where a probe sees it is nominal. It
-// correlates the readings of probes of one face, and is put into the covariance; `form_apart` has it
-// as parameters that all sweeps share (form_of_target.h).
+// correlates the readings of probes of one face, and is put into the covariance; `form_apart` has
+// it as parameters that all sweeps share (form_of_target.h).
 //
 // Frames: M, W, T of machine/volumetric_error.h; H of probes/head_layout.h.
 // Units: m, rad. Shapes: rows probe by probe: all rows of a, then of b, ...

@@ -16,6 +16,7 @@ import unittest
 
 import numpy as np
 
+from linuxcnc_machine import HAL, joints
 from map_machine import TRAVEL, MapMachine
 
 ABBE = os.environ["ABBE"]
@@ -47,32 +48,8 @@ DEFAULT_LINEAR_VELOCITY = 500
 EMCIO = io
 CYCLE_TIME = 0.100
 TOOL_TABLE = tool.tbl
-[KINS]
-KINEMATICS = trivkins
-JOINTS = 3
-""" + "".join(f"""[AXIS_{axis.upper()}]
-{LIMITS}[JOINT_{joint}]
-TYPE = LINEAR
-{LIMITS}HOME = 0
-HOME_SEARCH_VEL = 0
-HOME_LATCH_VEL = 0
-HOME_SEQUENCE = 0
-FERROR = 10
-MIN_FERROR = 10
-COMP_FILE = m_{axis}.comp
-COMP_FILE_TYPE = 0
-""" for joint, axis in enumerate("xyz"))
-HAL = """loadrt trivkins
-loadrt motmod servo_period_nsec=1000000 num_joints=3
-addf motion-command-handler servo-thread
-addf motion-controller servo-thread
-net x joint.0.motor-pos-cmd => joint.0.motor-pos-fb
-net y joint.1.motor-pos-cmd => joint.1.motor-pos-fb
-net z joint.2.motor-pos-cmd => joint.2.motor-pos-fb
-net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
-net tool-prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
-net tool-change iocontrol.0.tool-change => iocontrol.0.tool-changed
-"""
+""" + joints(LIMITS, of_joint=lambda axis: f"COMP_FILE = m_{axis.lower()}.comp\nCOMP_FILE_TYPE = 0\n")
+
 
 
 class Simulator(contextlib.AbstractContextManager):

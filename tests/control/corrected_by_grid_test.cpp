@@ -44,23 +44,8 @@ class Component {
   abbe_grid grid_;
 };
 
-map::ErrorMap Counted(const map::ErrorMap& map, const std::array<Positive, 3>& positive) {
-  machine::Chain chain = map.model().chain();
-  chain.SetPositive(positive);
-  machine::VolumetricModel model(chain, map.model().travels());
-  for (int axis = 0; axis < machine::kAxes; ++axis) {
-    for (int motion = 0; motion < machine::kMotions; ++motion) {
-      const auto& function = map.model().Function(axis, motion);
-      model.SetForm(axis, motion, function.form());
-      model.SetCoefficients(axis, motion, function.coefficients());
-    }
-  }
-  model.SetSquareness(map.model().squareness());
-  return {map.origin(), model, {}};
-}
-
-// Chords of 1.5 mm across functions of 2 um and 20 urad with knots each 12 mm, arms of 0.2 m. A wrong
-// sign or a tool that is forgotten: 10 um.
+// Chords of 1.5 mm across functions of 2 um and 20 urad with knots each 12 mm, arms of 0.2 m. A
+// wrong sign or a tool that is forgotten: 10 um.
 constexpr double kChords = 200e-9;
 
 TEST(CorrectedByGrid, TheComponentCommandsWhatAbbeCorrectWrites) {

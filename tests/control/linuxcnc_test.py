@@ -23,6 +23,8 @@ import unittest
 
 import numpy as np
 
+from linuxcnc_machine import HAL, joints
+
 MODULES = pathlib.Path("/usr/lib/linuxcnc/modules")
 PROGRAMS = pathlib.Path("/usr/share/doc/linuxcnc/examples/nc_files")
 # Drilling cycles in polar places; helices in three planes; a part with arcs, cycles and a tool length.
@@ -62,31 +64,7 @@ DEFAULT_LINEAR_VELOCITY = 400
 EMCIO = io
 CYCLE_TIME = 0.050
 TOOL_TABLE = tool.tbl
-[KINS]
-KINEMATICS = trivkins
-JOINTS = 3
-""" + "".join(f"""[AXIS_{axis}]
-OFFSET_AV_RATIO = 0.1
-{LIMITS}[JOINT_{joint}]
-TYPE = LINEAR
-{LIMITS}HOME = 0
-HOME_SEARCH_VEL = 0
-HOME_LATCH_VEL = 0
-HOME_SEQUENCE = 0
-FERROR = 10
-MIN_FERROR = 10
-""" for joint, axis in enumerate("XYZ"))
-HAL = """loadrt trivkins
-loadrt motmod servo_period_nsec=1000000 num_joints=3
-addf motion-command-handler servo-thread
-addf motion-controller servo-thread
-net x joint.0.motor-pos-cmd => joint.0.motor-pos-fb
-net y joint.1.motor-pos-cmd => joint.1.motor-pos-fb
-net z joint.2.motor-pos-cmd => joint.2.motor-pos-fb
-net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
-net tool-prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
-net tool-change iocontrol.0.tool-change => iocontrol.0.tool-changed
-"""
+""" + joints(LIMITS, of_axis="OFFSET_AV_RATIO = 0.1\n")
 # Columns of a sample; wanted: the axes without offsets; at: the joints; clocks: of the component's function.
 WATCHED = [*[f"axis.{a}.pos-cmd" for a in "xyz"], *[f"joint.{j}.pos-cmd" for j in range(3)],
            *[f"axis.{a}.eoffset" for a in "xyz"], *[f"abbe-map.{a}-offset" for a in "xyz"], "motion.tooloffset.z",

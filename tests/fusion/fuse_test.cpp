@@ -172,7 +172,8 @@ TEST_F(FuseOfRig, KeepsTheFormOfTheTargetHoweverOftenItIsSwept) {
   }
 }
 
-// The rig shifts and reverses its target: three sweeps must show one form, and tell it from the axis.
+// The rig shifts and reverses its target: three sweeps must show one form, and tell it from the
+// axis.
 TEST_F(FuseOfRig, TellsTheFormOfTheTargetWhereItIsShiftedAndReversed) {
   const settings::Document document = CampaignMachine({{"form_nm = 10.0", "form_nm = 200.0"}});
   const Campaign campaign(document, 5);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -30,6 +31,23 @@ Eigen::Vector3d RandomPlace(const ErrorMap& map, std::uint64_t seed, std::uint64
 
 // Parameters drawn from the covariance of the map.
 Eigen::VectorXd DrawParameters(const ErrorMap& map, std::uint64_t seed);
+
+// The same map of a machine whose axes count otherwise.
+inline ErrorMap Counted(const ErrorMap& map, const std::array<machine::Positive, 3>& positive) {
+  machine::Chain chain = map.model().chain();
+  chain.SetPositive(positive);
+  machine::VolumetricModel model(chain, map.model().travels());
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    for (int motion = 0; motion < machine::kMotions; ++motion) {
+      const auto& function = map.model().Function(axis, motion);
+      if (function.form() == nullptr) continue;
+      model.SetForm(axis, motion, function.form());
+      model.SetCoefficients(axis, motion, function.coefficients());
+    }
+  }
+  model.SetSquareness(map.model().squareness());
+  return {map.origin(), model, {}};
+}
 
 class Folder {
  public:

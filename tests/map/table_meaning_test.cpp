@@ -19,22 +19,6 @@ namespace table_meaning_test {
 using Eigen::Vector3d;
 using machine::Positive;
 
-ErrorMap Counted(const ErrorMap& map, const std::array<Positive, 3>& positive) {
-  machine::Chain chain = map.model().chain();
-  chain.SetPositive(positive);
-  machine::VolumetricModel model(chain, map.model().travels());
-  for (int axis = 0; axis < machine::kAxes; ++axis) {
-    for (int motion = 0; motion < machine::kMotions; ++motion) {
-      const auto& function = map.model().Function(axis, motion);
-      if (function.form() == nullptr) continue;
-      model.SetForm(axis, motion, function.form());
-      model.SetCoefficients(axis, motion, function.coefficients());
-    }
-  }
-  model.SetSquareness(map.model().squareness());
-  return {map.origin(), model, {}};
-}
-
 const std::array<std::array<Positive, 3>, 3> kCounts = {
     {{Positive::kTool, Positive::kTool, Positive::kTool},
      {Positive::kCarriage, Positive::kCarriage, Positive::kCarriage},

@@ -1,5 +1,5 @@
-// The form of the target as numbers of places on its faces, against the correlation that the machine
-// file states, between readings of one recording and of two.
+// The form of the target as numbers of places on its faces, against the correlation that the
+// machine file states, between readings of one recording and of two.
 #include "simulation/sweep/form_of_target.h"
 
 #include <gtest/gtest.h>
@@ -18,9 +18,10 @@ using Eigen::VectorXd;
 
 constexpr double kForm = 25e-9, kLength = 15e-3, kArm = 10e-3;
 constexpr Index kStations = 9;
-// Humps are 0.8 lengths apart: sums of their products are constant within r = 2 exp(-(pi / 0.8)^2 / 2)
-// by Poisson's formula, and divided by such sums of squares. Two spots 0.8 lengths apart, where both
-// are off, correlate by exp(-0.8^2 / 2) to twice r of it; a third for the humps that are too far away to be there.
+// Humps are 0.8 lengths apart: sums of their products are constant within r = 2 exp(-(pi / 0.8)^2 /
+// 2) by Poisson's formula, and divided by such sums of squares. Two spots 0.8 lengths apart, where
+// both are off, correlate by exp(-0.8^2 / 2) to twice r of it; a third for the humps that are too
+// far away to be there.
 const double kOff = 1.33 * 2.0 * std::exp(-0.32) * 2.0 * std::exp(-std::pow(M_PI / 0.8, 2) / 2.0);
 
 SweepInstrument Instrument() {
@@ -61,7 +62,8 @@ MatrixXd Correlation(const FormOfTarget& one, const FormOfTarget& other) {
   return sum;
 }
 
-// Where a probe looks on its face when the head stands at `position`: by hand, for the nominal head.
+// Where a probe looks on its face when the head stands at `position`: by hand, for the nominal
+// head.
 struct Spot {
   int face;
   double along, across;
