@@ -1,8 +1,11 @@
 #include "diagnosis/evidence.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <utility>
@@ -17,11 +20,13 @@ using simulation::Disturbance;
 namespace {
 
 constexpr SizeRange kForms{0.01e-6, 10e-6, 1.1};  // m
-constexpr Index kColumnsAtOnce = 1024;            // so many share the derivatives of the simulation
+constexpr Index kColumnsAtOnce = 512;             // so many share the derivatives of the simulation
 
-// Candidates with columns, together.
-void ScoreTogether(const Fit& fit, std::span<const Candidate> candidates,
-                   std::vector<Score>& scores) {
+// One that relaxes parameters, or candidates with columns together.
+std::vector<Score> ScoreTogether(const Fit& fit, std::span<const Candidate> candidates) {
+  if (const Candidate& first = candidates.front(); first.cause->relaxes) {
+    return {ScoreFrom(first, fit.ProjectParameters(first))};
+  }
   const auto disturb = [&](const simulation::Trace& trace) {
     std::vector<Disturbance> all;
     for (const Candidate& each : candidates) {
@@ -37,9 +42,11 @@ void ScoreTogether(const Fit& fit, std::span<const Candidate> candidates,
   groups.reserve(candidates.size());
   for (const Candidate& each : candidates) groups.push_back(each.cause->coefficients());
   const std::vector<Fit::Projection> projections = fit.Project(disturb, groups);
+  std::vector<Score> scores;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     scores.push_back(ScoreFrom(candidates[i], projections[i]));
   }
+  return scores;
 }
 
 }  // namespace
@@ -102,23 +109,23 @@ Score ScoreFrom(Candidate candidate, const Fit::Projection& projection) {
 }
 
 std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candidates) {
+  std::vector<std::span<const Candidate>> parts;
+  for (auto rest = std::span(candidates); !rest.empty();) {
+    std::size_t count = 1;
+    Index columns = rest.front().cause->coefficients();
+    for (; !rest.front().cause->relaxes && count < rest.size(); ++count) {
+      if (rest[count].cause->relaxes || columns >= kColumnsAtOnce) break;
+      columns += rest[count].cause->coefficients();
+    }
+    parts.push_back(rest.first(count));
+    rest = rest.subspan(count);
+  }
+  std::vector<std::vector<Score>> of_parts(parts.size());
+  tbb::parallel_for(std::size_t{0}, parts.size(),
+                    [&](std::size_t i) { of_parts[i] = ScoreTogether(fit, parts[i]); });
   std::vector<Score> scores;
   scores.reserve(candidates.size());
-  for (std::size_t first = 0; first < candidates.size();) {
-    if (candidates[first].cause->relaxes) {
-      scores.push_back(ScoreFrom(candidates[first], fit.ProjectParameters(candidates[first])));
-      ++first;
-      continue;
-    }
-    std::size_t last = first;
-    Index columns = 0;
-    for (; last < candidates.size() && !candidates[last].cause->relaxes && columns < kColumnsAtOnce;
-         ++last) {
-      columns += candidates[last].cause->coefficients();
-    }
-    ScoreTogether(fit, std::span(candidates).subspan(first, last - first), scores);
-    first = last;
-  }
+  for (auto& part : of_parts) std::move(part.begin(), part.end(), std::back_inserter(scores));
   return scores;
 }
 

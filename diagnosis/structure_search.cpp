@@ -1,11 +1,15 @@
 #include "diagnosis/structure_search.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <numbers>
 #include <tuple>
 #include <utility>
@@ -69,17 +73,19 @@ Found Explained(Structure structure, const Fit::Projection& projection) {
 
 namespace {
 
-// Functions of the rows of runs, made once for all channels that are asked of them.
+// Functions of the rows of runs, made once for all channels that are asked of them. Lines and
+// intervals are each channel's own. Safe to share between threads.
 class SharedFunctions {
  public:
   explicit SharedFunctions(const Fit& fit) : fit_(fit) {}
 
+  static bool Has(const Structure& structure) {
+    using Form = Structure::Form;
+    return structure.form != Form::kLine && structure.form != Form::kInterval;
+  }
+
   // One row for each term; no rows: the run does not have the variable.
   const MatrixXd& Of(std::size_t run, const Structure& structure) {
-    using Form = Structure::Form;
-    if (structure.form == Form::kLine || structure.form == Form::kInterval) {
-      return own_ = structure.FunctionsOf(fit_.TraceOf(run));
-    }
     const Key key{run,
                   structure.variable,
                   structure.range.first,
@@ -89,18 +95,25 @@ class SharedFunctions {
                   structure.terms,
                   structure.from,
                   structure.is_rough};
-    const auto found = known_.find(key);
-    if (found != known_.end()) return found->second;
-    return known_.emplace(key, structure.FunctionsOf(fit_.TraceOf(run))).first->second;
+    if (const MatrixXd* known = Known(key)) return *known;
+    MatrixXd functions = structure.FunctionsOf(fit_.TraceOf(run));
+    const std::lock_guard lock(mutex_);
+    return known_.try_emplace(key, std::move(functions)).first->second;
   }
 
  private:
   using Key =
       std::tuple<std::size_t, std::string, double, double, double, double, Index, Index, bool>;
 
+  const MatrixXd* Known(const Key& key) {
+    const std::lock_guard lock(mutex_);
+    const auto found = known_.find(key);
+    return found == known_.end() ? nullptr : &found->second;
+  }
+
   const Fit& fit_;
+  std::mutex mutex_;
   std::map<Key, MatrixXd> known_;
-  MatrixXd own_;
 };
 
 // Structures of one channel, which share its stage.
@@ -121,7 +134,10 @@ std::vector<Found> Ask(const Fit& fit, const std::vector<Structure>& structures,
     functions[run] = MatrixXd::Zero(columns, trace.rows());
     Index first = 0;
     for (std::size_t s = 0; s < structures.size(); ++s) {
-      const MatrixXd& own = shared.Of(run, structures[s]);
+      MatrixXd made;
+      const MatrixXd& own = SharedFunctions::Has(structures[s])
+                                ? shared.Of(run, structures[s])
+                                : (made = structures[s].FunctionsOf(trace));
       if (own.rows() > 0) functions[run].middleRows(first, own.rows()) = own;
       first += groups[s];
     }
@@ -180,8 +196,10 @@ Scan ScanOf(const Fit& fit, const std::string& variable, const std::vector<Stage
 
 // The strongest line and the strongest interval of each channel, to be asked as they should be.
 // Channels of one kind of run share range and waves.
-void AddStrongest(const Fit& fit, const simulation::Scene& scene, const std::string& variable,
-                  const ScoresByRun& scores, std::vector<std::vector<Structure>>& of_channel) {
+std::vector<std::vector<Structure>> StrongestOf(
+    const Fit& fit, const simulation::Scene& scene, const std::string& variable,
+    const ScoresByRun& scores, const std::vector<std::vector<Structure>>& of_channel) {
+  std::vector<std::vector<Structure>> strongest(of_channel.size());
   for (const Instrument instrument : {kFeltByProbes, kFeltByLinkage, kFeltAtRim}) {
     std::vector<StageChannel> channels;
     std::vector<std::size_t> places;
@@ -201,22 +219,37 @@ void AddStrongest(const Fit& fit, const simulation::Scene& scene, const std::str
         StrongestWaves(scan, 2.0 * std::numbers::pi * kOfAWave / range.Length());
     const std::vector<Interval> intervals = StrongestIntervals(scan);
     for (std::size_t c = 0; c < channels.size(); ++c) {
-      auto& searched = of_channel[places[c]];
-      const StageChannel channel = searched.front().channel;
+      const StageChannel& channel = of_channel[places[c]].front().channel;
       if (waves[c] > 0.0) {
-        searched.push_back({.channel = channel,
-                            .variable = variable,
-                            .range = range,
-                            .form = Structure::Form::kLine,
-                            .wave = waves[c]});
+        strongest[places[c]].push_back({.channel = channel,
+                                        .variable = variable,
+                                        .range = range,
+                                        .form = Structure::Form::kLine,
+                                        .wave = waves[c]});
       }
       if (!intervals[c].IsEmpty()) {
-        searched.push_back({.channel = channel,
-                            .variable = variable,
-                            .range = range,
-                            .form = Structure::Form::kInterval,
-                            .interval = intervals[c]});
+        strongest[places[c]].push_back({.channel = channel,
+                                        .variable = variable,
+                                        .range = range,
+                                        .form = Structure::Form::kInterval,
+                                        .interval = intervals[c]});
       }
+    }
+  }
+  return strongest;
+}
+
+void AddStrongest(const Fit& fit, const simulation::Scene& scene,
+                  std::vector<std::vector<Structure>>& of_channel) {
+  const ScoresByRun scores = ScoresOf(fit, of_channel);
+  const std::vector<std::string> variables = PeriodicVariablesOf(scene);
+  std::vector<std::vector<std::vector<Structure>>> of_variable(variables.size());
+  tbb::parallel_for(std::size_t{0}, variables.size(), [&](std::size_t v) {
+    of_variable[v] = StrongestOf(fit, scene, variables[v], scores, of_channel);
+  });
+  for (const auto& strongest : of_variable) {
+    for (std::size_t c = 0; c < of_channel.size(); ++c) {
+      of_channel[c].insert(of_channel[c].end(), strongest[c].begin(), strongest[c].end());
     }
   }
 }
@@ -337,15 +370,13 @@ std::vector<Found> FindStructures(const Fit& fit) {
     }
     if (!structures.empty()) of_channel.push_back(std::move(structures));
   }
-  const ScoresByRun scores = ScoresOf(fit, of_channel);
-  for (const std::string& variable : PeriodicVariablesOf(scene)) {
-    AddStrongest(fit, scene, variable, scores, of_channel);
-  }
+  AddStrongest(fit, scene, of_channel);
   SharedFunctions shared(fit);
+  std::vector<std::vector<Found>> found(of_channel.size());
+  tbb::parallel_for(std::size_t{0}, of_channel.size(),
+                    [&](std::size_t c) { found[c] = Ask(fit, of_channel[c], shared); });
   std::vector<Found> all;
-  for (const auto& structures : of_channel) {
-    for (Found& found : Ask(fit, structures, shared)) all.push_back(std::move(found));
-  }
+  for (auto& of_one : found) std::move(of_one.begin(), of_one.end(), std::back_inserter(all));
   std::sort(all.begin(), all.end(),
             [](const Found& a, const Found& b) { return a.log_probability < b.log_probability; });
   return all;

@@ -30,9 +30,10 @@ Score WithoutNuisance(const Score& all, const std::vector<int>& kept,
   Score left{all.information(kept, kept), all.score(kept)};
   if (nuisance.empty()) return left;
   const MatrixXd cross = all.information(nuisance, kept);
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> inner(all.information(nuisance, nuisance));
-  left.information -= cross.transpose() * inner.solve(cross);
-  left.score -= cross.transpose() * inner.solve(VectorXd(all.score(nuisance)));
+  const MatrixXd inner = all.information(nuisance, nuisance);
+  const MatrixXd taken = inner.completeOrthogonalDecomposition().solve(cross);
+  left.information -= cross.transpose() * taken;
+  left.score -= taken.transpose() * all.score(nuisance);
   return left;
 }
 
