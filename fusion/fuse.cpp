@@ -151,6 +151,7 @@ class FuseJob {
                     .machine = ColumnsOf(layout.names, model_.Blocks()),
                     .form = {},
                     .form_stated = 0.0,
+                    .form_known_to = 1.0,
                     .form_times = form_,
                     .values = ValuesFound(now.fit, model_.Blocks()),
                     .form_values = {}};
@@ -158,6 +159,7 @@ class FuseJob {
       runs.runs.push_back(now.at.sources[r]);
       runs.rows.push_back(now.problem.sources()[r].rows);
       runs.form_stated = std::max(runs.form_stated, runs_[r].form_stated);
+      runs.form_known_to = std::max(runs.form_known_to, runs_[r].form_known_to);
     }
     std::copy_if(now.fit.blocks.begin(), now.fit.blocks.end(), std::back_inserter(forms), IsForm);
     runs.form = ColumnsOf(layout.names, forms);
@@ -170,7 +172,7 @@ class FuseJob {
     population_ = seen.population;
     theta_ = std::move(seen.theta);
     noise_ = std::move(seen.noise);
-    if (seen.form != form_) noise = true;
+    if (std::abs(std::log(seen.form / form_)) > kNoiseSettled) noise = true;
     form_ = seen.form;
     for (SimulatedRun& run : runs_) SetForm(form_, run);
     statements_ = std::move(seen.statements);

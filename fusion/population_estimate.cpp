@@ -1,9 +1,11 @@
 #include "fusion/population_estimate.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "failure/interruption.h"
 #include "fusion/population_evidence.h"
@@ -16,9 +18,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Form of the target, times what the file states.
-constexpr std::array kForms{1.0, 1.41, 2.0, 2.83, 4.0, 5.66};
-constexpr double kFormSize = 0.7;  // standard deviation of its logarithm
+// Of the logarithm of the form of the target over what the file states.
+constexpr std::array kFormSteps{0.5, 0.12};
+constexpr double kMostForm = 2.5;
+constexpr double kImpossible = -1e30;  // a logarithm of which rounding leaves nothing
+constexpr double kSettled = 0.03;      // the same, and of noise
 constexpr int kRounds = 4;
 constexpr double kRowsOfPrior = 20.0;  // n
 constexpr double kNoiseSeen = 4.0;     // standard deviations
@@ -102,24 +106,35 @@ class Estimate {
 
   // False where nothing changes.
   bool SetForm() {
-    if (runs_.form.empty()) return false;
-    const double before = form_;
-    double best = -std::numeric_limits<double>::infinity(), chosen = form_;
-    double as_stated = 0.0;
-    for (const double k : kForms) {
-      form_ = k;
+    if (runs_.form.empty() || runs_.form_known_to == 1.0) return false;
+    const double before = form_, known_to = std::log(runs_.form_known_to);
+    const auto log_at = [&](double log_form) {
+      form_ = std::exp(log_form);
       of_machine_ = OfMachine();
       const double log = of_machine_.log + evidence_.At(of_machine_, theta_).log;
-      if (k == kForms.front()) as_stated = log;
-      const double with_prior = log - 0.5 * std::pow(std::log(k) / kFormSize, 2);
-      if (with_prior <= best) continue;
-      best = with_prior;
-      chosen = k;
-      form_gain_ = log - as_stated;
+      return (std::isfinite(log) ? log : kImpossible) - 0.5 * std::pow(log_form / known_to, 2);
+    };
+    log_form_ = std::log(before);
+    for (const double step : kFormSteps) {
+      double below = log_at(log_form_ - step), here = log_at(log_form_),
+             above = log_at(log_form_ + step);
+      while (above > here && log_form_ < kMostForm) {
+        log_form_ += step;
+        below = std::exchange(here, std::exchange(above, log_at(log_form_ + step)));
+      }
+      while (below > here && log_form_ > -kMostForm) {
+        log_form_ -= step;
+        above = std::exchange(here, std::exchange(below, log_at(log_form_ - step)));
+      }
+      // The parabola through the three.
+      const double bend = std::max(2.0 * here - above - below, 1e-9);
+      log_form_ += std::clamp(0.5 * step * (above - below) / bend, -step, step);
+      form_variance_ = std::min(step * step / bend, known_to * known_to);
     }
-    form_ = chosen;
+    // The root mean square of what it may be.
+    form_ = std::exp(log_form_ + form_variance_);
     of_machine_ = OfMachine();
-    return form_ != before;
+    return std::abs(std::log(form_ / before)) > kSettled;
   }
 
   // False where nothing changes.
@@ -154,7 +169,7 @@ class Estimate {
                             (std::max(redundancy, 0.0) + kRowsOfPrior);
       const double off_one = (square - 1.0) * std::sqrt((redundancy + kRowsOfPrior) / 2.0);
       const double set = std::abs(off_one) > kNoiseSeen ? std::sqrt(square) : 1.0;
-      changed = changed || std::abs(std::log(set / noise_[r])) > 0.03;
+      changed = changed || std::abs(std::log(set / noise_[r])) > kSettled;
       noise_[r] = set;
     }
     return changed;
@@ -162,13 +177,12 @@ class Estimate {
 
   std::vector<Statement> Statements() const {
     std::vector<Statement> statements = evidence_.Statements(highest_);
-    if (!runs_.form.empty()) {
-      const double off = std::log(form_);
+    if (form_variance_ > 0.0) {
       statements.push_back({.key = "target.form_nm",
                             .unit = 1e-9,
                             .stated = runs_.form_stated,
-                            .seen = form_ * runs_.form_stated,
-                            .u_log = off / std::sqrt(2.0 * std::max(form_gain_, 0.5))});
+                            .seen = std::exp(log_form_) * runs_.form_stated,
+                            .u_log = std::sqrt(form_variance_)});
     }
     return statements;
   }
@@ -177,7 +191,7 @@ class Estimate {
   const LinearRuns& runs_;
   std::vector<double> noise_;
   double form_;
-  double form_gain_ = 0.0;  // of log Z, against the form that is stated
+  double log_form_ = 0.0, form_variance_ = 0.0;  // most probable, and its variance
   VectorXd theta_;
   Quadratic of_machine_;
   PopulationEvidence::Maximum highest_;

@@ -22,8 +22,10 @@
 //
 // from the best of several common lengths. Between the steps the noise of each run is set to what
 // its rows leave: k^2 = (chi-square + n) / (redundancy + n), n = 20, where that differs from 1 by
-// more than four standard deviations. So is the form of the target, k >= 1 times what the file
-// states, over a grid of k with a normal prior of ln k with standard deviation 0.7.
+// more than four standard deviations. The form of the target is k times what the file states, the
+// prior of ln k normal with ln(form_known_to) as standard deviation; its posterior, taken as normal
+// too (mean m, variance v), gives the root mean square exp(m + v): 1.62 where the runs tell nothing
+// of a form that is known to a factor of two (probes/sweep_uncertainty.h).
 // Units: SI. Shapes: theta: a size and a length of each function, then squareness and scale.
 // Failure: none.
 // Source: Rasmussen and Williams (2006), 5.4; Bates et al., "Fitting linear mixed-effects models"
@@ -44,7 +46,7 @@ struct PopulationEstimate {
   Eigen::VectorXd theta;
   ErrorPopulation population;
   std::vector<double> noise;  // of each run
-  double form = 1.0;          // of the target, over what is stated; at least 1
+  double form = 1.0;          // of the target, over what is stated
   std::vector<Statement> statements;
   // By how much the functions and squarenesses move with theta: columns that are independent of
   // each other, of one standard deviation.
@@ -61,7 +63,7 @@ struct LinearRuns {
   double squareness;                    // rad: standard deviation in `prior`
   std::vector<int> machine;             // columns of the functions and the squarenesses
   std::vector<int> form;                // columns of the form of the target: target_form.h
-  double form_stated;                   // m
+  double form_stated, form_known_to;    // m; a factor
   double form_times;                    // over what is stated, in their prior
   Eigen::VectorXd values, form_values;  // of these, at x
 };

@@ -85,7 +85,7 @@ struct SimulatedRun {
   // With the form of the target beside the noise, which else contains as much of it as the machine
   // file states (target.form_nm). Empty: none is stated, or the run has it apart.
   std::function<FormApart()> form_apart = {};
-  double form_stated = 0.0;  // m
+  double form_stated = 0.0, form_known_to = 1.0;  // m; a factor
   // The same run with the noise of two channels exchanged: noise belongs to the sensor, not to the
   // name of its channel. Empty: all channels have one noise.
   std::function<SimulatedRun(std::size_t one, std::size_t other)> noise_exchanged = {};

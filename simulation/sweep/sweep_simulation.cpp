@@ -349,6 +349,7 @@ SimulatedRun SimulateSweep(const machine::VolumetricModel& model, const Vector3d
   if (!form.blocks.empty()) {
     simulated.form_apart = [=] { return residual->Apart(instrument, form); };
     simulated.form_stated = instrument.target.form;
+    simulated.form_known_to = instrument.target.form_known_to;
   }
   return simulated;
 }
