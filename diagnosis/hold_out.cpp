@@ -47,6 +47,15 @@ std::map<const Recording*, bool> WholeRuns(const std::vector<Recording>& recordi
   return whole;
 }
 
+// Whether a fit has all parameters of a run. It lacks those of the readings within stays where only
+// the held-out half of a sweep scatters in them.
+bool Knows(const Fit& fit, const PreparedRun& run) {
+  return std::ranges::all_of(run.simulated.blocks, [&](const auto& block) {
+    return std::ranges::find(fit.result().blocks, block.name, &estimation::ParameterBlock::name) !=
+           fit.result().blocks.end();
+  });
+}
+
 // The simulation of a run at the solution of another fit.
 VectorXd ResidualAt(const Fit& fit, const PreparedRun& run) {
   const VectorXd x = fusion::ValuesFound(fit.result(), run.simulated.blocks);
@@ -68,6 +77,7 @@ Left LeftOf(const Campaign& held, const Fit& fit) {
   double sum = 0.0, in_space = 0.0;
   Left left;
   for (const PreparedRun& run : held.runs()) {
+    if (!Knows(fit, run)) continue;
     const VectorXd residual = ResidualAt(fit, run);
     sum += residual.squaredNorm() * run.excess * run.excess;
     left.rows += residual.size();
