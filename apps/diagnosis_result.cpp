@@ -44,16 +44,14 @@ std::vector<NamedValue> ParametersOf(const Score& score) {
   return values;
 }
 
-// The frequency, period or order of a wave, in the unit of its key.
+// The frequency, period or order of a wave, the instant of an event, in the unit of its key.
 NamedValue ShapeOf(const Score& score) {
-  const auto& keys = score.candidate.cause->keys;
-  const auto shape = std::ranges::find_if(keys, [](const auto& key) {
-    return key.name == "frequency_hz" || key.name == "pitch_mm" || key.name == "order";
-  });
-  return {shape->name, score.candidate.shape[0] / shape->unit, 0.0};
+  const simulation::Cause& cause = *score.candidate.cause;
+  const simulation::CauseKey& key = cause.keys[cause.KeyOfShape().value()];
+  return {key.name, score.candidate.shape[0] / key.unit, 0.0};
 }
 
-// All waves that the runs show alike, by rising values.
+// All shapes that the runs show alike, by rising values.
 std::vector<NamedValue> OneOf(const Finding& finding) {
   std::vector<NamedValue> values;
   for (const Score& score : finding.score.one_of) values.push_back(ShapeOf(score));

@@ -81,9 +81,15 @@ bool AreOutliersOfSeveral(const Finding& finding, const std::vector<Finding>& fi
   return are(finding) && std::ranges::count_if(findings, are) > 1;
 }
 
-// What would tell waves apart that the sampling shows alike.
+// What would tell waves, or instants, apart that the sampling shows alike.
 std::string OneOfThese(const Score& score) {
   const simulation::Cause& cause = *score.candidate.cause;
+  if (cause.one_event) {
+    return fmt::format(
+        "the recordings show {} instants of its kind alike; a run without a pause "
+        "tells which it is, should it come again",
+        score.one_of.size());
+  }
   const auto slower = [](const Score& a, const Score& b) {
     return a.candidate.shape[0] < b.candidate.shape[0];
   };

@@ -79,6 +79,15 @@ VectorXd Cause::ValuesOf(const VectorXd& found, const VectorXd& shape) const {
   return values;
 }
 
+std::optional<std::size_t> Cause::KeyOfShape() const {
+  constexpr double kMark = 42.0;
+  if (!shapes || FollowsItsSize() || IsRandomField()) return {};
+  const VectorXd values = ValuesOf(VectorXd::Zero(coefficients()), VectorXd::Constant(1, kMark));
+  const auto at = std::find(values.begin(), values.end(), kMark);
+  if (at == values.end()) return {};
+  return at - values.begin();
+}
+
 Recalled Cause::RecallFrom(const VectorXd& values) const {
   if (IsBinary()) return {VectorXd::Ones(1), {}};
   if (FollowsItsSize()) return {values, values};

@@ -159,6 +159,8 @@ struct Cause {
   Eigen::VectorXd ValuesOf(const Eigen::VectorXd& found, const Eigen::VectorXd& shape) const;
   // The way back.
   Recalled RecallFrom(const Eigen::VectorXd& values) const;
+  // The key that is the shape: a frequency, a period, an instant, ...; none: no key is.
+  std::optional<std::size_t> KeyOfShape() const;
   // Who deals with it at this object.
   CorrectedBy CorrectedAt(const Object& object) const;
 };

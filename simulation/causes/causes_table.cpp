@@ -2,23 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <optional>
 
 #include "settings/unit.h"
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
 namespace {
-
-// The key that is the shape; npos: none.
-std::size_t KeyOfShape(const Cause& cause) {
-  constexpr double kMark = 42.0;
-  if (!cause.shapes || cause.FollowsItsSize() || cause.IsRandomField()) return std::string::npos;
-  const Eigen::VectorXd values = cause.ValuesOf(Eigen::VectorXd::Zero(cause.coefficients()),
-                                                Eigen::VectorXd::Constant(1, kMark));
-  const auto at = std::find(values.begin(), values.end(), kMark);
-  return at == values.end() ? std::string::npos : at - values.begin();
-}
 
 // With two digits.
 std::string Rounded(double value) {
@@ -38,7 +28,7 @@ std::string RangeText(const Cause& cause, double unit) {
 
 std::string KeysText(const Cause& cause) {
   std::string text;
-  const std::size_t shape = KeyOfShape(cause);
+  const std::optional<std::size_t> shape = cause.KeyOfShape();
   for (std::size_t i = 0; i < cause.keys.size(); ++i) {
     const CauseKey& key = cause.keys[i];
     if (!text.empty()) text += ", ";

@@ -191,6 +191,17 @@ TEST(Causes, WhatIsToldCanBeRecalled) {
   }
 }
 
+// Of those of which several may fit alike (diagnosis/alias_group.h): they are told by that key.
+TEST(Causes, ShapesThatOthersMayLookLikeAreKeys) {
+  for (const Cause& cause : Causes()) {
+    const bool tried = cause.shapes && cause.fixed_shapes && !cause.IsRandomField();
+    if (cause.wave || tried) EXPECT_TRUE(cause.KeyOfShape()) << cause.id;
+  }
+  const Cause& slip = CauseNamed("encoder-count-slip");
+  EXPECT_EQ(slip.keys.at(slip.KeyOfShape().value()).name, "time_s");
+  EXPECT_FALSE(CauseNamed("backlash").KeyOfShape());
+}
+
 TEST(Causes, APlausibleSizeIsInTheRangeOfItsKeys) {
   const Trace trace = ToAndFro();
   const Scene scene{{&trace}, Eigen::Vector3d::Constant(0.06)};
