@@ -62,7 +62,8 @@ TEST(Administration, NamesEveryKeyThatIsMissing) {
        {"manufacturer = \"Maker\"\n", "certificate.item.manufacturer"},
        {"serial = \"4711\"\n", "certificate.item.serial"}}};
   for (const auto& [line, key] : kLines) {
-    const std::string message = map::MessageOf<InputError>([&] { Read(With(kText, line, "")); });
+    const std::string message =
+        map::MessageOf<InputError>([&, line = line] { Read(With(kText, line, "")); });
     map::ExpectHas(message, "mill.toml");
     map::ExpectHas(message, std::string(key) + ": ");
   }
@@ -83,7 +84,9 @@ TEST(Administration, RefusesValuesThatNoCertificateCanHold) {
         "\"1\"\ncertificate = \"2\"\n",
         "certificate_by"}}};
   for (const auto& [from, to, saying] : kCases) {
-    map::ExpectHas(map::MessageOf<InputError>([&] { Read(With(kText, from, to)); }), saying);
+    map::ExpectHas(
+        map::MessageOf<InputError>([&, from = from, to = to] { Read(With(kText, from, to)); }),
+        saying);
   }
 }
 
