@@ -8,15 +8,9 @@
 #include <cstring>
 
 #include "failure/failure.h"
+#include "failure/sanitized.h"
 
-#if defined(__SANITIZE_ADDRESS__)
-#define ABBE_COUNTS_ALLOCATIONS
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define ABBE_COUNTS_ALLOCATIONS
-#endif
-#endif
-#ifdef ABBE_COUNTS_ALLOCATIONS
+#if ABBE_ADDRESS_SANITIZER
 // Of the sanitizers' runtime; their header does not come with every compiler.
 extern "C" {
 int __sanitizer_install_malloc_and_free_hooks(void (*taken)(const volatile void*, std::size_t),
@@ -40,7 +34,7 @@ std::size_t Allowed(Bytes bytes) { return kAnyway + kPerByte * bytes.size(); }
   std::abort();
 }
 
-#ifdef ABBE_COUNTS_ALLOCATIONS
+#if ABBE_ADDRESS_SANITIZER
 
 std::atomic<std::int64_t> held{0};
 std::atomic<std::int64_t> allowed{INT64_MAX};

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "failure/sanitized.h"
 
 namespace abbe::recording {
 namespace {
@@ -102,9 +103,7 @@ struct Child {
   dup2(nowhere, STDERR_FILENO);  // messages of the C library about a corrupt heap
   Limit(RLIMIT_CORE, 0);
   Limit(RLIMIT_CPU, child.seconds);
-#if !defined(__SANITIZE_ADDRESS__)
-  Limit(RLIMIT_AS, child.memory);
-#endif
+  if (!ABBE_ADDRESS_SANITIZER) Limit(RLIMIT_AS, child.memory);
   const Hdf5Sender sender(child.pipe[1]);
   try {
     child.read(sender);
