@@ -5,8 +5,10 @@
 //   const auto now = evidence.At(of_machine, theta);
 //   const auto local = evidence.SlopesAt(of_machine, theta, now);
 //
-// theta: logarithms over what the machine file says; of each function its size, then its length;
-// then of the squarenesses and of the slopes of the positioning errors. Units: SI. Failure: none.
+// theta: logarithms over what the machine file says.
+// Units: SI. Shapes: theta: of each function its size, then its length; then of the squarenesses
+// and of the slopes of the positioning errors. Failure: none.
+// Source: Rasmussen and Williams (2006), 5.4.
 #pragma once
 
 #include <Eigen/Core>
