@@ -131,8 +131,8 @@ class Estimate {
       log_form_ += std::clamp(0.5 * step * (above - below) / bend, -step, step);
       form_variance_ = std::min(step * step / bend, known_to * known_to);
     }
-    // The root mean square of what it may be.
-    form_ = std::exp(log_form_ + form_variance_);
+    // The root mean square of what it may be, and no less than the file states.
+    form_ = std::exp(std::max(log_form_ + form_variance_, 0.0));
     of_machine_ = OfMachine();
     return std::abs(std::log(form_ / before)) > kSettled;
   }
@@ -181,7 +181,7 @@ class Estimate {
       statements.push_back({.key = "target.form_nm",
                             .unit = 1e-9,
                             .stated = runs_.form_stated,
-                            .seen = std::exp(log_form_) * runs_.form_stated,
+                            .seen = std::exp(std::max(log_form_, 0.0)) * runs_.form_stated,
                             .u_log = std::sqrt(form_variance_)});
     }
     return statements;

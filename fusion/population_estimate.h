@@ -24,8 +24,8 @@
 // its rows leave: k^2 = (chi-square + n) / (redundancy + n), n = 20, where that differs from 1 by
 // more than four standard deviations. The form of the target is k times what the file states, the
 // prior of ln k normal with ln(form_known_to) as standard deviation; its posterior, taken as normal
-// too (mean m, variance v), gives the root mean square exp(m + v): 1.62 where the runs tell nothing
-// of a form that is known to a factor of two (probes/sweep_uncertainty.h).
+// too (mean m, variance v), gives the root mean square exp(m + v), but no less than 1: 1.62 where
+// the runs tell nothing of a form that is known to a factor of two (probes/sweep_uncertainty.h).
 // Units: SI. Shapes: theta: a size and a length of each function, then squareness and scale.
 // Failure: none.
 // Source: Rasmussen and Williams (2006), 5.4; Bates et al., "Fitting linear mixed-effects models"
@@ -46,7 +46,7 @@ struct PopulationEstimate {
   Eigen::VectorXd theta;
   ErrorPopulation population;
   std::vector<double> noise;  // of each run
-  double form = 1.0;          // of the target, over what is stated
+  double form = 1.0;          // of the target, over what is stated; at least 1
   std::vector<Statement> statements;
   // By how much the functions and squarenesses move with theta: columns that are independent of
   // each other, of one standard deviation.
