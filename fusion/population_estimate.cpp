@@ -18,7 +18,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of the logarithm of the form of the target over what the file states.
+// Steps and bound of the search for ln k, the form of the target over what the file states.
 constexpr std::array kFormSteps{0.5, 0.12};
 constexpr double kMostForm = 2.5;
 constexpr double kImpossible = -1e30;  // a logarithm of which rounding leaves nothing

@@ -51,7 +51,6 @@ TOOL_TABLE = tool.tbl
 """ + joints(LIMITS, of_joint=lambda axis: f"COMP_FILE = m_{axis.lower()}.comp\nCOMP_FILE_TYPE = 0\n")
 
 
-
 class Simulator(contextlib.AbstractContextManager):
     """LinuxCNC without display or real-time kernel in `folder`."""
 

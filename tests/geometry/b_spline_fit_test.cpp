@@ -44,8 +44,7 @@ double Simpson(const F& f) {
 }
 
 TEST(BSplineFit, RecoversASplineFromItsValues) {
-  Eigen::VectorXd c(10);
-  c << 1, -2, 3, 0.5, 0, 2, -1, -1, 4, 2;
+  const Eigen::VectorXd c{{1, -2, 3, 0.5, 0, 2, -1, -1, 4, 2}};
   const BSpline truth(kBasis, c);
   Points points = Stations();
   for (int k = 0; k < 61; ++k) points.y[k] = truth.Value(points.x[k]);
@@ -88,8 +87,7 @@ TEST(BSplineFit, StandardUncertaintyIsTheSpreadOverTheRedundancy) {
 }
 
 TEST(BSplineFit, SmoothnessMatrixIsTheIntegralOfTheSquaredSecondDerivative) {
-  Eigen::VectorXd c(10);
-  c << 1, -2, 3, 0.5, 0, 2, -1, -1, 4, 2;
+  const Eigen::VectorXd c{{1, -2, 3, 0.5, 0, 2, -1, -1, 4, 2}};
   const BSpline spline(kBasis, c);
   const double oracle = Simpson([&](double x) { return std::pow(spline.Value(x, 2), 2); });
   // s'' has kinks inside Simpson's panels: relative error below (panel / span)^2.

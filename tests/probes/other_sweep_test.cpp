@@ -70,8 +70,7 @@ struct Found {
 class Sweeps {
  public:
   Sweeps()
-      : document_(
-            settings::Document::Read(std::string(ABBE_SOURCE_DIR) + "/machines/demo_mill.toml")),
+      : document_(settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml")),
         channels_(rig::ChannelsOf(hal::ReadDevices(document_.Root().Child("devices")))) {}
 
   // With a head and a target without errors: nothing but noise.

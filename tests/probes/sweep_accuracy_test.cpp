@@ -44,8 +44,7 @@ class Campaign {
  public:
   Campaign(int axis, Head head)
       : axis_(axis),
-        document_(
-            settings::Document::Read(std::string(ABBE_SOURCE_DIR) + "/machines/demo_mill.toml")),
+        document_(settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml")),
         devices_(hal::ReadDevices(document_.Root().Child("devices"))),
         setup_(ReadSweepSetup(document_.Root())),
         rig_(rig::ReadRigSettings(document_.Root())) {

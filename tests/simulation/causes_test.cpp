@@ -191,7 +191,8 @@ TEST(Causes, WhatIsToldCanBeRecalled) {
   }
 }
 
-// Of those of which several may fit alike (diagnosis/alias_group.h): they are told by that key.
+// Several shapes of such a cause may fit alike; the text names each by the value of that key
+// (diagnosis/alias_group.h).
 TEST(Causes, ShapesThatOthersMayLookLikeAreKeys) {
   for (const Cause& cause : Causes()) {
     const bool tried = cause.shapes && cause.fixed_shapes && !cause.IsRandomField();
