@@ -75,7 +75,8 @@ class Fit {
                                          const std::vector<Eigen::MatrixXd>& functions,
                                          const std::vector<Eigen::Index>& groups) const;
   // For many functions f of the rows of one stage in one run: their score is scores * f', and their
-  // information at most weights * f^2'. Empty where the run does not tell.
+  // information weights * f^2' where the noise of the rows is independent, all unknowns known. Empty
+  // where the run does not tell.
   struct RowScores {
     Eigen::RowVectorXd scores, weights;
   };
@@ -110,11 +111,6 @@ class Fit {
   // [C'J C'r] of one run.
   Eigen::MatrixXd Against(const RunRows& run,
                           const std::vector<simulation::Disturbance>& disturbances) const;
-  // Whether functions of a stage have all the information that they can have, since no two rows
-  // share noise.
-  static bool RowsAreIndependent(const RunRows& run, Eigen::Index stage,
-                                 const Eigen::RowVectorXd& weights,
-                                 const Eigen::MatrixXd& functions);
   // Whitened, a column for each function.
   static Eigen::MatrixXd InStage(const RunRows& run, Eigen::Index stage,
                                  const Eigen::MatrixXd& functions);

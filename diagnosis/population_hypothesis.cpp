@@ -24,6 +24,7 @@ using fusion::PopulationEvidence;
 constexpr double kWorthASearch = 10.0;  // logarithm of the likelihood
 constexpr double kAsBefore = 5.0;       // the same
 constexpr int kFinerKnots = 3;
+constexpr int kRounds = 3;  // sizes that follow the others settle sooner
 
 double LogDeterminant(const MatrixXd& positive) {
   return 2.0 * positive.llt().matrixLLT().diagonal().array().log().sum();
@@ -67,17 +68,27 @@ class Population {
     const fusion::Quadratic of_machine = fit.OfMachine();
     const double before = evidence.At(of_machine, theta_).log;
     const Index free = evidence.of_functions();
-    const auto highest = evidence.Maximise(of_machine, theta_, free);
-    theta_ = highest.theta;
+    const Index others = theta_.size() - free;
+    const MatrixXd pi = evidence.precision();
+    const MatrixXd following = -pi.bottomRightCorner(others, others)
+                                    .ldlt()
+                                    .solve(MatrixXd(pi.bottomLeftCorner(others, free)));
+    PopulationEvidence::Maximum highest;
+    for (int round = 0; round < kRounds; ++round) {
+      highest = evidence.Maximise(of_machine, theta_, free);
+      theta_ = highest.theta;
+      theta_.tail(others) = following * theta_.head(free);
+    }
     population_ = evidence.PopulationAt(theta_);
     SetLines(evidence);
-    const MatrixXd pi = evidence.precision().topLeftCorner(free, free);
-    const MatrixXd known = pi + highest.local.fisher.topLeftCorner(free, free);
-    const VectorXd at = theta_.head(free);
-    const double of_theta = -0.5 * at.dot(pi * at);
-    prior_ = of_theta + 0.5 * (LogDeterminant(pi) - LogDeterminant(known));
-    gain_ = highest.log - of_theta - evidence.At(of_machine, VectorXd::Zero(theta_.size())).log;
-    return highest.log - before;
+    const MatrixXd of_sizes =
+        pi.topLeftCorner(free, free) + pi.topRightCorner(free, others) * following;
+    const MatrixXd known = of_sizes + highest.local.fisher.topLeftCorner(free, free);
+    const double now = evidence.At(of_machine, theta_).log,
+                 of_theta = -0.5 * theta_.dot(pi * theta_);
+    prior_ = of_theta + 0.5 * (LogDeterminant(of_sizes) - LogDeterminant(known));
+    gain_ = now - of_theta - evidence.At(of_machine, VectorXd::Zero(theta_.size())).log;
+    return now - before;
   }
 
   // On knots that are close enough, without causes; the campaign is made then.

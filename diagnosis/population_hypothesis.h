@@ -12,8 +12,8 @@
 // beside its causes they are more probable than the stated ones by kWorthASearch. A search by them
 // is repeated once with the sizes and lengths that its causes leave. The answer with the larger
 // worth stands, sizes and lengths counted with their prior probability and their own uncertainty
-// (Laplace). Squarenesses and slopes of the positioning errors keep the sizes of the file: causes
-// widen these.
+// (Laplace). Causes widen squarenesses and slopes of the positioning errors, so the runs are not
+// asked for their sizes; these follow the others as far as sizes of one machine go together.
 // Units: SI. Failure: that of Fit.
 // Source: docs/theory-diagnosis.md.
 #pragma once

@@ -36,6 +36,65 @@ void AddBlocks(const MatrixXd& C, const std::vector<Index>& which,
   }
 }
 
+// Functions of the rows of a run without those that say nothing new: what goes by a variable that
+// stands still in the run is a constant, and all constants are one function.
+class DistinctFunctions {
+ public:
+  struct Group {
+    Index first;              // of the functions given
+    std::vector<Index> rows;  // of functions(); none: zero in this run
+    VectorXd factors;         // of these
+  };
+
+  // `functions`: a row for each, in groups of so many.
+  DistinctFunctions(const MatrixXd& functions, const std::vector<Index>& groups) {
+    std::vector<Index> varying;
+    for (Index first = 0; const Index count : groups) {
+      Group group{first, {}, VectorXd::Ones(count)};
+      const auto own = functions.middleRows(first, count);
+      if (Varies(own)) {
+        for (Index i = 0; i < count; ++i) {
+          group.rows.push_back(std::ssize(varying));
+          varying.push_back(first + i);
+        }
+      } else if (!own.col(0).isZero(0.0)) {
+        group.rows.assign(static_cast<std::size_t>(count), kConstant);
+        group.factors = own.col(0);
+      }
+      groups_.push_back(std::move(group));
+      first += count;
+    }
+    const Index count = std::ssize(varying);
+    bool has_constants = false;
+    for (Group& group : groups_) {
+      for (Index& row : group.rows) {
+        if (row != kConstant) continue;
+        row = count;
+        has_constants = true;
+      }
+    }
+    functions_.resize(count + (has_constants ? 1 : 0), functions.cols());
+    functions_.topRows(count) = functions(varying, Eigen::all);
+    if (has_constants) functions_.bottomRows<1>().setOnes();
+  }
+
+  const MatrixXd& functions() const { return functions_; }
+  const std::vector<Group>& groups() const { return groups_; }
+
+ private:
+  static constexpr Index kConstant = -1;
+
+  static bool Varies(const Eigen::Ref<const MatrixXd>& functions) {
+    for (Index i = 1; i < functions.cols(); ++i) {
+      if (functions.col(i) != functions.col(0)) return true;
+    }
+    return false;
+  }
+
+  std::vector<Group> groups_;
+  MatrixXd functions_;
+};
+
 }  // namespace
 
 std::vector<Fit::Projection> Fit::Finish(const std::vector<MatrixXd>& C_C, const MatrixXd& C_J,
@@ -169,28 +228,24 @@ std::vector<Fit::Projection> Fit::ProjectInStage(Index stage,
     const simulation::Response& response = *run.at.response;
     const Eigen::RowVectorXd weights = response.WeightsOf(stage);
     if (weights.size() == 0 || !(weights.maxCoeff() > 0.0)) continue;
-    const MatrixXd of_stage = response.BackToStage(stage, run.back);
-    const MatrixXd against = functions[r] * of_stage;
-    C_J(Eigen::all, run.columns) += against.leftCols(against.cols() - 1);
-    C_r += against.rightCols<1>();
-    const MatrixXd whitened = RowsAreIndependent(run, stage, weights, functions[r])
-                                  ? MatrixXd(functions[r] * weights.cwiseSqrt().asDiagonal())
-                                  : MatrixXd(InStage(run, stage, functions[r]).transpose());
-    for (Index first = 0; MatrixXd & own : C_C) {
-      const auto part = whitened.middleRows(first, own.rows());
-      own.noalias() += part * part.transpose();
-      first += own.rows();
+    const DistinctFunctions distinct(functions[r], groups);
+    const MatrixXd& own = distinct.functions();
+    if (own.rows() == 0) continue;
+    const MatrixXd against = own * response.BackToStage(stage, run.back);
+    const MatrixXd whitened = response.RowsAreIndependent()
+                                  ? MatrixXd(own * weights.cwiseSqrt().asDiagonal())
+                                  : MatrixXd(InStage(run, stage, own).transpose());
+    for (std::size_t group = 0; group < groups.size(); ++group) {
+      const auto& [first, rows, factors] = distinct.groups()[group];
+      if (rows.empty()) continue;
+      const MatrixXd part = factors.asDiagonal() * whitened(rows, Eigen::all);
+      C_C[group].noalias() += part * part.transpose();
+      const MatrixXd slopes = factors.asDiagonal() * against(rows, Eigen::all);
+      C_J(Eigen::seqN(first, groups[group]), run.columns) += slopes.leftCols(slopes.cols() - 1);
+      C_r.segment(first, groups[group]) += slopes.rightCols<1>();
     }
   }
   return Finish(C_C, C_J, C_r);
-}
-
-bool Fit::RowsAreIndependent(const RunRows& run, Index stage, const Eigen::RowVectorXd& weights,
-                             const MatrixXd& functions) {
-  constexpr double kRounding = 1e-9;
-  const Eigen::RowVectorXd any = functions.colwise().sum();
-  const double most = weights.dot(any.cwiseAbs2());
-  return most - InStage(run, stage, any).squaredNorm() < kRounding * most;
 }
 
 MatrixXd Fit::InStage(const RunRows& run, Index stage, const MatrixXd& functions) {

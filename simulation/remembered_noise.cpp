@@ -72,6 +72,7 @@ class RememberingResponse : public Response {
   Eigen::RowVectorXd WeightsOf(Index stage) const override {
     return run_->WeightsOf(stage).cwiseProduct(noise_->weights().transpose());
   }
+  bool RowsAreIndependent() const override { return false; }
 
  private:
   std::shared_ptr<const Response> run_;

@@ -51,8 +51,10 @@ class Response {
   // with back = BackToReadings(left), `left` whitened, rows of the residual x anything.
   virtual Eigen::MatrixXd BackToReadings(const Eigen::MatrixXd& left) const = 0;
   virtual Eigen::MatrixXd BackToStage(Eigen::Index stage, const Eigen::MatrixXd& back) const = 0;
-  // The information of a disturbance d of one stage is at most WeightsOf(stage) * d^2'.
+  // What each row tells of a disturbance of one stage, all other rows known. Where the noise of the
+  // rows is independent, the information of a disturbance d is WeightsOf(stage) * d^2'.
   virtual Eigen::RowVectorXd WeightsOf(Eigen::Index stage) const = 0;
+  virtual bool RowsAreIndependent() const = 0;
 };
 
 // A residual that also tells what a disturbance of its rows does.

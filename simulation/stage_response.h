@@ -23,6 +23,7 @@ class StageResponse : public Response {
   Eigen::MatrixXd BackToReadings(const Eigen::MatrixXd& left) const override;
   Eigen::MatrixXd BackToStage(Eigen::Index stage, const Eigen::MatrixXd& back) const override;
   Eigen::RowVectorXd WeightsOf(Eigen::Index stage) const override;
+  bool RowsAreIndependent() const override { return true; }
 
  protected:
   const Eigen::MatrixXd& by_stage() const { return by_stage_; }

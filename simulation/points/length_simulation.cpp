@@ -72,6 +72,7 @@ class LengthResponse : public Response {
     }
     return weights;
   }
+  bool RowsAreIndependent() const override { return false; }
 
  private:
   Index Rows() const { return lengths_.size(); }

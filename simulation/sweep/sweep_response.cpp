@@ -84,7 +84,9 @@ FaceNoise FaceNoiseOf(const SweepPlan& plan, const SweepInstrument& instrument,
   for (std::size_t face = 0; face < noise.factors.size(); ++face) {
     const Index first = kFaceBounds[face], count = kFaceBounds[face + 1] - first;
     auto& factor = noise.factors[face];
-    factor.compute(FaceCovariance(plan, instrument, run, first, count));
+    const MatrixXd V = FaceCovariance(plan, instrument, run, first, count);
+    noise.independent = noise.independent && V.isDiagonal(0.0);
+    factor.compute(V);
     if (factor.info() != Eigen::Success) {
       throw InputError(fmt::format(
           "{}: the probes have no noise; state probe_nm in [noise] of the machine file", run.name));

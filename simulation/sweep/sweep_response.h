@@ -20,6 +20,7 @@ namespace abbe::simulation {
 struct FaceNoise {
   std::array<Eigen::LLT<Eigen::MatrixXd>, 2> factors;  // of the covariance of each face
   Eigen::VectorXd weights;                             // diagonal of the inverse
+  bool independent = true;                             // from row to row
 };
 
 FaceNoise FaceNoiseOf(const SweepPlan& plan, const SweepInstrument& instrument,
@@ -47,6 +48,7 @@ class ReadingResponse : public Response {
   Eigen::MatrixXd BackToReadings(const Eigen::MatrixXd& left) const override;
   Eigen::MatrixXd BackToStage(Eigen::Index stage, const Eigen::MatrixXd& back) const override;
   Eigen::RowVectorXd WeightsOf(Eigen::Index stage) const override;
+  bool RowsAreIndependent() const override { return noise_->independent; }
 
  private:
   // By how much a probe changes in each row.
