@@ -180,6 +180,19 @@ void AddConvert(CLI::App& program, int& exit_code) {
   command
       ->add_option("--feed-mm-min", options->ballbar.feed_mm_min, "Ballbars: the programmed feed")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--centre-mm", options->ballbar.centre_mm,
+                   "Ballbars: X,Y,Z of the axes with the tool at the centre ball; needed for a map "
+                   "and a diagnosis")
+      ->delimiter(',')
+      ->expected(3);
+  command->add_option("--ballbar", options->ballbar.ballbar,
+                      "Ballbars: its name; circles of one bar share its length");
+  command
+      ->add_option("--u-length-um", options->ballbar.u_length_um,
+                   "Ballbars: standard uncertainty of its length, where that was calibrated and "
+                   "radii are true lengths")
+      ->check(CLI::PositiveNumber);
   command->add_option("--kind", options->kind, "Tables in CSV: the kind of the recording (linkage)")
       ->default_val("linkage");
   command

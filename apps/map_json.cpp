@@ -64,8 +64,7 @@ ordered_json ErrorsJson(const map::ErrorMap& map) {
   ordered_json json;
   for (int error = 0; error < map::kErrors; ++error) {
     ordered_json& one = json[map::ErrorName(error)] = ErrorJson(map, error);
-    const auto source = map.origin().sources[error];
-    one["from"] = map::kSourceNames[static_cast<std::size_t>(source)];
+    one["from"] = map.origin().SourceOf(error);
   }
   return json;
 }

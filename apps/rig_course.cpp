@@ -7,6 +7,7 @@
 
 #include "failure/failure.h"
 #include "paths/nominal_path.h"
+#include "rig/record_ballbar.h"
 #include "settings/unit.h"
 
 namespace abbe::apps {
@@ -168,8 +169,10 @@ void AddCourseOptions(CLI::App& command, CourseRequest& request) {
 }
 
 void AddRecordingOptions(CLI::App& command, CourseRequest& request) {
-  command.add_option("--kind", request.kind, "Instrument: linkage, or grid encoder (reference)")
-      ->check(CLI::IsMember({"linkage", "reference"}))
+  command
+      .add_option("--kind", request.kind,
+                  "Instrument: linkage, grid encoder (reference), or ballbar")
+      ->check(CLI::IsMember({"linkage", "reference", "ballbar"}))
       ->capture_default_str();
   command.add_flag("--reference", request.reference,
                    "Record the grid encoder too, in the same recording");
@@ -179,13 +182,23 @@ void AddRecordingOptions(CLI::App& command, CourseRequest& request) {
 
 recording::Recording RecordCourse(const rig::LinkageRig& rig, const CourseRequest& request,
                                   double rate, const std::string& started) {
-  return rig.Record(CourseOf(request, rig.world().settings()), {.kind = request.kind,
-                                                                .reference = request.reference,
-                                                                .rate = rate,
-                                                                .cap_force = request.cap_force_n,
-                                                                .run = request.run,
-                                                                .started = started,
-                                                                .keys = KeysOf(request)});
+  const rig::Course course = CourseOf(request, rig.world().settings());
+  const rig::CourseOptions options{.kind = request.kind,
+                                   .reference = request.reference,
+                                   .rate = rate,
+                                   .cap_force = request.cap_force_n,
+                                   .run = request.run,
+                                   .started = started,
+                                   .keys = KeysOf(request)};
+  if (request.kind != "ballbar") return rig.Record(course, options);
+  if (request.course != "circle" || request.reference) {
+    throw InputError("--kind ballbar: a ballbar measures circles, alone; give --course circle");
+  }
+  return rig::RecordBallbar(rig, course,
+                            {.plane = request.plane,
+                             .centre = CentreOf(request, rig.world().settings()),
+                             .radius = RadiusOf(request)},
+                            options);
 }
 
 }  // namespace abbe::apps

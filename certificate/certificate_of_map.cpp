@@ -44,11 +44,9 @@ std::string WordsOf(const map::ErrorMap& map, int error) {
                             : fmt::format("straightness of {} in {}", axes, along);
     }
   }
-  const auto source = map.origin().sources[error];
-  return source == map::Source::kPrior
-             ? what + "; prior only: no run determines it"
-             : fmt::format("{}; determined by: {}", what,
-                           map::kSourceNames[static_cast<std::size_t>(source)]);
+  const auto source = map.origin().SourceOf(error);
+  return source == map::kPriorOnly ? what + "; prior only: no run determines it"
+                                   : fmt::format("{}; determined by: {}", what, source);
 }
 
 std::vector<double> ListOf(const Eigen::VectorXd& values) {

@@ -38,11 +38,6 @@ constexpr double kNoiseSettled = 0.05;  // of its logarithm
 // and knots may be wrong.
 constexpr double kSettled = 1e-4, kFirstLook = 0.03, kTolerated = 3.0;
 
-map::Source SourceOf(const std::string& kind) {
-  const auto found = std::find(map::kSourceNames.begin(), map::kSourceNames.end(), kind);
-  return static_cast<map::Source>(found - map::kSourceNames.begin());
-}
-
 // By how much the disagreement of a run exceeds what its uncertainty and that of the others allow.
 double BirgeRatio(const RunConsistency& run) {
   return std::sqrt(std::max(1.0, run.statistic / static_cast<double>(run.directions)));
@@ -353,7 +348,7 @@ class FuseJob {
     origin.limits = machine_.limits;
     for (std::size_t error = 0; error < seen.functions.size(); ++error) {
       const auto& by = seen.functions[error].determined_by;
-      if (!by.empty()) origin.sources[error] = SourceOf(by.front());
+      if (!by.empty()) origin.sources[error] = by.front();
     }
     return {origin, found, seen.covariance, std::move(state)};
   }

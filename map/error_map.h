@@ -30,10 +30,8 @@
 
 namespace abbe::map {
 
-// The source of an error: the prior, or the kind of run that determines it best.
-enum class Source { kPrior, kSweep, kLinkage, kReference, kPlate, kLength };
-inline constexpr std::array<std::string_view, 6> kSourceNames = {"prior",     "sweep", "linkage",
-                                                                 "reference", "plate", "length"};
+// Of an error that no run determines; else the kind of run that determines it best, "sweep".
+inline constexpr std::string_view kPriorOnly = "prior";
 
 // The 21 errors: 18 motions in the order of machine/error_motion.h, then A0Z, B0Z, C0Y.
 inline constexpr int kErrors = machine::kAxes * machine::kMotions + 3;
@@ -52,7 +50,13 @@ struct MapOrigin {
   // Whether a calibrated length or scale was used; if not, the isotropic scale is that of the
   // prior.
   bool scale_is_calibrated = false;
-  std::array<Source, kErrors> sources = {};
+  // Empty: kPriorOnly.
+  std::array<std::string, kErrors> sources = {};
+
+  std::string_view SourceOf(int error) const {
+    const std::string& source = sources[static_cast<std::size_t>(error)];
+    return source.empty() ? kPriorOnly : std::string_view(source);
+  }
 };
 
 class ErrorMap {

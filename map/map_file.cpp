@@ -33,13 +33,9 @@ std::array<double, 8> SizesOf(const machine::Population& p) {
           p.yaw,         p.squareness,   p.scale, p.smoothness};
 }
 
-std::string_view NameOf(Source source) { return kSourceNames[static_cast<std::size_t>(source)]; }
-
 std::string HeadText(const ErrorMap& map) {
   const MapOrigin& origin = map.origin();
-  const auto of_squareness = [&](int i) {
-    return std::string(NameOf(origin.sources[kErrors - 3 + i]));
-  };
+  const auto of_squareness = [&](int i) { return std::string(origin.SourceOf(kErrors - 3 + i)); };
   std::string text = fmt::format(
       "# An error map: docs/map.md says what each key means.\nformat = {}\nmachine = {}\n"
       "chain = {}\npositive = {}\nreference = {}\ntool = {}\ntemperature_c = {}\nscale = "
@@ -66,10 +62,10 @@ std::string HeadText(const ErrorMap& map) {
   return text;
 }
 
-std::string FunctionText(const std::string& name, Source source,
+std::string FunctionText(const std::string& name, std::string_view source,
                          const machine::ErrorFunction& function) {
   std::string text = fmt::format("\n[[error]]\nname = \"{}\"\nfrom = \"{}\"\nform = {}\n", name,
-                                 NameOf(source), Quoted(function.form()->Name()));
+                                 source, Quoted(function.form()->Name()));
   for (const auto& [key, numbers] : function.form()->Shape()) {
     text += fmt::format("{} = {}\n", key, Floats(numbers));
   }
@@ -110,13 +106,14 @@ Eigen::Vector3d Vector(const Table& table, const char* key) {
   return Eigen::Vector3d(table.Quantities(key, 3).data());
 }
 
-Source SourceNamed(const Table& table, const char* key, const std::string& name) {
-  const auto found = std::find(kSourceNames.begin(), kSourceNames.end(), name);
-  if (found == kSourceNames.end()) {
-    throw table.Error(
-        key, fmt::format("\"{}\" is not a source; write {}", name, fmt::join(kSourceNames, ", ")));
-  }
-  return static_cast<Source>(found - kSourceNames.begin());
+// A kind of run is one word; which kinds there are, the maps of other versions may know better.
+std::string SourceNamed(const Table& table, const char* key, const std::string& name) {
+  const auto of_a_word = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
+  if (name == kPriorOnly) return {};
+  if (!name.empty() && std::all_of(name.begin(), name.end(), of_a_word)) return name;
+  throw table.Error(key, fmt::format("\"{}\" is not a source; write prior, or the kind of run that "
+                                     "determined it, for example sweep or linkage",
+                                     name));
 }
 
 MapOrigin ReadOrigin(const Table& root) {
@@ -255,7 +252,7 @@ void WriteMap(const ErrorMap& map, const std::filesystem::path& path) {
     const auto& function =
         map.model().Function(error / machine::kMotions, error % machine::kMotions);
     if (function.form() == nullptr) continue;
-    text += FunctionText(ErrorName(error), map.origin().sources[error], function);
+    text += FunctionText(ErrorName(error), map.origin().SourceOf(error), function);
   }
   if (map.StatesUncertainty()) text += CovarianceText(map);
   if (map.state()) text += StateText(*map.state(), map.cov_pp().rows());

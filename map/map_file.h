@@ -16,7 +16,7 @@
 //   x = [-0.0001, 0.0601]  y = ...  z = ...
 //   [[error]]                                   # at most 18; an absent one is zero
 //   name = "EXX"
-//   from = "sweep"                              # sweep, linkage, reference, plate, length, prior
+//   from = "sweep"                              # a kind of run, or prior
 //   form = "b-spline"                           # machine/form_of_shape.h
 //   degree = [3.0]
 //   knots_m = [...]

@@ -1,12 +1,14 @@
 #include "recording/ballbar.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <span>
 
+#include "settings/toml_text.h"
 #include "settings/unit.h"
 
 namespace abbe::recording {
@@ -64,6 +66,11 @@ Recording BallbarOf(const Recording& table, const BallbarCircle& circle) {
     throw InputError(fmt::format("{}: a ballbar of {} mm; give the programmed radius", table.name,
                                  circle.radius_mm));
   }
+  const auto& centre = circle.centre_mm;
+  if (!centre.empty() && centre.size() != 3) {
+    throw InputError(fmt::format("{}: the centre has {} numbers; give three, X,Y,Z in mm",
+                                 table.name, centre.size()));
+  }
   const auto angles = Wanted(table, "angle_deg", "the commanded angle");
   const auto radii = table.Find("ref_radius_mm");
   const auto deviations =
@@ -85,6 +92,15 @@ Recording BallbarOf(const Recording& table, const BallbarCircle& circle) {
   recording.header =
       fmt::format("kind = \"ballbar\"\naxis = \"{}\"\nradius_mm = {}\n", plane, circle.radius_mm);
   if (table.HeaderText("time") == "order") recording.header += "time = \"order\"\n";
+  if (!centre.empty()) {
+    recording.header += fmt::format("centre_mm = [{}]\n", fmt::join(centre, ", "));
+  }
+  if (circle.u_length_um > 0.0) {
+    recording.header += fmt::format("u_length_um = {}\n", circle.u_length_um);
+  }
+  if (!circle.ballbar.empty()) {
+    recording.header += fmt::format("[mounting]\nballbar = {}\n", settings::Quoted(circle.ballbar));
+  }
   const auto keep = [&](std::string_view name) {
     const auto column = table.Find(name);
     if (column) recording.columns.push_back({std::string(name), {column->begin(), column->end()}});
@@ -97,6 +113,9 @@ Recording BallbarOf(const Recording& table, const BallbarCircle& circle) {
   if (circle.feed_mm_min > 0.0) {
     recording.columns.push_back(
         {"feed_mm_min", std::vector<double>(angles.size(), circle.feed_mm_min)});
+  }
+  for (const Column& column : table.columns) {
+    if (column.name.starts_with("temp_")) keep(column.name);
   }
   keep("flags");
   return recording;

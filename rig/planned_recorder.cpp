@@ -13,6 +13,7 @@
 #include "failure/failure.h"
 #include "recording/instant.h"
 #include "rig/probe_runs.h"
+#include "rig/record_ballbar.h"
 #include "rig/record_lengths.h"
 #include "rig/record_sweep.h"
 #include "settings/toml_text.h"
@@ -216,10 +217,11 @@ struct PlannedRecorder::Kind {
 };
 
 const PlannedRecorder::Kind* PlannedRecorder::KindOf(const Recording& path) {
-  static constexpr std::array<Kind, 5> kKinds{{{"sweep", false, &PlannedRecorder::Sweep},
+  static constexpr std::array<Kind, 6> kKinds{{{"sweep", false, &PlannedRecorder::Sweep},
                                                {"gap-steps", false, &PlannedRecorder::GapSteps},
                                                {"dwell", false, &PlannedRecorder::Dwell},
                                                {"linkage", true, &PlannedRecorder::OfLinkage},
+                                               {"ballbar", true, &PlannedRecorder::Ballbar},
                                                {"length", true, &PlannedRecorder::Length}}};
   const auto* kind = std::ranges::find(kKinds, std::string_view(path.Kind()), &Kind::name);
   return kind == kKinds.end() ? nullptr : kind;
@@ -331,6 +333,31 @@ Recording PlannedRecorder::OfLinkage(const Run& run) {
                .step = kCourseStep,
                .begin = run.begin,
                .climate = &climate_});
+}
+
+Recording PlannedRecorder::Ballbar(const Run& run) {
+  const Recording& path = run.path;
+  const auto centre = path.HeaderNumbers("centre_mm", 3);
+  const auto radius = path.HeaderNumber("radius_mm");
+  if (!centre || !radius) {
+    throw InputError(path.name + ": a circle of a ballbar states centre_mm and radius_mm");
+  }
+  const BallbarProgram program{
+      .plane = path.HeaderText("axis").value_or("XY"),
+      .centre = settings::kMillimetre * Vector3d((*centre)[0], (*centre)[1], (*centre)[2]),
+      .radius = settings::kMillimetre * *radius};
+  std::vector<Vector3d> places = run.places;
+  for (Vector3d& place : places) place += program.centre;
+  const auto time = path.At("time_s");
+  return RecordBallbar(RigOf(run), MovingCourse(path, places), program,
+                       {.rate = (time.size() - 1) / (time.back() - time.front()),
+                        .run = run.run,
+                        .started = run.Started(),
+                        .keys = fmt::format("radius_mm = {}\n", *radius),
+                        .sensors = machine_.sensors.columns,
+                        .step = kCourseStep,
+                        .begin = run.begin,
+                        .climate = &climate_});
 }
 
 Recording PlannedRecorder::Length(const Run& run) {

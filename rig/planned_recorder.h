@@ -50,6 +50,7 @@ class PlannedRecorder {
   recording::Recording GapSteps(const Run& run);
   recording::Recording Dwell(const Run& run);
   recording::Recording OfLinkage(const Run& run);
+  recording::Recording Ballbar(const Run& run);
   recording::Recording Length(const Run& run);
 
   CampaignMachine machine_;

@@ -21,6 +21,7 @@ enum Stream : std::uint64_t {
   kHiddenFormStream = 0x510,      // + face, as kFaceStream
   kPlateStream = 0x480,           // index: scale, then two for each hole
   kPlateRunStream = 0x100b0,      // + kRunStreams * run; index: pose of a set-up, then its holes
+  kBallbarStream = 0x100a8,       // + kRunStreams * run; index: direction; of run 0: the bar
   kLengthStream = 0x100a0,        // + kRunStreams * run; index: common scale, then each length
   kNoiseStream = 0x10000,         // + kRunStreams * run + probe
   kDriftStream = 0x10008,         // + kRunStreams * run + probe

@@ -20,6 +20,7 @@ namespace abbe::simulation {
   KIND(ArmKind) \
   KIND(LinkageKind) \
   KIND(ReferenceKind) \
+  KIND(BallbarKind) \
   KIND(LengthKind) \
   KIND(PlateKind) \
   KIND(ShaftKind) \

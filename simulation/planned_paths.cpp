@@ -67,7 +67,7 @@ std::string HeaderOf(const HeaderAbout& about) {
 Recording CirclePath(const CirclePlan& plan, const PathAbout& about) {
   constexpr double kTurning = 5.0;  // s, before it goes round the other way
   const int first = plan.plane[0] - 'X', second = plan.plane[1] - 'X';
-  PathMaker maker({"linkage", about.machine, about.started, {}, plan.mounting}, about);
+  PathMaker maker({plan.kind, about.machine, about.started, plan.more, plan.mounting}, about);
   const double turn = 2.0 * std::numbers::pi * plan.radius / plan.feed;
   double begin = 0.0;
   for (const int sense : {1, -1}) {

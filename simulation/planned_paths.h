@@ -48,6 +48,7 @@ struct CirclePlan {
   double feed = 0.01;         // m/s
   int rows = 180;             // in a turn
   std::string mounting = {};  // lines of that table
+  std::string kind = "linkage", more = {};  // of the header
 };
 // Counter-clockwise first.
 recording::Recording CirclePath(const CirclePlan& plan, const PathAbout& about);

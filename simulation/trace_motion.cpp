@@ -19,9 +19,13 @@ constexpr double kGap = 0.5;  // s between rows: nothing is known of the way bet
 
 // Whether nothing is known of the way from the row before.
 bool Begins(const Trace& trace, Index row) {
-  return row == 0 || trace.pass[row] != trace.pass[row - 1] ||
-         trace.direction[row] != trace.direction[row - 1] ||
-         trace.time[row] - trace.time[row - 1] > kGap;
+  if (row == 0 || trace.pass[row] != trace.pass[row - 1] ||
+      trace.direction[row] != trace.direction[row - 1]) {
+    return true;
+  }
+  // Rows of one instant have no speed between them.
+  const double since = trace.time[row] - trace.time[row - 1];
+  return since > kGap || since <= 0.0;
 }
 
 // Where an axis turned or will turn at a steady acceleration, if that is less than `before` seconds

@@ -41,6 +41,13 @@ struct Pulls {
     inside.Add(std::abs(error) < coverage * u ? 1.0 : 0.0);
   }
 
+  // Errors no larger than u says: the upper of the bands below.
+  void ExpectNoLargerErrors(double k = k99) const {
+    const double n = pull.count, q = 2.0 / (9.0 * n);
+    EXPECT_NEAR(pull.mean(), 0.0, k / std::sqrt(n));
+    EXPECT_LT(square.mean(), std::pow(1.0 - q + k * std::sqrt(q), 3));
+    EXPECT_GT(inside.mean(), 0.95 - k * std::sqrt(0.95 * 0.05 / n));
+  }
   // Mean 0, variance 1 and coverage 95 % within bands of k standard deviations.
   void ExpectTrueUncertainties(double k = k99) const {
     const double n = pull.count;

@@ -8,6 +8,7 @@
 #include "diagnosis/campaign.h"
 #include "diagnosis/fit.h"
 #include "diagnosis/hold_out.h"
+#include "map/error_map.h"
 #include "simulation/kinds.h"
 #include "tests/diagnosis/planned_circles.h"
 
@@ -91,6 +92,11 @@ TEST(ThrowAwayKind, EntersAnErrorMap) {
       simulation::SourceOf(Levels()), fusion::UnknownMachine(instruments.machine), instruments);
   ASSERT_EQ(runs.size(), 1u);
   EXPECT_EQ(runs[0].kind, "level");
+  // A map states the kind by its name, whichever it is.
+  map::MapOrigin origin;
+  origin.sources[3] = runs[0].kind;
+  EXPECT_EQ(origin.SourceOf(3), "level");
+  EXPECT_EQ(origin.SourceOf(4), map::kPriorOnly);
 }
 
 }  // namespace throw_away_kind_test

@@ -26,7 +26,6 @@ TEST(RunKinds, AreThoseOfRecordings) {
   for (const RunKind* kind : RunKinds()) of_registry.insert(kind->name());
   std::set<std::string_view> of_recordings{"arm"};  // a linkage without axes
   for (const std::string_view kind : recording::KnownKinds()) {
-    if (kind == "ballbar") continue;  // evaluated by its radius alone, not simulated
     of_recordings.insert(kind);
     EXPECT_EQ(KindOf(HeadOf(kind, recording::RequiredColumns(kind))).name(), kind);
   }
@@ -43,7 +42,7 @@ TEST(RunKinds, AnUnknownKindIsNamed) {
   EXPECT_THAT([] { KindOf(HeadOf("voltage", {})); },
               testing::ThrowsMessage<InputError>(
                   "head.csv: kind is \"voltage\"; known are sweep, arm, linkage, reference, "
-                  "length, plate, shaft, dwell and gap-steps"));
+                  "ballbar, length, plate, shaft, dwell and gap-steps"));
 }
 
 struct FactsOfAnotherKind : RunFacts {};

@@ -2,10 +2,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "rig/record_ballbar.h"
 #include "rig/record_plate.h"
+#include "simulation/ballbar/ballbar_simulation.h"
+#include "simulation/kinds.h"
 #include "simulation/linkage/linkage_on_machine.h"
 #include "simulation/linkage/linkage_trace.h"
 #include "simulation/points/length_simulation.h"
@@ -69,8 +73,20 @@ class Response : public testing::Test {
   const settings::Document document = fusion::CampaignMachine();
   const fusion::Campaign campaign{document, 3};
 
-  // How many error motions act; what each does by one coefficient is what that parameter does.
-  int MotionsThatAct(const SimulatedRun& run, const Trace& trace, const VectorXd& x) const {
+  // How many error motions act; what each does by one coefficient is what that parameter does,
+  // beside what the first parameters do, which are free.
+  int MotionsThatAct(const SimulatedRun& run, const Trace& trace, const VectorXd& x,
+                     Index free = 0) const {
+    VectorXd values(run.residual->Rows());
+    estimation::RowMatrix J(values.size(), x.size());
+    run.residual->Evaluate(x, values, &J);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> first(J.leftCols(free));
+    const auto beside = [&](VectorXd column) -> VectorXd {
+      if (free == 0) return column;
+      column.applyOnTheLeft(first.householderQ().transpose());
+      column.head(free).setZero();
+      return column;
+    };
     int acting = 0;
     for (int axis = 0; axis < machine::kAxes; ++axis) {
       for (int motion = 0; motion < machine::kMotions; ++motion) {
@@ -81,10 +97,13 @@ class Response : public testing::Test {
           function.Evaluate(trace.axes(axis, row), nullptr, gradient.data());
           moved.row(MotionStage(axis, motion))[row] = gradient[4];
         }
-        const VectorXd column = run.response->At(x)->Columns({moved}).col(0);
+        const VectorXd whole = run.response->At(x)->Columns({moved}).col(0);
+        const VectorXd column = beside(whole);
+        const double rounding = 1e-12 + 1e-11 * whole.norm();
         const std::string name = machine::MotionName(axis, motion) + ".c4";
-        EXPECT_LT((column + ByParameter(run, x, name)).norm(), 1e-9 * column.norm() + 1e-12);
-        if (column.norm() > 1e-12) ++acting;
+        const VectorXd by_parameter = beside(ByParameter(run, x, name));
+        EXPECT_LT((column + by_parameter).norm(), 1e-9 * column.norm() + rounding);
+        if (column.norm() > rounding) ++acting;
       }
     }
     return acting;
@@ -215,6 +234,32 @@ TEST_F(Response, OfAReferenceIsThatOfItsParameters) {
   ASSERT_EQ(trace.rows(), 12);
   const VectorXd x = StartOf(run).array() + 1e-5;
   EXPECT_EQ(MotionsThatAct(run, trace, x), machine::kAxes * machine::kMotions);
+  Disturbance second = NoDisturbance(trace);
+  second.row(MotionStage(1, 1))[1] = 1.0;
+  ExpectAdjoint(*run.response->At(x), second, run.residual->Rows());
+  const double weight = run.response->At(x)->WeightsOf(MotionStage(1, 1))[1];
+  EXPECT_NEAR(weight, run.response->At(x)->Columns({second}).squaredNorm(), 1e-9 * weight);
+}
+
+TEST_F(Response, OfABallbarIsThatOfItsParameters) {
+  const Eigen::Vector3d centre = Eigen::Vector3d::Constant(0.03);
+  const auto course = rig::CircleCourse({'Z', centre, 0.025, 0.01, 1});
+  const auto recording =
+      rig::RecordBallbar(campaign.rig, course, {.plane = "XY", .centre = centre, .radius = 0.025},
+                         {.rate = 5.0, .keys = "tool_mm = [10.0, 20.0, -50.0]\n"});
+  const BallbarRun circle = ReadBallbarRun(recording);
+  const SimulatedRun run = SimulateBallbar(campaign.model, campaign.reference, circle);
+  const Trace trace = BallbarKind()
+                          .Prepare(recording, campaign.model,
+                                   {campaign.machine, campaign.instrument.head,
+                                    campaign.instrument.target, campaign.noise, campaign.linkage},
+                                   {})
+                          .runs[0]
+                          .trace;
+  ASSERT_EQ(trace.rows(), circle.rows());
+  const VectorXd x = StartOf(run).array() + 1e-5;
+  // The centre is where the machine stood when it was set up: that much is free.
+  EXPECT_GE(MotionsThatAct(run, trace, x, 3), 12);
   Disturbance second = NoDisturbance(trace);
   second.row(MotionStage(1, 1))[1] = 1.0;
   ExpectAdjoint(*run.response->At(x), second, run.residual->Rows());
