@@ -18,13 +18,9 @@
 #include "apps/machine_recording.h"
 #include "apps/protocol.h"
 #include "apps/result_file.h"
-#include "diagnosis/doubts.h"
-#include "diagnosis/found_model.h"
-#include "diagnosis/measured_noise.h"
-#include "diagnosis/next_run.h"
 #include "failure/failure.h"
 #include "learned/carried.h"
-#include "learned/learning.h"
+#include "learned/explain.h"
 #include "recording/file_hash.h"
 #include "settings/toml_text.h"
 #include "simulation/doubt.h"
@@ -56,39 +52,18 @@ void WriteModel(simulation::ExtendedModel model, const DiagnoseArguments& argume
 
 nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
                               const std::vector<recording::Recording>& recordings,
-                              const diagnosis::Campaign& campaign,
-                              const diagnosis::Diagnosis& diagnosis,
-                              const diagnosis::HeldOutGain& gain,
-                              const learned::Learning& learning) {
-  auto json = DiagnosisJson(diagnosis, gain);
-  AddLearned(learning, json);
+                              const learned::Explanation& all) {
+  auto json = DiagnosisJson(all.diagnosis, all.gain);
+  AddLearned(all.learning, json);
   json["abbe"] = ABBE_VERSION;
-  json["machine"] = campaign.instruments().machine.name;
+  json["machine"] = all.campaign->instruments().machine.name;
   for (const fs::path& path : arguments.recordings) {
     json["recordings"].push_back(path.filename().string());
   }
   for (const auto& recording : recordings) AddProtocol(recording, json);
-  json["notes"] = campaign.notes();
-  for (const std::string& note : diagnosis.notes) json["notes"].push_back(note);
+  json["notes"] = all.Notes();
   if (!arguments.out.empty()) json["model"] = arguments.out.filename().string();
   return json;
-}
-
-diagnosis::HeldOutGain GainOf(const diagnosis::Campaign& campaign,
-                              const std::vector<recording::Recording>& recordings,
-                              const std::vector<diagnosis::Candidate>& causes) {
-  std::string why_not;
-  auto gain = diagnosis::HoldOutWhereTheySuffice(campaign, recordings, causes, why_not);
-  if (!why_not.empty()) fmt::print(stderr, "abbe: {}\n", why_not);
-  return gain;
-}
-
-void RefuseStrangers(const std::vector<recording::Recording>& recordings,
-                     const simulation::Instruments& instruments) {
-  std::vector<simulation::RunSource> sources;
-  sources.reserve(recordings.size());
-  for (const recording::Recording& each : recordings) sources.push_back(simulation::SourceOf(each));
-  simulation::RefuseStrangers(sources, instruments);
 }
 
 int Diagnose(const DiagnoseArguments& arguments) {
@@ -101,38 +76,15 @@ int Diagnose(const DiagnoseArguments& arguments) {
   }
   std::vector<recording::Recording> recordings;
   for (const fs::path& path : arguments.recordings) recordings.push_back(ReadWithWarnings(path));
-  simulation::Instruments instruments = ReadInstruments(arguments.machine);
-  RefuseStrangers(recordings, instruments);
-  diagnosis::UseMeasuredNoise(recordings, instruments);
-  diagnosis::Campaign campaign(std::move(instruments));
-  for (const recording::Recording& recording : recordings) campaign.Add(recording);
-  campaign.CarryOn(learned::CarriedFrom(arguments.learned));
-  diagnosis::Diagnosis diagnosis = diagnosis::Diagnose(campaign);
-  const diagnosis::Campaign& found = diagnosis::CampaignOf(diagnosis, campaign);
-  diagnosis::AddNextRuns(found, recordings, diagnosis);
-  std::vector<diagnosis::Candidate> causes;
-  for (const auto& finding : diagnosis.findings) {
-    if (diagnosis::IsModelled(finding)) causes.push_back(finding.score.candidate);
-  }
-  learned::Learning learning;
-  if (arguments.learn) learning = learned::Learn(diagnosis);
-  const diagnosis::HeldOutGain gain =
-      GainOf(found, recordings, learning.IsToBeDecided() ? learning.Candidates() : causes);
-  diagnosis::AddDoubtsOfHeldOut(gain, diagnosis);
-  learned::Decide(gain, learning, diagnosis);
-  if (!arguments.out.empty()) {
-    simulation::ExtendedModel model = diagnosis::FoundModel(diagnosis, found, gain);
-    for (const learned::Learned& term : learning.terms) {
-      if (term.IsFound()) model.causes.push_back(simulation::ModelledTerm(term.term()));
-    }
-    WriteModel(std::move(model), arguments);
-  }
-  if (!arguments.json.empty())
-    WriteResult(JsonOf(arguments, recordings, campaign, diagnosis, gain, learning), arguments.json);
+  const learned::Explanation all =
+      learned::Explain(recordings, ReadInstruments(arguments.machine),
+                       {arguments.learn, learned::CarriedFrom(arguments.learned)});
+  if (all.why_no_gain) fmt::print(stderr, "abbe: {}\n", *all.why_no_gain);
+  if (!arguments.out.empty()) WriteModel(learned::ModelOf(all), arguments);
+  if (!arguments.json.empty()) WriteResult(JsonOf(arguments, recordings, all), arguments.json);
   if (arguments.quiet) return kDone;
-  fmt::print("{}{}", DiagnosisText(diagnosis, gain), LearnedText(learning));
-  for (const std::string& note : campaign.notes()) fmt::print("\nNote: {}\n", note);
-  for (const std::string& note : diagnosis.notes) fmt::print("\nNote: {}\n", note);
+  fmt::print("{}{}", DiagnosisText(all.diagnosis, all.gain), LearnedText(all.learning));
+  for (const std::string& note : all.Notes()) fmt::print("\nNote: {}\n", note);
   return kDone;
 }
 
@@ -143,8 +95,7 @@ void AddDiagnose(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand(
       "diagnose", "Finds the causes of what the simulation of the runs does not explain");
   command->add_option("recordings", arguments->recordings,
-                      "Recordings of one machine: sweep, dwell, gap-steps, linkage, reference, "
-                      "length, plate, shaft");
+                      fmt::format("Recordings of one machine: {}", simulation::KindNames()));
   command->add_option("--machine", arguments->machine, "Machine file")->required();
   auto* out = command->add_option(
       "-o,--out", arguments->out,

@@ -1,44 +1,27 @@
+#include <filesystem>
+
 #include "apps/diagnosis_result.h"
+#include "apps/learned_result.h"
 #include "bindings.h"
-#include "diagnosis/diagnose.h"
-#include "diagnosis/doubts.h"
-#include "diagnosis/measured_noise.h"
-#include "diagnosis/next_run.h"
+#include "learned/carried.h"
+#include "learned/explain.h"
+#include "learned/words.h"
 #include "machine.h"
-#include "simulation/kinds.h"
 
 namespace abbe::python {
 namespace {
 
-using Recordings = std::vector<recording::Recording>;
 using diagnosis::Finding;
+using learned::Explanation;
+using learned::Learned;
 
-struct Diagnosed {
-  std::shared_ptr<diagnosis::Campaign> campaign;
-  diagnosis::Diagnosis diagnosis;
-  diagnosis::HeldOutGain gain;
-};
-
-Diagnosed Diagnose(const Recordings& recordings, const MachineFile& machine) {
-  std::vector<simulation::RunSource> sources;
-  for (const recording::Recording& each : recordings) sources.push_back(simulation::SourceOf(each));
-  simulation::Instruments instruments = machine.instruments;
-  simulation::RefuseStrangers(sources, instruments);
-  diagnosis::UseMeasuredNoise(recordings, instruments);
-  Diagnosed done{std::make_shared<diagnosis::Campaign>(std::move(instruments)), {}, {}};
-  for (const recording::Recording& each : recordings) done.campaign->Add(each);
-  done.diagnosis = diagnosis::Diagnose(*done.campaign);
-  const diagnosis::Campaign& found = diagnosis::CampaignOf(done.diagnosis, *done.campaign);
-  diagnosis::AddNextRuns(found, recordings, done.diagnosis);
-  std::vector<diagnosis::Candidate> causes;
-  for (const Finding& finding : done.diagnosis.findings) {
-    if (diagnosis::IsModelled(finding)) causes.push_back(finding.score.candidate);
-  }
-  std::string why_not;
-  done.gain = diagnosis::HoldOutWhereTheySuffice(found, recordings, causes, why_not);
-  if (!why_not.empty()) done.diagnosis.notes.push_back(why_not);
-  diagnosis::AddDoubtsOfHeldOut(done.gain, done.diagnosis);
-  return done;
+Explanation Diagnose(const std::vector<recording::Recording>& recordings,
+                     const MachineFile& machine, bool learn,
+                     const std::vector<std::filesystem::path>& carried) {
+  Explanation all =
+      learned::Explain(recordings, machine.instruments, {learn, learned::CarriedFrom(carried)});
+  if (all.why_no_gain) all.diagnosis.notes.push_back(*all.why_no_gain);
+  return all;
 }
 
 // {"width_um": (7.98, 0.05)}: what it is, and its U95, in the unit of the name.
@@ -91,33 +74,57 @@ void BindDiagnosis(py::module_& m) {
                                s.probability);
           },
           "__repr__(self, /)\n--\n\n");
-  py::class_<Diagnosed>(m, "Diagnosis", "The causes behind the errors of a machine.")
+  py::class_<Learned>(m, "Term", "A term that was learned: what the simulation lacked.")
+      .def_property_readonly(
+          "object", [](const Learned& s) { return s.term().object; }, "Where it acts: \"EXX\" ...")
+      .def_property_readonly(
+          "expression", [](const Learned& s) { return s.term().expression.Text(); }, "\"x * y\".")
+      .def_property_readonly(
+          "words", [](const Learned& s) { return learned::InWords(s.term()); }, "A sentence.")
+      .def_property_readonly("found", &Learned::IsFound, "Certified, held out and without a rival.")
+      .def_readonly("doubts", &Learned::doubts, "What keeps it from being found.")
+      .def_readonly("amplitude", &Learned::amplitude, "m or rad, rms over the rows of the runs.")
+      .def(
+          "__repr__",
+          [](const Learned& s) {
+            return fmt::format("<abbe.Term {} in {}, {}>", s.term().expression.Text(),
+                               s.term().object, s.IsFound() ? "found" : "not certain");
+          },
+          "__repr__(self, /)\n--\n\n");
+  py::class_<Explanation>(m, "Diagnosis", "The causes behind the errors of a machine.")
       .def_property_readonly(
           "verdict",
-          [](const Diagnosed& s) { return std::string(diagnosis::Name(s.diagnosis.verdict)); },
-          "\"clean\", \"explained\", \"ambiguous\" or \"unexplained\".")
-      .def_property_readonly("findings", [](const Diagnosed& s) { return s.diagnosis.findings; })
+          [](const Explanation& s) { return std::string(diagnosis::Name(s.diagnosis.verdict)); },
+          "\"clean\", \"explained\", \"learned\", \"ambiguous\" or \"unexplained\".")
+      .def_property_readonly("findings", [](const Explanation& s) { return s.diagnosis.findings; })
       .def_property_readonly(
-          "notes",
-          [](const Diagnosed& s) {
-            std::vector<std::string> notes = s.campaign->notes();
-            notes.insert(notes.end(), s.diagnosis.notes.begin(), s.diagnosis.notes.end());
-            return notes;
-          },
-          "How the recordings were taken, and what was found of their noise.")
+          "terms", [](const Explanation& s) { return s.learning.terms; },
+          "What was learned, certain or not.")
+      .def_property_readonly("notes", &Explanation::Notes,
+                             "How the recordings were taken, and what was found of their noise.")
       .def_property_readonly(
-          "cannot_show", [](const Diagnosed& s) { return s.diagnosis.cannot_show; },
+          "cannot_show", [](const Explanation& s) { return s.diagnosis.cannot_show; },
           "Causes that these recordings cannot show.")
       .def(
+          "model", [](const Explanation& s) { return ExtendedModelText(learned::ModelOf(s)); },
+          "model(self, /)\n--\n\nThe extended model (TOML), for --causes of the program.")
+      .def(
           "to_dict",
-          [](const Diagnosed& s) { return ToPython(apps::DiagnosisJson(s.diagnosis, s.gain)); },
+          [](const Explanation& s) {
+            auto json = apps::DiagnosisJson(s.diagnosis, s.gain);
+            apps::AddLearned(s.learning, json);
+            return ToPython(json);
+          },
           "to_dict(self, /)\n--\n\nAll of it, the keys of docs/diagnose.md.")
       .def(
-          "__str__", [](const Diagnosed& s) { return apps::DiagnosisText(s.diagnosis, s.gain); },
+          "__str__",
+          [](const Explanation& s) {
+            return apps::DiagnosisText(s.diagnosis, s.gain) + apps::LearnedText(s.learning);
+          },
           "__str__(self, /)\n--\n\n")
       .def(
           "__repr__",
-          [](const Diagnosed& s) {
+          [](const Explanation& s) {
             std::string names;
             for (const Finding& each : s.diagnosis.findings) {
               names += " " + each.score.candidate.Name();
@@ -126,11 +133,12 @@ void BindDiagnosis(py::module_& m) {
                                names.empty() ? " no cause found" : names);
           },
           "__repr__(self, /)\n--\n\n");
-  m.def("diagnose", &Diagnose, py::arg("recordings"), py::arg("machine"),
-        py::call_guard<WithoutLock>(),
-        "diagnose(recordings, machine)\n--\n\n"
-        "Which causes explain the recordings of a machine, as `abbe diagnose`. Takes a minute on a "
-        "whole campaign; Ctrl-C ends it.");
+  m.def("diagnose", &Diagnose, py::arg("recordings"), py::arg("machine"), py::arg("learn") = false,
+        py::arg("learned") = std::vector<std::filesystem::path>{}, py::call_guard<WithoutLock>(),
+        "diagnose(recordings, machine, learn=False, learned=())\n--\n\n"
+        "Which causes explain the recordings of a machine, as `abbe diagnose`. With `learn`, what "
+        "no cause explains is learned; `learned` are extended models of other machines, whose "
+        "terms compete. Takes a minute on a whole campaign; Ctrl-C ends it.");
 }
 
 }  // namespace abbe::python

@@ -33,7 +33,7 @@ ARROWS = {
     "fusion": "failure settings recording geometry estimation standards machine map probes paths relm simulation",
     "certificate": "failure standards settings recording estimation machine map relm fusion",
     "diagnosis": "failure standards settings recording estimation machine probes relm simulation fusion",
-    "learned": "failure random settings standards estimation simulation diagnosis",
+    "learned": "failure random settings recording standards estimation simulation diagnosis",
     "investigate": "failure random settings recording machine simulation diagnosis",
     "history": "failure standards settings recording",
     "track": "failure settings recording standards estimation machine map simulation fusion history",
@@ -41,7 +41,7 @@ ARROWS = {
     "live": "failure recording report",
     "rig": "failure random settings recording hal",
     "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion certificate diagnosis learned investigate history track report live rig",
-    "python": "failure settings recording estimation machine map compensation probes paths relm simulation fusion diagnosis apps",
+    "python": "failure settings recording estimation machine map compensation probes paths relm simulation fusion diagnosis learned apps",
 }
 
 # header of a library or of a transport -> the files that may include it; everybody else goes through them.

@@ -67,6 +67,12 @@ class GalleryTest(unittest.TestCase):
         # 8 um are hidden; U95 is exceeded by one in twenty, twice of it by one in ten thousand.
         self.assertLess(abs(width - 8.0), 2 * u95)
 
+    def test_learned(self):
+        verdict, *terms = self.printed("learned").splitlines()
+        self.assertEqual(verdict, "learned")
+        (term,) = terms
+        self.assertIn("feed", term)  # hidden is a displacement by the square of the feed
+
 
 if __name__ == "__main__":
     unittest.main()
