@@ -49,13 +49,18 @@ void CheckCircles(const std::vector<const CircleRun*>& runs) {
   }
 }
 
-std::vector<Signature> SignaturesOf(const CircleRun& run, const CauseOptions& options) {
+// m: the way on which backlash is taken up, of the first and the second axis.
+using Lost = std::array<double, 2>;
+
+std::vector<Signature> SignaturesOf(const CircleRun& run, const CauseOptions& options,
+                                    const Lost& lost) {
   return standards::CircleSignatures({.first = run.plane.name[0],
                                       .second = run.plane.name[1],
                                       .first_centre = run.plane.first.dot(run.centre),
                                       .second_centre = run.plane.second.dot(run.centre),
                                       .pitch = options.pitch,
-                                      .spike_width = options.spike_width});
+                                      .spike_width = options.spike_width,
+                                      .lost = lost});
 }
 
 double Radial(const CirclePoint& point, double radius) {
@@ -84,8 +89,8 @@ Eigen::MatrixXd Waves(const CircleRun& run, std::size_t orders) {
   return waves;
 }
 
-Equations EquationsOf(const CircleRun& run, const CauseOptions& options) {
-  const std::vector<Signature> table = SignaturesOf(run, options);
+Equations EquationsOf(const CircleRun& run, const CauseOptions& options, const Lost& lost) {
+  const std::vector<Signature> table = SignaturesOf(run, options, lost);
   const Eigen::Index n = run.points.size();
   const auto centres = std::ranges::count_if(table, IsCentre);
   Equations equations{Eigen::MatrixXd(n, centres), Eigen::MatrixXd(n, table.size() - centres),
@@ -120,9 +125,9 @@ CircleRun About(const Eigen::Vector2d& middle, const CircleRun& run) {
 
 // The equations of run number `at`, about its middle.
 Equations CentredEquations(const std::vector<const CircleRun*>& runs, std::size_t at,
-                           const CauseOptions& options) {
+                           const CauseOptions& options, const Lost& lost) {
   const Eigen::Vector2d middle = runs[at]->middle;
-  Equations equations = EquationsOf(About(middle, *runs[at]), options);
+  Equations equations = EquationsOf(About(middle, *runs[at]), options, lost);
   for (std::size_t k = 0; k < options.shifted.size(); ++k) {
     const CircleRun shifted = About(middle, *options.shifted[k][at]);
     for (Eigen::Index i = 0; i < equations.radial.size(); ++i) {
@@ -250,18 +255,15 @@ bool IsOfCauses(const estimation::Result& result, const estimation::WeakDirectio
   return result.names[most].starts_with("cause.");
 }
 
-}  // namespace
-
-CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs,
-                             const CauseOptions& options) {
-  CheckCircles(runs);
-  std::vector<Signature> table = SignaturesOf(*runs.front(), options);
+CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
+                     const Lost& lost) {
+  std::vector<Signature> table = SignaturesOf(*runs.front(), options, lost);
   std::erase_if(table, IsCentre);
   std::vector<Equations> equations;
   CircleCauses found;
   std::vector<Eigen::VectorXd> before;
   for (std::size_t run = 0; run < runs.size(); ++run) {
-    equations.push_back(CentredEquations(runs, run, options));
+    equations.push_back(CentredEquations(runs, run, options, lost));
     const Eigen::VectorXd& radial = equations.back().radial;
     before.emplace_back(radial.array() - radial.mean());
   }
@@ -291,6 +293,28 @@ CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs,
     found.residuals.emplace_back(one.begin(), one.end());
   }
   return found;
+}
+
+Lost BacklashOf(const CircleCauses& found) {
+  Lost lost{};
+  std::size_t axis = 0;
+  for (const CauseEstimate& one : found.causes) {
+    if (one.cause == "backlash") lost[axis++] = std::abs(one.value);
+  }
+  return lost;
+}
+
+}  // namespace
+
+CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs,
+                             const CauseOptions& options) {
+  constexpr int kRounds = 4;  // each brings the way closer to the backlash by a factor of five
+  CheckCircles(runs);
+  CircleCauses at_once = FitWith(runs, options, {}), on_the_way = at_once;
+  for (int round = 0; round < kRounds; ++round) {
+    on_the_way = FitWith(runs, options, BacklashOf(on_the_way));
+  }
+  return on_the_way.rms_after < at_once.rms_after ? on_the_way : at_once;
 }
 
 }  // namespace abbe::fusion

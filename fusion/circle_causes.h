@@ -14,6 +14,7 @@
 //     without them they would pass for reversal spikes and through these for backlash,
 //   - the errors of the instrument: `shifted` holds the runs with one independent error of it
 //     changed by one standard deviation.
+// Backlash is taken up at once or on the way after a reversal, whichever leaves less.
 // Units: SI; `effect` is the largest radial deviation of a cause in m, without sign.
 // Noise: estimated from the residuals, and enlarged for the correlation of neighbouring rows by the
 // factor by which the means of 10 degrees scatter more than those of independent rows. Deviations

@@ -1,5 +1,6 @@
 #include "standards/circle_signatures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -16,6 +17,12 @@ double Sign(double value) { return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;
 double SinceReversal(const CirclePoint& at, double extreme) {
   const double turned = at.sense * (at.angle - extreme);
   return turned - kPi * std::floor(turned / kPi);
+}
+
+// From -1, where the axis has just turned, to 1, where its backlash is taken up.
+double TakenUp(const CirclePoint& at, double extreme, double lost) {
+  const double way = at.radius * (1.0 - std::cos(SinceReversal(at, extreme)));
+  return lost > 0.0 ? 2.0 * std::min(1.0, way / lost) - 1.0 : 1.0;
 }
 
 double Spike(double since, double width) { return since / width * std::exp(1.0 - since / width); }
@@ -53,9 +60,15 @@ std::vector<Signature> CircleSignatures(const SignatureOptions& options) {
       {"servo_lag_squared", plane, "s2", 1e-3,
        [](At at) { return -at.feed * at.feed / (2.0 * at.radius); }},
       {"backlash", x, "m", 50e-6,
-       [](At at) { return at.sense / 2.0 * std::cos(at.angle) * Sign(std::sin(at.angle)); }},
+       [lost = options.lost[0]](At at) {
+         return at.sense / 2.0 * std::cos(at.angle) * Sign(std::sin(at.angle)) *
+                TakenUp(at, 0.0, lost);
+       }},
       {"backlash", y, "m", 50e-6,
-       [](At at) { return -at.sense / 2.0 * std::sin(at.angle) * Sign(std::cos(at.angle)); }},
+       [lost = options.lost[1]](At at) {
+         return -at.sense / 2.0 * std::sin(at.angle) * Sign(std::cos(at.angle)) *
+                TakenUp(at, kPi / 2.0, lost);
+       }},
       {"straightness", "E" + y + x, "m", 50e-6,
        [](At at) { return (std::sin(at.angle) + std::sin(3.0 * at.angle)) / 4.0; }},
       {"straightness", "E" + x + y, "m", 50e-6,
