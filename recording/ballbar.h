@@ -24,7 +24,7 @@ namespace abbe::recording {
 struct BallbarCircle {
   double radius_mm = 0.0;  // nominal: programmed
   std::string plane = "XY";
-  double feed_mm_min = 0.0;  // 0: not stated
+  double feed_mm_min = 0.0;            // 0: not stated
   std::vector<double> centre_mm = {};  // [x y z] of the axes with the tool at the centre ball
   std::string ballbar = {};            // its name, the same for all its circles
   double u_length_um = 0.0;            // of its calibrated length; 0: not calibrated

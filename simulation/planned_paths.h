@@ -45,9 +45,9 @@ struct CirclePlan {
   std::string plane = "XY";
   Eigen::Vector3d centre;
   double radius = 0.01;
-  double feed = 0.01;         // m/s
-  int rows = 180;             // in a turn
-  std::string mounting = {};  // lines of that table
+  double feed = 0.01;                       // m/s
+  int rows = 180;                           // in a turn
+  std::string mounting = {};                // lines of that table
   std::string kind = "linkage", more = {};  // of the header
 };
 // Counter-clockwise first.
