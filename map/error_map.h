@@ -30,7 +30,8 @@
 
 namespace abbe::map {
 
-// Of an error that no run determines; else the kind of run that determines it best, "sweep".
+// The source of an error that no run determines; else it is the kind of run that determines the
+// error best, "sweep".
 inline constexpr std::string_view kPriorOnly = "prior";
 
 // The 21 errors: 18 motions in the order of machine/error_motion.h, then A0Z, B0Z, C0Y.

@@ -76,6 +76,11 @@ RowRule EverySecondBlock(const Recording& recording) {
   return [block](std::size_t row) { return (row / block) % 2 == 1; };
 }
 
+RowRule EverySecondPassOrBlock(const Recording& recording) {
+  RowRule passes = EverySecondPass(recording);
+  return passes ? passes : EverySecondBlock(recording);
+}
+
 void NoteUnknownTimes(const Recording& recording, std::vector<std::string>& notes) {
   if (recording.KnowsTimes()) return;
   notes.push_back(

@@ -159,6 +159,8 @@ class RunKind {
 RowRule EverySecondPass(const recording::Recording& recording);
 // Every second of 8 blocks in time, so that neighbouring rows stay together.
 RowRule EverySecondBlock(const recording::Recording& recording);
+// Passes where there are several, else blocks.
+RowRule EverySecondPassOrBlock(const recording::Recording& recording);
 
 // For kinds whose recordings may lack times.
 void NoteUnknownTimes(const recording::Recording& recording, std::vector<std::string>& notes);

@@ -112,8 +112,7 @@ class BallbarRuns : public RunKind {
   }
 
   RowRule HeldOut(const Recording& recording) const override {
-    RowRule passes = EverySecondPass(recording);
-    return passes ? passes : EverySecondBlock(recording);
+    return EverySecondPassOrBlock(recording);
   }
 
   // The other planes about the same centre, as far as the travels reach, and another feed.

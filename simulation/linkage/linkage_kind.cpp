@@ -211,8 +211,7 @@ class LinkageRuns : public RunKind {
     return BaseOf(recording);
   }
   RowRule HeldOut(const Recording& recording) const override {
-    RowRule passes = EverySecondPass(recording);
-    return passes ? passes : EverySecondBlock(recording);
+    return EverySecondPassOrBlock(recording);
   }
 
   Recording Plan(Recording path, const Instruments& on) const override {

@@ -99,8 +99,7 @@ class ReferenceRuns : public RunKind {
   }
 
   RowRule HeldOut(const Recording& recording) const override {
-    RowRule passes = EverySecondPass(recording);
-    return passes ? passes : EverySecondBlock(recording);
+    return EverySecondPassOrBlock(recording);
   }
 };
 

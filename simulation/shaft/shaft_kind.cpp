@@ -93,8 +93,7 @@ class ShaftRuns : public RunKind {
   }
 
   RowRule HeldOut(const Recording& recording) const override {
-    RowRule passes = EverySecondPass(recording);
-    return passes ? passes : EverySecondBlock(recording);
+    return EverySecondPassOrBlock(recording);
   }
   // The sensors are silent in the other rows: the angle of the shaft is needed throughout.
   Recording Part(const Recording& recording, const RowRule& wanted) const override {
