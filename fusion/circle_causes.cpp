@@ -49,18 +49,22 @@ void CheckCircles(const std::vector<const CircleRun*>& runs) {
   }
 }
 
-// m: the way on which backlash is taken up, of the first and the second axis.
-using Lost = std::array<double, 2>;
+// How backlash is taken up, and on which way of the first and the second axis, m.
+struct BacklashForm {
+  standards::TakenUp how = standards::TakenUp::kAtOnce;
+  std::array<double, 2> way{};
+};
 
 std::vector<Signature> SignaturesOf(const CircleRun& run, const CauseOptions& options,
-                                    const Lost& lost) {
+                                    const BacklashForm& form) {
   return standards::CircleSignatures({.first = run.plane.name[0],
                                       .second = run.plane.name[1],
                                       .first_centre = run.plane.first.dot(run.centre),
                                       .second_centre = run.plane.second.dot(run.centre),
                                       .pitch = options.pitch,
                                       .spike_width = options.spike_width,
-                                      .lost = lost});
+                                      .taken_up = form.how,
+                                      .way = form.way});
 }
 
 double Radial(const CirclePoint& point, double radius) {
@@ -89,8 +93,8 @@ Eigen::MatrixXd Waves(const CircleRun& run, std::size_t orders) {
   return waves;
 }
 
-Equations EquationsOf(const CircleRun& run, const CauseOptions& options, const Lost& lost) {
-  const std::vector<Signature> table = SignaturesOf(run, options, lost);
+Equations EquationsOf(const CircleRun& run, const CauseOptions& options, const BacklashForm& form) {
+  const std::vector<Signature> table = SignaturesOf(run, options, form);
   const Eigen::Index n = run.points.size();
   const auto centres = std::ranges::count_if(table, IsCentre);
   Equations equations{Eigen::MatrixXd(n, centres), Eigen::MatrixXd(n, table.size() - centres),
@@ -125,9 +129,9 @@ CircleRun About(const Eigen::Vector2d& middle, const CircleRun& run) {
 
 // The equations of run number `at`, about its middle.
 Equations CentredEquations(const std::vector<const CircleRun*>& runs, std::size_t at,
-                           const CauseOptions& options, const Lost& lost) {
+                           const CauseOptions& options, const BacklashForm& form) {
   const Eigen::Vector2d middle = runs[at]->middle;
-  Equations equations = EquationsOf(About(middle, *runs[at]), options, lost);
+  Equations equations = EquationsOf(About(middle, *runs[at]), options, form);
   for (std::size_t k = 0; k < options.shifted.size(); ++k) {
     const CircleRun shifted = About(middle, *options.shifted[k][at]);
     for (Eigen::Index i = 0; i < equations.radial.size(); ++i) {
@@ -256,14 +260,14 @@ bool IsOfCauses(const estimation::Result& result, const estimation::WeakDirectio
 }
 
 CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
-                     const Lost& lost) {
-  std::vector<Signature> table = SignaturesOf(*runs.front(), options, lost);
+                     const BacklashForm& form) {
+  std::vector<Signature> table = SignaturesOf(*runs.front(), options, form);
   std::erase_if(table, IsCentre);
   std::vector<Equations> equations;
   CircleCauses found;
   std::vector<Eigen::VectorXd> before;
   for (std::size_t run = 0; run < runs.size(); ++run) {
-    equations.push_back(CentredEquations(runs, run, options, lost));
+    equations.push_back(CentredEquations(runs, run, options, form));
     const Eigen::VectorXd& radial = equations.back().radial;
     before.emplace_back(radial.array() - radial.mean());
   }
@@ -295,26 +299,78 @@ CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptio
   return found;
 }
 
-Lost BacklashOf(const CircleCauses& found) {
-  Lost lost{};
+std::array<double, 2> BacklashOf(const CircleCauses& found) {
+  std::array<double, 2> backlash{};
   std::size_t axis = 0;
   for (const CauseEstimate& one : found.causes) {
-    if (one.cause == "backlash") lost[axis++] = std::abs(one.value);
+    if (one.cause == "backlash") backlash[axis++] = std::abs(one.value);
   }
-  return lost;
+  return backlash;
+}
+
+// The fits with all ways in which backlash may be taken up.
+std::vector<CircleCauses> FitWithAll(const std::vector<const CircleRun*>& runs,
+                                     const CauseOptions& options) {
+  constexpr int kRounds = 4;  // each brings the way closer to the play by a factor of five
+  constexpr std::array kWays{0.5e-6, 1e-6,  2e-6,   5e-6,   10e-6,
+                             20e-6,  50e-6, 100e-6, 200e-6, 500e-6};  // m
+  std::vector<CircleCauses> fits{FitWith(runs, options, {})};
+  CircleCauses with_play = fits.front();
+  for (int round = 0; round < kRounds; ++round) {
+    with_play = FitWith(runs, options, {standards::TakenUp::kWithPlay, BacklashOf(with_play)});
+  }
+  fits.push_back(std::move(with_play));
+  for (const double way : kWays) {
+    fits.push_back(FitWith(runs, options, {standards::TakenUp::kByWindUp, {way, way}}));
+  }
+  return fits;
+}
+
+// The logarithm of the marginal likelihood of a fit, up to what is the same for all. `rows`:
+// independent ones.
+double LogLikelihood(const CircleCauses& fit, double rows) {
+  return -rows * std::log(std::max(fit.rms_after, kLeastRadialNoise));
+}
+
+Eigen::VectorXd ValuesOf(const CircleCauses& fit) {
+  Eigen::VectorXd values(fit.causes.size());
+  for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = fit.causes[i].value;
+  return values;
 }
 
 }  // namespace
 
 CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs,
                              const CauseOptions& options) {
-  constexpr int kRounds = 4;  // each brings the way closer to the backlash by a factor of five
   CheckCircles(runs);
-  CircleCauses at_once = FitWith(runs, options, {}), on_the_way = at_once;
-  for (int round = 0; round < kRounds; ++round) {
-    on_the_way = FitWith(runs, options, BacklashOf(on_the_way));
+  std::vector<CircleCauses> fits = FitWithAll(runs, options);
+  CircleCauses& best = *std::ranges::min_element(fits, {}, &CircleCauses::rms_after);
+  double rows = 0.0;
+  for (const auto& one : best.residuals) rows += static_cast<double>(one.size());
+  rows /= best.correlated * best.correlated;
+  const double most = LogLikelihood(best, rows);
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(std::ssize(best.causes));
+  double sum = 0.0;
+  for (const CircleCauses& fit : fits) {
+    const double weight = std::exp(LogLikelihood(fit, rows) - most);
+    mean += weight * ValuesOf(fit);
+    sum += weight;
   }
-  return on_the_way.rms_after < at_once.rms_after ? on_the_way : at_once;
+  mean /= sum;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(mean.size(), mean.size());
+  for (const CircleCauses& fit : fits) {
+    const Eigen::VectorXd off = ValuesOf(fit) - mean;
+    const double weight = std::exp(LogLikelihood(fit, rows) - most) / sum;
+    covariance += weight * (fit.covariance + off * off.transpose());
+  }
+  for (Eigen::Index i = 0; i < mean.size(); ++i) {
+    CauseEstimate& one = best.causes[i];
+    if (one.value != 0.0) one.effect *= std::abs(mean[i] / one.value);
+    one.value = mean[i];
+    one.u = std::sqrt(covariance(i, i));
+  }
+  best.covariance = std::move(covariance);
+  return std::move(best);
 }
 
 }  // namespace abbe::fusion

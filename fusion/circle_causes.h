@@ -14,7 +14,9 @@
 //     without them they would pass for reversal spikes and through these for backlash,
 //   - the errors of the instrument: `shifted` holds the runs with one independent error of it
 //     changed by one standard deviation.
-// Backlash is taken up at once or on the way after a reversal, whichever leaves less.
+// Backlash is taken up at once, with play, or by wind-up on any of ten ways; results are the mean of
+// these fits by their likelihood, and their spread is in u (Bayesian model averaging: Hoeting et
+// al., Statistical Science 14 (1999)).
 // Units: SI; `effect` is the largest radial deviation of a cause in m, without sign.
 // Noise: estimated from the residuals, and enlarged for the correlation of neighbouring rows by the
 // factor by which the means of 10 degrees scatter more than those of independent rows. Deviations

@@ -20,9 +20,11 @@ double SinceReversal(const CirclePoint& at, double extreme) {
 }
 
 // From -1, where the axis has just turned, to 1, where its backlash is taken up.
-double TakenUp(const CirclePoint& at, double extreme, double lost) {
-  const double way = at.radius * (1.0 - std::cos(SinceReversal(at, extreme)));
-  return lost > 0.0 ? 2.0 * std::min(1.0, way / lost) - 1.0 : 1.0;
+double ShareTakenUp(const CirclePoint& at, double extreme, TakenUp how, double way) {
+  if (how == TakenUp::kAtOnce || !(way > 0.0)) return 1.0;
+  const double gone = at.radius * (1.0 - std::cos(SinceReversal(at, extreme)));
+  if (how == TakenUp::kWithPlay) return 2.0 * std::min(1.0, gone / way) - 1.0;
+  return 1.0 - 2.0 * std::exp(-gone / way);
 }
 
 double Spike(double since, double width) { return since / width * std::exp(1.0 - since / width); }
@@ -60,14 +62,14 @@ std::vector<Signature> CircleSignatures(const SignatureOptions& options) {
       {"servo_lag_squared", plane, "s2", 1e-3,
        [](At at) { return -at.feed * at.feed / (2.0 * at.radius); }},
       {"backlash", x, "m", 50e-6,
-       [lost = options.lost[0]](At at) {
+       [how = options.taken_up, way = options.way[0]](At at) {
          return at.sense / 2.0 * std::cos(at.angle) * Sign(std::sin(at.angle)) *
-                TakenUp(at, 0.0, lost);
+                ShareTakenUp(at, 0.0, how, way);
        }},
       {"backlash", y, "m", 50e-6,
-       [lost = options.lost[1]](At at) {
+       [how = options.taken_up, way = options.way[1]](At at) {
          return -at.sense / 2.0 * std::sin(at.angle) * Sign(std::cos(at.angle)) *
-                TakenUp(at, kPi / 2.0, lost);
+                ShareTakenUp(at, kPi / 2.0, how, way);
        }},
       {"straightness", "E" + y + x, "m", 50e-6,
        [](At at) { return (std::sin(at.angle) + std::sin(3.0 * at.angle)) / 4.0; }},

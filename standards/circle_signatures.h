@@ -11,9 +11,10 @@
 //   servo mismatch            d (v/2) sin 2t                  s; > 0: first lags more than second
 //   servo lag squared         -v^2 / (2R)                     s^2; common first-order lag
 //   backlash first            d/2 cos t sgn(sin t)            m; lost at each reversal
-//   backlash second           -d/2 sin t sgn(cos t)           times (2 min(1, s / lost) - 1) where it
-//                                                             is taken up on the way s = R (1 - cos)
-//                                                             since the axis turned, not at once
+//   backlash second           -d/2 sin t sgn(cos t)           both times what is taken up at the way
+//                                                             s = R (1 - cos) since the axis turned,
+//                                                             1 at once, 2 min(1, s / way) - 1 with
+//                                                             play, 1 - 2 exp(-s / way) by wind-up
 //   straightness of first     (sin t + sin 3t) / 4            m; bow h (first/R)^2 into second
 //   straightness of second    (cos t - cos 3t) / 4            m; bow h (second/R)^2 into first
 //   cyclic, pitch p           cos, sin(2 pi position/p) times cos t (first) or sin t (second)
@@ -50,13 +51,16 @@ struct Signature {
   std::function<double(const CirclePoint&)> radial;  // m, for an amount 1
 };
 
+// How backlash is taken up after a reversal.
+enum class TakenUp : unsigned char { kAtOnce, kWithPlay, kByWindUp };
+
 struct SignatureOptions {
   char first = 'X', second = 'Y';
   double first_centre = 0.0, second_centre = 0.0;  // m: axis positions of the circle's centre
   std::map<char, double> pitch;  // m: of cyclic errors, by axis; absent: not fitted
   double spike_width = 0.07;     // rad, w
-  // m: of the first and the second axis, the way on which backlash is taken up; 0: at once.
-  std::array<double, 2> lost = {0.0, 0.0};
+  TakenUp taken_up = TakenUp::kAtOnce;
+  std::array<double, 2> way = {0.0, 0.0};  // m: of the first and the second axis; 0: at once
 };
 
 std::vector<Signature> CircleSignatures(const SignatureOptions& options);

@@ -20,6 +20,8 @@ struct Machine {
   double delay_x = 0, delay_y = 0, lag = 0;  // s
   double backlash_x = 0, backlash_y = 0;
   double play_x = 0;                // backlash that is taken up on the way
+  double wind_up_x = 0;             // backlash that is taken up gradually,
+  double wind_up_way = 10e-6;       // m: to a part of 1/e
   double bow_eyx = 0, bow_exy = 0;  // m at the radius
   double lobes = 0;                 // m: a fifth harmonic that turns with the sense
   double offset_x = 0, offset_y = 0;
@@ -33,6 +35,13 @@ double AfterPlay(double drive, double velocity, double amplitude, double play) {
   const double behind = drive - Sign(velocity) * play / 2;
   const double turned = -Sign(velocity) * (amplitude - play / 2);  // where it stood
   return velocity > 0 ? std::max(behind, turned) : std::min(behind, turned);
+}
+
+// What a carriage that winds up stays behind: half of `lost` long after a reversal, and as much on the
+// other side just after it.
+double WindUp(double drive, double velocity, double amplitude, double lost, double way) {
+  const double gone = amplitude + Sign(velocity) * drive;
+  return -Sign(velocity) * lost * (0.5 - std::exp(-gone / way));
 }
 
 // Where the tool goes: position errors, one after the other; nothing of the table of signatures.
@@ -58,6 +67,7 @@ paths::CircleRun Measure(const Machine& m, double feed, const std::vector<int>& 
       double x = cx * (1 + m.scale_x) - m.backlash_x / 2 * Sign(vx);
       double y = cy * (1 + m.scale_y) - m.backlash_y / 2 * Sign(vy);
       x += AfterPlay(cx, vx, amplitude, m.play_x) - cx;
+      x += WindUp(cx, vx, amplitude, m.wind_up_x, m.wind_up_way);
       y += m.bow_eyx * cx * cx / (kRadius * kRadius);
       x += m.bow_exy * cy * cy / (kRadius * kRadius);
       x -= y * std::sin(m.squareness);
@@ -114,20 +124,22 @@ const Machine kAll{.scale_x = 60e-6,
                    .offset_y = -10e-6,
                    .noise = 0};
 
-// Play is taken up on the way after a reversal. As a step at once it came out a quarter too small,
-// with reversal spikes and servo mismatch that are not there.
-TEST(CircleCauses, PlayIsTakenUpOnTheWay) {
-  Machine m;
-  m.play_x = 4e-6;
-  m.noise = 0.1e-6;
-  const auto run = Measure(m, 0.01, {1, -1});
-  const CircleCauses found = FitCircleCauses({&run}, {});
-  for (const CauseEstimate& one : found.causes) {
-    const double truth = one.cause == "backlash" && one.object == "X" ? m.play_x : 0.0;
-    if (!one.seen) continue;
-    EXPECT_NEAR(one.value, truth, 3.0 * one.u) << one.cause << ' ' << one.object;
+// Backlash is taken up with play or by wind-up. As a step at once 4 um came out as 3 um, with
+// reversal spikes and servo mismatch that are not there.
+TEST(CircleCauses, BacklashIsTakenUpOnTheWay) {
+  Machine with_play, by_wind_up;
+  with_play.play_x = by_wind_up.wind_up_x = 4e-6;
+  for (Machine m : {with_play, by_wind_up}) {
+    m.noise = 0.1e-6;
+    const auto run = Measure(m, 0.01, {1, -1});
+    const CircleCauses found = FitCircleCauses({&run}, {});
+    for (const CauseEstimate& one : found.causes) {
+      const double truth = one.cause == "backlash" && one.object == "X" ? 4e-6 : 0.0;
+      if (!one.seen) continue;
+      EXPECT_NEAR(one.value, truth, 3.0 * one.u) << one.cause << ' ' << one.object;
+    }
+    EXPECT_LT(Find(found, "backlash", "X").u, 0.06e-6);
   }
-  EXPECT_LT(Find(found, "backlash", "X").u, 0.05e-6);
 }
 
 TEST(CircleCauses, AllCausesAtOnceAreToldApart) {
