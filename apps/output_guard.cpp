@@ -31,7 +31,8 @@ bool IsOutput(const CLI::Option& option) {
 
 // An input that its own command may write anew.
 bool MayReplace(const CLI::App& command, const CLI::Option& option) {
-  return command.get_name() == "track" && option.get_name() == "map";
+  return option.get_name() == "--store" ||
+         (command.get_name() == "track" && option.get_name() == "map");
 }
 
 struct Places {

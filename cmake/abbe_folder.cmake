@@ -69,8 +69,12 @@ function(abbe_tests name)
 endfunction()
 
 function(abbe_register_tests program name label timeout seeds)
+  set(cost 10)  # suites begin before what takes a moment, so that no processor waits for the last of them
+  if(label STREQUAL unit)
+    set(cost 0)
+  endif()
   gtest_discover_tests(${program} TEST_PREFIX "${name}.${label}." NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
-    PROPERTIES LABELS ${label} TIMEOUT ${timeout} SKIP_REGULAR_EXPRESSION "SKIPPED"
+    PROPERTIES LABELS ${label} COST ${cost} TIMEOUT ${timeout} SKIP_REGULAR_EXPRESSION "SKIPPED"
                ENVIRONMENT "$<$<BOOL:${seeds}>:ABBE_SEEDS=${seeds}>")
 endfunction()
 

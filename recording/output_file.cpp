@@ -35,6 +35,19 @@ void ThrowWriteFailure(std::string_view file, std::string_view saved) {
 OutputFile::OutputFile(const std::filesystem::path& path)
     : name_(path.string()), file_(CreateNewFile(path)) {}
 
+OutputFile::OutputFile(const std::filesystem::path& path, std::size_t whole)
+    : name_(path.string()),
+      file_(open(path.c_str(), O_WRONLY | O_CLOEXEC | O_APPEND)),
+      size_(whole) {
+  if (file_ < 0) {
+    throw InputError(fmt::format("{}: cannot be written: {}; choose a file that can be", name_,
+                                 std::strerror(errno)));
+  }
+  if (ftruncate(file_, static_cast<off_t>(whole)) != 0) {
+    ThrowWriteFailure(name_, "what it has stays as it is");
+  }
+}
+
 OutputFile::~OutputFile() {
   if (file_ >= 0) close(file_);
 }

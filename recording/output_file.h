@@ -18,6 +18,8 @@ int CreateNewFile(const std::filesystem::path& path);
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
+  // An existing file that goes on behind its first `whole` bytes; what follows them is cut off.
+  OutputFile(const std::filesystem::path& path, std::size_t whole);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

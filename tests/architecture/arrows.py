@@ -40,7 +40,8 @@ ARROWS = {
     "report": "failure",
     "live": "failure recording report",
     "rig": "failure random settings recording hal",
-    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion certificate diagnosis learned investigate history track report live rig",
+    "study": "failure random settings recording hal machine probes paths relm simulation fusion diagnosis rig",
+    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion certificate diagnosis learned investigate history track report live rig study",
     "python": "failure settings recording estimation machine map compensation probes paths relm simulation fusion diagnosis learned apps",
 }
 
@@ -58,6 +59,7 @@ GATES = {
     "soci/": r"history/database\.cpp",
     "openssl/": r"recording/file_hash\.cpp",
     "libxml/": r"certificate/xml\.cpp",
+    "mpi.h": r"study/ranks_mpi\.cpp",
     "httplib.h": r"live/page_server\.cpp",
 }
 

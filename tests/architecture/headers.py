@@ -13,7 +13,7 @@ def all_of(root):
 def installed(root):
     """Those that the package installs: not the program's own and not what folders keep to themselves."""
     kept = set(internal(root))
-    return [name for name in all_of(root) if name not in kept and not name.startswith(("apps/", "python/"))]
+    return [name for name in all_of(root) if name not in kept and not name.startswith(("apps/", "python/", "study/"))]
 
 
 def comments(text):

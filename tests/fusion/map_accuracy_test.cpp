@@ -10,7 +10,7 @@
 
 #include "random/counter_random.h"
 #include "tests/fusion/rig_campaign.h"
-#include "tests/fusion/rig_map_bound.h"
+#include "study/bound/rig_map_bound.h"
 #include "tests/pull_statistics.h"
 #include "tests/seeds.h"
 
@@ -56,14 +56,14 @@ void Judge(const Campaign& campaign, const FuseReport& report, std::uint64_t see
 
 // The same recordings on the machine without errors: the bound of a Gaussian does not depend on
 // what was drawn.
-RigMapBound BoundOf(const settings::Document& document, const Campaign& campaign) {
+study::RigMapBound BoundOf(const settings::Document& document, const Campaign& campaign) {
   constexpr int kPlaces = 60;
   const random::CounterRandom random(1, 0x3AA);
   Eigen::Matrix3Xd places(3, kPlaces);
   for (int i = 0; i < kPlaces; ++i) {
     places.col(i) = Draw(random, 3 * static_cast<std::uint64_t>(i), 0.0, 0.06);
   }
-  RigMapBound bound(rig::ReadRigSettings(document.Root()), rig::ReadLinkage(document.Root()),
+  study::RigMapBound bound(rig::ReadRigSettings(document.Root()), rig::ReadLinkage(document.Root()),
                     places);
   for (const char axis : {'X', 'Y', 'Z'}) bound.Add(campaign.SweepRecording(axis));
   bound.Add(campaign.LinkageRecording());
@@ -77,7 +77,7 @@ TEST(MapAccuracy, StatesTrueUncertaintiesAndGainsFromTheOtherInstrument) {
                           Set{"RELM + sweeps", true, true, false},
                           Set{"RELM + sweeps + length", true, true, true}};
   const Seeds seeds = SeedsFromEnvironment();
-  const RigMapBound bound = BoundOf(document, Campaign(document, 1));
+  const study::RigMapBound bound = BoundOf(document, Campaign(document, 1));
   for (Set& set : sets) set.bound = bound.Variance({set.sweeps, set.linkage, set.length});
   for (std::uint64_t seed = seeds.first; seed <= seeds.last; seed += seeds.step) {
     const Campaign campaign(document, seed);

@@ -13,8 +13,8 @@
 #include "linkage_world.h"
 #include "random/counter_random.h"
 #include "rig/linkage.h"
-#include "rig_linkage_bound.h"
 #include "settings/document.h"
+#include "study/bound/rig_linkage_bound.h"
 #include "tests/pull_statistics.h"
 #include "tests/seeds.h"
 
@@ -154,7 +154,7 @@ TEST(RigAccuracy, OfTheCompleteModelOverTheTravel) {
   const Matrix3Xd positions = GridPositions(travel, {5, 5, 5});
   const Matrix3Xd places = RandomPositions(travel, kPlaces, 1);
   const VectorXd warmth = WarmthOf(positions.cols());
-  const RigLinkageBound own(drawn);
+  const study::RigLinkageBound own(drawn);
   const auto in_base = [&](const Matrix3Xd& at) {
     return Matrix3Xd(PlacesAt(at).colwise() - settings.X_MB.p);
   };

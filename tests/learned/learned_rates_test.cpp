@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/hidden_effects/visible_effects.h"
+#include "study/hidden/visible_effects.h"
 #include "tests/learned/hidden_terms.h"
 #include "tests/learned/learned_world.h"
 #include "tests/seeds.h"
@@ -119,7 +119,7 @@ class Judge {
 
 TEST(LearnedRates, OfEffectsOfNoCatalogue) {
   const HiddenWorlds worlds(kCampaign);
-  const VisibleEffects visible(worlds);
+  const study::VisibleEffects visible(worlds);
   Judge judge;
   ForEachSeed([&](std::uint64_t seed) {
     const HiddenTerm hidden = DrawTerm(seed, static_cast<int>((seed - 1) % kTermKinds));

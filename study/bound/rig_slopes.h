@@ -12,7 +12,7 @@
 
 #include "rig/rig_settings.h"
 
-namespace abbe::fusion {
+namespace abbe::study {
 
 class RigSlopes {
  public:
@@ -213,4 +213,4 @@ class RigSlopes {
   const rig::RigSettings machine_;
 };
 
-}  // namespace abbe::fusion
+}  // namespace abbe::study

@@ -8,7 +8,7 @@
 
 #include "recording/recording.h"
 
-namespace abbe::fusion {
+namespace abbe::study {
 
 struct RigStay {
   std::size_t first, rows;
@@ -41,4 +41,4 @@ inline std::vector<RigStay> RigStaysOf(const recording::Recording& recording) {
   return stays;
 }
 
-}  // namespace abbe::fusion
+}  // namespace abbe::study

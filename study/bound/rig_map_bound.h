@@ -21,11 +21,11 @@
 
 #include "recording/recording.h"
 #include "rig/rig_settings.h"
-#include "tests/fusion/rig_linkage_bound.h"
-#include "tests/fusion/rig_slopes.h"
-#include "tests/fusion/rig_stays.h"
+#include "study/bound/rig_linkage_bound.h"
+#include "study/bound/rig_slopes.h"
+#include "study/bound/rig_stays.h"
 
-namespace abbe::fusion {
+namespace abbe::study {
 
 class RigMapBound {
  public:
@@ -266,4 +266,4 @@ class RigMapBound {
   std::vector<Datum> data_;
 };
 
-}  // namespace abbe::fusion
+}  // namespace abbe::study

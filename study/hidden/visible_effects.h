@@ -1,6 +1,6 @@
 // What a standard campaign of the virtual rig can show of an effect at all, and whether another
 // cause could do the same: worked out from the recordings with and without the effect and the
-// covariance of readings (tests/fusion/rig_map_bound.h), by no code of the diagnosis.
+// covariance of readings (study/bound/rig_map_bound.h), by no code of the diagnosis.
 //
 //   const VisibleEffects visible(worlds);
 //   const Eigen::VectorXd column = visible.ColumnOf({"backlash:object=X"}, seed);
@@ -20,11 +20,11 @@
 #include <string>
 #include <vector>
 
-#include "tests/fusion/rig_map_bound.h"
-#include "tests/hidden_effects/hidden_world.h"
-#include "tests/hidden_effects/judgement.h"
+#include "study/bound/rig_map_bound.h"
+#include "study/hidden/hidden_world.h"
+#include "study/hidden/judgement.h"
 
-namespace abbe {
+namespace abbe::study {
 
 class VisibleEffects {
  public:
@@ -36,7 +36,7 @@ class VisibleEffects {
         slopes_(worlds.machine().rig),
         linkage_(*worlds.machine().linkage),
         base_(*worlds.machine().linkage) {
-    fusion::RigMapBound readings(worlds.machine().rig, base_, Eigen::Matrix3Xd(3, 0));
+    RigMapBound readings(worlds.machine().rig, base_, Eigen::Matrix3Xd(3, 0));
     const rig::Campaign clean = worlds.Record(kSeed, {});
     for (const auto& recording : clean.recordings) {
       if (recording.Kind() == "dwell") {
@@ -113,7 +113,7 @@ class VisibleEffects {
       }
       return Mapped(values);
     }
-    const auto stays = fusion::RigStaysOf(recording);
+    const auto stays = RigStaysOf(recording);
     const double start = kind == "length" ? stays.front().MeanOf(recording, "length_mm") : 0.0;
     for (std::size_t s = kind == "length" ? 1 : 0; s < stays.size(); ++s) {
       if (kind == "length")
@@ -128,7 +128,7 @@ class VisibleEffects {
   }
 
   // Where the ball stands for the angles, to first order.
-  VectorXd BallOf(const fusion::RigStay& stay, const recording::Recording& recording) const {
+  VectorXd BallOf(const RigStay& stay, const recording::Recording& recording) const {
     const Eigen::Matrix3d& R = base_.base_rotation;
     const Eigen::Vector3d ball = slopes_.BallAt(stay.position) - base_.base_position;
     Eigen::Vector3d angles;
@@ -224,12 +224,12 @@ class VisibleEffects {
   static constexpr const char* kPivots[3] = {"pivot_1_rad", "pivot_2_rad", "pivot_3_rad"};
 
   const HiddenWorlds worlds_;
-  const fusion::RigSlopes slopes_;
-  const fusion::RigLinkageBound linkage_;
+  const RigSlopes slopes_;
+  const RigLinkageBound linkage_;
   const rig::LinkageSettings base_;
   VectorXd scale_;
   Eigen::LLT<MatrixXd> factor_, dwell_;
   std::map<std::string, std::vector<VectorXd>> rivals_;
 };
 
-}  // namespace abbe
+}  // namespace abbe::study

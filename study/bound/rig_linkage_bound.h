@@ -3,9 +3,8 @@
 // description of its linkage (rig/linkage.h), written out once more with matrices; shares no code
 // with relm/, simulation/ and fusion/ and none with the rig.
 //
-// Unknown: everything that the rig draws. Data: encoder
-// readings and ball positions with white noise. Units: m, rad, K. Shapes: poses and places 3 x n in
-// B, the nominal base.
+// Unknown: everything that the rig draws. Data: encoder readings and ball positions with white noise.
+// Units: m, rad, K. Shapes: poses and places 3 x n in B, the nominal base.
 #pragma once
 
 #include <Eigen/Dense>
@@ -17,7 +16,7 @@
 
 #include "rig/linkage_settings.h"
 
-namespace abbe::fusion {
+namespace abbe::study {
 
 class RigLinkageBound {
  public:
@@ -186,4 +185,4 @@ class RigLinkageBound {
   std::array<Index, 3> place_{}, angle_{};
 };
 
-}  // namespace abbe::fusion
+}  // namespace abbe::study

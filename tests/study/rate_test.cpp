@@ -1,0 +1,32 @@
+#include "study/rate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace abbe::study {
+namespace {
+
+// The closed forms of the interval for none and for all: (alpha/2)^(1/n).
+TEST(Rate, HasTheIntervalOfClopperAndPearson) {
+  const Rate none{.worlds = 100, .met = 0}, all{.worlds = 100, .met = 100};
+  EXPECT_EQ(none.Low(), 0.0);
+  EXPECT_NEAR(none.High(), 1.0 - std::pow(0.005, 0.01), 1e-12);
+  EXPECT_EQ(all.High(), 1.0);
+  EXPECT_NEAR(all.Low(), std::pow(0.005, 0.01), 1e-12);
+  // SciPy: beta.ppf(0.005, 90, 11), beta.ppf(0.995, 91, 10).
+  const Rate most{.worlds = 100, .met = 90};
+  EXPECT_NEAR(most.Low(), 0.798046, 1e-6);
+  EXPECT_NEAR(most.High(), 0.961804, 1e-6);
+}
+
+TEST(Rate, RefutesABoundOnlyOutsideItsInterval) {
+  const Rate most{.worlds = 100, .met = 90};
+  EXPECT_FALSE((Bound{"", most, 0.95, 1.0}).IsRefuted());
+  EXPECT_TRUE((Bound{"", most, 0.97, 1.0}).IsRefuted());
+  EXPECT_TRUE((Bound{"", most, 0.0, 0.5}).IsRefuted());
+  EXPECT_FALSE((Bound{"", {}, 0.97, 1.0}).IsRefuted());
+}
+
+}  // namespace
+}  // namespace abbe::study
