@@ -34,18 +34,18 @@ void AddSensitivity(CLI::App& program, int& exit_code);
 void AddStudy(CLI::App& program, int& exit_code);
 void AddCertificate(CLI::App& program, int& exit_code);
 void AddHistory(CLI::App& program, int& exit_code);
+void AddFleet(CLI::App& program, int& exit_code);
 void AddLive(CLI::App& program, int& exit_code);
 void AddReport(CLI::App& program, int& exit_code);
 void AddCompletion(CLI::App& program, int& exit_code);
 void AddMan(CLI::App& program, int& exit_code);
 
 inline constexpr auto kCommands = std::to_array<AddCommand>(
-    {AddInit,      AddDoctor,      AddRig,       AddAlign,          AddSweep,
-     AddRecord,    AddReduce,      AddCalibrate, AddCircle,         AddPath,
-     AddHarmonics, AddPlate,       AddFuse,      AddTrack,          AddFollow,
-     AddDiagnose,  AddInvestigate, AddCauses,    AddLearnedCommand, AddExport,
-     AddCorrect,   AddSimulate,    AddConvert,   AddSensitivity,    AddStudy,
-     AddHistory,   AddCertificate, AddReport,    AddLive,           AddCompletion,
-     AddMan});
+    {AddInit,           AddDoctor,    AddRig,     AddAlign,       AddSweep,       AddRecord,
+     AddReduce,         AddCalibrate, AddCircle,  AddPath,        AddHarmonics,   AddPlate,
+     AddFuse,           AddTrack,     AddFollow,  AddDiagnose,    AddInvestigate, AddCauses,
+     AddLearnedCommand, AddExport,    AddCorrect, AddSimulate,    AddConvert,     AddSensitivity,
+     AddStudy,          AddHistory,   AddFleet,   AddCertificate, AddReport,      AddLive,
+     AddCompletion,     AddMan});
 
 }  // namespace abbe::apps

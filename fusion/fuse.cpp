@@ -63,8 +63,8 @@ class FuseJob {
       : machine_(machine),
         runs_(std::move(runs)),
         options_(options),
-        model_(UnknownMachine(machine)),
-        knots_(KnotsOf(machine)),
+        knots_(options.knots.value_or(KnotsOf(machine))),
+        model_(UnknownMachine(machine, knots_)),
         population_(PopulationOf(machine)),
         noise_(runs_.size(), 1.0) {
     AllowFormAndReversals();
@@ -173,6 +173,7 @@ class FuseJob {
     statements_ = std::move(seen.statements);
     if (SetHoles(now.fit)) noise = true;
     by_theta_ = std::move(seen.by_theta);
+    seen_ = std::move(seen.seen);
     if (may_refine && Refine()) return Change::kKnots;
     return noise ? Change::kNoise : Change::kNone;
   }
@@ -221,6 +222,7 @@ class FuseJob {
     report.scale = seen.scale;
     report.chosen_smoothness = SmoothnessSeen();
     report.statements = std::move(statements_);
+    report.seen = std::move(seen_);
     report.noise = noise_;
     report.reversals = ReversalsOf(now.fit, widened);
     for (const SimulatedRun& run : runs_) report.kinds.push_back(run.kind);
@@ -356,8 +358,8 @@ class FuseJob {
   const machine::Machine& machine_;
   std::vector<SimulatedRun> runs_;
   const FuseOptions options_;
-  machine::VolumetricModel model_;
   std::array<double, machine::kAxes> knots_;  // m apart, of model_
+  machine::VolumetricModel model_;
   ErrorPopulation population_;
   VectorXd theta_;  // population_estimate.h
   std::vector<double> noise_;
@@ -365,6 +367,7 @@ class FuseJob {
   double holes_ = 1.0;  // of the form of a plate, the same
   std::vector<Statement> statements_;
   Eigen::MatrixXd by_theta_;  // population_estimate.h
+  Quadratic seen_;            // the same
 };
 
 }  // namespace

@@ -21,7 +21,9 @@
 // Validity: to first order at the estimate; errors that do not change between the runs.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +48,8 @@ struct FuseOptions {
   // The same runs on a machine with other knots; empty: the knots stay as they are.
   std::function<std::vector<simulation::SimulatedRun>(const machine::VolumetricModel&)> runs_on =
       {};
+  // Of the model on which the runs are simulated, m apart; none: KnotsOf(machine).
+  std::optional<std::array<double, machine::kAxes>> knots = {};
   int holdout = 0;  // every n-th block of rows of each run; 0: none
   int threads = 0;
   Doubt doubt = {};  // widens the covariance of the map
@@ -71,6 +75,9 @@ struct FuseReport {
   Suspect suspect = Suspect::kNone;    // of that contradiction
   std::vector<double> follows = {};    // of each run: correlation of its residuals from row to row
   std::vector<HeldOut> held_out = {};  // one for each run; empty when not asked for
+  // What the runs tell of the parameters of the map's model, without a prior of these; empty where
+  // sizes and smoothness are not chosen.
+  Quadratic seen = {};
 };
 
 // `runs`: simulated on one model, whose knots `runs_on` may change.

@@ -43,10 +43,11 @@ class Estimate {
       const bool form = SetForm();
       if (!SetNoise() && !form) break;
     }
-    PopulationEstimate seen{theta_, evidence_.PopulationAt(theta_), noise_, form_, Statements(),
+    PopulationEstimate seen{theta_, evidence_.PopulationAt(theta_), noise_, form_, Statements(), {},
                             {}};
     const MatrixXd C = (highest_.local.fisher + evidence_.precision()).inverse();
     seen.by_theta = evidence_.MovedByTheta(of_machine_, theta_, C);
+    seen.seen = of_machine_;
     for (Index i = 0; i < theta_.size(); ++i) {
       const auto [line, axis, motion] = evidence_.knobs()[i];
       if (axis < 0 || line == kSmoothness) continue;

@@ -51,6 +51,7 @@ struct PopulationEstimate {
   // By how much the functions and squarenesses move with theta: columns that are independent of
   // each other, of one standard deviation.
   Eigen::MatrixXd by_theta;
+  Quadratic seen;  // of the functions and squarenesses, with this noise and form
 };
 
 // The runs at one point x: their sums, whitened with the noise `stated` times `noise`.

@@ -3,8 +3,8 @@
 // description of its linkage (rig/linkage.h), written out once more with matrices; shares no code
 // with relm/, simulation/ and fusion/ and none with the rig.
 //
-// Unknown: everything that the rig draws. Data: encoder readings and ball positions with white noise.
-// Units: m, rad, K. Shapes: poses and places 3 x n in B, the nominal base.
+// Unknown: everything that the rig draws. Data: encoder readings and ball positions with white
+// noise. Units: m, rad, K. Shapes: poses and places 3 x n in B, the nominal base.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,11 +1,11 @@
 // The study of one's own head: what its tolerances in the machine file leave of a sweep.
 //
-// A world is a head as it may have been made and mounted, a machine of the population, and the means
-// of its readings: exact readings of that head (RigidReadings), inverted as if it were nominal.
-// Errors are estimated minus true at stations over the planned sweep, an angle from the first of
-// them, a straightness from its line, as in a sweep. Five factors are drawn by themselves: motion of
-// the axis, positions of the probes, installation, gains, and noise: what all readings at a station
-// leave of the white part, and the passes of the drift.
+// A world is a head as it may have been made and mounted, a machine of the population, and the
+// means of its readings: exact readings of that head (RigidReadings), inverted as if it were
+// nominal. Errors are estimated minus true at stations over the planned sweep, an angle from the
+// first of them, a straightness from its line, as in a sweep. Five factors are drawn by themselves:
+// motion of the axis, positions of the probes, installation, gains, and noise: what all readings at
+// a station leave of the white part, and the passes of the drift.
 //
 // A row has the errors of two independent worlds and of the first with one factor of the second
 // (Saltelli's design); the share of a factor is Jansen's total index, 1/2 mean (f - f_i)^2 over the

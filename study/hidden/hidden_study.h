@@ -1,5 +1,5 @@
-// The study of hidden effects: how often the diagnosis is right about a reduced standard campaign of
-// the virtual rig that hides nothing, an effect of the catalogue, two, or one of no catalogue.
+// The study of hidden effects: how often the diagnosis is right about a reduced standard campaign
+// of the virtual rig that hides nothing, an effect of the catalogue, two, or one of no catalogue.
 //
 // The seed draws machine, instruments, noise, effect and sizes; the diagnosis sees the machine file
 // and the recordings only. A row has what was hidden, the verdict, the findings and what is left.

@@ -38,6 +38,7 @@ NOT_HERE = {
     ("live.md", "abbe record"): "waits for a machine: record_test.py",
     ("live.md", "abbe live"): "serves until Ctrl-C: live_test.py",
     ("sweep.md", "abbe sweep"): "waits for a machine: sweep_test.py",
+    ("fleet.md", "abbe fleet fit"): "needs a fleet: fleet_test.py",
     ("investigate.md", "abbe investigate --machine mill.toml"): "asks an operator: investigate_test.py",
     ("devices.md", "abbe record"): "waits for a machine: record_test.py",
     ("virtual-rig.md", "abbe rig --machine machines/demo_mill.toml --seed 7 --port"): "serves until Ctrl-C",

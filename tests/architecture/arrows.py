@@ -37,11 +37,12 @@ ARROWS = {
     "investigate": "failure random settings recording machine simulation diagnosis",
     "history": "failure standards settings recording",
     "track": "failure settings recording standards estimation machine map simulation fusion history",
+    "fleet": "failure machine map fusion",
     "report": "failure",
     "live": "failure recording report",
     "rig": "failure random settings recording hal",
     "study": "failure random settings recording hal machine probes paths relm simulation fusion diagnosis rig",
-    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion certificate diagnosis learned investigate history track report live rig study",
+    "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion certificate diagnosis learned investigate history track fleet report live rig study",
     "python": "failure settings recording estimation machine map compensation probes paths relm simulation fusion diagnosis learned apps",
 }
 

@@ -1,0 +1,357 @@
+// abbe fleet: what the machines of one type have in common, and which of them is odd.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/command.h"
+#include "apps/commands.h"
+#include "apps/instruments.h"
+#include "apps/interrupt.h"
+#include "apps/machine_recording.h"
+#include "apps/progress.h"
+#include "apps/result_file.h"
+#include "failure/failure.h"
+#include "fleet/odd_machines.h"
+#include "fleet/population_fit.h"
+#include "fusion/fuse.h"
+#include "recording/file_hash.h"
+#include "recording/recording_file.h"
+#include "settings/toml_text.h"
+#include "simulation/kinds.h"
+#include "study/deal.h"
+#include "study/store.h"
+
+namespace abbe::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Index;
+
+// Of the correlation length of the machine file: what the model follows (fleet::KnotsOf).
+constexpr double kFollowed = 0.6;
+
+struct FleetOptions {
+  std::vector<std::string> campaigns;  // "A12=folder"
+  fs::path machine, store, out, json;
+  fleet::IdentityOptions identity;
+  int threads = 0;
+  bool resume = false, quiet = false;
+};
+
+struct Given {
+  std::string machine;
+  fs::path folder;
+  std::vector<fs::path> recordings;  // of kinds that make maps
+};
+
+// In the order of their names.
+std::vector<fs::path> RecordingsIn(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> paths;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const fs::path extension = entry->path().extension();
+    if (extension != ".csv" && extension != ".h5") continue;
+    if (simulation::KindOf(recording::ReadHead(entry->path())).MakesMaps()) {
+      paths.push_back(entry->path());
+    }
+  }
+  if (error) {
+    throw InputError(fmt::format("{}: cannot be read as a folder: {}; give that of a campaign",
+                                 folder.string(), error.message()));
+  }
+  if (paths.empty()) {
+    throw InputError(
+        fmt::format("{}: has no recording that makes a map ({}); give the folder of a "
+                    "campaign",
+                    folder.string(), simulation::KindNames(&simulation::RunKind::MakesMaps)));
+  }
+  std::ranges::sort(paths);
+  return paths;
+}
+
+Given ParseGiven(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+    throw InputError(
+        fmt::format("{}: give each campaign as MACHINE=FOLDER, for example "
+                    "A12=campaigns/a12",
+                    text));
+  }
+  const fs::path folder = text.substr(equals + 1);
+  return {text.substr(0, equals), folder, RecordingsIn(folder)};
+}
+
+// The same for the same recordings of the same machine.
+std::uint64_t NumberOf(const Given& given) {
+  std::string all = given.machine;
+  for (const fs::path& path : given.recordings) all += recording::Sha256OfFile(path);
+  constexpr int kDigits = 13;  // of a double
+  return std::stoull(recording::Sha256OfText(all).substr(0, kDigits), nullptr, 16);
+}
+
+std::vector<double> LowerTriangle(const Eigen::MatrixXd& full) {
+  std::vector<double> values;
+  for (Index i = 0; i < full.rows(); ++i) {
+    for (Index j = 0; j <= i; ++j) values.push_back(full(i, j));
+  }
+  return values;
+}
+
+Eigen::MatrixXd FromLowerTriangle(const std::vector<double>& values, Index n) {
+  Eigen::MatrixXd full(n, n);
+  auto at = values.begin();
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j <= i; ++j) full(i, j) = full(j, i) = *at++;
+  }
+  return full;
+}
+
+// What each campaign tells, as a study over campaigns instead of worlds.
+class Gathering : public study::Study {
+ public:
+  Gathering(simulation::Instruments instruments, std::map<std::uint64_t, Given> campaigns)
+      : instruments_(std::move(instruments)), campaigns_(std::move(campaigns)) {}
+
+  study::Row World(std::uint64_t number) const override {
+    const Given& given = campaigns_.at(number);
+    const auto knots = fleet::KnotsOf(instruments_.machine);
+    const machine::VolumetricModel model = fusion::UnknownMachine(instruments_.machine, knots);
+    std::vector<simulation::RunSource> sources;
+    for (const fs::path& path : given.recordings) {
+      sources.push_back({ReadHeadOf(instruments_.machine, path), BlocksOf(path),
+                         [this, path] { return ReadRecordingOf(instruments_.machine, path); }});
+    }
+    simulation::RefuseStrangers(sources, instruments_);
+    std::vector<simulation::SimulatedRun> runs;
+    for (const auto& source : sources) {
+      for (auto& run : simulation::SimulateForMap(source, model, instruments_)) {
+        runs.push_back(std::move(run));
+      }
+    }
+    const fusion::FuseReport report =
+        fusion::Fuse(instruments_.machine, runs, {.knots = knots, .threads = 1});
+    return {{"machine", given.machine},
+            {"campaign", given.folder.string()},
+            {"contradiction", report.contradicting >= 0},
+            {"information", LowerTriangle(report.seen.information)},
+            {"vector", std::vector<double>(report.seen.vector.begin(), report.seen.vector.end())}};
+  }
+
+ private:
+  simulation::Instruments instruments_;
+  std::map<std::uint64_t, Given> campaigns_;
+};
+
+fleet::Campaign CampaignOf(const study::Row& row) {
+  const auto vector = row.at("vector").get<std::vector<double>>();
+  const Index n = std::ssize(vector);
+  return {row.at("machine"),
+          row.at("campaign"),
+          {FromLowerTriangle(row.at("information").get<std::vector<double>>(), n),
+           Eigen::Map<const Eigen::VectorXd>(vector.data(), n)}};
+}
+
+// "2.13 (1.98 to 2.29)": with U95.
+std::string SeenText(const fusion::Statement& line) {
+  if (!std::isfinite(line.u_log)) return "the fleet does not tell";
+  const double seen = line.seen / line.unit, factor = std::exp(2.0 * line.u_log);
+  return fmt::format("{:.3g} ({:.3g} to {:.3g})", seen, seen / factor, seen * factor);
+}
+
+std::string KeyOf(const fusion::Statement& line) {
+  return std::string(line.key.substr(line.key.find('.') + 1));
+}
+
+// The table [population] for the machine file of a new machine of this type.
+std::string PopulationText(const fleet::PopulationFit& fit) {
+  std::string text =
+      fmt::format("# Of {} machines, by abbe fleet fit.\n[population]\n", fit.machines().size());
+  for (const fusion::Statement& line : fit.statements()) {
+    const bool told = std::isfinite(line.u_log);
+    text += fmt::format("{} = {}{}\n", KeyOf(line),
+                        settings::Float((told ? line.seen : line.stated) / line.unit),
+                        told ? "" : "  # as before: the fleet does not tell");
+  }
+  return text;
+}
+
+std::string FitText(const fleet::PopulationFit& fit, const std::vector<fleet::OddError>& errors,
+                    const std::vector<fleet::OddIdentity>& identities, double change) {
+  std::string text = fmt::format(
+      "{} machines\n\n| population | file | fleet (U95) |\n|---|---|---|\n", fit.machines().size());
+  for (const fusion::Statement& line : fit.statements()) {
+    text +=
+        fmt::format("| {} | {:.3g} | {} |\n", KeyOf(line), line.stated / line.unit, SeenText(line));
+  }
+  const fusion::Statement& smoothness = fit.statements().back();
+  if (smoothness.seen < kFollowed * smoothness.stated) {
+    text +=
+        "The fleet is rougher than its model can follow: put this table into the machine file "
+        "and fit once more, into another store.\n";
+  }
+  text += "\nOdd parts, errors of a size that the others do not have:\n";
+  if (errors.empty()) text += "none\n";
+  for (const fleet::OddError& odd : errors) {
+    text += fmt::format("{} {}: {:.1f} times the size of the population, p = {:.2g}{}\n",
+                        odd.machine, odd.error, odd.times, odd.p_value,
+                        odd.is_certain ? "" : " (one such case is expected by chance among many)");
+  }
+  text += fmt::format(
+      "\nSwapped identities (errors change by {:g} of their size between campaigns):\n", change);
+  if (identities.empty()) text += "none\n";
+  for (const fleet::OddIdentity& odd : identities) {
+    text += fmt::format("{}: said to be {}, fits {}, odds 1e{:.0f}\n", odd.campaign, odd.said,
+                        odd.fits.empty() ? "none of the machines" : odd.fits, odd.log10_odds);
+  }
+  return text;
+}
+
+nlohmann::ordered_json FitJson(const fleet::PopulationFit& fit,
+                               const std::vector<fleet::OddError>& errors,
+                               const std::vector<fleet::OddIdentity>& identities) {
+  nlohmann::ordered_json json{{"command", "fleet fit"}, {"machines", fit.machines()}};
+  for (const fusion::Statement& line : fit.statements()) {
+    auto& one = json["population"][KeyOf(line)];
+    one = {{"file", line.stated / line.unit}};
+    if (!std::isfinite(line.u_log)) continue;
+    one["fleet"] = line.seen / line.unit;
+    one["u_log"] = line.u_log;
+  }
+  json["odd_errors"] = nlohmann::ordered_json::array();
+  for (const auto& odd : errors) {
+    json["odd_errors"].push_back({{"machine", odd.machine},
+                                  {"error", odd.error},
+                                  {"times", odd.times},
+                                  {"p_value", odd.p_value},
+                                  {"certain", odd.is_certain}});
+  }
+  json["odd_identities"] = nlohmann::ordered_json::array();
+  for (const auto& odd : identities) {
+    json["odd_identities"].push_back({{"campaign", odd.campaign},
+                                      {"said", odd.said},
+                                      {"fits", odd.fits},
+                                      {"log10_odds", odd.log10_odds}});
+  }
+  return json;
+}
+
+// The rows of the campaigns that were given, or all of the store.
+std::vector<fleet::Campaign> CampaignsOf(const study::Rows& rows,
+                                         const std::map<std::uint64_t, Given>& given) {
+  std::vector<fleet::Campaign> campaigns;
+  for (const auto& [number, row] : rows) {
+    if (!given.empty() && !given.contains(number)) continue;
+    if (row.contains("failed")) {
+      fmt::print(stderr, "abbe: a campaign is left out: {}\n", row.at("failed").get<std::string>());
+      continue;
+    }
+    campaigns.push_back(CampaignOf(row));
+    if (row.at("contradiction").get<bool>()) {
+      fmt::print(stderr, "abbe: {}: its runs contradict each other; look at it by abbe fuse\n",
+                 campaigns.back().name);
+    }
+  }
+  return campaigns;
+}
+
+int FitFleet(const FleetOptions& options) {
+  study::Ranks ranks;
+  simulation::Instruments instruments = ReadInstruments(options.machine);
+  const machine::Machine machine = instruments.machine;
+  std::map<std::uint64_t, Given> given;
+  for (const std::string& text : options.campaigns) {
+    Given campaign = ParseGiven(text);
+    const std::uint64_t number = NumberOf(campaign);
+    if (!given.emplace(number, std::move(campaign)).second) {
+      throw InputError(
+          fmt::format("{}: is given twice, and would count twice; give it once", text));
+    }
+  }
+  const Gathering gathering(std::move(instruments), given);
+  if (ranks.number() > 0) {
+    study::Deal(gathering, {}, ranks, {});
+    return kDone;
+  }
+  study::Store store =
+      study::Store::Open(options.store,
+                         {{"abbe_study", "fleet"},
+                          {"machine", options.machine.filename().string()},
+                          {"machine_sha256", recording::Sha256OfFile(options.machine)},
+                          {"knots_m", fleet::KnotsOf(machine)},
+                          {"version", ABBE_VERSION}},
+                         fs::exists(options.store) ? study::Store::kGoOn : study::Store::kNew);
+  std::vector<std::uint64_t> missing;
+  for (const auto& [number, campaign] : given) {
+    if (!store.rows().contains(number)) missing.push_back(number);
+  }
+  {
+    Progress progress("fleet", options.quiet);
+    std::size_t done = 0;
+    study::Deal(gathering,
+                {.seeds = missing, .threads = options.threads, .ended = &InterruptFlag()}, ranks,
+                [&](std::uint64_t number, const study::Row& row) {
+                  store.Add(number, row);
+                  progress.Show(++done, missing.size(), given.at(number).folder.string());
+                });
+    if (done < missing.size()) {
+      fmt::print("{} of {} campaigns are in {}; the same command goes on\n", done, missing.size(),
+                 options.store.string());
+      return kRequirementNotMet;
+    }
+  }
+  store.Finish();
+  const std::vector<fleet::Campaign> campaigns = CampaignsOf(store.rows(), given);
+  const machine::VolumetricModel model = fusion::UnknownMachine(machine, fleet::KnotsOf(machine));
+  const fleet::PopulationFit fit(machine, model, campaigns);
+  const auto errors = fleet::OddErrors(fit);
+  const auto identities = fleet::OddIdentities(fit, campaigns, options.identity);
+  fmt::print("{}", FitText(fit, errors, identities, options.identity.change));
+  if (!options.json.empty()) WriteResult(FitJson(fit, errors, identities), options.json);
+  if (!options.out.empty()) {
+    WriteText(PopulationText(fit), options.out);
+    fmt::print("\nfor the machine file of a new one: {}\n", options.out.string());
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddFleet(CLI::App& program, int& exit_code) {
+  CLI::App* fleet = program.add_subcommand("fleet", "What the machines of one type have in common");
+  fleet->require_subcommand(1);
+  auto options = std::make_shared<FleetOptions>();
+  CLI::App* command = fleet->add_subcommand(
+      "fit", "The population of a fleet, its odd parts, campaigns of swapped identity");
+  command->add_option("campaigns", options->campaigns,
+                      "MACHINE=FOLDER for each campaign; none: all that the store has");
+  command->add_option("--machine", options->machine, "Machine file of the type")->required();
+  command->add_option("--store", options->store, "File that keeps what each campaign tells")
+      ->required();
+  command
+      ->add_option("--change", options->identity.change,
+                   "Change of a machine's errors between campaigns, in sizes of the population")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  command
+      ->add_option("--threads", options->threads,
+                   "Campaigns at once, 0: all processors, or one for each process of mpirun")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command->add_option("-o,--out", options->out, "[population] for the machine file of a new one");
+  command->add_option("--json", options->json, "File for the result as data");
+  command->add_flag("--quiet", options->quiet, "No progress");
+  command->footer(
+      "Example: abbe fleet fit A12=campaigns/a12 A13=campaigns/a13 --machine mill.toml --store "
+      "fleet.jsonl -o population.toml");
+  command->callback([options, &exit_code] { exit_code = FitFleet(*options); });
+}
+
+}  // namespace abbe::apps
