@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "random/counter_random.h"
-#include "tests/fusion/rig_campaign.h"
 #include "study/bound/rig_map_bound.h"
+#include "tests/fusion/rig_campaign.h"
 #include "tests/pull_statistics.h"
 #include "tests/seeds.h"
 
@@ -64,7 +64,7 @@ study::RigMapBound BoundOf(const settings::Document& document, const Campaign& c
     places.col(i) = Draw(random, 3 * static_cast<std::uint64_t>(i), 0.0, 0.06);
   }
   study::RigMapBound bound(rig::ReadRigSettings(document.Root()), rig::ReadLinkage(document.Root()),
-                    places);
+                           places);
   for (const char axis : {'X', 'Y', 'Z'}) bound.Add(campaign.SweepRecording(axis));
   bound.Add(campaign.LinkageRecording());
   bound.Add(campaign.LengthRecording('X'));
