@@ -34,7 +34,7 @@ class Ranks {
 
  private:
   int number_ = 0, count_ = 1;
-  bool started_ = false, worked_ = false;
+  [[maybe_unused]] bool started_ = false, worked_ = false;  // by MPI
 };
 
 }  // namespace abbe::study
