@@ -199,14 +199,14 @@ TEST(CircleCauses, OneFeedCannotTellLagFromScale) {
 
 // Pulls over 200 machines measured: mean 0, variance 1, each within its 99.9 % band.
 TEST(CircleCauses, UncertaintiesAreTrue) {
-  constexpr int kSeeds = 200;
+  constexpr int kSeeds = 200, kPoints = 240;
   Machine m = kAll;
   m.noise = 0.5e-6;
   m.offset_x = m.offset_y = 0;
   std::vector<double> sums(TruthOf(m).size()), squares(sums.size());
   for (int seed = 0; seed < kSeeds; ++seed) {
-    const auto slow = Measure(m, 0.002, {1, -1}, 10 + seed),
-               fast = Measure(m, 0.01, {1, -1}, 500 + seed);
+    const auto slow = Measure(m, 0.002, {1, -1}, 10 + seed, kPoints),
+               fast = Measure(m, 0.01, {1, -1}, 500 + seed, kPoints);
     const CircleCauses found = FitCircleCauses({&slow, &fast});
     for (std::size_t i = 0; i < sums.size(); ++i) {
       const Truth truth = TruthOf(m)[i];
