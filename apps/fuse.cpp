@@ -38,11 +38,6 @@ struct FuseArguments {
   bool fixed_smoothness = false, quiet = false;
 };
 
-RunSource SourceAt(const machine::Machine& machine, const fs::path& path) {
-  return {ReadHeadOf(machine, path), BlocksOf(path),
-          [&machine, path] { return ReadRecordingOf(machine, path); }};
-}
-
 struct MapChange {
   double rms, largest;  // m
 };

@@ -48,4 +48,9 @@ recording::Blocks BlocksOf(const std::filesystem::path& path) {
   };
 }
 
+simulation::RunSource SourceAt(const machine::Machine& machine, const std::filesystem::path& path) {
+  return {ReadHeadOf(machine, path), BlocksOf(path),
+          [machine, path] { return ReadRecordingOf(machine, path); }};
+}
+
 }  // namespace abbe::apps

@@ -6,6 +6,7 @@
 #include "machine/machine.h"
 #include "recording/blocks.h"
 #include "recording/recording.h"
+#include "simulation/run_source.h"
 
 namespace abbe::apps {
 
@@ -21,5 +22,7 @@ recording::Recording ReadRecordingOf(const machine::Machine& machine,
 // warnings are printed with the first reading.
 recording::Recording ReadHeadOf(const machine::Machine& machine, const std::filesystem::path& path);
 recording::Blocks BlocksOf(const std::filesystem::path& path);
+// Head, blocks and whole recording, each read when asked for.
+simulation::RunSource SourceAt(const machine::Machine& machine, const std::filesystem::path& path);
 
 }  // namespace abbe::apps

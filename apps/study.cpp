@@ -11,8 +11,7 @@
 
 #include "apps/command.h"
 #include "apps/commands.h"
-#include "apps/interrupt.h"
-#include "apps/progress.h"
+#include "apps/fill_store.h"
 #include "failure/failure.h"
 #include "recording/file_hash.h"
 #include "recording/whole_file.h"
@@ -29,9 +28,9 @@ struct StudyOptions {
   study::Question question;
   std::uint64_t worlds = 100, seed = 1;
   fs::path store;
-  bool resume = false, quiet = false;
+  bool resume = false;
   std::string shard = "1/1";
-  int threads = 0;
+  FillOptions fill;
 };
 
 struct Shard {
@@ -61,13 +60,10 @@ study::Row QuestionOf(const study::StudyKind& kind, const study::Question& quest
           {"version", ABBE_VERSION}};
 }
 
-// Those of this shard that the store does not have.
-std::vector<std::uint64_t> SeedsToDo(const StudyOptions& options, const Shard& shard,
-                                     const study::Rows& done) {
+std::vector<std::uint64_t> SeedsOf(const StudyOptions& options, const Shard& shard) {
   std::vector<std::uint64_t> seeds;
   for (std::uint64_t i = shard.number - 1; i < options.worlds; i += shard.count) {
-    const std::uint64_t seed = options.seed + i;
-    if (!done.contains(seed)) seeds.push_back(seed);
+    seeds.push_back(options.seed + i);
   }
   return seeds;
 }
@@ -118,23 +114,10 @@ int RunStudy(const study::StudyKind& kind, const StudyOptions& options) {
   const bool goes_on = options.resume && fs::exists(options.store);
   study::Store store = study::Store::Open(options.store, question,
                                           goes_on ? study::Store::kGoOn : study::Store::kNew);
-  const std::vector<std::uint64_t> seeds = SeedsToDo(options, shard, store.rows());
-  std::size_t done = 0;
-  {
-    Progress progress(fmt::format("study {}", kind.name), options.quiet);
-    study::Deal(*asked, {.seeds = seeds, .threads = options.threads, .ended = &InterruptFlag()},
-                ranks, [&](std::uint64_t seed, const study::Row& row) {
-                  store.Add(seed, row);
-                  progress.Show(++done, seeds.size(), fmt::format("seed {}", seed));
-                });
-  }
-  if (done < seeds.size()) {
-    fmt::print("{} of {} worlds are in {}; the same command with --resume goes on\n",
-               store.rows().size(), store.rows().size() + seeds.size() - done,
-               options.store.string());
+  if (!FillStore(*asked, SeedsOf(options, shard), fmt::format("study {}", kind.name), options.fill,
+                 ranks, store)) {
     return kRequirementNotMet;
   }
-  store.Finish();
   const bool is_met = Show(question, {question, store.rows()});
   fmt::print("\nRows: {}\n", options.store.string());
   return is_met ? kDone : kRequirementNotMet;
@@ -162,11 +145,11 @@ void AddKind(CLI::App& studies, const study::StudyKind& kind, int& exit_code) {
   command->add_option("--shard", options->shard, "Part k of n of the worlds, \"k/n\"")
       ->capture_default_str();
   command
-      ->add_option("--threads", options->threads,
+      ->add_option("--threads", options->fill.threads,
                    "Worlds at once, 0: all processors, or one for each process of mpirun")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  command->add_flag("--quiet", options->quiet, "No progress");
+  command->add_flag("--quiet", options->fill.quiet, "No progress");
   command->footer(fmt::format(
       "Example: abbe study {0} --machine machines/demo_mill.toml --worlds 1000 --store {0}.jsonl",
       kind.name));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "map/error_map.h"
+#include "recording/recording.h"
 #include "track/outlook.h"
 #include "track/tracked_map.h"
 

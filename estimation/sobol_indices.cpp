@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "failure/failure.h"
 
@@ -15,43 +16,11 @@ namespace {
 
 constexpr std::uint64_t kBlock = 64;  // draws summed together, independent of the number of threads
 
-// Sums over draws of the numerator n of an index and of its denominator d, the variance.
-struct RatioSums {
-  double n = 0, nn = 0, nd = 0;
-
-  void Add(double numerator, double denominator) {
-    n += numerator;
-    nn += numerator * numerator;
-    nd += numerator * denominator;
-  }
-  void Add(const RatioSums& other) {
-    n += other.n;
-    nn += other.nn;
-    nd += other.nd;
-  }
-};
-
-struct BlockSums {
-  explicit BlockSums(std::size_t inputs) : first(inputs), total(inputs) {}
-  double d = 0, dd = 0;
-  std::vector<RatioSums> first, total;
-
-  void Add(const BlockSums& other) {
-    d += other.d;
-    dd += other.dd;
-    for (std::size_t i = 0; i < first.size(); ++i) {
-      first[i].Add(other.first[i]);
-      total[i].Add(other.total[i]);
-    }
-  }
-};
-
 class Scheme {
  public:
   Scheme(std::size_t inputs, std::size_t outputs, const SobolDraw& draw, const SobolModel& model)
       : inputs_(inputs), outputs_(outputs), draw_(draw), model_(model), centre_(outputs) {}
 
-  // Subtracting any constant near the mean of the outputs lowers the variance of the first indices.
   void Centre(std::uint64_t draws) {
     std::vector<double> x(inputs_), y(outputs_);
     for (std::uint64_t n = 0; n < draws; ++n) {
@@ -61,30 +30,22 @@ class Scheme {
     }
   }
 
-  BlockSums Sum(std::uint64_t from, std::uint64_t to) const {
-    BlockSums sums(inputs_);
+  SobolSums None() const { return {inputs_, centre_}; }
+
+  SobolSums Sum(std::uint64_t from, std::uint64_t to) const {
+    SobolSums sums = None();
     std::vector<double> a(inputs_), b(inputs_), f_a(outputs_), f_b(outputs_), f_ab(outputs_);
     for (std::uint64_t n = from; n < to; ++n) {
       draw_(2 * n, a);
       draw_(2 * n + 1, b);
       Run(2 * n, a, f_a);
       Run(2 * n + 1, b, f_b);
-      double d = 0;
-      for (std::size_t o = 0; o < outputs_; ++o) d += (f_a[o] - f_b[o]) * (f_a[o] - f_b[o]) / 2;
-      sums.d += d;
-      sums.dd += d * d;
+      SobolSums::Draw of_draw = sums.Add(f_a, f_b);
       for (std::size_t i = 0; i < inputs_; ++i) {
         std::swap(a[i], b[i]);  // A with column i from B
         Run(2 * n, a, f_ab);
         std::swap(a[i], b[i]);
-        double first = 0, total = 0;
-        for (std::size_t o = 0; o < outputs_; ++o) {
-          const double change = f_ab[o] - f_a[o];
-          first += (f_b[o] - centre_[o]) * change;
-          total += change * change / 2;
-        }
-        sums.first[i].Add(first, d);
-        sums.total[i].Add(total, d);
+        of_draw.Add(i, f_ab);
       }
     }
     return sums;
@@ -108,13 +69,67 @@ class Scheme {
   std::vector<double> centre_;
 };
 
-double Uncertainty(const RatioSums& sums, const BlockSums& all) {
-  const double ratio = sums.n / all.d;
-  const double square = sums.nn - 2 * ratio * sums.nd + ratio * ratio * all.dd;
-  return std::sqrt(std::max(0.0, square)) / all.d;
+}  // namespace
+
+void SobolSums::RatioSums::Add(double numerator, double denominator) {
+  n += numerator;
+  nn += numerator * numerator;
+  nd += numerator * denominator;
 }
 
-}  // namespace
+void SobolSums::RatioSums::Add(const RatioSums& other) {
+  n += other.n;
+  nn += other.nn;
+  nd += other.nd;
+}
+
+SobolSums::SobolSums(std::size_t input_count, std::vector<double> centre)
+    : centre_(std::move(centre)), first_(input_count), total_(input_count) {}
+
+SobolSums::Draw::Draw(SobolSums& sums, std::span<const double> f_a, std::span<const double> f_b)
+    : sums_(sums), f_a_(f_a), f_b_(f_b), d_(0) {
+  for (std::size_t o = 0; o < f_a.size(); ++o) d_ += (f_a[o] - f_b[o]) * (f_a[o] - f_b[o]) / 2;
+  sums_.d_ += d_;
+  sums_.dd_ += d_ * d_;
+  ++sums_.draws_;
+}
+
+void SobolSums::Draw::Add(std::size_t input, std::span<const double> f_ab) {
+  double first = 0, total = 0;
+  for (std::size_t o = 0; o < f_a_.size(); ++o) {
+    const double change = f_ab[o] - f_a_[o];
+    first += (f_b_[o] - sums_.centre_[o]) * change;
+    total += change * change / 2;
+  }
+  sums_.first_[input].Add(first, d_);
+  sums_.total_[input].Add(total, d_);
+}
+
+void SobolSums::Add(const SobolSums& other) {
+  draws_ += other.draws_;
+  d_ += other.d_;
+  dd_ += other.dd_;
+  for (std::size_t i = 0; i < first_.size(); ++i) {
+    first_[i].Add(other.first_[i]);
+    total_[i].Add(other.total_[i]);
+  }
+}
+
+double SobolSums::Uncertainty(const RatioSums& sums) const {
+  const double ratio = sums.n / d_;
+  const double square = sums.nn - 2 * ratio * sums.nd + ratio * ratio * dd_;
+  return std::sqrt(std::max(0.0, square)) / d_;
+}
+
+SobolResult SobolSums::Result() const {
+  if (!(d_ > 0)) throw NumericalError("Sobol indices: no output of the model varies");
+  SobolResult result{d_ / draws_, {}};
+  for (std::size_t i = 0; i < first_.size(); ++i) {
+    result.inputs.push_back({first_[i].n / d_, Uncertainty(first_[i]),  //
+                             total_[i].n / d_, Uncertainty(total_[i])});
+  }
+  return result;
+}
 
 SobolResult SobolIndices(std::size_t input_count, std::size_t output_count, const SobolDraw& draw,
                          const SobolModel& model, const SobolOptions& options) {
@@ -124,7 +139,7 @@ SobolResult SobolIndices(std::size_t input_count, std::size_t output_count, cons
   }
   Scheme scheme(input_count, output_count, draw, model);
   scheme.Centre(std::min<std::uint64_t>(2 * options.draws, 1000));
-  std::vector<BlockSums> blocks((options.draws + kBlock - 1) / kBlock, BlockSums(input_count));
+  std::vector<SobolSums> blocks((options.draws + kBlock - 1) / kBlock, scheme.None());
   const int cores = tbb::info::default_concurrency();
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
   arena.execute([&] {
@@ -133,15 +148,9 @@ SobolResult SobolIndices(std::size_t input_count, std::size_t output_count, cons
       blocks[block] = scheme.Sum(from, std::min(from + kBlock, options.draws));
     });
   });
-  BlockSums all(input_count);
-  for (const BlockSums& block : blocks) all.Add(block);
-  if (!(all.d > 0)) throw NumericalError("Sobol indices: no output of the model varies");
-  SobolResult result{all.d / options.draws, {}};
-  for (std::size_t i = 0; i < input_count; ++i) {
-    result.inputs.push_back({all.first[i].n / all.d, Uncertainty(all.first[i], all),
-                             all.total[i].n / all.d, Uncertainty(all.total[i], all)});
-  }
-  return result;
+  SobolSums all = scheme.None();
+  for (const SobolSums& block : blocks) all.Add(block);
+  return all.Result();
 }
 
 }  // namespace abbe::estimation

@@ -47,6 +47,45 @@ struct SobolResult {
   std::vector<SobolIndex> inputs;
 };
 
+// The sums of the scheme, draw by draw, for a model that is run elsewhere.
+class SobolSums {
+ public:
+  // `centre`: of each output; any constant near the mean lowers the variance of the first indices.
+  SobolSums(std::size_t input_count, std::vector<double> centre);
+
+  // The outputs of one row of A and of B; with each input, those of A with this input from B.
+  class Draw {
+   public:
+    void Add(std::size_t input, std::span<const double> f_ab);
+
+   private:
+    friend class SobolSums;
+    SobolSums& sums_;
+    std::span<const double> f_a_, f_b_;
+    double d_;
+    Draw(SobolSums& sums, std::span<const double> f_a, std::span<const double> f_b);
+  };
+  Draw Add(std::span<const double> f_a, std::span<const double> f_b) { return {*this, f_a, f_b}; }
+  void Add(const SobolSums& other);
+
+  // NumericalError when no output varies.
+  SobolResult Result() const;
+
+ private:
+  // Over draws, of the numerator n of an index and of its denominator d, the variance.
+  struct RatioSums {
+    double n = 0, nn = 0, nd = 0;
+    void Add(double numerator, double denominator);
+    void Add(const RatioSums& other);
+  };
+  double Uncertainty(const RatioSums& sums) const;
+
+  std::vector<double> centre_;
+  std::uint64_t draws_ = 0;
+  double d_ = 0, dd_ = 0;
+  std::vector<RatioSums> first_, total_;
+};
+
 struct SobolOptions {
   std::uint64_t draws = 4096;
   int threads = 0;  // 0: all; never more than the machine has

@@ -48,7 +48,7 @@ struct FuseOptions {
   // The same runs on a machine with other knots; empty: the knots stay as they are.
   std::function<std::vector<simulation::SimulatedRun>(const machine::VolumetricModel&)> runs_on =
       {};
-  // Of the model on which the runs are simulated, m apart; none: KnotsOf(machine).
+  // The knots of the model on which the runs are simulated, m apart; none: KnotsOf(machine).
   std::optional<std::array<double, machine::kAxes>> knots = {};
   int holdout = 0;  // every n-th block of rows of each run; 0: none
   int threads = 0;

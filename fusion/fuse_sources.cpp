@@ -10,7 +10,7 @@ namespace abbe::fusion {
 FuseReport FuseSources(const std::vector<simulation::RunSource>& sources,
                        const simulation::Instruments& instruments, FuseOptions options,
                        const AsTaken& as_taken) {
-  options.runs_on = [&](const machine::VolumetricModel& model) {
+  const auto runs_on = [&](const machine::VolumetricModel& model) {
     std::vector<simulation::SimulatedRun> runs;
     for (const simulation::RunSource& source : sources) {
       for (auto& run :
@@ -20,7 +20,12 @@ FuseReport FuseSources(const std::vector<simulation::RunSource>& sources,
     }
     return runs;
   };
-  return Fuse(instruments.machine, options.runs_on(UnknownMachine(instruments.machine)), options);
+  const machine::Machine& machine = instruments.machine;
+  if (options.knots) {
+    return Fuse(machine, runs_on(UnknownMachine(machine, *options.knots)), options);
+  }
+  options.runs_on = runs_on;
+  return Fuse(machine, runs_on(UnknownMachine(machine)), options);
 }
 
 }  // namespace abbe::fusion

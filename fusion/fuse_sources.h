@@ -21,7 +21,8 @@ namespace abbe::fusion {
 // One source at a time, each as `as_taken` has it (empty: as it is).
 using AsTaken = std::function<simulation::RunSource(const simulation::RunSource&)>;
 
-// Simulates the sources on the machine, again where other knots are tried, and fuses them.
+// Simulates the sources on the machine, again where other knots are tried, and fuses them. Knots that
+// the options state stay.
 FuseReport FuseSources(const std::vector<simulation::RunSource>& sources,
                        const simulation::Instruments& instruments, FuseOptions options,
                        const AsTaken& as_taken = {});

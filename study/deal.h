@@ -1,4 +1,4 @@
-// Worlds dealt to whoever is free: threads of this process, or processes that mpirun started.
+// Dynamic scheduling of worlds over threads of this process, or processes that mpirun started.
 //
 //   Ranks ranks;  // MPI where mpirun started this program
 //   Deal(study, {.seeds = {1, 2, 3}}, ranks,

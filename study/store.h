@@ -2,7 +2,7 @@
 //
 //   Store store = Store::Open("rates.jsonl", question, Store::kNew);
 //   store.Add(7, row);  // on the disk when it returns
-//   store.Finish();     // in the order of the seeds: the same bytes whoever worked them out
+//   store.Finish();     // in the order of the seeds: bytes do not depend on threads and ranks
 //
 //   {"abbe_study":"hidden","variant":"one-effect","machine_sha256":"...","version":"0.1.0"}
 //   {"seed":7,...}

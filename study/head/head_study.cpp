@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "estimation/sobol_indices.h"
 #include "hal/sweep_plan.h"
 #include "probes/head_inversion.h"
 #include "probes/head_settings.h"
@@ -174,28 +175,41 @@ std::string BandsText(const std::vector<Row>& rows, const Eigen::MatrixXd& world
   return text;
 }
 
-std::string SharesText(const std::vector<Row>& rows, const Eigen::MatrixXd& one,
-                       const Eigen::MatrixXd& both) {
-  const Eigen::VectorXd mean = both.rowwise().mean();
-  const Eigen::VectorXd variance =
-      (both.colwise() - mean).rowwise().squaredNorm() / (both.cols() - 1.0);
-  const auto of_component = [](const Eigen::VectorXd& values, int c) {
-    double sum = 0.0;
-    for (int station = 0; station < kStations; ++station) sum += values[5 * station + c];
-    return sum;
+// The indices of one component, all its stations together.
+estimation::SobolResult SharesOf(const std::vector<Row>& rows, int component) {
+  const auto at_stations = [&](const Row& row, const char* key) {
+    const auto all = row.at(key).get<std::vector<double>>();
+    std::vector<double> values;
+    for (int station = 0; station < kStations; ++station) {
+      values.push_back(all[5 * station + component]);
+    }
+    return values;
   };
+  estimation::SobolSums sums(kFactors, std::vector<double>(kStations, 0.0));
+  for (const Row& row : rows) {
+    const auto one = at_stations(row, "one"), other = at_stations(row, "other");
+    auto draw = sums.Add(one, other);
+    for (int factor = 0; factor < kFactors; ++factor) {
+      draw.Add(factor, at_stations(row, kFactorNames[factor]));
+    }
+  }
+  return sums.Result();
+}
+
+std::string SharesText(const std::vector<Row>& rows) {
+  std::array<estimation::SobolResult, 5> of;
+  for (int c = 0; c < 5; ++c) of[c] = SharesOf(rows, c);
   std::string text =
-      "Share of each factor in the variance (total index), over all stations:\n\n| factor |";
+      "Share of each factor in the variance (total index, +- U95), over all stations:\n\n| factor |";
   for (const char* component : kComponents) text += fmt::format(" {} |", component);
   text += "\n|---|---|---|---|---|---|\n";
-  for (const char* factor : kFactorNames) {
-    const Eigen::VectorXd changed =
-        (one - ColumnsOf(rows, factor)).rowwise().squaredNorm() / (2.0 * one.cols());
-    std::string name = factor;
+  for (int factor = 0; factor < kFactors; ++factor) {
+    std::string name = kFactorNames[factor];
     std::ranges::replace(name, '_', ' ');
     text += fmt::format("| {} |", name);
-    for (int c = 0; c < 5; ++c) {
-      text += fmt::format(" {:.3f} |", of_component(changed, c) / of_component(variance, c));
+    for (const auto& component : of) {
+      const estimation::SobolIndex& index = component.inputs[factor];
+      text += fmt::format(" {:.3f} +- {:.3f} |", index.total, 2.0 * index.total_uncertainty);
     }
     text += "\n";
   }
@@ -206,7 +220,7 @@ Summary SumHeadStudy(const std::string& /*variant*/, const std::vector<Row>& row
   const Eigen::MatrixXd one = ColumnsOf(rows, "one"), other = ColumnsOf(rows, "other");
   Eigen::MatrixXd both(one.rows(), one.cols() + other.cols());
   both << one, other;
-  return {.text = BandsText(rows, both) + "\n" + SharesText(rows, one, both), .bounds = {}};
+  return {.text = BandsText(rows, both) + "\n" + SharesText(rows), .bounds = {}};
 }
 
 }  // namespace

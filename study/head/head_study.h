@@ -8,8 +8,8 @@
 // a station leave of the white part, and the passes of the drift.
 //
 // A row has the errors of two independent worlds and of the first with one factor of the second
-// (Saltelli's design); the share of a factor is Jansen's total index, 1/2 mean (f - f_i)^2 over the
-// variance, both summed over the stations.
+// (Saltelli's design); the share of a factor is the total index of
+// estimation/sobol_indices.h, the stations as its outputs.
 // Frames: H of probes/head_layout.h. Units: rad, m. Shapes: 5 x stations, rows roll, pitch, yaw,
 // straightness along s, along n.
 // Failure: InputError for a machine file without this axis or without [head].

@@ -24,7 +24,7 @@ struct Visible {
 // How the diagnosis met the one effect that a world hides.
 Row JudgeOne(const rig::HiddenEffect& truth, const Visible& visible, const Diagnosis& diagnosis);
 
-// Of rows of JudgeOne; with "at_floor" where the rest was held out.
+// Sums rows of JudgeOne; "at_floor" stands in those whose rest was held out.
 Summary SumOfOne(const std::string& variant, const std::vector<Row>& rows);
 
 }  // namespace abbe::study

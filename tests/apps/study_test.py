@@ -107,7 +107,7 @@ class StudyOfTheHead(ProgramCase):
         (self.path / "quiet.toml").write_text(text)
         self.study("quiet.jsonl", machine=self.path / "quiet.toml", worlds=2000)
         shown = self.done(self.path / "quiet.jsonl", command="study show")
-        shares = {row.split("|")[1].strip(): [float(x) for x in row.split("|")[2:7]]
+        shares = {row.split("|")[1].strip(): [float(cell.split("+-")[0]) for cell in row.split("|")[2:7]]
                   for row in shown.split("Share of each factor")[1].splitlines() if row.count("|") == 7
                   and row.split("|")[2].strip()[0].isdigit()}
         for factor in ("motion", "gains"):

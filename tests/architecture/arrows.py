@@ -41,7 +41,7 @@ ARROWS = {
     "report": "failure",
     "live": "failure recording report",
     "rig": "failure random settings recording hal",
-    "study": "failure random settings recording hal machine probes paths relm simulation fusion diagnosis rig",
+    "study": "failure random settings recording hal estimation machine probes paths relm simulation fusion diagnosis rig",
     "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion certificate diagnosis learned investigate history track fleet report live rig study",
     "python": "failure settings recording estimation machine map compensation probes paths relm simulation fusion diagnosis learned apps",
 }

@@ -1,0 +1,24 @@
+// Worlds of a study worked out into its store, with progress: what abbe study and abbe fleet share.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "study/deal.h"
+#include "study/store.h"
+
+namespace abbe::apps {
+
+struct FillOptions {
+  int threads = 0;
+  bool quiet = false;
+};
+
+// Works out the seeds that the store lacks and puts it in their order. False when Ctrl-C ended it
+// before: then it prints how to go on.
+bool FillStore(const study::Study& study, const std::vector<std::uint64_t>& seeds,
+               const std::string& title, const FillOptions& options, study::Ranks& ranks,
+               study::Store& store);
+
+}  // namespace abbe::apps
