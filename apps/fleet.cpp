@@ -12,20 +12,18 @@
 
 #include "apps/command.h"
 #include "apps/commands.h"
+#include "apps/fill_store.h"
 #include "apps/instruments.h"
-#include "apps/interrupt.h"
 #include "apps/machine_recording.h"
-#include "apps/progress.h"
 #include "apps/result_file.h"
 #include "failure/failure.h"
 #include "fleet/odd_machines.h"
 #include "fleet/population_fit.h"
-#include "fusion/fuse.h"
+#include "fusion/fuse_sources.h"
 #include "recording/file_hash.h"
 #include "recording/recording_file.h"
 #include "settings/toml_text.h"
 #include "simulation/kinds.h"
-#include "study/deal.h"
 #include "study/store.h"
 
 namespace abbe::apps {
@@ -34,15 +32,15 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Index;
 
-// Of the correlation length of the machine file: what the model follows (fleet::KnotsOf).
-constexpr double kFollowed = 0.6;
+constexpr double kFollowed = 0.6;  // correlation length over that of the file: fleet::KnotsOf
+constexpr double kMostOdds = 6.0;  // log10; beyond it the form of the population decides
 
 struct FleetOptions {
   std::vector<std::string> campaigns;  // "A12=folder"
   fs::path machine, store, out, json;
   fleet::IdentityOptions identity;
-  int threads = 0;
-  bool resume = false, quiet = false;
+  bool resume = false;
+  FillOptions fill;
 };
 
 struct Given {
@@ -122,22 +120,13 @@ class Gathering : public study::Study {
 
   study::Row World(std::uint64_t number) const override {
     const Given& given = campaigns_.at(number);
-    const auto knots = fleet::KnotsOf(instruments_.machine);
-    const machine::VolumetricModel model = fusion::UnknownMachine(instruments_.machine, knots);
     std::vector<simulation::RunSource> sources;
     for (const fs::path& path : given.recordings) {
-      sources.push_back({ReadHeadOf(instruments_.machine, path), BlocksOf(path),
-                         [this, path] { return ReadRecordingOf(instruments_.machine, path); }});
+      sources.push_back(SourceAt(instruments_.machine, path));
     }
     simulation::RefuseStrangers(sources, instruments_);
-    std::vector<simulation::SimulatedRun> runs;
-    for (const auto& source : sources) {
-      for (auto& run : simulation::SimulateForMap(source, model, instruments_)) {
-        runs.push_back(std::move(run));
-      }
-    }
-    const fusion::FuseReport report =
-        fusion::Fuse(instruments_.machine, runs, {.knots = knots, .threads = 1});
+    const fusion::FuseReport report = fusion::FuseSources(
+        sources, instruments_, {.knots = fleet::KnotsOf(instruments_.machine), .threads = 1});
     return {{"machine", given.machine},
             {"campaign", given.folder.string()},
             {"contradiction", report.contradicting >= 0},
@@ -200,16 +189,22 @@ std::string FitText(const fleet::PopulationFit& fit, const std::vector<fleet::Od
   text += "\nOdd parts, errors of a size that the others do not have:\n";
   if (errors.empty()) text += "none\n";
   for (const fleet::OddError& odd : errors) {
-    text += fmt::format("{} {}: {:.1f} times the size of the population, p = {:.2g}{}\n",
-                        odd.machine, odd.error, odd.times, odd.p_value,
-                        odd.is_certain ? "" : " (one such case is expected by chance among many)");
+    text += fmt::format("{} {}: {:.1f} times the size of the population; ", odd.machine, odd.error,
+                        odd.times);
+    text += odd.is_certain()
+                ? fmt::format("not by chance (p = {:.2g})\n", odd.p_value)
+                : fmt::format("{:.2g} such cases are expected by chance\n", odd.by_chance);
   }
   text += fmt::format(
       "\nSwapped identities (errors change by {:g} of their size between campaigns):\n", change);
   if (identities.empty()) text += "none\n";
   for (const fleet::OddIdentity& odd : identities) {
-    text += fmt::format("{}: said to be {}, fits {}, odds 1e{:.0f}\n", odd.campaign, odd.said,
-                        odd.fits.empty() ? "none of the machines" : odd.fits, odd.log10_odds);
+    const std::string odds = odd.log10_odds > kMostOdds ? fmt::format("above 1e{:.0f}", kMostOdds)
+                                                        : fmt::format("1e{:.0f}", odd.log10_odds);
+    text += fmt::format(
+        "{}: said to be {}, {}, odds {}\n", odd.campaign, odd.said,
+        odd.fits.empty() ? "fits none of the machines, or has changed by more" : "fits " + odd.fits,
+        odds);
   }
   return text;
 }
@@ -231,14 +226,15 @@ nlohmann::ordered_json FitJson(const fleet::PopulationFit& fit,
                                   {"error", odd.error},
                                   {"times", odd.times},
                                   {"p_value", odd.p_value},
-                                  {"certain", odd.is_certain}});
+                                  {"by_chance", odd.by_chance},
+                                  {"certain", odd.is_certain()}});
   }
   json["odd_identities"] = nlohmann::ordered_json::array();
   for (const auto& odd : identities) {
     json["odd_identities"].push_back({{"campaign", odd.campaign},
                                       {"said", odd.said},
                                       {"fits", odd.fits},
-                                      {"log10_odds", odd.log10_odds}});
+                                      {"log10_odds", std::min(odd.log10_odds, kMostOdds)}});
   }
   return json;
 }
@@ -280,34 +276,18 @@ int FitFleet(const FleetOptions& options) {
     study::Deal(gathering, {}, ranks, {});
     return kDone;
   }
-  study::Store store =
-      study::Store::Open(options.store,
-                         {{"abbe_study", "fleet"},
-                          {"machine", options.machine.filename().string()},
-                          {"machine_sha256", recording::Sha256OfFile(options.machine)},
-                          {"knots_m", fleet::KnotsOf(machine)},
-                          {"version", ABBE_VERSION}},
-                         fs::exists(options.store) ? study::Store::kGoOn : study::Store::kNew);
-  std::vector<std::uint64_t> missing;
-  for (const auto& [number, campaign] : given) {
-    if (!store.rows().contains(number)) missing.push_back(number);
-  }
-  {
-    Progress progress("fleet", options.quiet);
-    std::size_t done = 0;
-    study::Deal(gathering,
-                {.seeds = missing, .threads = options.threads, .ended = &InterruptFlag()}, ranks,
-                [&](std::uint64_t number, const study::Row& row) {
-                  store.Add(number, row);
-                  progress.Show(++done, missing.size(), given.at(number).folder.string());
-                });
-    if (done < missing.size()) {
-      fmt::print("{} of {} campaigns are in {}; the same command goes on\n", done, missing.size(),
-                 options.store.string());
-      return kRequirementNotMet;
-    }
-  }
-  store.Finish();
+  study::Store store = study::Store::Open(
+      options.store,
+      {{"abbe_study", "fleet"},
+       {"machine", options.machine.filename().string()},
+       {"machine_sha256", recording::Sha256OfFile(options.machine)},
+       {"knots_m", fleet::KnotsOf(machine)},
+       {"version", ABBE_VERSION}},
+      options.resume && fs::exists(options.store) ? study::Store::kGoOn : study::Store::kNew);
+  std::vector<std::uint64_t> numbers;
+  for (const auto& [number, campaign] : given) numbers.push_back(number);
+  if (!FillStore(gathering, numbers, "fleet", options.fill, ranks, store))
+    return kRequirementNotMet;
   const std::vector<fleet::Campaign> campaigns = CampaignsOf(store.rows(), given);
   const machine::VolumetricModel model = fusion::UnknownMachine(machine, fleet::KnotsOf(machine));
   const fleet::PopulationFit fit(machine, model, campaigns);
@@ -341,13 +321,15 @@ void AddFleet(CLI::App& program, int& exit_code) {
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
   command
-      ->add_option("--threads", options->threads,
+      ->add_option("--threads", options->fill.threads,
                    "Campaigns at once, 0: all processors, or one for each process of mpirun")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
+  command->add_flag("--resume", options->resume,
+                    "Go on with the store: only campaigns that it lacks");
   command->add_option("-o,--out", options->out, "[population] for the machine file of a new one");
   command->add_option("--json", options->json, "File for the result as data");
-  command->add_flag("--quiet", options->quiet, "No progress");
+  command->add_flag("--quiet", options->fill.quiet, "No progress");
   command->footer(
       "Example: abbe fleet fit A12=campaigns/a12 A13=campaigns/a13 --machine mill.toml --store "
       "fleet.jsonl -o population.toml");

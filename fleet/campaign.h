@@ -17,8 +17,8 @@ struct Campaign {
   fusion::Quadratic seen;
 };
 
-// Of the model of all machines of a type, m apart: a quarter of the correlation length of the
-// machine file, so that a fleet may be twice as rough as that says.
+// The knots of the model of a type, m apart: a quarter of the correlation length of the machine file,
+// so that a fleet may be twice as rough as that says.
 inline std::array<double, machine::kAxes> KnotsOf(const machine::Machine& machine) {
   std::array<double, machine::kAxes> knots = fusion::KnotsOf(machine);
   for (double& each : knots) each *= 0.5;

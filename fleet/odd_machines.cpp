@@ -19,9 +19,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kTold = 1.0;      // of B: a direction of which the runs tell more than the prior
-constexpr double kShown = 0.01;    // p of one case
-constexpr double kCertain = 0.01;  // p of the whole fleet
+constexpr double kTold = 1.0;    // of B: a direction of which the runs tell more than the prior
+constexpr double kShown = 0.01;  // p of one case
+constexpr double kFar = 8.0, kStep = 0.125;  // of ln f, in deviations
 
 struct White {
   MatrixXd B;
@@ -66,60 +66,82 @@ White Alone(const White& white, const std::vector<Index>& of) {
           white.w(of) - solved.transpose() * white.w(others)};
 }
 
-struct Size {
-  double chi_square = 0.0, directions = 0.0;
+// What a machine tells of one error, along the directions of which it tells.
+struct Seen {
+  VectorXd told, along;  // B_k, w_k
+
+  double ChiSquare(double f) const {
+    return (along.array().square() / ((f * told.array()).square() + told.array())).sum();
+  }
 };
 
-Size SizeOf(const White& alone) {
+Seen SeenOf(const White& alone) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(alone.B);
   const VectorXd along = eigen.eigenvectors().transpose() * alone.w;
-  Size size;
-  for (Index i = 0; i < along.size(); ++i) {
-    const double told = eigen.eigenvalues()[i];
-    if (told < kTold) continue;
-    size.chi_square += along[i] * along[i] / (told * told + told);
-    size.directions += 1.0;
-  }
-  return size;
+  const Index first = (eigen.eigenvalues().array() < kTold).count();  // in ascending order
+  const Index count = along.size() - first;
+  return {eigen.eigenvalues().tail(count), along.tail(count)};
 }
 
-// The parameters of each of the 21 errors, in the order of map::ErrorName.
-std::vector<std::vector<Index>> Parameters(const fusion::PopulationEvidence& evidence,
-                                           const machine::VolumetricModel& model) {
-  std::vector<std::vector<Index>> parameters;
-  Index at = 0;
+// In the mean over f, by the trapezoidal rule.
+double PValue(const Seen& seen, double spread) {
+  const boost::math::chi_squared chi_squared(static_cast<double>(seen.told.size()));
+  double sum = 0.0, weights = 0.0;
+  for (double z = -kFar; z <= kFar; z += kStep) {
+    const double weight = std::exp(-0.5 * z * z);
+    sum += weight * boost::math::cdf(
+                        boost::math::complement(chi_squared, seen.ChiSquare(std::exp(spread * z))));
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+// One of the 21 errors: its parameters, and the knob of its size.
+struct Error {
+  std::vector<Index> parameters;
+  Index knob;
+};
+
+// In the order of map::ErrorName.
+std::vector<Error> Errors(const fusion::PopulationEvidence& evidence,
+                          const machine::VolumetricModel& model) {
+  std::vector<Error> errors;
+  Index at = 0, knob = 0;
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     for (int motion = 0; motion < machine::kMotions; ++motion) {
-      parameters.emplace_back(model.Function(axis, motion).size());
-      std::iota(parameters.back().begin(), parameters.back().end(), at);
-      at += std::ssize(parameters.back());
+      std::vector<Index> parameters(model.Function(axis, motion).size());
+      std::iota(parameters.begin(), parameters.end(), at);
+      at += std::ssize(parameters);
+      errors.push_back({std::move(parameters), knob});
+      if (!errors.back().parameters.empty()) knob += 2;
     }
   }
-  for (Index k = 0; k < 3; ++k) parameters.push_back({evidence.squareness() + k});
-  return parameters;
+  for (Index k = 0; k < 3; ++k) errors.push_back({{evidence.squareness() + k}, knob});
+  return errors;
 }
 
 }  // namespace
 
 std::vector<OddError> OddErrors(const PopulationFit& fit) {
-  const auto parameters = Parameters(fit.evidence(), fit.model());
-  const double cases = static_cast<double>(parameters.size() * fit.machines().size());
+  const auto errors = Errors(fit.evidence(), fit.model());
+  const double cases = static_cast<double>(errors.size() * fit.machines().size());
   std::vector<OddError> odd;
   for (std::size_t machine = 0; machine < fit.machines().size(); ++machine) {
-    const White white =
-        Whitened(fit.seen()[machine], fit.evidence().FactorAt(fit.ThetaWithout(machine)));
-    for (std::size_t error = 0; error < parameters.size(); ++error) {
-      if (parameters[error].empty()) continue;
-      const Size size = SizeOf(Alone(white, parameters[error]));
-      if (size.directions == 0.0) continue;
-      const double p = boost::math::cdf(
-          boost::math::complement(boost::math::chi_squared(size.directions), size.chi_square));
-      if (p > kShown) continue;
+    const auto [theta, spread] = fit.ExpectedWithout(machine);
+    const White white = Whitened(fit.seen()[machine], fit.evidence().FactorAt(theta));
+    for (std::size_t error = 0; error < errors.size(); ++error) {
+      const auto& [parameters, knob] = errors[error];
+      if (parameters.empty()) continue;
+      const Seen seen = SeenOf(Alone(white, parameters));
+      if (seen.told.size() == 0) continue;
+      const double p = PValue(seen, spread[knob]);
+      const double times = std::sqrt(seen.ChiSquare(1.0) / static_cast<double>(seen.told.size()));
+      if (p > kShown || times < 1.0) continue;
       odd.push_back({.machine = fit.machines()[machine],
                      .error = map::ErrorName(static_cast<int>(error)),
-                     .times = std::sqrt(size.chi_square / size.directions),
+                     .times = times,
                      .p_value = p,
-                     .is_certain = p * cases < kCertain});
+                     .by_chance = p * cases});
     }
   }
   std::ranges::sort(odd, {}, &OddError::p_value);

@@ -20,9 +20,9 @@ using fusion::kLines;
 constexpr double kSpread = 1.5;                      // s
 constexpr double kHardlyTold = 0.9;                  // times s: the machines do not tell of a line
 constexpr double kLongestStep = 0.7;                 // of phi
-constexpr double kSettled = 0.1;                     // of phi, in standard deviations
+constexpr double kSettled = 1e-3;                    // of the logarithm to be gained
 constexpr double kOwnSize = 0.4, kOwnLength = 0.25;  // deviations of delta
-constexpr int kSteps = 60, kHalves = 5;
+constexpr int kSteps = 100, kHalves = 12;
 
 }  // namespace
 
@@ -31,6 +31,7 @@ PopulationFit::PopulationFit(const machine::Machine& machine, const machine::Vol
     : model_(model),
       evidence_(machine, model),
       lines_(MatrixXd::Zero(evidence_.count(), kLines)),
+      own_(VectorXd::Zero(evidence_.count())),
       phi_(VectorXd::Zero(kLines)) {
   if (campaigns.empty()) throw InputError("a fleet needs a campaign of a machine; give one");
   for (const Campaign& campaign : campaigns) {
@@ -38,9 +39,12 @@ PopulationFit::PopulationFit(const machine::Machine& machine, const machine::Vol
     machines_.push_back(campaign.machine);
     seen_.push_back(campaign.seen);
   }
-  for (Index i = 0; i < evidence_.count(); ++i) lines_(i, evidence_.knobs()[i].line) = 1.0;
+  for (Index i = 0; i < evidence_.count(); ++i) {
+    lines_(i, evidence_.knobs()[i].line) = 1.0;
+    if (evidence_.knobs()[i].axis >= 0) own_[i] = evidence_.IsLength(i) ? kOwnLength : kOwnSize;
+  }
   Solve();
-  const MatrixXd C = at_.information.inverse();
+  const MatrixXd C = information_.inverse();
   for (Index line = 0; line < kLines; ++line) {
     const fusion::LineInFile& in_file = fusion::LinesInFile()[line];
     const double stated = machine.population.*in_file.value, u = std::sqrt(C(line, line));
@@ -53,59 +57,88 @@ PopulationFit::PopulationFit(const machine::Machine& machine, const machine::Vol
   }
 }
 
-// Of the score from zero, in variances.
-double PopulationFit::OffOf(const Sums& at) {
-  return at.score.dot(at.information.ldlt().solve(at.score));
+PopulationFit::State PopulationFit::At(VectorXd phi, std::vector<VectorXd> eta) const {
+  State at{.phi = std::move(phi), .eta = std::move(eta), .machines = {}};
+  at.log = -0.5 * at.phi.squaredNorm() / (kSpread * kSpread);
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    MayBeInterrupted();
+    const VectorXd theta = lines_ * at.phi + own_.cwiseProduct(at.eta[i]);
+    const auto evidence = evidence_.At(seen_[i], theta);
+    const double log = evidence.log + 0.5 * theta.dot(evidence_.precision() * theta);
+    at.machines.push_back({log, evidence_.SlopesAt(seen_[i], theta, evidence)});
+    at.log += log - 0.5 * at.eta[i].squaredNorm();
+  }
+  return at;
 }
 
-PopulationFit::Sums PopulationFit::SumsAt(const VectorXd& phi) const {
-  const VectorXd theta = lines_ * phi;
-  VectorXd own(theta.size());  // variances of delta
-  for (Index i = 0; i < own.size(); ++i) {
-    const bool of_function = evidence_.knobs()[i].axis >= 0;
-    own[i] = of_function ? std::pow(evidence_.IsLength(i) ? kOwnLength : kOwnSize, 2) : 0.0;
+std::vector<PopulationFit::Part> PopulationFit::PartsAt(const State& at) const {
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const auto& [gradient, F] = at.machines[i].slopes;
+    const MatrixXd DFX = own_.asDiagonal() * F * lines_;
+    MatrixXd inner = own_.asDiagonal() * F * own_.asDiagonal();
+    inner.diagonal().array() += 1.0;
+    const Eigen::LLT<MatrixXd> factor(inner);
+    const VectorXd eta_step = factor.solve(own_.cwiseProduct(gradient) - at.eta[i]);
+    parts.push_back(
+        {.score = lines_.transpose() * gradient - DFX.transpose() * eta_step,
+         .information = lines_.transpose() * F * lines_ - DFX.transpose() * factor.solve(DFX),
+         .eta_step = eta_step,
+         .eta_slope = -factor.solve(DFX)});
   }
-  Sums sums{.score = -phi / (kSpread * kSpread),
-            .information = MatrixXd::Identity(kLines, kLines) / (kSpread * kSpread),
-            .scores = {},
-            .informations = {}};
-  for (const auto& machine : seen_) {
-    MayBeInterrupted();
-    const auto slopes = evidence_.SlopesAt(machine, theta, evidence_.At(machine, theta));
-    const VectorXd weight = (1.0 + slopes.fisher.diagonal().array() * own.array()).inverse();
-    const VectorXd root = weight.cwiseSqrt();
-    sums.scores.emplace_back(lines_.transpose() * weight.cwiseProduct(slopes.gradient));
-    sums.informations.emplace_back(lines_.transpose() * root.asDiagonal() * slopes.fisher *
-                                   root.asDiagonal() * lines_);
-    sums.score += sums.scores.back();
-    sums.information += sums.informations.back();
-  }
-  return sums;
+  return parts;
 }
 
 void PopulationFit::Solve() {
-  at_ = SumsAt(phi_);
+  State at = At(phi_, std::vector<VectorXd>(seen_.size(), VectorXd::Zero(own_.size())));
   for (int step = 0; step < kSteps; ++step) {
-    VectorXd way = at_.information.ldlt().solve(at_.score);
-    const double off = way.dot(at_.score);
-    if (off < kSettled * kSettled) return;
-    way *= std::min(1.0, kLongestStep / way.cwiseAbs().maxCoeff());
-    Sums next = SumsAt(phi_ + way);
-    for (int halves = 0; halves < kHalves && OffOf(next) > off; ++halves) {
-      way *= 0.5;
-      next = SumsAt(phi_ + way);
+    parts_ = PartsAt(at);
+    information_ = MatrixXd::Identity(kLines, kLines) / (kSpread * kSpread);
+    VectorXd score = -at.phi / (kSpread * kSpread);
+    for (const Part& part : parts_) {
+      information_ += part.information;
+      score += part.score;
     }
-    phi_ += way;
-    at_ = std::move(next);
+    const VectorXd phi_step = information_.ldlt().solve(score);
+    double longest = phi_step.cwiseAbs().maxCoeff();
+    std::vector<VectorXd> eta_step;
+    for (const Part& part : parts_) {
+      eta_step.emplace_back(part.eta_step + part.eta_slope * phi_step);
+      longest = std::max(longest, own_.cwiseProduct(eta_step.back()).cwiseAbs().maxCoeff());
+    }
+    double share = std::min(1.0, kLongestStep / longest);
+    const auto moved = [&] {
+      std::vector<VectorXd> eta = at.eta;
+      for (std::size_t i = 0; i < eta.size(); ++i) eta[i] += share * eta_step[i];
+      return At(at.phi + share * phi_step, std::move(eta));
+    };
+    State next = moved();
+    for (int halves = 0; halves < kHalves && !(next.log > at.log); ++halves) {
+      share *= 0.5;
+      next = moved();
+    }
+    const double gain = next.log - at.log;
+    if (gain > 0.0) at = std::move(next);
+    phi_ = at.phi;
+    eta_ = at.eta;
+    if (gain < kSettled) return;
   }
   throw NumericalError(
       "the population of the fleet does not settle; look at the lines of [population], which "
       "should be right to a factor of five");
 }
 
-VectorXd PopulationFit::ThetaWithout(std::size_t machine) const {
-  const MatrixXd others = at_.information - at_.informations[machine];
-  return lines_ * (phi_ - others.ldlt().solve(at_.scores[machine]));
+PopulationFit::Expected PopulationFit::ExpectedWithout(std::size_t machine) const {
+  const MatrixXd C = (information_ - parts_[machine].information).inverse();
+  const VectorXd phi = phi_ - C * parts_[machine].score;
+  Expected expected{lines_ * phi, (lines_ * C * lines_.transpose()).diagonal()};
+  for (Index i = 0; i < own_.size(); ++i) {
+    const bool is_length = evidence_.IsLength(i);
+    expected.spread[i] =
+        std::hypot(std::sqrt(expected.spread[i]), is_length ? kOwnLength : kOwnSize);
+    if (is_length) expected.theta[i] = (lines_ * phi_)[i] + own_[i] * eta_[machine][i];
+  }
+  return expected;
 }
 
 }  // namespace abbe::fleet

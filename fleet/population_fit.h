@@ -6,19 +6,22 @@
 //   fit.theta();                                       // for PopulationEvidence
 //
 // phi, the logarithms of the lines against those of the machine file, is what the machines have in
-// common: each has X phi + delta_i, X from lines to functions, delta_i normal with 0.4 for sizes
-// and
-// 0.25 for lengths (so no machine and no function settles a line for all others). With score g_i
-// and information F_i of log Z_i (fusion/population_evidence.h) at X phi it solves, by Newton's
-// steps,
+// common; the functions of machine i have X phi + D eta_i, X from lines to functions, D = 0.4 for
+// sizes and 0.25 for lengths, so no machine and no function settles a line for all others. The mode of
 //
-//   sum over the machines of X' W_i g_i = phi / s^2         W_i = diag 1 / (1 + F_ii var delta)
+//   sum_i (log Z_i(X phi + D eta_i) - eta_i' eta_i / 2) - phi' phi / (2 s^2)          s = 1.5
 //
-// s = 1.5 (a factor of 4.5). The sum is in the order of the machines; of each the first campaign
-// counts, since its errors are drawn once however often they are measured.
+// is found by Newton's steps, the information F_i of log Z_i (fusion/population_evidence.h) in place
+// of second derivatives and the eta_i eliminated; phi has then the information
+//
+//   sum_i X' (F_i - F_i D (1 + D F_i D)^-1 D F_i) X + 1 / s^2
+//
+// The sums are in the order of the machines; of each the first campaign counts, since its errors are
+// drawn once however often they are measured.
 // Frames: none. Units: SI. Shapes: phi one value for each fusion::Line.
 // Failure: InputError for no machine.
-// Source: Rasmussen and Williams (2006), 5.4; hierarchical models: Gelman and Hill (2007), 12.
+// Source: Rasmussen and Williams (2006), 5.4; hierarchical models: Gelman and Hill (2007), 12; mode
+// of all: Breslow and Clayton, J. Am. Stat. Assoc. 88 (1993).
 // Validity: machines whose errors vary about zero; what all of a type have in common counts as
 // their size.
 #pragma once
@@ -47,18 +50,34 @@ class PopulationFit {
   const std::vector<fusion::Statement>& statements() const { return statements_; }
   // One value for each knob of the evidence.
   Eigen::VectorXd theta() const { return lines_ * phi_; }
-  // Estimated without one machine, by one step.
-  Eigen::VectorXd ThetaWithout(std::size_t machine) const;
+  // The theta of a machine: its own lengths, sizes by all the others (to first order); and how a
+  // machine scatters about that, squarenesses and slopes like functions.
+  struct Expected {
+    Eigen::VectorXd theta, spread;
+  };
+  Expected ExpectedWithout(std::size_t machine) const;
 
  private:
-  struct Sums {
-    Eigen::VectorXd score;                // of phi
-    Eigen::MatrixXd information;          // the same
-    std::vector<Eigen::VectorXd> scores;  // of each machine
-    std::vector<Eigen::MatrixXd> informations;
+  // log Z and its slopes of one machine.
+  struct OfMachine {
+    double log;
+    fusion::PopulationEvidence::Slopes slopes;
   };
-  static double OffOf(const Sums& at);
-  Sums SumsAt(const Eigen::VectorXd& phi) const;
+  // What one machine adds to the normal equations of phi, its eta eliminated.
+  struct Part {
+    Eigen::VectorXd score;
+    Eigen::MatrixXd information;
+    Eigen::VectorXd eta_step;   // with phi as it is
+    Eigen::MatrixXd eta_slope;  // by phi
+  };
+  struct State {
+    Eigen::VectorXd phi;
+    std::vector<Eigen::VectorXd> eta;
+    std::vector<OfMachine> machines;
+    double log = 0.0;  // of all
+  };
+  State At(Eigen::VectorXd phi, std::vector<Eigen::VectorXd> eta) const;
+  std::vector<Part> PartsAt(const State& at) const;
   void Solve();
 
   const machine::VolumetricModel& model_;
@@ -66,8 +85,11 @@ class PopulationFit {
   std::vector<std::string> machines_;
   std::vector<fusion::Quadratic> seen_;
   Eigen::MatrixXd lines_;  // X
+  Eigen::VectorXd own_;    // diagonal of D
   Eigen::VectorXd phi_;
-  Sums at_;
+  std::vector<Eigen::VectorXd> eta_;
+  std::vector<Part> parts_;
+  Eigen::MatrixXd information_;  // of phi
   std::vector<fusion::Statement> statements_;
 };
 

@@ -33,11 +33,11 @@ class Fleet(ProgramCase):
         self.assertEqual(population["positioning_um"], 2.0)
         self.assertIn("the fleet does not tell", first)
         kept = (self.path / "fleet.jsonl").read_bytes()
-        self.assertEqual(self.done(*options), first.split("\nfor the machine file")[0])  # all that the store has
+        self.assertEqual(self.done(*options, "--resume"), first.split("\nfor the machine file")[0])  # all that the store has
         self.assertEqual((self.path / "fleet.jsonl").read_bytes(), kept)
         # A later campaign of the second machine goes under the name of the first.
         later = self.campaign("later", 2, run=2)
-        self.done(*given, f"M1={later}", *options, "--json", self.path / "fleet.json")
+        self.done(*given, f"M1={later}", *options, "--resume", "--json", self.path / "fleet.json")
         odd = json.loads((self.path / "fleet.json").read_text())["odd_identities"]
         self.assertIn(("later", "M1", "M2"),
                       [(pathlib.Path(each["campaign"]).name, each["said"], each["fits"]) for each in odd])
@@ -52,10 +52,11 @@ class Fleet(ProgramCase):
         self.refuse(f"M1={folder}", f"M1={folder}", *options, saying=["is given twice"])
         self.assertFalse((self.path / "fleet.jsonl").exists())
         self.refuse(*options, saying=["fleet needs a campaign"])
+        self.refuse(f"M1={folder}", *options, saying=["exists already", "--resume"])
         (self.path / "other.toml").write_text(
             pathlib.Path(MACHINE).read_text().replace("smoothness_mm = 15.0", "smoothness_mm = 20.0"))
         self.refuse(f"M1={folder}", "--machine", self.path / "other.toml", "--store", self.path / "fleet.jsonl",
-                    saying=["asks", "another name"])
+                    "--resume", saying=["asks", "another name"])
 
 
 if __name__ == "__main__":

@@ -165,7 +165,41 @@ TEST(Fleet, TellsThePopulationOfItsMachines) {
     EXPECT_TRUE(!is_told || said.u_log < 0.25) << said.key;
   }
   for (const OddError& odd : OddErrors(fit))
-    EXPECT_FALSE(odd.is_certain) << odd.machine << odd.error;
+    EXPECT_FALSE(odd.is_certain()) << odd.machine << odd.error;
+}
+
+// A bow, a wave and a rounded kink, sizes spread evenly over a factor of five.
+Drawn DrawOfNoProcess(const Fleet& fleet, std::uint64_t seed) {
+  const random::CounterRandom random(seed, 0xB0E);
+  std::uint64_t at = 0;
+  Drawn drawn = fleet.Draw(seed);
+  for (VectorXd& values : drawn.values) {
+    const double size = std::sqrt(values.squaredNorm() / kStations);
+    const double rate = 2.0 + 6.0 * random.Uniform(at++), phase = 6.3 * random.Uniform(at++);
+    const double bow = random.Normal(at++), kink = random.Normal(at++),
+                 where = random.Uniform(at++);
+    const auto x = Eigen::ArrayXd::LinSpaced(kStations, 0.0, 1.0);
+    values = (x * rate + phase).sin() + bow * (x - 0.5).square() * 4.0 +
+             kink * ((x - where).square() + 0.04).sqrt() * 3.0;
+    values.array() -= values.mean();
+    values *=
+        (0.3 + 1.3 * random.Uniform(at++)) * size / std::sqrt(values.squaredNorm() / kStations);
+  }
+  return drawn;
+}
+
+TEST(Fleet, AccusesNobodyInAFleetOfNoProcess) {
+  const Fleet fleet;
+  std::vector<Campaign> campaigns;
+  for (int m = 1; m <= kMachines; ++m) {
+    const Drawn drawn = DrawOfNoProcess(fleet, 100 + m);
+    campaigns.push_back(fleet.Measure(NameOf(m), "first", drawn, m));
+    if (m > 5) continue;
+    campaigns.push_back(fleet.Measure(NameOf(m), "second", fleet.Later(drawn, 900 + m), 50 + m));
+  }
+  const PopulationFit fit(Mill(), fleet.model(), campaigns);
+  for (const OddError& odd : OddErrors(fit)) EXPECT_FALSE(odd.is_certain()) << odd.error;
+  EXPECT_TRUE(OddIdentities(fit, campaigns, {}).empty());
 }
 
 TEST(Fleet, NamesAnErrorThatNoOtherMachineHas) {
@@ -179,9 +213,9 @@ TEST(Fleet, NamesAnErrorThatNoOtherMachineHas) {
   ASSERT_FALSE(errors.empty());
   EXPECT_EQ(errors.front().machine, "M5");
   EXPECT_EQ(errors.front().error, "EAY");
-  EXPECT_TRUE(errors.front().is_certain);
+  EXPECT_TRUE(errors.front().is_certain());
   EXPECT_GT(errors.front().times, 3.0);
-  for (std::size_t i = 1; i < errors.size(); ++i) EXPECT_FALSE(errors[i].is_certain);
+  for (std::size_t i = 1; i < errors.size(); ++i) EXPECT_FALSE(errors[i].is_certain());
 }
 
 TEST(Fleet, NamesCampaignsOfSwappedIdentity) {
