@@ -32,10 +32,12 @@ std::vector<Candidate> Tried(const Fit& without, const Candidate& found) {
   return tried;
 }
 
-// In log evidence: what hardly decides between two, and what the first order leaves out.
-double NearlyAsGood(double best) {
-  constexpr double kHundredToOne = 4.6, kLeftOut = 0.02;
-  return kHundredToOne + kLeftOut * std::max(best, 0.0);
+// In log evidence: what hardly decides between two, and what the first order leaves out: of a step,
+// which is linear in its one size, hardly anything.
+double NearlyAsGood(const Score& best) {
+  constexpr double kHundredToOne = 4.6, kLeftOut = 0.02, kLeftOutOfAStep = 0.001;
+  const double left_out = best.candidate.cause->one_event ? kLeftOutOfAStep : kLeftOut;
+  return kHundredToOne + left_out * std::max(best.log_evidence, 0.0);
 }
 
 // Two standard deviations of the logarithm of the shape reach as far as this.
@@ -57,7 +59,8 @@ Score AmongAliases(const Fit& without, Score score) {
   std::vector<Candidate> tried = Tried(without, score.candidate);
   tried.push_back(score.candidate);
   std::vector<Score> scores = ScoreAll(without, tried);
-  const double best = std::ranges::max(scores, {}, &Score::log_evidence).log_evidence;
+  const Score& winner = *std::ranges::max_element(scores, {}, &Score::log_evidence);
+  const double least = winner.log_evidence - NearlyAsGood(winner);
   std::rotate(scores.begin(), scores.end() - 1, scores.end());  // the one found goes first
   std::stable_sort(scores.begin() + 1, scores.end(),
                    [](const Score& a, const Score& b) { return a.log_evidence > b.log_evidence; });
@@ -68,7 +71,7 @@ Score AmongAliases(const Fit& without, Score score) {
   };
   std::vector<Score> group;
   for (Score& each : scores) {
-    if (!group.empty() && each.log_evidence < best - NearlyAsGood(best)) continue;
+    if (!group.empty() && each.log_evidence < least) continue;
     const auto is_near = [&](const Score& other) {
       return std::abs(waves(other) - waves(each)) < resolved;
     };

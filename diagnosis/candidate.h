@@ -32,6 +32,8 @@ struct Candidate {
   bool HasFreeShape() const {
     return cause->shapes && !cause->fixed_shapes && coefficients.size() > 0;
   }
+  // Whether what it does is its coefficients times columns.
+  bool HasColumns() const { return cause->columns && !cause->IsBinary(); }
 };
 
 // Whether one of the candidates has the name; shapes do not count.

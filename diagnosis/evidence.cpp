@@ -59,8 +59,11 @@ DrawnSize SizeOfDraws(const Fit::Projection& projection, const SizeRange& sizes,
   }
   if (seen.empty()) return {sizes.smallest, 0.0};
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S(seen, seen));
+  constexpr double kRounding = 1e-9;  // of the largest: below, a score is rounding too
   const Eigen::ArrayXd information = solver.eigenvalues().array().max(0.0);
-  const Eigen::ArrayXd score = (solver.eigenvectors().transpose() * g(seen)).array();
+  const Eigen::ArrayXd score =
+      (information > kRounding * information.maxCoeff())
+          .select((solver.eigenvectors().transpose() * g(seen)).array(), 0.0);
   const auto evidence = [&](double sd) {
     const Eigen::ArrayXd grown = 1.0 + sd * sd * information;
     return 0.5 * (sd * sd * score.square() / grown - grown.log()).sum();

@@ -110,6 +110,15 @@ estimation::Result SolveWithCauses(const Campaign& campaign, const Problem& prob
   return Solve(problem, kWithCauses, sums);
 }
 
+// As the last entry the logarithm of a shape that nothing else depends on.
+void AddShape(MatrixXd& covariance, double variance) {
+  const Index count = covariance.rows();
+  covariance.conservativeResize(count + 1, count + 1);
+  covariance.row(count).setZero();
+  covariance.col(count).setZero();
+  covariance(count, count) = variance;
+}
+
 // Takes out of a covariance what keeps the last entry, the logarithm of a shape, from going too far
 // in one round: it is no knowledge. What is known no better without it stays bounded.
 void FreeShape(MatrixXd& covariance) {
@@ -179,9 +188,12 @@ double Fit::FollowShapes() {
       const double moved = std::abs(1.0 - cause.shape[0] / before);
       if (moved > kDrawnFound) most = std::max(most, moved);
     } else if (cause.cause->FollowsItsSize()) {
-      const double before = simulation::SizeOf(cause.shape);
-      cause.shape = coefficients.head<1>();
-      most = std::max(most, std::abs(1.0 - before / coefficients[0]));
+      const Index fixed = std::max<Index>(cause.shape.size() - coefficients.size(), 0);
+      const VectorXd before = cause.shape;
+      cause.shape = simulation::AroundSizes(before.head(fixed), coefficients);
+      most = std::max(most, before.size() < cause.shape.size()
+                                ? 1.0
+                                : (cause.shape - before).norm() / coefficients.norm());
     } else if (cause.HasFreeShape()) {
       const double step = std::clamp(found[found.size() - 1], -kAtMost, kAtMost);
       cause.shape *= std::exp(step);
@@ -301,11 +313,10 @@ Score Fit::ScoreOf(std::size_t taken_in) const {
           std::pow(cause.shape[0] * result_.Uncertainty(zero), 2) * turned * turned.transpose();
     }
     if (cause.cause->IsRandomField()) {  // so many draws tell their deviation
-      const Index count = score.coefficients.size();
-      score.covariance.conservativeResize(count + 1, count + 1);
-      score.covariance.row(count).setZero();
-      score.covariance.col(count).setZero();
-      score.covariance(count, count) = 0.5 / SeenOf(cause);
+      AddShape(score.covariance, 0.5 / SeenOf(cause));
+    } else if (cause.cause->shape_spread) {
+      const double u = cause.cause->shape_spread(campaign_.scene(), cause.shape);
+      if (u > 0.0) AddShape(score.covariance, std::pow(u / cause.shape[0], 2));
     }
     return score;
   }

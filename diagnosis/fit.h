@@ -91,6 +91,9 @@ class Fit {
   Projection ProjectionOf(std::size_t taken_in) const;
   // For a cause that relaxes parameters.
   Projection ProjectParameters(const Candidate& candidate) const;
+  // How the coefficients of a cause that was taken in, and its free shape, move when each
+  // coefficient of a candidate becomes one: H^-1 J'C, a column each.
+  Eigen::MatrixXd MovedBy(const Candidate& candidate, std::size_t taken_in) const;
 
  private:
   struct RunRows {
@@ -114,9 +117,14 @@ class Fit {
   // Whitened, a column for each function.
   static Eigen::MatrixXd InStage(const RunRows& run, Eigen::Index stage,
                                  const Eigen::MatrixXd& functions);
-  // Groups of columns from C'C of each, C'J and C'r of all.
-  std::vector<Projection> Finish(const std::vector<Eigen::MatrixXd>& C_C,
-                                 const Eigen::MatrixXd& C_J, const Eigen::VectorXd& C_r) const;
+  // C'C of each group of columns, C'J and C'r of all.
+  struct Products {
+    std::vector<Eigen::MatrixXd> C_C;
+    Eigen::MatrixXd C_J;
+    Eigen::VectorXd C_r;
+  };
+  Products ProductsOf(const Disturber& disturber, const std::vector<Eigen::Index>& groups) const;
+  std::vector<Projection> Finish(const Products& products) const;
   std::vector<int> ColumnsNamed(const std::string& pattern) const;
 
   const Campaign& campaign_;

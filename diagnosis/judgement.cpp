@@ -90,14 +90,30 @@ void Search::ForgiveRivalsFound() {
   }
 }
 
-Score Search::ScoreOf(std::size_t i) const {
-  Score score = fit_->ScoreOf(i);
-  const bool hardly_known = IsHardlyKnown(score), aliases = MayHaveAliases(score);
-  if (!hardly_known && !aliases) return score;
-  const auto without = FitWith(Others(i));
-  if (!without) return score;
-  if (aliases) score = AmongAliases(*without, std::move(score));
-  return hardly_known ? OverAllShapes(*without, std::move(score)) : score;
+// In the order of the members. A shape that is hardly known widens what stands beside it too.
+std::vector<Score> Search::Scores() const {
+  std::vector<Score> scores;
+  for (std::size_t i = 0; i < members_.size(); ++i) scores.push_back(fit_->ScoreOf(i));
+  std::vector<Eigen::MatrixXd> added(members_.size());
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const bool hardly_known = IsHardlyKnown(scores[i]), aliases = MayHaveAliases(scores[i]);
+    if (members_[i].other || (!hardly_known && !aliases)) continue;
+    const auto without = FitWith(Others(i));
+    if (!without) continue;
+    if (aliases) scores[i] = AmongAliases(*without, std::move(scores[i]));
+    if (!hardly_known) continue;
+    const ShapePosterior shapes(*without, std::move(scores[i]));
+    scores[i] = shapes.Widened();
+    for (std::size_t j = 0; j < members_.size(); ++j) {
+      if (j == i || !scores[j].candidate.HasColumns()) continue;
+      const Eigen::MatrixXd more = shapes.AddedTo(j < i ? j : j - 1);
+      added[j] = added[j].size() == 0 ? more : added[j] + more;
+    }
+  }
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    scores[i].covariance.topLeftCorner(added[i].rows(), added[i].cols()) += added[i];
+  }
+  return scores;
 }
 
 // Found row by row, so certain.
@@ -126,6 +142,7 @@ double Search::SomethingElseInstead(std::size_t i) const {
 }
 
 void Search::Describe() {
+  const std::vector<Score> scores = Scores();
   for (std::size_t i = 0; i < members_.size(); ++i) {
     Member& member = members_[i];
     if (member.other) {
@@ -134,7 +151,7 @@ void Search::Describe() {
     }
     Score& score = member.finding.score;
     const double visible = score.visible, log_evidence = score.log_evidence;
-    score = ScoreOf(i);
+    score = scores[i];
     score.visible = visible;
     score.log_evidence = log_evidence;
     member.finding.curve = CurveOf(*base_, *fit_, i);

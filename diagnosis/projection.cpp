@@ -97,9 +97,9 @@ class DistinctFunctions {
 
 }  // namespace
 
-std::vector<Fit::Projection> Fit::Finish(const std::vector<MatrixXd>& C_C, const MatrixXd& C_J,
-                                         const VectorXd& C_r) const {
+std::vector<Fit::Projection> Fit::Finish(const Products& products) const {
   MayBeInterrupted();
+  const auto& [C_C, C_J, C_r] = products;
   constexpr double kRounding = 1e-9;  // of the information of a column
   std::vector<Index> acting;          // of all columns
   Index first = 0;
@@ -184,18 +184,16 @@ MatrixXd Fit::Against(const RunRows& run, const std::vector<Disturbance>& distur
   return against;
 }
 
-std::vector<Fit::Projection> Fit::Project(const Disturber& disturber,
-                                          const std::vector<Index>& groups) const {
+Fit::Products Fit::ProductsOf(const Disturber& disturber, const std::vector<Index>& groups) const {
   const Index columns = std::accumulate(groups.begin(), groups.end(), Index{0});
-  std::vector<MatrixXd> C_C;
+  Products products{{}, MatrixXd::Zero(columns, std::ssize(names_)), VectorXd::Zero(columns)};
+  auto& [C_C, C_J, C_r] = products;
   C_C.reserve(groups.size());
   std::vector<std::size_t> group_of;
   for (const Index count : groups) {
     group_of.insert(group_of.end(), count, C_C.size());
     C_C.push_back(MatrixXd::Zero(count, count));
   }
-  MatrixXd C_J = MatrixXd::Zero(columns, names_.size());
-  VectorXd C_r = VectorXd::Zero(columns);
   for (const RunRows& run : runs_) {
     if (!run.at.response) continue;
     std::vector<Disturbance> acting = disturber(run.at.trace);
@@ -210,7 +208,22 @@ std::vector<Fit::Projection> Fit::Project(const Disturber& disturber,
     C_J(which, run.columns) += against.leftCols(against.cols() - 1);
     C_r(which) += against.rightCols<1>();
   }
-  return Finish(C_C, C_J, C_r);
+  return products;
+}
+
+std::vector<Fit::Projection> Fit::Project(const Disturber& disturber,
+                                          const std::vector<Index>& groups) const {
+  return Finish(ProductsOf(disturber, groups));
+}
+
+MatrixXd Fit::MovedBy(const Candidate& candidate, std::size_t taken_in) const {
+  const auto disturb = [&](const simulation::Trace& trace) {
+    return candidate.cause->columns(trace, candidate.object, candidate.shape);
+  };
+  const MatrixXd J_C = ProductsOf(disturb, {candidate.cause->coefficients()}).C_J.transpose();
+  const MatrixXd moved = scale_.asDiagonal() * H_.solve(scale_.asDiagonal() * J_C);
+  return moved(fusion::ColumnsOf(names_, {result_.Block(BlockOf(taken_in_[taken_in]))}),
+               Eigen::all);
 }
 
 std::vector<Fit::Projection> Fit::ProjectInStage(Index stage,
@@ -245,7 +258,7 @@ std::vector<Fit::Projection> Fit::ProjectInStage(Index stage,
       C_r.segment(first, groups[group]) += slopes.rightCols<1>();
     }
   }
-  return Finish(C_C, C_J, C_r);
+  return Finish({std::move(C_C), C_J, C_r});
 }
 
 MatrixXd Fit::InStage(const RunRows& run, Index stage, const MatrixXd& functions) {
@@ -286,7 +299,7 @@ Fit::Projection Fit::ProjectParameters(const Candidate& candidate) const {
     }
   }
   const MatrixXd C_J = select * data_information_;
-  return Finish({C_J * select.transpose()}, C_J, select * data_gradient_).front();
+  return Finish({{C_J * select.transpose()}, C_J, select * data_gradient_}).front();
 }
 
 }  // namespace abbe::diagnosis

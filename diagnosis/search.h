@@ -79,7 +79,7 @@ class Search {
   void DropSuperfluous();
   void ForgiveRivalsFound();
   double SomethingElseInstead(std::size_t i) const;
-  Score ScoreOf(std::size_t i) const;
+  std::vector<Score> Scores() const;
   void AddBadData();
   void Describe();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "diagnosis/evidence.h"
@@ -17,7 +18,8 @@ using Eigen::VectorXd;
 
 constexpr double kKnown = 0.1;  // standard deviation of a logarithm that first order will do for
 constexpr int kShapesTried = 201;
-constexpr double kAnySize = 1e3;  // times what is plausible
+constexpr double kAnySize = 1e3;    // times what is plausible
+constexpr double kNoWeight = 1e-3;  // of a shape: left out
 
 // The posterior of the logarithm of the shape, to first order.
 double DeviationOf(const Score& score) {
@@ -63,34 +65,54 @@ bool IsHardlyKnown(const Score& score) {
          DeviationOf(score) > kKnown;
 }
 
-Score OverAllShapes(const Fit& without, Score score) {
-  const auto all = ScoreAll(without, AllShapes(score, without.campaign().scene()));
-  const Index count = score.coefficients.size(), shapes = all.size();
-  VectorXd logs(shapes);
+ShapePosterior::ShapePosterior(const Fit& without, Score score)
+    : without_(without),
+      score_(std::move(score)),
+      all_(ScoreAll(without, AllShapes(score_, without.campaign().scene()))),
+      weights_(all_.size()) {
+  for (Index i = 0; i < weights_.size(); ++i) weights_[i] = LogLikelihood(all_[i]);
+  weights_ = (weights_.array() - weights_.maxCoeff()).exp().eval();
+  weights_ /= weights_.sum();
+}
+
+Score ShapePosterior::Widened() const {
+  const Index count = score_.coefficients.size(), shapes = weights_.size();
   MatrixXd off(count + 1, shapes), around(count + 1, shapes);  // of each shape, and its variances
   for (Index i = 0; i < shapes; ++i) {
-    const Score& each = all[i];
-    logs[i] = LogLikelihood(each);
+    const Score& each = all_[i];
     // As a share of what was found, as a report states it: of a time constant three times as long
     // that is 2, its logarithm 1.1.
-    off.col(i) << each.coefficients - score.coefficients,
-        each.candidate.shape[0] / score.candidate.shape[0] - 1.0;
+    off.col(i) << each.coefficients - score_.coefficients,
+        each.candidate.shape[0] / score_.candidate.shape[0] - 1.0;
     around.col(i) << each.covariance.diagonal(), 0.0;
   }
-  VectorXd weights = (logs.array() - logs.maxCoeff()).exp();
-  weights /= weights.sum();
-  MatrixXd moment = off * weights.asDiagonal() * off.transpose();
-  moment.diagonal() += around * weights;
+  MatrixXd moment = off * weights_.asDiagonal() * off.transpose();
+  moment.diagonal() += around * weights_;
   const VectorXd deviation = moment.diagonal().cwiseSqrt();
   VectorXd stretch(count + 1);
   for (Index d = 0; d <= count; ++d) {
     const VectorXd reach = (off.row(d).array().square() +
                             standards::kCoverage * standards::kCoverage * around.row(d).array())
                                .sqrt();
-    stretch[d] = Quantile(reach, weights) / (standards::kCoverage * deviation[d]);
+    stretch[d] = Quantile(reach, weights_) / (standards::kCoverage * deviation[d]);
   }
-  score.covariance = stretch.asDiagonal() * moment * stretch.asDiagonal();
-  return score;
+  Score widened = score_;
+  widened.covariance = stretch.asDiagonal() * moment * stretch.asDiagonal();
+  return widened;
+}
+
+MatrixXd ShapePosterior::AddedTo(std::size_t taken_in) const {
+  const auto moved = [&](const Score& score) -> VectorXd {
+    return without_.MovedBy(score.candidate, taken_in) * score.coefficients;
+  };
+  const VectorXd found = moved(score_);
+  MatrixXd added = MatrixXd::Zero(found.size(), found.size());
+  for (Index i = 0; i < weights_.size(); ++i) {
+    if (weights_[i] < kNoWeight) continue;
+    const VectorXd off = moved(all_[i]) - found;
+    added += weights_[i] * off * off.transpose();
+  }
+  return added;
 }
 
 }  // namespace abbe::diagnosis

@@ -1,8 +1,10 @@
 #include "diagnosis/something_else.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <functional>
+#include <string>
 #include <utility>
 
 namespace abbe::diagnosis {
@@ -10,11 +12,20 @@ namespace {
 
 constexpr const char* kId = "something-else";
 
+// Along an axis as its positioning error is, seen from another carriage or at the ball: "EXZ" over
+// x, "ball_x" over x.
+bool IsAlong(const std::string& channel, const std::string& variable) {
+  if (variable.size() != 1) return false;
+  if (channel == "ball_" + variable) return true;
+  return channel.size() == 3 && channel[0] == 'E' && channel[1] == std::toupper(variable[0]);
+}
+
 // A wave of an axis along itself, of a pivot over its own angle, of a sensor over that of the
 // shaft: screws, encoders and targets make those.
 bool IsInCatalogue(const Structure& structure) {
   return structure.form == Structure::Form::kLine &&
-         (structure.IsOfItself() || structure.variable == "shaft");
+         (structure.IsOfItself() || structure.variable == "shaft" ||
+          IsAlong(structure.channel.object, structure.variable));
 }
 
 }  // namespace

@@ -39,7 +39,8 @@ std::optional<Range> RangeOf(const std::string& variable, const StageChannel& ch
 }
 
 Eigen::ArrayXd Range::Scaled(const RowVectorXd& values) const {
-  return 2.0 * (values.transpose().array() - first) / Length() - 1.0;
+  // Cables that are found exchanged bring values from elsewhere, where polynomials know no bounds.
+  return (2.0 * (values.transpose().array() - first) / Length() - 1.0).max(-1.0).min(1.0);
 }
 
 Factors FactorsOf(const std::string& product) {

@@ -43,7 +43,7 @@ struct Range {
   double last = -std::numeric_limits<double>::infinity();
 
   double Length() const { return last - first; }
-  // -1 to 1 over the range.
+  // -1 to 1 over the range, and as at its ends beyond.
   Eigen::ArrayXd Scaled(const Eigen::RowVectorXd& values) const;
 };
 // One that may depend on the variable: a probe on its own gap alone. Empty where that does not

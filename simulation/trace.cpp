@@ -10,9 +10,14 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 
 RowVectorXd Trace::BacklashLag(int which, double width) const {
+  if (width <= 0.0) return -0.5 * heading.row(which);
+  return BacklashLag(which, [&](double) { return width; });
+}
+
+RowVectorXd Trace::BacklashLag(int which, const WidthAt& width) const {
   const bool follows = on_the_way == OnTheWay::kAlways ||
                        (on_the_way == OnTheWay::kWhileMoving && !velocity.row(which).isZero(0.0));
-  if (!follows || width <= 0.0) return -0.5 * heading.row(which);
+  if (!follows) return -0.5 * heading.row(which);
   return PlayOf(axes.row(which), *this, width);
 }
 

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,6 +31,9 @@
 namespace abbe::simulation {
 
 inline constexpr double kLongAgo = 1.0;
+
+// The width of a play where the axis is, both in m.
+using WidthAt = std::function<double(double)>;
 
 // Whether rows lie on the way of an axis, so that lost motion develops along it; at stations and
 // targets it is taken up.
@@ -75,6 +79,8 @@ struct Trace {
   // -1/2 while it moves to +, 1/2 to -. Width 0: backlash that is taken up at once. Of a pivot
   // whose encoder is the output, and lags, the width is below 0.
   Eigen::RowVectorXd BacklashLag(int which, double width) const;
+  // The same of an axis whose play is not the same everywhere.
+  Eigen::RowVectorXd BacklashLag(int which, const WidthAt& width) const;
   // The same of a pivot.
   Eigen::RowVectorXd PivotBacklashLag(int pivot, double width) const;
   // The way of the axes with all that follows from it; after time, pass and direction.

@@ -130,18 +130,19 @@ namespace {
 // the output stays behind.
 class Play {
  public:
-  Play(double width, bool shown, double at)
-      : half_(0.5 * width), shown_(shown), in_(at), out_(at) {}
+  Play(WidthAt width, bool shown, double at)
+      : width_(std::move(width)), shown_(shown), in_(at), out_(at) {}
 
   void Begin(double at) { in_ = out_ = at; }
   void Follow(double at) {
-    in_ = shown_ ? std::clamp(0.5 * (at + out_), at - half_, at + half_) : at;
-    out_ = std::clamp(out_, in_ - half_, in_ + half_);
+    const double half = 0.5 * width_(at);
+    in_ = shown_ ? std::clamp(0.5 * (at + out_), at - half, at + half) : at;
+    out_ = std::clamp(out_, in_ - half, in_ + half);
   }
   double behind() const { return out_ - in_; }
 
  private:
-  double half_;
+  WidthAt width_;
   bool shown_;
   double in_, out_;
 };
@@ -215,8 +216,11 @@ RowVectorXd Follow(Play play, const RowVectorXd& position, const Trace& trace,
 
 }  // namespace
 
-RowVectorXd PlayOf(const RowVectorXd& position, const Trace& trace, double width) {
-  return Follow(Play(width, false, position[0]), position, trace, {}) / width;
+RowVectorXd PlayOf(const RowVectorXd& position, const Trace& trace, const WidthAt& width) {
+  constexpr double kNone = 1e-12;  // m
+  const auto some = [&](double at) { return std::max(width(at), kNone); };
+  const RowVectorXd behind = Follow(Play(some, false, position[0]), position, trace, {});
+  return behind.cwiseQuotient(position.unaryExpr(some));
 }
 
 namespace {
@@ -280,7 +284,7 @@ RowVectorXd LaggingPlayOf(const RowVectorXd& shown, const RowVectorXd& heading, 
 
 RowVectorXd ShownPlayOf(const RowVectorXd& shown, const Trace& trace, double width,
                         const MatrixXd& aside) {
-  return Follow(Play(width, true, shown[0]), shown, trace, aside) / width;
+  return Follow(Play([&](double) { return width; }, true, shown[0]), shown, trace, aside) / width;
 }
 
 }  // namespace abbe::simulation

@@ -29,8 +29,9 @@ Eigen::Matrix3Xd HeadingsOf(const Eigen::Matrix3Xd& path);
 // two rows that stand it turned `beyond` them.
 Eigen::RowVectorXd SinceReversal(const Trace& trace, Eigen::Index axis, double beyond = 0.0);
 
-// The output of a play less its input, in widths, for an input that goes from row to row.
-Eigen::RowVectorXd PlayOf(const Eigen::RowVectorXd& position, const Trace& trace, double width);
+// The output of a play less its input, in widths where it is, for an input that goes from row to row.
+Eigen::RowVectorXd PlayOf(const Eigen::RowVectorXd& position, const Trace& trace,
+                          const WidthAt& width);
 // The same for an encoder that shows its input and what the output stays behind. Between two rows
 // that stand the input is beside a straight line by `aside`, kWaySteps x rows, where it is given.
 Eigen::RowVectorXd ShownPlayOf(const Eigen::RowVectorXd& shown, const Trace& trace, double width,

@@ -73,9 +73,10 @@ std::vector<VectorXd> Cause::ShapesFor(const Scene& scene, const Object& object)
 
 VectorXd Cause::ValuesOf(const VectorXd& found, const VectorXd& shape) const {
   if (tell) return tell(found, shape);
-  if (FollowsItsSize()) return found;
-  VectorXd values(found.size() + shape.size());
-  values << found, shape;
+  const Eigen::Index fixed =
+      FollowsItsSize() ? std::max<Eigen::Index>(shape.size() - found.size(), 0) : shape.size();
+  VectorXd values(found.size() + fixed);
+  values << found, shape.head(fixed);
   return values;
 }
 
@@ -90,9 +91,10 @@ std::optional<std::size_t> Cause::KeyOfShape() const {
 
 Recalled Cause::RecallFrom(const VectorXd& values) const {
   if (IsBinary()) return {VectorXd::Ones(1), {}};
-  if (FollowsItsSize()) return {values, values};
   if (recall) return recall(values);
-  return {values.head(coefficients()), values.tail(values.size() - coefficients())};
+  const VectorXd sizes = values.head(coefficients()),
+                 rest = values.tail(values.size() - sizes.size());
+  return {sizes, FollowsItsSize() ? AroundSizes(rest, sizes) : rest};
 }
 
 CorrectedBy Cause::CorrectedAt(const Object& object) const {
@@ -132,6 +134,12 @@ std::vector<Object> ArmOf(const Scene& scene) {
 }
 
 int Positioning(int axis) { return MotionStage(axis, axis); }
+
+VectorXd AroundSizes(const VectorXd& fixed, const VectorXd& sizes) {
+  VectorXd shape(fixed.size() + sizes.size());
+  shape << fixed, sizes;
+  return shape;
+}
 
 double SizeOf(const VectorXd& shape) { return shape.size() == 0 ? 0.0 : shape[0]; }
 

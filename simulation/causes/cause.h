@@ -8,7 +8,8 @@
 // that it touches. It is linear in its coefficients (a width, a gain, a sine and a cosine) and may
 // have a shape besides (a period, a time constant, an order, an instant), which is searched over
 // `shapes`. Where what it does is not quite in proportion to its size (a play, a delay), the shape
-// is the size around which the column is taken, and none for a small one: Amount::kFollowsItsSize.
+// is the size around which the column is taken, and none for a small one: Amount::kFollowsItsSize;
+// of several coefficients after what is fixed (the ends of a travel).
 // All coefficients are 0 when the cause is absent. Some causes are already parameters of the
 // simulation, within a tolerance (squareness, the eccentricity of an encoder): these name the
 // parameters that they set free in `relaxes` and have no columns. Keys: the names, units and signs
@@ -85,7 +86,7 @@ enum class Follows : unsigned char { kPath, kTime, kTemperature };
 // How what a cause does depends on its coefficients.
 enum class Amount : unsigned char {
   kLinear,
-  kFollowsItsSize,  // the shape is the coefficient around which the columns are taken
+  kFollowsItsSize,  // the shape ends with the coefficients around which the columns are taken
   kBinary,          // there or not: its one coefficient is 1
   // The coefficients are draws of a random function with the standard deviation shape[0] in each:
   // that is estimated, they are not what it is known by. Up to shape[1] it is as stated.
@@ -116,6 +117,7 @@ struct Cause {
   using Shapes = std::function<std::vector<Eigen::VectorXd>(const Scene&)>;
   using ShapesOf = std::function<std::vector<Eigen::VectorXd>(const Scene&, const Object&)>;
   using Nearer = std::function<std::vector<Eigen::VectorXd>(const Scene&, const Eigen::VectorXd&)>;
+  using ShapeSpread = std::function<double(const Scene&, const Eigen::VectorXd& shape)>;
   using Relaxes = std::function<std::vector<std::string>(const Object& object)>;
   using Tell = std::function<Eigen::VectorXd(const Eigen::VectorXd& coefficients,
                                              const Eigen::VectorXd& shape)>;
@@ -130,8 +132,9 @@ struct Cause {
   Shapes shapes = {};       // none: no shape
   ShapesOf shapes_of = {};  // where they depend on the object, in place of `shapes`
   Nearer nearer = {};  // those about one of the shapes, closer together; none: by halving the steps
-  Relaxes relaxes = {};  // the parameters whose priors it relaxes; none: columns
-  Tell tell = {};        // none: the coefficients are the keys, then the shape
+  ShapeSpread shape_spread = {};  // u of a fixed shape that stands for all between two rows
+  Relaxes relaxes = {};           // the parameters whose priors it relaxes; none: columns
+  Tell tell = {};                 // none: the coefficients are the keys, then the shape
   Amount amount = Amount::kLinear;
   bool fixed_shapes = false;        // nothing between those tried
   bool one_event = false;           // cannot be held against other passes
@@ -183,6 +186,8 @@ int Positioning(int axis);
 
 // The size that the column is to be taken around; 0: a small one.
 double SizeOf(const Eigen::VectorXd& shape);
+// The shape of a cause that follows its size.
+Eigen::VectorXd AroundSizes(const Eigen::VectorXd& fixed, const Eigen::VectorXd& sizes);
 
 // A disturbance with one row that is not zero.
 Disturbance InStage(const Trace& trace, Eigen::Index stage, const Eigen::RowVectorXd& values);

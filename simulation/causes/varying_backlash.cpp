@@ -1,5 +1,8 @@
 // Backlash that is not the same along the axis: change t / 2 + bow (t^2 - 1/3) in addition to its
-// mean, t from -1 to 1 over the travel. The mean is `backlash`.
+// mean, t from -1 to 1 over the travel. The mean is `backlash`. The shape: the ends of the travel,
+// then the sizes around which the columns are taken.
+#include <cmath>
+
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
@@ -8,8 +11,12 @@ namespace {
 
 std::vector<Eigen::VectorXd> TravelOf(const Scene& scene, const Object& object) {
   const double first = scene.first[object.first()];
-  return {Eigen::Vector2d(first, first + scene.travel[object.first()])};
+  return {Eigen::Vector4d(first, first + scene.travel[object.first()], 0.0, 0.0)};
 }
+
+// The forms of what changes, at t.
+double Slope(double t) { return 0.5 * t; }
+double Bow(double t) { return t * t - 1.0 / 3.0; }
 
 }  // namespace
 
@@ -31,15 +38,22 @@ Cause VaryingBacklash() {
       .plausible = Eigen::VectorXd::Constant(2, 5e-6),
       .objects = AxesOf,
       .columns = [](const Trace& trace, const Object& object,
-                    const Eigen::VectorXd& ends) -> std::vector<Disturbance> {
+                    const Eigen::VectorXd& shape) -> std::vector<Disturbance> {
         const int axis = object.first();
-        const Eigen::ArrayXXd t =
-            (2.0 * trace.axes.row(axis).array() - ends[0] - ends[1]) / (ends[1] - ends[0]);
-        const Eigen::ArrayXXd lag = trace.BacklashLag(axis, 0.0).array();
-        return {InStage(trace, Positioning(axis), (0.5 * t * lag).matrix()),
-                InStage(trace, Positioning(axis), ((t.square() - 1.0 / 3.0) * lag).matrix())};
+        const auto share = [&](double at) {
+          return (2.0 * at - shape[0] - shape[1]) / (shape[1] - shape[0]);
+        };
+        const auto width = [&](double at) {
+          return std::abs(shape[2] * Slope(share(at)) + shape[3] * Bow(share(at)));
+        };
+        const Eigen::RowVectorXd lag = shape.tail<2>().isZero(0.0) ? trace.BacklashLag(axis, 0.0)
+                                                                   : trace.BacklashLag(axis, width);
+        const Eigen::RowVectorXd t = trace.axes.row(axis).unaryExpr(share);
+        return {InStage(trace, Positioning(axis), t.unaryExpr(&Slope).cwiseProduct(lag)),
+                InStage(trace, Positioning(axis), t.unaryExpr(&Bow).cwiseProduct(lag))};
       },
       .shapes_of = TravelOf,
+      .amount = Amount::kFollowsItsSize,
       .fixed_shapes = true,
   };
 }

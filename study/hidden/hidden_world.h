@@ -55,6 +55,13 @@ class HiddenWorlds {
     return worlds;
   }
 
+  // The same, with a ball that trails in its cap by up to so much, m.
+  HiddenWorlds WithTrailing(double most) const {
+    HiddenWorlds worlds = *this;
+    worlds.machine_.rig.cap = most;
+    return worlds;
+  }
+
   // The same, without white noise of probes and encoders, for a test that adds its own.
   HiddenWorlds Quiet() const {
     HiddenWorlds worlds = WithoutCounts();

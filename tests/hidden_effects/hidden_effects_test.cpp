@@ -30,6 +30,9 @@ TEST(HiddenEffects, AreNotSeenWhereThereAreNone) {
 struct Shown {
   const char* hidden;
   std::vector<std::pair<std::string, double>> keys = {};
+  // Not so: an outlier at the end of a motion is not seen, nor how the bearing is wound up between
+  // two readings at a reversal.
+  bool wholly = true;
 };
 
 class ShownEffects : public testing::TestWithParam<Shown> {};
@@ -42,6 +45,7 @@ TEST_P(ShownEffects, AreNamedFirstWithTheirSize) {
   ASSERT_FALSE(diagnosis.findings.empty());
   const Finding& first = diagnosis.findings.front();
   EXPECT_TRUE(Names(first, world.hidden.front())) << first.score.candidate.Name();
+  EXPECT_TRUE(diagnosis.verdict == Verdict::kExplained || !GetParam().wholly);
   const auto keys = KeysOf(first.score);
   for (const auto& [name, truth] : GetParam().keys) {
     for (Eigen::Index i = 0; i < keys.values.size(); ++i) {
@@ -55,25 +59,27 @@ TEST_P(ShownEffects, AreNamedFirstWithTheirSize) {
 
 INSTANTIATE_TEST_SUITE_P(
     OfAStandardCampaign, ShownEffects,
-    testing::Values(Shown{"backlash:object=X:width_um=6", {{"width_um", 6.0}}},
-                    Shown{"leadscrew-cyclic:object=Y:pitch_mm=6:amplitude_um=1:phase_rad=1",
-                          {{"pitch_mm", 6.0}, {"amplitude_um", 1.0}, {"phase_rad", 1.0}}},
-                    Shown{"joint-hysteresis:object=pivot_1:width_urad=30", {{"width_urad", 30.0}}},
-                    Shown{"reversal-spike:object=Y:height_um=4:decay_mm=0.6",
-                          {{"height_um", 4.0}, {"decay_mm", 0.6}}},
-                    Shown{"encoder-count-slip:object=pivot_3:angle_urad=50",
-                          {{"angle_urad", 50.0}}},
-                    Shown{"channel-sign:object=probe_d"},
-                    Shown{"channel-swap:object=probe_d+probe_e"},
-                    Shown{"outliers:object=pivot_1:count=12"},
-                    Shown{"load-coupling:object=YZ:coefficient_nm_per_mm2=3",
-                          {{"coefficient_nm_per_mm2", 3.0}}},
-                    Shown{"cap-friction:object=cap:displacement_um=2", {{"displacement_um", 2.0}}},
-                    Shown{"load-coupling:object=XY:coefficient_nm_per_mm2=2",
-                          {{"coefficient_nm_per_mm2", 2.0}}},
-                    Shown{"mains-pickup:object=probe_b:frequency_hz=50:amplitude_um=0.2",
-                          {{"frequency_hz", 50.0}, {"amplitude_um", 0.2}}},
-                    Shown{"stuck-channel:object=probe_c"}));
+    testing::Values(
+        Shown{"backlash:object=X:width_um=6", {{"width_um", 6.0}}},
+        Shown{"leadscrew-cyclic:object=Y:pitch_mm=6:amplitude_um=1:phase_rad=1",
+              {{"pitch_mm", 6.0}, {"amplitude_um", 1.0}, {"phase_rad", 1.0}}},
+        Shown{"joint-hysteresis:object=pivot_1:width_urad=30", {{"width_urad", 30.0}}, false},
+        Shown{"reversal-spike:object=Y:height_um=4:decay_mm=0.6",
+              {{"height_um", 4.0}, {"decay_mm", 0.6}}},
+        Shown{"encoder-count-slip:object=pivot_3:time_s=839:angle_urad=50",
+              {{"time_s", 839.0}, {"angle_urad", 50.0}}},  // between two runs
+        Shown{"varying-backlash:object=Z:change_um=-9:bow_um=2",
+              {{"change_um", -9.0}, {"bow_um", 2.0}}},
+        Shown{"channel-sign:object=probe_d"}, Shown{"channel-swap:object=probe_d+probe_e"},
+        Shown{"outliers:object=pivot_1:count=12", {}, false},
+        Shown{"load-coupling:object=YZ:coefficient_nm_per_mm2=3",
+              {{"coefficient_nm_per_mm2", 3.0}}},
+        Shown{"cap-friction:object=cap:displacement_um=2", {{"displacement_um", 2.0}}},
+        Shown{"load-coupling:object=XY:coefficient_nm_per_mm2=2",
+              {{"coefficient_nm_per_mm2", 2.0}}},
+        Shown{"mains-pickup:object=probe_b:frequency_hz=50:amplitude_um=0.2",
+              {{"frequency_hz", 50.0}, {"amplitude_um", 0.2}}},
+        Shown{"stuck-channel:object=probe_c"}));
 
 class UnknownEffects : public testing::TestWithParam<Shown> {};
 

@@ -112,6 +112,10 @@ TEST(Causes, EncoderOfAPivot) {
       Only(EncoderCountSlip(), "pivot_1", kEncoderStage, VectorXd::Constant(1, 4.0));
   EXPECT_EQ(step.head(4).norm(), 0.0);
   EXPECT_EQ(step.tail(4).sum(), 4.0);
+  // Anywhere between two readings, one second apart.
+  const Trace read = ToAndFro();
+  const double u = EncoderCountSlip().shape_spread({{&read}, {}}, VectorXd::Constant(1, 3.5));
+  EXPECT_NEAR(u, 1.0 / std::sqrt(12.0), 1e-12);
   const auto columns = BearingRoundness().columns(ToAndFro(), "pivot_1", {});
   EXPECT_NEAR(columns[0].stages().at(kTipStage + 2)[3], std::sin(2.0 * 0.3), 1e-12);
   EXPECT_NEAR(columns[3].stages().at(kTipStage + 2)[3], std::cos(3.0 * 0.3), 1e-12);
@@ -184,7 +188,11 @@ TEST(Causes, WhatIsToldCanBeRecalled) {
                 1e-15 + 1e-12 * coefficients.norm())
           << cause.id;
       // The column of a cause that follows its size is taken around the size that was found.
-      const VectorXd expected = cause.FollowsItsSize() ? VectorXd(sign * coefficients) : shape;
+      VectorXd expected = shape;
+      if (cause.FollowsItsSize()) {
+        expected.conservativeResize(std::max(shape.size(), coefficients.size()));
+        expected.tail(coefficients.size()) = sign * coefficients;
+      }
       ASSERT_EQ(recalled.shape.size(), expected.size()) << cause.id;
       EXPECT_EQ(recalled.shape, expected) << cause.id;
     }

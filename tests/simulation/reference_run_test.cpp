@@ -151,6 +151,12 @@ TEST(ReferenceTrace, TakesUpAPlayWhileTheAxisMoves) {
   EXPECT_NEAR(behind[21], -0.5 + 0.1e-3 / width, 1e-12);
   EXPECT_NEAR(behind[22], -0.5 + 0.2e-3 / width, 1e-12);
   EXPECT_NEAR(behind[23], 0.5, 1e-12);
+  // A tenth of the place wide. At the turn, 2 mm, the output stands at 1.9 mm, where the input comes
+  // next.
+  const Eigen::RowVectorXd varying = trace.BacklashLag(0, [](double at) { return 0.1 * at; });
+  EXPECT_NEAR(varying[20], -0.5, 1e-12);
+  EXPECT_NEAR(varying[21], 0.0, 1e-12);
+  EXPECT_NEAR(varying[22], 0.5, 1e-12);
 }
 
 TEST(ReferenceTrace, BeginsItsOwnClockWhereItDoesNotSayWhen) {
