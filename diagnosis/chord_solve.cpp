@@ -232,6 +232,13 @@ FitSums SumsOf(const estimation::Problem& problem, const estimation::Linearizati
   return sums;
 }
 
+std::optional<FitSums> KnownSumsAt(const estimation::Problem& problem, const VectorXd& x) {
+  const estimation::Layout layout(problem);
+  FitSums sums;
+  if (!Chords(problem, layout).SumAt(x, sums)) return {};
+  return sums;
+}
+
 std::optional<ChordMinimum> MinimumByChords(const estimation::Problem& problem, double settled) {
   try {
     return Minimise(problem, settled);

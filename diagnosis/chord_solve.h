@@ -32,6 +32,9 @@ struct ChordMinimum {
   FitSums at;
 };
 std::optional<ChordMinimum> MinimumByChords(const estimation::Problem& problem, double settled);
+// The sums of the derivatives that DerivativesAt gives, of the causes too: what is projected must be
+// free of just these. Empty: a run does not know its derivatives.
+std::optional<FitSums> KnownSumsAt(const estimation::Problem& problem, const Eigen::VectorXd& x);
 
 // [J r] of one run; of J those of the free parameters, `columns`, that the run sees.
 struct RunDerivatives {

@@ -231,6 +231,12 @@ void Fit::TakeRuns(const Problem& problem) {
 void Fit::Linearize(const Problem& problem, FitSums at) {
   TakeRuns(problem);
   const estimation::Layout layout(problem);
+  const VectorXd x = fusion::ValuesFound(result_, result_.blocks);
+  // Runs remember the derivatives of two places, and which of them are near enough changes with the
+  // places that were asked for since. Directions that the runs hardly know bear no mixture of both.
+  if (!campaign_.EstimatesNoise()) {
+    if (auto known = KnownSumsAt(problem, x)) at = std::move(*known);
+  }
   names_ = layout.names;
   gradient_ = std::move(at.gradient);
   data_information_ = std::move(at.data_information);
@@ -246,7 +252,6 @@ void Fit::Linearize(const Problem& problem, FitSums at) {
   const double curvature = 2.0 * MatrixXd(H_.matrixL()).diagonal().array().log().sum() -
                            2.0 * scale_.array().log().sum();
   log_likelihood_ = -at.cost + 0.5 * (priors - curvature);
-  const VectorXd x = fusion::ValuesFound(result_, result_.blocks);
   left_out_ = 0.0;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     if (!runs_[r].at.response) continue;
