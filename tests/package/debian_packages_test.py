@@ -50,7 +50,7 @@ class MadeTest(Packages):
         self.assertLessEqual({"abbe", "libabbe-dev", "abbe-doc"}, set(self.debs))
         for package in {"abbe", "python3-abbe"} & set(self.debs):
             depends = self.field(package, "Depends")
-            for library in ("libc6 (>=", "libfmt", "libhdf5", "libtbb", "libopenblas0-pthread"):
+            for library in ("libc6 (>=", "libfmt", "libhdf5", "libhwy", "libtbb", "libopenblas0-pthread"):
                 self.assertIn(library, depends, package)
         self.assertIn("libceres-dev", self.field("libabbe-dev", "Depends"))
         self.assertNotIn("npm", self.field("libabbe-dev", "Depends"))

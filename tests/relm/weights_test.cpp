@@ -53,7 +53,7 @@ LinkageSettings SettingsOf(const SerialChain& chain) {
   return settings;
 }
 
-VectorXd AnyAngles() { return (VectorXd(6) << 0.4, -0.7, 0.5, 1.1, -0.8, 2.0).finished(); }
+VectorXd AnyAngles() { return VectorXd{{0.4, -0.7, 0.5, 1.1, -0.8, 2.0}}; }
 
 std::map<std::string, Vector3d> PointsBeyond(const SerialChain& chain, Index joint) {
   std::map<std::string, Vector3d> points;
