@@ -6,6 +6,8 @@
 #include <numbers>
 #include <string>
 
+#include "machine/volumetric_kernels.h"
+
 namespace abbe::machine {
 namespace {
 
@@ -77,10 +79,15 @@ AxisMotions::AxisMotions(int axis, const std::array<ErrorFunction, kMotions>& fu
       const double x = i == 0 ? left : i == degree_ ? right : left + nodes[i] * (right - left);
       for (const auto& [motion, function] : polynomials) values(i, motion) = function->Evaluate(x);
     }
-    const Eigen::MatrixXd coefficients = of_values * values;
-    coefficients_.emplace_back(values.row(0).transpose());
-    for (Index k = 1; k <= degree_; ++k)
-      coefficients_.emplace_back(coefficients.row(k).transpose());
+    Eigen::MatrixXd coefficients = of_values * values;
+    coefficients.row(0) = values.row(0);
+    for (Index k = 0; k <= degree_; ++k) {
+      MotionCoefficients& c = coefficients_.emplace_back();
+      for (int i = 0; i < kAxes; ++i) {
+        c.shift[i] = coefficients(k, i);
+        c.turn[i] = coefficients(k, i + kAxes);
+      }
+    }
   }
 
   const std::size_t cells = 2 * per_width_.size();
@@ -99,15 +106,48 @@ std::size_t AxisMotions::PieceOf(double x) const {
   return piece;
 }
 
+PlaceInPiece AxisMotions::PlaceOf(double x) const {
+  const std::size_t piece = PieceOf(x);
+  return {&coefficients_[piece * (degree_ + 1)], (x - ends_[piece]) * per_width_[piece],
+          per_width_[piece]};
+}
+
 geometry::ErrorVector<double> AxisMotions::At(double x) const {
   if (!(x >= travel_.first && x <= travel_.last)) x = InTravel(travel_, axis_, x);
-  const std::size_t piece = PieceOf(x);
-  const double t = (x - ends_[piece]) * per_width_[piece];
-  const auto* const c = &coefficients_[piece * (degree_ + 1)];
-  geometry::ErrorVector<double> errors = c[degree_];
-  for (int k = degree_ - 1; k >= 0; --k) errors = c[k] + t * errors;
+  const auto [c, t, per_width] = PlaceOf(x);
+  const auto of = [](const MotionCoefficients& at) {
+    geometry::ErrorVector<double> row;
+    row << at.shift[0], at.shift[1], at.shift[2], at.turn[0], at.turn[1], at.turn[2];
+    return row;
+  };
+  geometry::ErrorVector<double> errors = of(c[degree_]);
+  for (int k = degree_ - 1; k >= 0; --k) errors = of(c[k]) + t * errors;
   for (const auto& [motion, function] : others_) errors[motion] = function.Evaluate(x);
   return errors;
+}
+
+void AxisMotions::At(std::span<const double> places, MotionBlock& values,
+                     MotionBlock* slopes) const {
+  std::array<PlaceInPiece, MotionBlock::kBlock> at;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double x = places[i];
+    if (i > 0 && x == places[i - 1]) {
+      at[i] = at[i - 1];
+      continue;
+    }
+    at[i] = PlaceOf(x >= travel_.first && x <= travel_.last ? x : InTravel(travel_, axis_, x));
+  }
+  EvaluatePieces({at.data(), places.size()}, degree_, values, slopes);
+  for (const auto& [motion, function] : others_) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const bool stays = i > 0 && places[i] == places[i - 1];
+      double slope = stays && slopes != nullptr ? slopes->At(i - 1, motion) : 0.0;
+      values.At(i, motion) =
+          stays ? values.At(i - 1, motion)
+                : function.Evaluate(places[i], slopes != nullptr ? &slope : nullptr);
+      if (slopes != nullptr) slopes->At(i, motion) = slope;
+    }
+  }
 }
 
 }  // namespace abbe::machine

@@ -1,11 +1,15 @@
 #include "machine/volumetric_field.h"
 
+#include <algorithm>
 #include <string>
+
+#include "machine/volumetric_jacobian.h"
+#include "machine/volumetric_kernels.h"
 
 namespace abbe::machine {
 namespace {
 
-using Eigen::Vector3d;
+using Eigen::Index, Eigen::Vector3d;
 
 AxisMotions MotionsOf(const VolumetricModel& model, int axis) {
   std::array<ErrorFunction, kMotions> functions;
@@ -15,21 +19,29 @@ AxisMotions MotionsOf(const VolumetricModel& model, int axis) {
   return {axis, functions, model.travels()[axis]};
 }
 
-// exp(turn) v; for small turns without the matrix: sin(a)/a and (1 - cos(a))/a^2 by their series,
-// which neglect a^8/9! < 3e-22.
+// exp(turn) v; for small turns without the matrix: sin(a)/a and (1 - cos(a))/a^2 by their series.
 Vector3d Turned(const Vector3d& turn, const Vector3d& v) {
   const double square = turn.squaredNorm();
-  if (square >= 1e-4) return geometry::ExpRotation<double>(turn) * v;
+  if (square >= kLargestTurn * kLargestTurn) return geometry::ExpRotation<double>(turn) * v;
   const double sine = 1 - square * (1.0 / 6 - square * (1.0 / 120 - square * (1.0 / 5040)));
   const double versine = 0.5 - square * (1.0 / 24 - square * (1.0 / 720 - square * (1.0 / 40320)));
   const Vector3d across = turn.cross(v);
   return v + sine * across + versine * turn.cross(across);
 }
 
+bool HasLargeTurn(const MotionErrors<double>& motions) {
+  return std::any_of(motions.axes.begin(), motions.axes.end(), [](const auto& errors) {
+    return !(errors.template tail<3>().squaredNorm() < kLargestTurn * kLargestTurn);
+  });
+}
+
+constexpr Index kBlock = MotionBlock::kBlock;
+
 }  // namespace
 
 VolumetricField::VolumetricField(const VolumetricModel& model)
     : chain_(model.chain()),
+      squareness_(model.squareness()),
       lines_{LineOf<double>(0, model.squareness()), LineOf<double>(1, model.squareness()),
              LineOf<double>(2, model.squareness())},
       axes_{MotionsOf(model, 0), MotionsOf(model, 1), MotionsOf(model, 2)} {}
@@ -63,18 +75,108 @@ Vector3d VolumetricField::Error(const Vector3d& position, const Vector3d& p_TQ) 
                  {axes_[0].At(position[0]), axes_[1].At(position[1]), axes_[2].At(position[2])});
 }
 
-Eigen::Matrix3Xd VolumetricField::Errors(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
-                                         const Vector3d& p_TQ) const {
-  Eigen::Matrix3Xd result(3, positions.cols());
-  AxisErrors errors;
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-    for (int axis = 0; axis < kAxes; ++axis) {
-      if (i > 0 && positions(axis, i) == positions(axis, i - 1)) continue;
-      errors[axis] = axes_[axis].At(positions(axis, i));
+Carriages VolumetricField::AllCarriages() const {
+  Carriages all;
+  const auto add = [&](char letter, auto& side, int& count) {
+    const int axis = letter - 'X';
+    side[count++] = {axis, chain_.CarriageSense(letter), lines_[axis],
+                     LineJacobian(axis, squareness_)};
+  };
+  const std::string& work = chain_.workpiece_axes();
+  for (auto letter = work.rbegin(); letter != work.rend(); ++letter) {
+    add(*letter, all.work, all.work_count);
+  }
+  for (const char letter : chain_.tool_axes()) add(letter, all.tool, all.tool_count);
+  for (int axis = 0; axis < kAxes; ++axis) all.tool_senses[axis] = chain_.ToolSense("XYZ"[axis]);
+  return all;
+}
+
+MotionErrors<double> VolumetricField::MotionsAt(const PointBlock& block, Index i) const {
+  MotionErrors<double> motions;
+  motions.squareness = squareness_;
+  for (int axis = 0; axis < kAxes; ++axis) {
+    for (int motion = 0; motion < kMotions; ++motion) {
+      motions.axes[axis][motion] = block.motions[axis].At(i, motion);
     }
-    result.col(i) = ErrorOf(positions.col(i), p_TQ, errors);
+  }
+  return motions;
+}
+
+// The positions of a block and the motions of its axes.
+void VolumetricField::Fill(const Positions& positions, bool with_slopes, PointBlock& block) const {
+  const auto count = static_cast<std::size_t>(positions.cols());
+  for (int axis = 0; axis < kAxes; ++axis) {
+    double* const places = block.positions[axis];
+    for (std::size_t i = 0; i < count; ++i) places[i] = positions(axis, i);
+    axes_[axis].At({places, count}, block.motions[axis],
+                   with_slopes ? &block.slopes[axis] : nullptr);
+  }
+}
+
+Eigen::Matrix3Xd VolumetricField::Errors(const Positions& positions, const Vector3d& p_TQ) const {
+  Eigen::Matrix3Xd result(3, positions.cols());
+  const Carriages carriages = AllCarriages();
+  PointBlock block;
+  for (Index first = 0; first < positions.cols(); first += kBlock) {
+    const Index count = std::min(kBlock, positions.cols() - first);
+    const auto here = positions.middleCols(first, count);
+    Fill(here, false, block);
+    const double largest =
+        BlockErrors(carriages, p_TQ, block, static_cast<int>(count), result.col(first).data());
+    if (largest < kLargestTurn * kLargestTurn) continue;
+    for (Index i = 0; i < count; ++i) {
+      const MotionErrors<double> motions = MotionsAt(block, i);
+      if (HasLargeTurn(motions)) result.col(first + i) = ErrorOf(here.col(i), p_TQ, motions.axes);
+    }
   }
   return result;
+}
+
+VolumetricField::Linearized VolumetricField::Linearize(const Positions& positions,
+                                                       const Vector3d& p_TQ) const {
+  Linearized result;
+  Linearize(positions, p_TQ, result);
+  return result;
+}
+
+void VolumetricField::Linearize(const Positions& positions, const Vector3d& p_TQ,
+                                Linearized& out) const {
+  static_assert(kRows == int{decltype(out.rows_)::RowsAtCompileTime});
+  out.rows_.resize(Eigen::NoChange, positions.cols());
+  const Carriages carriages = AllCarriages();
+  PointBlock block;
+  for (Index first = 0; first < positions.cols(); first += kBlock) {
+    const Index count = std::min(kBlock, positions.cols() - first);
+    const auto here = positions.middleCols(first, count);
+    Fill(here, true, block);
+    const double largest = BlockDerivatives(carriages, p_TQ, block, static_cast<int>(count),
+                                            out.rows_.col(first).data());
+    if (largest < kLargestTurn * kLargestTurn) continue;
+    for (Index i = 0; i < count; ++i) {
+      if (!HasLargeTurn(MotionsAt(block, i))) continue;
+      LinearizeOne(here.col(i), p_TQ, block, i, out.rows_.col(first + i).data());
+    }
+  }
+}
+
+// With the rotations of any size.
+void VolumetricField::LinearizeOne(const Vector3d& position, const Vector3d& p_TQ,
+                                   const PointBlock& block, Index i, double* rows) const {
+  VolumetricJacobian J = VolumetricErrorAndJacobian(chain_, position, p_TQ, MotionsAt(block, i));
+  for (int axis = 0; axis < kAxes; ++axis) {
+    for (int motion = 0; motion < kMotions; ++motion) {
+      J.J_error_position.col(axis) +=
+          block.slopes[axis].At(i, motion) * J.J_error_motions.col(kMotions * axis + motion);
+    }
+  }
+  const auto put = [&](const auto& matrix, int row) {
+    std::copy_n(matrix.data(), matrix.size(), rows + row);
+  };
+  put(J.error, kOfError);
+  put(J.J_error_motions, kByMotions);
+  put(J.J_error_squareness, kBySquareness);
+  put(J.J_error_position, kByPosition);
+  put(J.J_error_tool, kByTool);
 }
 
 }  // namespace abbe::machine

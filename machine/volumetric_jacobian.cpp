@@ -8,16 +8,6 @@ namespace {
 using Eigen::Matrix3d, Eigen::Vector3d;
 using geometry::Transform;
 
-// d LineOf(axis, squareness) / d squareness.
-Matrix3d LineJacobian(int axis, const Vector3d& squareness) {
-  const Matrix3d J = -geometry::Skew<double>(LineOf<double>(axis, squareness)) *
-                     geometry::ExpRotationJacobian<double>(LineTurn<double>(axis, squareness));
-  Matrix3d by_squareness = Matrix3d::Zero();
-  if (axis == 1) by_squareness.col(2) = J.col(2);
-  if (axis == 2) by_squareness.leftCols<2>() = J.leftCols<2>();
-  return by_squareness;
-}
-
 // Adds the derivatives by the motions and position of one carriage. side: +1 on the tool side, -1
 // on the workpiece side; sense: its CarriageSense.
 void AddCarriage(int axis, double side, double sense, const Matrix3d& R_Wa, const Vector3d& arm,
@@ -35,6 +25,15 @@ void AddCarriage(int axis, double side, double sense, const Matrix3d& R_Wa, cons
 
 }  // namespace
 
+Matrix3d LineJacobian(int axis, const Vector3d& squareness) {
+  const Matrix3d J = -geometry::Skew<double>(LineOf<double>(axis, squareness)) *
+                     geometry::ExpRotationJacobian<double>(LineTurn<double>(axis, squareness));
+  Matrix3d by_squareness = Matrix3d::Zero();
+  if (axis == 1) by_squareness.col(2) = J.col(2);
+  if (axis == 2) by_squareness.leftCols<2>() = J.leftCols<2>();
+  return by_squareness;
+}
+
 VolumetricJacobian VolumetricErrorAndJacobian(const Chain& chain, const Vector3d& position,
                                               const Vector3d& p_TQ,
                                               const MotionErrors<double>& errors) {
@@ -43,6 +42,8 @@ VolumetricJacobian VolumetricErrorAndJacobian(const Chain& chain, const Vector3d
   const Transform<double> X_WM = BodyPose<double>(chain, work, position, errors).Inverse();
   const Vector3d p_MQ = BodyPose<double>(chain, tool, position, errors) * p_TQ;
   VolumetricJacobian out;
+  out.J_error_motions.setZero();  // of axes that the chain lacks
+  out.J_error_position.setZero();
   out.error = X_WM * p_MQ - NominalToolInWork<double>(chain, position, p_TQ);
   out.J_error_squareness.setZero();
 

@@ -30,6 +30,9 @@ struct VolumetricJacobian {
   Eigen::Matrix3d J_error_tool;                                // by p_TQ
 };
 
+// d LineOf(axis, squareness) / d squareness.
+Eigen::Matrix3d LineJacobian(int axis, const Eigen::Vector3d& squareness);
+
 // Error and derivatives at one position.
 VolumetricJacobian VolumetricErrorAndJacobian(const Chain& chain, const Eigen::Vector3d& position,
                                               const Eigen::Vector3d& p_TQ,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "apps/map_json.h"
@@ -37,10 +38,23 @@ py::array Matrices(const Array& positions, const At& of) {
 }
 
 py::array Gradient(const Map& self, const Array& positions, const std::optional<Array>& tool) {
+  constexpr Eigen::Index kAtOnce = 1024;
+  const auto at = Columns<3>(positions, "positions_m");
   const Eigen::Vector3d p_TQ = self.Tool(tool);
-  return Matrices(positions, [&](const Eigen::Vector3d& at) {
-    return self.map.model().Linearize(at, p_TQ).J_error_position;
-  });
+  Eigen::Matrix<double, 9, Eigen::Dynamic> all(9, at.cols());
+  {
+    const WithoutLock without_lock;
+    machine::VolumetricField::Linearized linear;
+    for (Eigen::Index first = 0; first < at.cols(); first += kAtOnce) {
+      MayBeInterrupted();
+      self.field.Linearize(at.middleCols(first, std::min(kAtOnce, at.cols() - first)), p_TQ,
+                           linear);
+      for (Eigen::Index i = 0; i < linear.size(); ++i) {
+        all.col(first + i) = linear.J_error_position(i).transpose().reshaped();
+      }
+    }
+  }
+  return Rows(std::move(all)).attr("reshape")(-1, 3, 3);
 }
 
 py::array Covariance(const Map& self, const Array& positions, const std::optional<Array>& tool) {
