@@ -125,7 +125,7 @@ double Errors(const Carriages& carriages, const Eigen::Vector3d& tool, const Poi
   const std::size_t lanes = hn::Lanes(D()), n = count;
   const Triple p_TQ = AllOf(tool);
   V largest = hn::Zero(D());
-  alignas(64) double columns[3 * MotionBlock::kBlock];
+  double rest[3 * hn::MaxLanes(D())];
   for (std::size_t i = 0; i < n; i += lanes) {
     const Points points{block, i};
     Triple p = p_TQ;
@@ -138,9 +138,10 @@ double Errors(const Carriages& carriages, const Eigen::Vector3d& tool, const Poi
       p = Turned(All(-1) * points.Turn(a.axis), p - points.Way(a), largest);
     }
     const Triple e = ErrorOf(p, p_TQ, points, carriages);
-    hn::StoreInterleaved3(e.x, e.y, e.z, D(), columns + 3 * i);
+    const bool whole = i + lanes <= n;
+    hn::StoreInterleaved3(e.x, e.y, e.z, D(), whole ? errors + 3 * i : rest);
+    if (!whole) std::copy_n(rest, 3 * (n - i), errors + 3 * i);
   }
-  std::copy_n(columns, 3 * n, errors);
   return hn::GetLane(hn::MaxOfLanes(D(), largest));
 }
 
