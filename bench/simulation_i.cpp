@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "probes/published_simulations.h"
+#include "width.h"
 
 namespace {
 

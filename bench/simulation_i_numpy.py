@@ -5,7 +5,7 @@ Usage: simulation_i_numpy.py BUILD/bench/simulation_i [DRAWS]
 
 NumPy does the same work twice: on whole arrays, as one would first write it, and in blocks that stay in
 the cache. Each figure is the least of three repetitions, in processor time, so that other work on the
-machine disturbs it little. Targets: 10 times whole arrays, 1.5 times blocks, at 10^7 draws.
+machine disturbs it little. Targets: 10 times whole arrays, 4 times blocks, at 10^7 draws.
 """
 import json
 import subprocess

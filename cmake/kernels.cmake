@@ -7,8 +7,9 @@ if(NOT hwy_FOUND)
 endif()
 
 # abbe_kernels(file...): sources that include themselves once for each width, and so share no unit with others. Where the
-# processor has it, a product and a sum become one instruction, rounded once; nothing else of the arithmetic changes.
+# processor has it, a product and a sum become one instruction, rounded once; nothing else of the arithmetic changes. No
+# root sets errno, which headers that were compiled before do not know.
 function(abbe_kernels)
-  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
-                              COMPILE_OPTIONS "-O3;-ffp-contract=fast")
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON
+                              COMPILE_OPTIONS "-O3;-ffp-contract=fast;-fno-math-errno")
 endfunction()

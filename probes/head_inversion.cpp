@@ -88,37 +88,20 @@ HeadErrors<> SmallAngleInversion::operator()(const PerProbe<>& readings, double 
                                              double exx) const {
   const HeadErrors<> e =
       moving_ == MovingBody::kHead ? linear_(readings, d, exx) : MovingTarget(readings, d, exx);
-  if (!(std::abs(e.eax) + std::abs(e.ebx) + std::abs(e.ecx) < 1)) RefuseReadings(readings, d);
-  if (!std::isfinite(e.eyx + e.ezx)) RefuseReadings(readings, d);
+  if (!IsSmall(e)) RefuseReadings(readings, d);
   return e;
 }
 
-// With the slopes of the top surface p = (EBX + EAX ECX) / (1 + ECX^2) along -u and
-// q = (EAX - EBX ECX) / (1 + ECX^2) along s, EAX = q + p ECX and EBX = p - q ECX. Put into the
-// difference E - D of the side readings, a quadratic in ECX alone remains.
-HeadErrors<> SmallAngleInversion::MovingTarget(const PerProbe<>& readings, double d,
-                                               double exx) const {
-  const auto [slope_u, q] = top_(readings);
-  const double p = -slope_u;
-  const auto& [side_d, side_e] = layout_.side;
-  const double du = side_e.u - side_d.u, dn = side_e.n - side_d.n;
-  const double m = readings[4] - readings[3];
-  const double a = q * (p * du + dn - m * q);
-  const double b = (1 + q * q - p * p) * du + 2 * p * (m * q - dn);
-  const double c = -q * (p * du + dn) - m * (1 + p * p);
-  HeadErrors<> e{.exx = exx};
-  e.ecx = -2 * c / (b + std::copysign(std::sqrt(b * b - 4 * a * c), b));
-  e.eax = q + p * e.ecx;
-  e.ebx = p - q * e.ecx;
-
-  // Both straightnesses: EZX - q EYX and EYX + w EZX are known.
-  const double b2 = 1 + e.ebx * e.ebx;
-  const double s = (e.ecx - e.eax * e.ebx) / b2, w = (e.eax + e.ebx * e.ecx) / b2;
-  const double top = readings[0] - q * layout_.top[0].s - p * (d + exx - layout_.top[0].u);
-  const double side = readings[3] + s * (d + exx - side_d.u) + w * side_d.n;
-  e.ezx = (top + q * side) / (1 + q * w);
-  e.eyx = side - w * e.ezx;
-  return e;
+// Throws for the first station that is refused.
+void SmallAngleInversion::RefuseFirst(const Readings& readings, const Eigen::VectorXd& d,
+                                      const Errors& errors) const {
+  for (Eigen::Index i = 0; i < readings.rows(); ++i) {
+    const HeadErrors<> e{errors(i, 0), errors(i, 1), errors(i, 2), errors(i, 3), errors(i, 4), 0};
+    if (IsSmall(e)) continue;
+    PerProbe<> row;
+    for (std::size_t k = 0; k < kProbes; ++k) row[k] = readings(i, k);
+    RefuseReadings(row, d[i]);
+  }
 }
 
 RigidInversion::RigidInversion(const MeasuringLines<>& lines, MovingBody moving)

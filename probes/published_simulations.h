@@ -15,7 +15,8 @@
 //
 // Random numbers: 32-bit uniforms from the words of random/counter_words.h, five a draw in kOne,
 // ten in kTwo; in each block of 256 draws, word 256 c + i is number c of draw i. The result is a
-// pure function of simulation, inversion, draws and seed; it does not depend on the threads.
+// pure function of simulation, inversion, draws and seed, to rounding where a processor has other
+// vectors; it does not depend on the threads.
 //
 // Units: m and rad. Shapes: one ErrorStatistics for each of EAX, EBX, ECX, EYX, EZX.
 // Failure: InputError for no draws or a negative number of threads.
