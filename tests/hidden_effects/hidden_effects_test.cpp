@@ -75,6 +75,9 @@ INSTANTIATE_TEST_SUITE_P(
         Shown{"load-coupling:object=YZ:coefficient_nm_per_mm2=3",
               {{"coefficient_nm_per_mm2", 3.0}}},
         Shown{"cap-friction:object=cap:displacement_um=2", {{"displacement_um", 2.0}}},
+        // Derivatives of two places in one fit had put a slip of an encoder beside it.
+        Shown{"cap-friction:object=cap:displacement_um=0.882940829574997",
+              {{"displacement_um", 0.882940829574997}}},
         Shown{"load-coupling:object=XY:coefficient_nm_per_mm2=2",
               {{"coefficient_nm_per_mm2", 2.0}}},
         Shown{"mains-pickup:object=probe_b:frequency_hz=50:amplitude_um=0.2",
