@@ -285,6 +285,7 @@ int FitFleet(const FleetOptions& options) {
        {"version", ABBE_VERSION}},
       options.resume && fs::exists(options.store) ? study::Store::kGoOn : study::Store::kNew);
   std::vector<std::uint64_t> numbers;
+  numbers.reserve(given.size());
   for (const auto& [number, campaign] : given) numbers.push_back(number);
   if (!FillStore(gathering, numbers, "fleet", options.fill, ranks, store))
     return kRequirementNotMet;
