@@ -27,7 +27,20 @@ std::vector<Score> ScoreTogether(const Fit& fit, std::span<const Candidate> cand
   if (const Candidate& first = candidates.front(); first.cause->relaxes) {
     return {ScoreFrom(first, fit.ProjectParameters(first))};
   }
-  const auto disturb = [&](const simulation::Trace& trace) {
+  const auto [disturber, groups] = TogetherOf(candidates);
+  const std::vector<Fit::Projection> projections = fit.Project(disturber, groups);
+  std::vector<Score> scores;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    scores.push_back(ScoreFrom(candidates[i], projections[i]));
+  }
+  return scores;
+}
+
+}  // namespace
+
+Together TogetherOf(std::span<const Candidate> candidates) {
+  Together together;
+  together.disturber = [candidates](const simulation::Trace& trace) {
     std::vector<Disturbance> all;
     for (const Candidate& each : candidates) {
       auto own = each.cause->columns(trace, each.object, each.shape);
@@ -38,18 +51,12 @@ std::vector<Score> ScoreTogether(const Fit& fit, std::span<const Candidate> cand
     }
     return all;
   };
-  std::vector<Index> groups;
-  groups.reserve(candidates.size());
-  for (const Candidate& each : candidates) groups.push_back(each.cause->coefficients());
-  const std::vector<Fit::Projection> projections = fit.Project(disturb, groups);
-  std::vector<Score> scores;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    scores.push_back(ScoreFrom(candidates[i], projections[i]));
+  together.groups.reserve(candidates.size());
+  for (const Candidate& each : candidates) {
+    together.groups.push_back(each.cause->coefficients());
   }
-  return scores;
+  return together;
 }
-
-}  // namespace
 
 DrawnSize SizeOfDraws(const Fit::Projection& projection, const SizeRange& sizes, double stated) {
   const auto& [S, g] = projection;

@@ -19,6 +19,7 @@
 // Validity: to first order at the fit; score anew after each cause that was taken in.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "diagnosis/candidate.h"
@@ -36,6 +37,14 @@ struct SizeRange {
 };
 // `sizes`: tried, `ratio` apart.
 DrawnSize SizeOfDraws(const Fit::Projection& projection, const SizeRange& sizes, double stated);
+
+// The columns of candidates with columns, one after the other, for Fit: none for what does not act on
+// a run. `candidates` have to live as long.
+struct Together {
+  Fit::Disturber disturber;
+  std::vector<Eigen::Index> groups;  // columns of each
+};
+Together TogetherOf(std::span<const Candidate> candidates);
 
 Score ScoreFrom(Candidate candidate, const Fit::Projection& projection);
 // One score a candidate, in their order.

@@ -91,9 +91,10 @@ class Fit {
   Projection ProjectionOf(std::size_t taken_in) const;
   // For a cause that relaxes parameters.
   Projection ProjectParameters(const Candidate& candidate) const;
-  // How the coefficients of a cause that was taken in, and its free shape, move when each
-  // coefficient of a candidate becomes one: H^-1 J'C, a column each.
-  Eigen::MatrixXd MovedBy(const Candidate& candidate, std::size_t taken_in) const;
+  // How the coefficients of each cause that was taken in, and its free shape, move when those of the
+  // disturbances become one: H^-1 J'C, a column each; empty for one without columns.
+  std::vector<Eigen::MatrixXd> MovedBy(const Disturber& disturber,
+                                       const std::vector<Eigen::Index>& groups) const;
 
  private:
   struct RunRows {

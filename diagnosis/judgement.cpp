@@ -104,10 +104,10 @@ std::vector<Score> Search::Scores() const {
     if (!hardly_known) continue;
     const ShapePosterior shapes(*without, std::move(scores[i]));
     scores[i] = shapes.Widened();
-    for (std::size_t j = 0; j < members_.size(); ++j) {
-      if (j == i || !scores[j].candidate.HasColumns()) continue;
-      const Eigen::MatrixXd more = shapes.AddedTo(j < i ? j : j - 1);
-      added[j] = added[j].size() == 0 ? more : added[j] + more;
+    const std::vector<Eigen::MatrixXd> more = shapes.Added();
+    for (std::size_t other = 0; other < more.size(); ++other) {
+      Eigen::MatrixXd& sum = added[other < i ? other : other + 1];
+      sum = sum.size() == 0 ? more[other] : sum + more[other];
     }
   }
   for (std::size_t i = 0; i < scores.size(); ++i) {

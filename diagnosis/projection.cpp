@@ -216,14 +216,17 @@ std::vector<Fit::Projection> Fit::Project(const Disturber& disturber,
   return Finish(ProductsOf(disturber, groups));
 }
 
-MatrixXd Fit::MovedBy(const Candidate& candidate, std::size_t taken_in) const {
-  const auto disturb = [&](const simulation::Trace& trace) {
-    return candidate.cause->columns(trace, candidate.object, candidate.shape);
-  };
-  const MatrixXd J_C = ProductsOf(disturb, {candidate.cause->coefficients()}).C_J.transpose();
-  const MatrixXd moved = scale_.asDiagonal() * H_.solve(scale_.asDiagonal() * J_C);
-  return moved(fusion::ColumnsOf(names_, {result_.Block(BlockOf(taken_in_[taken_in]))}),
-               Eigen::all);
+std::vector<MatrixXd> Fit::MovedBy(const Disturber& disturber,
+                                   const std::vector<Index>& groups) const {
+  const MatrixXd J_C = ProductsOf(disturber, groups).C_J.transpose();
+  const MatrixXd all = scale_.asDiagonal() * H_.solve(scale_.asDiagonal() * J_C);
+  std::vector<MatrixXd> moved;
+  for (const Candidate& cause : taken_in_) {
+    moved.emplace_back();
+    if (!cause.HasColumns()) continue;
+    moved.back() = all(fusion::ColumnsOf(names_, {result_.Block(BlockOf(cause))}), Eigen::all);
+  }
+  return moved;
 }
 
 std::vector<Fit::Projection> Fit::ProjectInStage(Index stage,

@@ -101,16 +101,28 @@ Score ShapePosterior::Widened() const {
   return widened;
 }
 
-MatrixXd ShapePosterior::AddedTo(std::size_t taken_in) const {
-  const auto moved = [&](const Score& score) -> VectorXd {
-    return without_.MovedBy(score.candidate, taken_in) * score.coefficients;
-  };
-  const VectorXd found = moved(score_);
-  MatrixXd added = MatrixXd::Zero(found.size(), found.size());
+std::vector<MatrixXd> ShapePosterior::Added() const {
+  std::vector<Candidate> shapes{score_.candidate};
+  std::vector<VectorXd> coefficients{score_.coefficients};
+  std::vector<double> weights{0.0};
   for (Index i = 0; i < weights_.size(); ++i) {
     if (weights_[i] < kNoWeight) continue;
-    const VectorXd off = moved(all_[i]) - found;
-    added += weights_[i] * off * off.transpose();
+    shapes.push_back(all_[i].candidate);
+    coefficients.push_back(all_[i].coefficients);
+    weights.push_back(weights_[i]);
+  }
+  const auto [disturber, groups] = TogetherOf(shapes);
+  std::vector<MatrixXd> added;
+  for (const MatrixXd& by_each : without_.MovedBy(disturber, groups)) {
+    const Index rows = by_each.rows(), count = score_.coefficients.size();
+    const auto moved = [&](std::size_t shape) -> VectorXd {
+      return by_each.middleCols(static_cast<Index>(shape) * count, count) * coefficients[shape];
+    };
+    added.push_back(MatrixXd::Zero(rows, rows));
+    for (std::size_t shape = 1; rows > 0 && shape < shapes.size(); ++shape) {
+      const VectorXd off = moved(shape) - moved(0);
+      added.back() += weights[shape] * off * off.transpose();
+    }
   }
   return added;
 }

@@ -2,7 +2,7 @@
 //
 //   const ShapePosterior shapes(without, score);       // where IsHardlyKnown(score)
 //   score = shapes.Widened();
-//   other.covariance += shapes.AddedTo(of_other);      // of each cause beside it
+//   other.covariance += shapes.Added()[of_other];      // of each cause beside it
 //
 // Amplitude and time constant of a drift that is hardly bent are known together only, far from a
 // normal distribution about what was found. Here all plausible shapes, evenly in the logarithm, are
@@ -33,8 +33,9 @@ class ShapePosterior {
   ShapePosterior(const Fit& without, Score score);
 
   Score Widened() const;
-  // By the mixture, to the covariance of a cause that `without` took in.
-  Eigen::MatrixXd AddedTo(std::size_t taken_in) const;
+  // What the mixture adds to the covariance of each cause that `without` took in; empty for one
+  // without columns.
+  std::vector<Eigen::MatrixXd> Added() const;
 
  private:
   const Fit& without_;

@@ -113,22 +113,34 @@ void VolumetricField::Fill(const Positions& positions, bool with_slopes, PointBl
   }
 }
 
-Eigen::Matrix3Xd VolumetricField::Errors(const Positions& positions, const Vector3d& p_TQ) const {
-  Eigen::Matrix3Xd result(3, positions.cols());
-  const Carriages carriages = AllCarriages();
+// Block by block: compute(first point, points, block) by vectors, which returns the square of the
+// largest turn; one(point, its motions, block, place in it) where turns are too large for that.
+template <typename Compute, typename One>
+void VolumetricField::InBlocks(const Positions& positions, bool with_slopes, const Compute& compute,
+                               const One& one) const {
   PointBlock block;
   for (Index first = 0; first < positions.cols(); first += kBlock) {
     const Index count = std::min(kBlock, positions.cols() - first);
-    const auto here = positions.middleCols(first, count);
-    Fill(here, false, block);
-    const double largest =
-        BlockErrors(carriages, p_TQ, block, static_cast<int>(count), result.col(first).data());
-    if (largest < kLargestTurn * kLargestTurn) continue;
+    Fill(positions.middleCols(first, count), with_slopes, block);
+    if (compute(first, static_cast<int>(count), block) < kLargestTurn * kLargestTurn) continue;
     for (Index i = 0; i < count; ++i) {
       const MotionErrors<double> motions = MotionsAt(block, i);
-      if (HasLargeTurn(motions)) result.col(first + i) = ErrorOf(here.col(i), p_TQ, motions.axes);
+      if (HasLargeTurn(motions)) one(first + i, motions, block, i);
     }
   }
+}
+
+Eigen::Matrix3Xd VolumetricField::Errors(const Positions& positions, const Vector3d& p_TQ) const {
+  Eigen::Matrix3Xd result(3, positions.cols());
+  const Carriages carriages = AllCarriages();
+  InBlocks(
+      positions, false,
+      [&](Index first, int count, const PointBlock& block) {
+        return BlockErrors(carriages, p_TQ, block, count, result.col(first).data());
+      },
+      [&](Index point, const MotionErrors<double>& motions, const PointBlock&, Index) {
+        result.col(point) = ErrorOf(positions.col(point), p_TQ, motions.axes);
+      });
   return result;
 }
 
@@ -144,25 +156,21 @@ void VolumetricField::Linearize(const Positions& positions, const Vector3d& p_TQ
   static_assert(kRows == int{decltype(out.rows_)::RowsAtCompileTime});
   out.rows_.resize(Eigen::NoChange, positions.cols());
   const Carriages carriages = AllCarriages();
-  PointBlock block;
-  for (Index first = 0; first < positions.cols(); first += kBlock) {
-    const Index count = std::min(kBlock, positions.cols() - first);
-    const auto here = positions.middleCols(first, count);
-    Fill(here, true, block);
-    const double largest = BlockDerivatives(carriages, p_TQ, block, static_cast<int>(count),
-                                            out.rows_.col(first).data());
-    if (largest < kLargestTurn * kLargestTurn) continue;
-    for (Index i = 0; i < count; ++i) {
-      if (!HasLargeTurn(MotionsAt(block, i))) continue;
-      LinearizeOne(here.col(i), p_TQ, block, i, out.rows_.col(first + i).data());
-    }
-  }
+  InBlocks(
+      positions, true,
+      [&](Index first, int count, const PointBlock& block) {
+        return BlockDerivatives(carriages, p_TQ, block, count, out.rows_.col(first).data());
+      },
+      [&](Index point, const MotionErrors<double>& motions, const PointBlock& block, Index i) {
+        LinearizeOne(positions.col(point), p_TQ, motions, block, i, out.rows_.col(point).data());
+      });
 }
 
 // With the rotations of any size.
 void VolumetricField::LinearizeOne(const Vector3d& position, const Vector3d& p_TQ,
-                                   const PointBlock& block, Index i, double* rows) const {
-  VolumetricJacobian J = VolumetricErrorAndJacobian(chain_, position, p_TQ, MotionsAt(block, i));
+                                   const MotionErrors<double>& motions, const PointBlock& block,
+                                   Index i, double* rows) const {
+  VolumetricJacobian J = VolumetricErrorAndJacobian(chain_, position, p_TQ, motions);
   for (int axis = 0; axis < kAxes; ++axis) {
     for (int motion = 0; motion < kMotions; ++motion) {
       J.J_error_position.col(axis) +=

@@ -47,9 +47,9 @@ class VolumetricField {
     template <int kColumns>
     using Columns = Eigen::Map<const Eigen::Matrix<double, 3, kColumns>>;
 
-    // Of points.
+    // The number of points.
     Eigen::Index size() const { return rows_.cols(); }
-    // Of point i, m.
+    // The error of point i, m.
     Columns<1> error(Eigen::Index i) const { return At<1>(0, i); }
     // Axis by axis, error_motion.h.
     Columns<kAxes * kMotions> J_error_motions(Eigen::Index i) const { return At<18>(3, i); }
@@ -82,8 +82,12 @@ class VolumetricField {
   Carriages AllCarriages() const;
   void Fill(const Positions& positions, bool with_slopes, PointBlock& block) const;
   MotionErrors<double> MotionsAt(const PointBlock& block, Eigen::Index i) const;
+  template <typename Compute, typename One>
+  void InBlocks(const Positions& positions, bool with_slopes, const Compute& compute,
+                const One& one) const;
   void LinearizeOne(const Eigen::Vector3d& position, const Eigen::Vector3d& p_TQ,
-                    const PointBlock& block, Eigen::Index i, double* rows) const;
+                    const MotionErrors<double>& motions, const PointBlock& block, Eigen::Index i,
+                    double* rows) const;
 
   Chain chain_;
   Eigen::Vector3d squareness_;

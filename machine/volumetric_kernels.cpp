@@ -54,7 +54,7 @@ HWY_INLINE Matrix Transposed(const Matrix& a) {
   return {{a.x.x, a.y.x, a.z.x}, {a.x.y, a.y.y, a.z.y}, {a.x.z, a.y.z, a.z.z}};
 }
 
-// Of a turn of size a: sin a / a, (1 - cos a) / a^2 and (a - sin a) / a^3, by their series.
+// The factors of a turn by a: sin a / a, (1 - cos a) / a^2 and (a - sin a) / a^3, by their series.
 struct Series {
   V sine, versine, rest;
 };
@@ -118,6 +118,17 @@ HWY_INLINE Triple ErrorOf(const Triple& p_WQ, const Triple& p_TQ, const Points& 
                                All(t[2]) * points.Position(2)});
 }
 
+// The tool point, carried from carriage to carriage to the bed.
+HWY_INLINE Triple OnBed(const Triple& p_TQ, const Points& points, const Carriages& carriages,
+                        V& largest) {
+  Triple p = p_TQ;
+  for (int k = carriages.tool_count - 1; k >= 0; --k) {
+    const Carriage& a = carriages.tool[k];
+    p = Turned(points.Turn(a.axis), p, largest) + points.Way(a);
+  }
+  return p;
+}
+
 // The equations of volumetric_error.h: the tool point is carried from carriage to carriage to the
 // bed, then from the bed to the workpiece.
 double Errors(const Carriages& carriages, const Eigen::Vector3d& tool, const PointBlock& block,
@@ -128,11 +139,7 @@ double Errors(const Carriages& carriages, const Eigen::Vector3d& tool, const Poi
   double rest[3 * hn::MaxLanes(D())];
   for (std::size_t i = 0; i < n; i += lanes) {
     const Points points{block, i};
-    Triple p = p_TQ;
-    for (int k = carriages.tool_count - 1; k >= 0; --k) {
-      const Carriage& a = carriages.tool[k];
-      p = Turned(points.Turn(a.axis), p, largest) + points.Way(a);
-    }
+    Triple p = OnBed(p_TQ, points, carriages, largest);
     for (int k = 0; k < carriages.work_count; ++k) {
       const Carriage& a = carriages.work[k];
       p = Turned(All(-1) * points.Turn(a.axis), p - points.Way(a), largest);
@@ -174,8 +181,7 @@ HWY_INLINE void Transpose(const Rows& rows, std::size_t points, double* columns)
   }
 }
 
-// Of the carriages from the bed to one end of the chain: what the head of volumetric_jacobian.h
-// says. R_Wa and p_aQ are those of the bed before, those of the last carriage after; side is +1 on
+// The equations of volumetric_jacobian.h for the carriages from the bed to one end of the chain. R_Wa and p_aQ are those of the bed before, those of the last carriage after; side is +1 on
 // the tool side, -1 on the workpiece side.
 HWY_INLINE void Walk(const std::array<Carriage, kAxes>& carriages, int count, double side,
                      const Points& points, Matrix& R_Wa, Triple& p_aQ, Matrix& by_squareness,
@@ -230,11 +236,7 @@ double Derivatives(const Carriages& carriages, const Eigen::Vector3d& tool, cons
   const Matrix identity = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
   for (std::size_t i = 0; i < n; i += lanes) {
     const Points points{block, i};
-    Triple p_MQ = p_TQ;
-    for (int k = carriages.tool_count - 1; k >= 0; --k) {
-      const Carriage& a = carriages.tool[k];
-      p_MQ = Turned(points.Turn(a.axis), p_MQ, largest) + points.Way(a);
-    }
+    const Triple p_MQ = OnBed(p_TQ, points, carriages, largest);
     Matrix R_MW = identity;
     for (int k = 0; k < carriages.work_count; ++k) {
       const Triple turn = points.Turn(carriages.work[k].axis);

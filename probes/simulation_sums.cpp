@@ -45,46 +45,11 @@ struct Draws {
 // Uniform in (-1, 1): the word read as a signed number, in the middle of its interval.
 double Centred(std::uint32_t word) { return (static_cast<std::int32_t>(word) + 0.5) * 0x1.0p-31; }
 
-#if HWY_TARGET == HWY_SCALAR
-using random::FillWords;
-#else
-// random::FillWords with a counter in each number of 64 bits; what stands in the upper halves of the
-// words means nothing, and a product takes the lower halves.
-void FillWords(std::uint64_t seed, std::uint64_t stream, std::uint64_t first_counter,
-               std::span<std::uint32_t> words) {
-  namespace hn = hwy::HWY_NAMESPACE;
-  const hn::CappedTag<std::uint64_t, random::kCountersAtOnce> d;
-  const hn::Repartition<std::uint32_t, decltype(d)> halves;
-  const auto times = [&](auto c, std::uint32_t factor) {
-    return hn::MulEven(hn::BitCast(halves, c), hn::Set(halves, factor));
-  };
-  const auto lower = hn::Set(d, 0xFFFFFFFF), numbers = hn::Iota(d, 0);
-  for (std::size_t at = 0; at < words.size(); at += 4 * hn::Lanes(d)) {
-    auto c0 = hn::Add(hn::Set(d, first_counter + at / 4), numbers), c1 = hn::ShiftRight<32>(c0);
-    auto c2 = hn::Set(d, stream), c3 = hn::Set(d, stream >> 32);
-    std::uint32_t k0 = static_cast<std::uint32_t>(seed);
-    std::uint32_t k1 = static_cast<std::uint32_t>(seed >> 32);
-    for (int round = 0; round < 10; ++round) {
-      const auto p0 = times(c0, 0xD2511F53), p1 = times(c2, 0xCD9E8D57);
-      c0 = hn::Xor(hn::Xor(hn::ShiftRight<32>(p1), c1), hn::Set(d, k0));
-      c2 = hn::Xor(hn::Xor(hn::ShiftRight<32>(p0), c3), hn::Set(d, k1));
-      c1 = p1;
-      c3 = p0;
-      k0 += 0x9E3779B9;
-      k1 += 0xBB67AE85;
-    }
-    hn::StoreInterleaved2(hn::Or(hn::And(c0, lower), hn::ShiftLeft<32>(c1)),
-                          hn::Or(hn::And(c2, lower), hn::ShiftLeft<32>(c3)), d,
-                          reinterpret_cast<std::uint64_t*>(words.data() + at));
-  }
-}
-#endif
-
 [[gnu::flatten]] void Draw(const SimulationOptions& options, std::uint64_t first, Draws& draws) {
   const bool one = options.simulation == Simulation::kOne;
   const std::size_t words = (one ? 1 : 2) * kPublishedComponents;
-  FillWords(options.seed, one ? 1 : 2, first * words / 4,
-            std::span(draws.words).first(words * kBlock));
+  random::FillWords(options.seed, one ? 1 : 2, first * words / 4,
+                    std::span(draws.words).first(words * kBlock));
   for (std::size_t c = 0; c < kPublishedComponents; ++c) {
     const double size = c < kEyx ? kAngle : kStraightness;
     for (std::size_t i = 0; i < kBlock; ++i) {

@@ -31,7 +31,7 @@ struct Sums {
   }
 };
 
-// Of the draws from `first` on, which is a multiple of kBlock, to before `end`.
+// Sums over the draws from `first` on, which is a multiple of kBlock, to before `end`.
 Sums SumsOf(const SimulationOptions& options, std::uint64_t first, std::uint64_t end);
 
 }  // namespace abbe::probes

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "diagnosis/evidence.h"
 #include "diagnosis/fit.h"
 #include "simulation/causes/registry.h"
 #include "tests/hidden_effects/judgement.h"
@@ -37,7 +38,8 @@ TEST(MovedBy, IsHowFarACauseMovesWhenAnotherIsTakenIn) {
   const diagnosis::Fit before(campaign), alone(before, {skew}), both(before, {skew, backlash});
   const auto size = both.ScoreOf(1);
   const Eigen::VectorXd moved = both.ScoreOf(0).coefficients - alone.ScoreOf(0).coefficients;
-  const Eigen::VectorXd expected = alone.MovedBy(size.candidate, 0) * size.coefficients;
+  const auto [disturber, groups] = diagnosis::TogetherOf({&size.candidate, 1});
+  const Eigen::VectorXd expected = alone.MovedBy(disturber, groups).front() * size.coefficients;
   ASSERT_EQ(expected.size(), 1);
   EXPECT_GT(std::abs(moved[0]), 1e-6);  // s
   EXPECT_NEAR(expected[0] / moved[0], 1.0, 0.05);

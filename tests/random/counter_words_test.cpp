@@ -5,21 +5,24 @@
 #include <vector>
 
 #include "random/counter_random.h"
+#include "tests/each_width.h"
 
 namespace abbe::random {
 namespace counter_words_test {
 
 // CounterRandom takes its words from Random123; these are computed here.
 TEST(CounterWords, AreThoseOfRandom123) {
-  std::vector<std::uint32_t> words(3 * kWordsAtOnce);
   const std::uint64_t large = 0x123456789abcdef0;
-  for (const std::uint64_t first : {std::uint64_t{0}, std::uint64_t{0xfffffffa}, large}) {
-    FillWords(large + 1, large + 2, first, words);
-    const CounterRandom random(large + 1, large + 2);
-    for (std::size_t j = 0; j < words.size(); ++j) {
-      ASSERT_EQ(words[j], random.Bits(first + j / 4)[j % 4]) << first << ' ' << j;
+  test::OnEachWidth([&] {
+    std::vector<std::uint32_t> words(3 * kWordsAtOnce);
+    for (const std::uint64_t first : {std::uint64_t{0}, std::uint64_t{0xfffffffa}, large}) {
+      FillWords(large + 1, large + 2, first, words);
+      const CounterRandom random(large + 1, large + 2);
+      for (std::size_t j = 0; j < words.size(); ++j) {
+        ASSERT_EQ(words[j], random.Bits(first + j / 4)[j % 4]) << first << ' ' << j;
+      }
     }
-  }
+  });
 }
 
 // The known answers that Random123 publishes for Philox 4x32-10 (its kat_vectors).
