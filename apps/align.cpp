@@ -31,7 +31,6 @@ using probes::kProbes;
 using settings::kMicrometre;
 using settings::kMillimetre;
 
-constexpr int kFirstReadings = 50;    // checked before anything is asked
 constexpr double kBeyondStale = 0.5;  // s more than [devices] stale_ms: a frozen register shows
 constexpr int kRefusedInARow = 4;     // places without all gaps, before the turns are doubted
 constexpr double kLeastGood = 0.5;    // of the readings of a channel

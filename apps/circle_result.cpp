@@ -22,12 +22,12 @@ using nlohmann::ordered_json;
 using paths::CircleFigures;
 using paths::CirclePoint;
 using paths::CircleRun;
+using settings::Mm;
+using settings::Um;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kProfilePoints = 360;  // of the profile in the result, one per degree
 
-double Um(double metres) { return metres / settings::kMicrometre; }
-double Mm(double metres) { return metres / settings::kMillimetre; }
 double MmPerMin(double speed) { return Mm(speed) * 60.0; }
 double Degrees(double angle) { return angle * 360.0 / kTurn; }
 

@@ -9,7 +9,7 @@ namespace abbe::apps {
 
 bool FillStore(const study::Study& study, const std::vector<std::uint64_t>& seeds,
                const std::string& title, const FillOptions& options, study::Ranks& ranks,
-               study::Store& store) {
+               study::Store& store, const std::function<std::string(std::uint64_t)>& name) {
   study::Dealing dealing{.seeds = {}, .threads = options.threads, .ended = &InterruptFlag()};
   for (const std::uint64_t seed : seeds) {
     if (!store.rows().contains(seed)) dealing.seeds.push_back(seed);
@@ -20,7 +20,7 @@ bool FillStore(const study::Study& study, const std::vector<std::uint64_t>& seed
     Progress progress(title, options.quiet);
     study::Deal(study, dealing, ranks, [&](std::uint64_t seed, const study::Row& row) {
       store.Add(seed, row);
-      progress.Show(++done, wanted, row.value("campaign", fmt::format("seed {}", seed)));
+      progress.Show(++done, wanted, name(seed));
     });
   }
   if (done < wanted) {

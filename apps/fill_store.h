@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,9 @@ struct FillOptions {
 };
 
 // Works out the seeds that the store lacks and puts it in their order. False when Ctrl-C ended it
-// before: then it prints how to go on.
+// before: then it prints how to go on. `name`: of a seed, for the progress.
 bool FillStore(const study::Study& study, const std::vector<std::uint64_t>& seeds,
                const std::string& title, const FillOptions& options, study::Ranks& ranks,
-               study::Store& store);
+               study::Store& store, const std::function<std::string(std::uint64_t)>& name);
 
 }  // namespace abbe::apps

@@ -287,7 +287,8 @@ int FitFleet(const FleetOptions& options) {
   std::vector<std::uint64_t> numbers;
   numbers.reserve(given.size());
   for (const auto& [number, campaign] : given) numbers.push_back(number);
-  if (!FillStore(gathering, numbers, "fleet", options.fill, ranks, store))
+  if (!FillStore(gathering, numbers, "fleet", options.fill, ranks, store,
+                 [&](std::uint64_t number) { return given.at(number).folder.string(); }))
     return kRequirementNotMet;
   const std::vector<fleet::Campaign> campaigns = CampaignsOf(store.rows(), given);
   const machine::VolumetricModel model = fusion::UnknownMachine(machine, fleet::KnotsOf(machine));

@@ -30,7 +30,7 @@ struct InvestigateArguments {
 };
 
 // Minutes of "45min", "1.5h" or "90".
-double MinutesOf(const std::string& text) {
+double BudgetMinutes(const std::string& text) {
   std::size_t end = 0;
   double value = 0.0;
   try {
@@ -67,7 +67,7 @@ int Investigate(const InvestigateArguments& arguments) {
         "seed=7 for the virtual rig");
   }
   const MachineFile file = ReadMachineFile(arguments.machine);
-  const investigate::Subject subject = SubjectOf(file, MinutesOf(arguments.budget));
+  const investigate::Subject subject = SubjectOf(file, BudgetMinutes(arguments.budget));
   const auto recorder =
       arguments.devices ? OperatorRecorder() : RigRecorder(file, ParseRigOption(arguments.rig));
   investigate::Journal journal = investigate::Journal::In(

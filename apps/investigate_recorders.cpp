@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using investigate::Journal;
 using recording::Recording;
 
-std::string NameOf(const Recording& path, const Journal& journal) {
+std::string PathName(const Recording& path, const Journal& journal) {
   return fmt::format("{:02}_{}{}.h5", journal.number(), path.Kind(),
                      path.HeaderText("axis") ? "_" + *path.HeaderText("axis") : "");
 }
@@ -43,7 +43,7 @@ class OfRig : public investigate::Recorder {
 
   std::optional<std::string> Record(const Recording& path, const Journal& journal) override {
     if (!recorder_) recorder_.emplace(machine_, seed_, hidden_, journal.started());
-    const std::string name = NameOf(path, journal);
+    const std::string name = PathName(path, journal);
     // What an interrupted call left without an entry is recorded again, and the same.
     std::error_code ignored;
     fs::remove(journal.folder() / name, ignored);
@@ -107,7 +107,7 @@ class ByOperator : public investigate::Recorder {
           fmt::format("{}: is of kind \"{}\"; this run is a \"{}\": give its recording",
                       given.string(), made.Kind(), path.Kind()));
     }
-    const std::string name = NameOf(path, journal);
+    const std::string name = PathName(path, journal);
     const fs::path target = journal.folder() / name;
     std::error_code error;
     if (fs::exists(target) && fs::equivalent(given, target, error)) return name;

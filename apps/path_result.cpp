@@ -12,11 +12,11 @@ namespace abbe::apps {
 namespace {
 
 using nlohmann::ordered_json;
+using settings::Mm;
+using settings::Um;
 
 constexpr Eigen::Index kShownPoses = 1000;  // of a path in the result: sufficient for a figure
 
-double Um(double metres) { return metres / settings::kMicrometre; }
-double Mm(double metres) { return metres / settings::kMillimetre; }
 double Urad(double angle) { return angle / settings::kMicroradian; }
 
 ordered_json Vector(const Eigen::Vector3d& v, double (*unit)(double)) {

@@ -23,6 +23,9 @@ struct PlausibleDevices {
   std::vector<std::string> warnings;             // of the first readings
 };
 
+// Checked before anything moves.
+inline constexpr int kFirstReadings = 50;
+
 // Opens `devices` of the file and takes `readings` readings of them, before anything moves. What
 // they report later goes to standard error. DeviceError as hal::OpenDevices and
 // hal::PlausibleSource::Require.

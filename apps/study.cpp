@@ -115,7 +115,7 @@ int RunStudy(const study::StudyKind& kind, const StudyOptions& options) {
   study::Store store = study::Store::Open(options.store, question,
                                           goes_on ? study::Store::kGoOn : study::Store::kNew);
   if (!FillStore(*asked, SeedsOf(options, shard), fmt::format("study {}", kind.name), options.fill,
-                 ranks, store)) {
+                 ranks, store, [](std::uint64_t seed) { return fmt::format("seed {}", seed); })) {
     return kRequirementNotMet;
   }
   const bool is_met = Show(question, {question, store.rows()});

@@ -29,8 +29,6 @@
 namespace abbe::apps {
 namespace {
 
-constexpr int kFirstReadings = 50;  // checked before anything moves
-
 struct SweepCommand {
   std::string axis;
   std::string machine;

@@ -75,7 +75,7 @@ class RememberingResidual : public KnownRows {
 
   State& StateFor(const VectorXd& x) const {
     constexpr double kLinear = 0.03;
-    constexpr std::size_t kKept = 2;
+    constexpr std::size_t kPlaces = 2;
     const VectorXd values = ValuesAt(x);
     for (State& state : states_) {
       const VectorXd off = values - state.values - state.known->jacobian * (x - state.x);
@@ -85,7 +85,7 @@ class RememberingResidual : public KnownRows {
     estimation::RowMatrix jacobian(Rows(), x.size());
     residual_->Evaluate(x, state.values, &jacobian);
     state.known->jacobian = jacobian;
-    if (states_.size() == kKept) states_.pop_back();
+    if (states_.size() == kPlaces) states_.pop_back();
     states_.push_front(std::move(state));
     return states_.front();
   }

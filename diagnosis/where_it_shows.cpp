@@ -102,7 +102,7 @@ estimation::PrintUnit UnitAt(const Score& score, const Trace& trace) {
   for (const auto& [stage, effect] : EffectOf(score, trace)) {
     const bool turn = stage >= simulation::kEncoderStage ||
                       (stage < simulation::kToolStage && stage % machine::kMotions >= 3);
-    return turn ? estimation::PrintUnit{"urad", 1e-6} : estimation::PrintUnit{"um", 1e-6};
+    return turn ? estimation::kMicroradians : estimation::kMicrometres;
   }
   return {"um", 1e-6};
 }

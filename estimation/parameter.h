@@ -39,6 +39,7 @@ struct PrintUnit {
   std::string name;  // empty: a plain number
   double si = 1.0;
 };
+inline const PrintUnit kMicrometres{"um", 1e-6}, kMicroradians{"urad", 1e-6};
 
 struct Parameter {
   std::string name;
@@ -82,6 +83,18 @@ struct ParameterBlock {
     Eigen::VectorXd values(size());
     for (Eigen::Index i = 0; i < size(); ++i) values[i] = entries[i].value;
     return values;
+  }
+
+  // With a prior of `prior_sd` around 0 each, held there where it is 0.
+  static ParameterBlock AroundZero(std::string name, PrintUnit unit,
+                                   const std::vector<std::string>& entries, double prior_sd) {
+    const bool held = prior_sd == 0.0;
+    ParameterBlock block(std::move(name), std::move(unit), {});
+    for (const std::string& entry : entries) {
+      block.entries.push_back(
+          {.name = entry, .prior_sd = held ? kNoPrior : prior_sd, .held = held});
+    }
+    return block;
   }
 
  private:

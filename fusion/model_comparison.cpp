@@ -18,7 +18,7 @@ using Eigen::Matrix3Xd;
 using relm::ErrorModel;
 using simulation::LinkageRun;
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoDistance = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNoCircle = 0.01;  // of the radius: a larger deviation is no circle
 constexpr std::array kModelsCompared{ErrorModel::kPivots, ErrorModel::kPublished,
                                      ErrorModel::kPublishedWithBearing, ErrorModel::kComplete};
@@ -59,7 +59,7 @@ class Comparison {
     rows_.push_back({made.name() + ", one cell",
                      parameters,
                      Distance(one_cell, run_),
-                     {kUnknown, kUnknown},
+                     {kNoDistance, kNoDistance},
                      Checked(one_cell)});
     rows_.push_back({made.name() + ", mapped", parameters, mapped.after, mapped.held_out,
                      Checked(mapped.calibration)});
@@ -103,7 +103,7 @@ class Comparison {
   // The reference, and displacements of the nominal linkage.
   void AddWithoutCalibration(const Distances& before) {
     const auto simulation = Simulation();
-    const Distances none{kUnknown, kUnknown};
+    const Distances none{kNoDistance, kNoDistance};
     ComparedModel reference{"reference", 0, none, none, {}},
         nominal{"nominal", 0, before, before, {}};
     for (const LinkageRun& check : checks_) {
@@ -139,9 +139,9 @@ double CircleDeviation(const Matrix3Xd& path) {
     for (const double each : standards::RadialDeviations(circle, x, y)) {
       largest = std::max(largest, std::abs(each));
     }
-    return largest < kNoCircle * circle.radius ? largest : kUnknown;
+    return largest < kNoCircle * circle.radius ? largest : kNoDistance;
   } catch (const NumericalError&) {
-    return kUnknown;  // so far from a circle that the fit does not converge
+    return kNoDistance;  // so far from a circle that the fit does not converge
   }
 }
 

@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 constexpr std::array kFormSteps{0.5, 0.12};
 constexpr double kMostForm = 2.5;
 constexpr double kImpossible = -1e30;  // a logarithm of which rounding leaves nothing
-constexpr double kSettled = 0.03;      // the same, and of noise
+constexpr double kSteady = 0.03;       // the same, and of noise
 constexpr int kRounds = 4;
 constexpr double kRowsOfPrior = 20.0;  // n
 constexpr double kNoiseSeen = 4.0;     // standard deviations
@@ -135,7 +135,7 @@ class Estimate {
     // The root mean square of what it may be, and no less than the file states.
     form_ = std::exp(std::max(log_form_ + form_variance_, 0.0));
     of_machine_ = OfMachine();
-    return std::abs(std::log(form_ / before)) > kSettled;
+    return std::abs(std::log(form_ / before)) > kSteady;
   }
 
   // False where nothing changes.
@@ -170,7 +170,7 @@ class Estimate {
                             (std::max(redundancy, 0.0) + kRowsOfPrior);
       const double off_one = (square - 1.0) * std::sqrt((redundancy + kRowsOfPrior) / 2.0);
       const double set = std::abs(off_one) > kNoiseSeen ? std::sqrt(square) : 1.0;
-      changed = changed || std::abs(std::log(set / noise_[r])) > kSettled;
+      changed = changed || std::abs(std::log(set / noise_[r])) > kSteady;
       noise_[r] = set;
     }
     return changed;

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 // own.
 constexpr double kCommonSize = 0.57, kOwnSize = 0.4;
 constexpr double kCommonLength = 0.65, kOwnLength = 0.25;
-constexpr double kHardlyAllowed = 4e-4;  // deviation, of the largest of a function: taken as 0
+constexpr double kHardlyMoves = 4e-4;  // deviation, of the largest of a function: taken as 0
 constexpr std::array kCommonLengths{0.25, 0.35, 0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0};
 constexpr double kLongestStep = 0.7;
 constexpr double kGainSettled = 0.01;  // of log Z
@@ -134,7 +134,7 @@ MatrixXd PopulationEvidence::FactorAt(const VectorXd& theta) const {
       const Index size = model_.Function(axis, motion).size(), at = first_[axis][motion];
       if (size == 0) continue;
       const auto spread = prior.SpreadOf(axis, motion);
-      const double least = kHardlyAllowed * spread.deviations.maxCoeff();
+      const double least = kHardlyMoves * spread.deviations.maxCoeff();
       const VectorXd deviations =
           (spread.deviations.array() < least).select(0.0, spread.deviations);
       L.block(at, at, size, size) = spread.axes * deviations.asDiagonal();

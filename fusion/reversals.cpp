@@ -24,8 +24,8 @@ using simulation::SimulatedRun;
 constexpr double kAtFirst = 0.3;    // of the errors of the machine file
 constexpr double kLeastOdds = 7.0;  // logarithm: 1000 : 1
 constexpr double kBeyondChance = 3.5;
-constexpr int kFinest = -5, kLargest = 8;  // powers of two of the errors of the machine file
-constexpr int kShifts = 3;                 // of the motions; the others rotate
+constexpr int kSmallest = -5, kLargest = 8;  // powers of two of the errors of the machine file
+constexpr int kShifts = 3;                   // of the motions; the others rotate
 
 // "reversal X" has EXX, EYX, EZX; "reversal_turn X" has EAX, EBX, ECX.
 std::array<std::string, 2> BlocksOf(int axis) {
@@ -116,7 +116,7 @@ Told ToldBy(const estimation::Result& fit, int axis, const VectorXd& deviations)
 // Over the errors of the machine file; 0: none.
 double SizeOf(const Told& told) {
   double size = 0.0, best = kLeastOdds;
-  for (int power = kFinest; power <= kLargest; ++power) {
+  for (int power = kSmallest; power <= kLargest; ++power) {
     const double deviation = std::exp2(power), evidence = told.Evidence(deviation);
     if (!(evidence > best)) continue;
     best = evidence;
@@ -158,9 +158,8 @@ void WithReversals(const machine::Machine& machine, SimulatedRun& run) {
     const VectorXd deviations = kAtFirst * DeviationsOf(machine, axis);
     const auto names = BlocksOf(axis);
     for (int i = 0; i < 2; ++i) {
-      ParameterBlock block(
-          names[static_cast<std::size_t>(i)],
-          i == 0 ? estimation::PrintUnit{"um", 1e-6} : estimation::PrintUnit{"urad", 1e-6}, {});
+      ParameterBlock block(names[static_cast<std::size_t>(i)],
+                           i == 0 ? estimation::kMicrometres : estimation::kMicroradians, {});
       for (int e = 0; e < kShifts; ++e) {
         block.entries.push_back({.name = machine::MotionName(axis, i * kShifts + e),
                                  .prior_sd = deviations[i * kShifts + e]});

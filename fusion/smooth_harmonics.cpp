@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kPlaces = 180;        // around the circle: no aliasing of these orders
-constexpr double kNegligible = 1e-9;  // m
+constexpr Index kPlaces = 180;            // around the circle: no aliasing of these orders
+constexpr double kLeastDeviation = 1e-9;  // m
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 double AngleOf(Index place) { return kTurn * place / kPlaces; }
@@ -74,8 +74,8 @@ std::vector<double> SmoothHarmonics(const machine::Machine& machine, const paths
     }
     waves *= 2.0 / kPlaces;
     const double variance = (waves.transpose() * covariance * waves).trace() / 2.0;
-    deviations.push_back(std::max(kNegligible, std::sqrt(std::max(0.0, variance))));
-    if (deviations.back() > kNegligible) last = deviations.size();
+    deviations.push_back(std::max(kLeastDeviation, std::sqrt(std::max(0.0, variance))));
+    if (deviations.back() > kLeastDeviation) last = deviations.size();
   }
   deviations.resize(last);
   return deviations;

@@ -81,13 +81,14 @@ void VolumetricModel::SetParameters(const Eigen::Ref<const Eigen::VectorXd>& par
 }
 
 std::vector<estimation::ParameterBlock> VolumetricModel::Blocks() const {
-  const estimation::PrintUnit um{"um", 1e-6}, urad{"urad", 1e-6};
+  using estimation::kMicrometres, estimation::kMicroradians;
   std::vector<estimation::ParameterBlock> blocks;
   for (int axis = 0; axis < kAxes; ++axis) {
     for (int motion = 0; motion < kMotions; ++motion) {
       const Eigen::VectorXd& c = functions_[axis][motion].coefficients();
       if (c.size() == 0) continue;
-      estimation::ParameterBlock block(MotionName(axis, motion), motion < 3 ? um : urad, {});
+      estimation::ParameterBlock block(MotionName(axis, motion),
+                                       motion < 3 ? kMicrometres : kMicroradians, {});
       for (Eigen::Index i = 0; i < c.size(); ++i) {
         block.entries.push_back({.name = fmt::format("c{}", i), .value = c[i]});
       }
@@ -95,7 +96,7 @@ std::vector<estimation::ParameterBlock> VolumetricModel::Blocks() const {
     }
   }
   blocks.push_back({"squareness",
-                    urad,
+                    kMicroradians,
                     {{.name = "A0Z", .value = squareness_.x()},
                      {.name = "B0Z", .value = squareness_.y()},
                      {.name = "C0Y", .value = squareness_.z()}}});

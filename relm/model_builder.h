@@ -43,11 +43,11 @@ class ModelBuilder {
   std::vector<estimation::ParameterBlock> blocks_;
 };
 
-inline const estimation::PrintUnit kMicroradians{"urad", settings::kMicroradian};
+using estimation::kMicroradians;
 inline const estimation::PrintUnit kMicroradiansPerMetre{"urad/m", settings::kMicroradian};
 inline const estimation::PrintUnit kMicroradiansPerNewtonMetre{"urad/(N m)",
                                                                settings::kMicroradian};
-inline const estimation::PrintUnit kMicrometres{"um", settings::kMicrometre};
+using estimation::kMicrometres;
 inline const estimation::PrintUnit kMillimetres{"mm", settings::kMillimetre};
 inline const estimation::PrintUnit kPartsPerMillionPerKelvin{"ppm/degC", 1e-6};
 

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 constexpr int kPointsOfTurn = 20000;  // chord errors below 1e-8 of the radius
 constexpr double kArrived = 1e-7;     // m
 
-int DirectionOf(const Vector3d& way) {
+int SenseOf(const Vector3d& way) {
   for (const double each : way) {
     if (each != 0.0) return each > 0.0 ? 1 : -1;
   }
@@ -94,7 +94,7 @@ Course DwellCourse(const std::vector<Vector3d>& places, double feed, double dwel
   Course course{places.front(), {}};
   Vector3d before = places.front();
   for (const Vector3d& place : places) {
-    course.moves.push_back({{place}, feed, dwell, pass, DirectionOf(place - before)});
+    course.moves.push_back({{place}, feed, dwell, pass, SenseOf(place - before)});
     before = place;
   }
   return course;
@@ -125,7 +125,7 @@ Course LineCourse(const std::vector<Vector3d>& points, double feed, double dwell
   Course course{points.front(), {}};
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Vector3d way = points[i] - points[i - 1];
-    course.moves.push_back({{points[i]}, feed, dwell, pass, DirectionOf(way), 0.0, way.norm()});
+    course.moves.push_back({{points[i]}, feed, dwell, pass, SenseOf(way), 0.0, way.norm()});
   }
   return course;
 }

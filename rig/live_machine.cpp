@@ -37,12 +37,12 @@ Course FromRestAndBack(Course course, const Vector3d& rest) {
 
 // Checks points 0.5 mm or more apart, and the last of each move.
 void RequireReach(const LinkageRig& linkage, const Course& course) {
-  constexpr double kStep = 0.5e-3;
+  constexpr double kBetweenChecks = 0.5e-3;
   const double temperature = linkage.world().settings().temperature;
   Vector3d checked = Vector3d::Constant(1e9);
   for (const Move& move : course.moves) {
     for (const Vector3d& point : move.points) {
-      if ((point - checked).norm() < kStep && &point != &move.points.back()) continue;
+      if ((point - checked).norm() < kBetweenChecks && &point != &move.points.back()) continue;
       linkage.linkage().EncodersFor(linkage.ToolAt(point), temperature);
       checked = point;
     }

@@ -8,7 +8,7 @@
 namespace abbe::rig {
 namespace {
 
-constexpr double kStep = 0.1;                // s, between grid points at most
+constexpr double kLongestStep = 0.1;         // s, between grid points at most
 constexpr double kStepsPerConstant = 50.0;   // and at least so many in a time constant
 constexpr double kTemperatureTime = 3600.0;  // s
 
@@ -17,7 +17,7 @@ constexpr double kTemperatureTime = 3600.0;  // s
 SlowDrift::SlowDrift(const random::CounterRandom& random, double sd, double time_constant)
     : random_(random),
       sd_(sd),
-      step_(std::min(kStep, time_constant / kStepsPerConstant)),
+      step_(std::min(kLongestStep, time_constant / kStepsPerConstant)),
       kept_(std::exp(-step_ / time_constant)) {}
 
 double SlowDrift::At(double time) {

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kApproach = 0.5e-3;  // m, from below, of all axes
+constexpr double kFromBelow = 0.5e-3;  // m, from below, of all axes
 
 // The rows of one recording as they are made.
 class ProbeRunMaker {
@@ -130,7 +130,7 @@ Course GapStepCourse(const RigSettings& settings, char axis, const ProbeRunOptio
   const hal::SweepPlan& plan = PlanOf(settings, axis);
   const int swept = AxisNumber(axis);
   const auto last = plan.stations.size() - 1;
-  Course course{settings.StartOf(swept) - Vector3d::Constant(kApproach), {}};
+  Course course{settings.StartOf(swept) - Vector3d::Constant(kFromBelow), {}};
   for (int place = 0; place < options.places; ++place) {
     Vector3d point = settings.StartOf(swept);
     point[swept] = plan.stations[last * place / std::max(1, options.places - 1)];

@@ -13,6 +13,9 @@ inline constexpr double kMicroradian = 1e-6;
 inline constexpr double kMillimetrePerMinute = kMillimetre / 60.0;
 inline constexpr double kMicro = 1e-6;  // um or urad: for a table with both
 
+constexpr double Mm(double metres) { return metres / kMillimetre; }
+constexpr double Um(double metres) { return metres / kMicrometre; }
+
 struct Unit {
   std::string_view name;  // as printed: "um", "mm/min"; empty for a plain number
   double si;              // value in SI = value in this unit * si (temperatures stay in degC)

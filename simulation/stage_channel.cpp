@@ -7,11 +7,7 @@
 
 namespace abbe::simulation {
 
-namespace {
-
-const estimation::PrintUnit kLengthUnit{"um", 1e-6}, kAngleUnit{"urad", 1e-6};
-
-}  // namespace
+namespace {}  // namespace
 
 Instrument InstrumentOf(const Trace& trace) {
   if (trace.rim) return kFeltAtRim;
@@ -20,7 +16,7 @@ Instrument InstrumentOf(const Trace& trace) {
 
 bool StageChannel::IsPlausible(double amount) const {
   constexpr double kMost = 1e-3;  // m
-  return unit.name != kLengthUnit.name || amount < kMost;
+  return unit.name != estimation::kMicrometres.name || amount < kMost;
 }
 
 namespace {
@@ -28,22 +24,23 @@ namespace {
 StageChannel ErrorMotion(int axis, int motion) {
   const bool own = motion == axis;
   return {own ? std::string(1, "XYZ"[axis]) : machine::MotionName(axis, motion),
-          MotionStage(axis, motion), motion < 3 ? kLengthUnit : kAngleUnit,
+          MotionStage(axis, motion),
+          motion < 3 ? estimation::kMicrometres : estimation::kMicroradians,
           kFeltByProbes | kFeltByLinkage};
 }
 
 StageChannel Ball(int i) {
-  return {std::string("ball_") + "xyz"[i], kTipStage + i, kLengthUnit, kFeltByLinkage};
+  return {std::string("ball_") + "xyz"[i], kTipStage + i, estimation::kMicrometres, kFeltByLinkage};
 }
 
 StageChannel Reading(const Object& sensor) {
   const bool at_shaft = sensor.kind() == Object::Kind::kSensor;
-  return {sensor.name(), kReadingStage + sensor.first(), kLengthUnit,
+  return {sensor.name(), kReadingStage + sensor.first(), estimation::kMicrometres,
           static_cast<unsigned>(at_shaft ? kFeltAtRim : kFeltByProbes)};
 }
 
 StageChannel Encoder(const Object& pivot) {
-  return {pivot.name(), kEncoderStage + pivot.first(), kAngleUnit, kFeltByLinkage};
+  return {pivot.name(), kEncoderStage + pivot.first(), estimation::kMicroradians, kFeltByLinkage};
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ std::vector<Eigen::VectorXd> InstantsNear(const Scene& scene, const Eigen::Vecto
 }
 
 // Any instant between the two rows is as probable.
-double SpreadOf(const Scene& scene, const Eigen::VectorXd& shape) {
+double SpreadOfInstant(const Scene& scene, const Eigen::VectorXd& shape) {
   const std::vector<double> clocks = ClocksOf(scene);
   const auto after = std::ranges::upper_bound(clocks, shape[0]);
   if (after == clocks.begin() || after == clocks.end()) return 0.0;
@@ -84,7 +84,7 @@ Cause EncoderCountSlip() {
       },
       .shapes = InstantsTried,
       .nearer = InstantsNear,
-      .shape_spread = SpreadOf,
+      .shape_spread = SpreadOfInstant,
       .tell = [](const Eigen::VectorXd& found, const Eigen::VectorXd& shape) -> Eigen::VectorXd {
         return Eigen::Vector2d(shape[0], found[0]);
       },

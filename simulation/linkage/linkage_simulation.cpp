@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
-#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -22,8 +21,6 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-const estimation::PrintUnit kMicrometres{"um", 1e-6};
-const estimation::PrintUnit kMicroradians{"urad", 1e-6};
 constexpr int kMostSteps = 30;
 constexpr double kMet = 1e-14;      // m: below the rounding of a chain of half a metre
 constexpr double kReached = 1e-11;  // m: far below any noise
@@ -39,18 +36,6 @@ NumericalError OutOfReach(const LinkageRun& run, Index pose, std::string_view wh
       "the poses inside its workspace or move its base",
       run.name, run.rows[pose] + 1, 1e3 * run.reference(0, pose), 1e3 * run.reference(1, pose),
       1e3 * run.reference(2, pose), why));
-}
-
-estimation::ParameterBlock BlockOf(const std::string& name, const estimation::PrintUnit& unit,
-                                   const std::array<const char*, 3>& entries, double sd) {
-  std::vector<estimation::Parameter> parameters;
-  for (const char* entry : entries) {
-    estimation::Parameter parameter{.name = entry, .prior_sd = sd};
-    parameter.held = sd == 0.0;
-    if (parameter.held) parameter.prior_sd = estimation::kNoPrior;
-    parameters.push_back(parameter);
-  }
-  return {name, unit, std::move(parameters)};
 }
 
 }  // namespace
@@ -86,8 +71,10 @@ std::string BaseTurnBlock(const std::string& mounting) {
 }
 
 std::vector<estimation::ParameterBlock> BaseBlocks(const relm::LinkageSettings& settings) {
-  return {BlockOf("base", kMicrometres, {"x", "y", "z"}, settings.tolerance.base_position),
-          BlockOf("base_turn", kMicroradians, {"a", "b", "c"}, settings.tolerance.base_angle)};
+  return {estimation::ParameterBlock::AroundZero("base", estimation::kMicrometres, {"x", "y", "z"},
+                                                 settings.tolerance.base_position),
+          estimation::ParameterBlock::AroundZero("base_turn", estimation::kMicroradians,
+                                                 {"a", "b", "c"}, settings.tolerance.base_angle)};
 }
 
 LinkageSimulation::LinkageSimulation(machine::Chain chain, relm::LinkageSettings settings,

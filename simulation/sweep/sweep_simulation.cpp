@@ -29,8 +29,6 @@ using estimation::ParameterBlock;
 
 constexpr double kTargetTilt = 1e-3;  // rad: how well a target is aligned before a sweep
 constexpr std::array<const char*, kProbes> kLetters{"a", "b", "c", "d", "e"};
-const estimation::PrintUnit kMicrometres{"um", 1e-6};
-const estimation::PrintUnit kMicroradians{"urad", 1e-6};
 const estimation::PrintUnit kRelative{"", 1.0};
 
 // The numbers of one reading: [six motions of the swept axis | squareness | Circumstances].
@@ -238,16 +236,6 @@ std::shared_ptr<const Response> SweepResidual::At(const VectorXd& x) const {
                                            noise_);
 }
 
-ParameterBlock BlockOf(const std::string& name, const estimation::PrintUnit& unit,
-                       const std::vector<std::string>& entries, double prior_sd) {
-  ParameterBlock block(name, unit, {});
-  for (const std::string& entry : entries) {
-    block.entries.push_back({.name = entry, .prior_sd = prior_sd, .held = prior_sd == 0.0});
-    if (prior_sd == 0.0) block.entries.back().prior_sd = estimation::kNoPrior;
-  }
-  return block;
-}
-
 std::string Named(const std::string& what, const std::string& which) {
   return which.empty() ? what : what + " " + which;
 }
@@ -270,9 +258,11 @@ std::vector<ParameterBlock> InstrumentBlocks(const SweepInstrument& instrument,
                                              const SweepRun& run) {
   const probes::HeadTolerance& tolerance = instrument.head.tolerance;
   std::vector<ParameterBlock> blocks;
-  ParameterBlock position = BlockOf("probe_position", kMicrometres, {}, 0.0);
-  ParameterBlock gain = BlockOf("probe_gain", kRelative, {}, 0.0);
-  ParameterBlock zero = BlockOf("probe_zero " + run.name, kMicrometres, {}, 0.0);
+  ParameterBlock position =
+      ParameterBlock::AroundZero("probe_position", estimation::kMicrometres, {}, 0.0);
+  ParameterBlock gain = ParameterBlock::AroundZero("probe_gain", kRelative, {}, 0.0);
+  ParameterBlock zero =
+      ParameterBlock::AroundZero("probe_zero " + run.name, estimation::kMicrometres, {}, 0.0);
   for (std::size_t i = 0; i < kProbes; ++i) {
     const std::string letter = kLetters[i];
     const Eigen::Vector2d place = PlaceOf(instrument.head.layout, i);
@@ -301,14 +291,17 @@ std::vector<ParameterBlock> InstrumentBlocks(const SweepInstrument& instrument,
   const std::string target = mounting.empty() ? run.name : mounting;
   blocks.push_back(std::move(position));
   blocks.push_back(std::move(gain));
-  blocks.push_back(BlockOf(Named("head_turn " + axis, target), kMicroradians, {"u", "s", "n"},
-                           tolerance.installation));
-  blocks.push_back(BlockOf(Named("head_place " + axis, target), kMicrometres, {"u", "s", "n"},
-                           tolerance.offset));
-  blocks.push_back(
-      BlockOf(Named("target_tilt", target), kMicroradians, {"a", "b", "c"}, kTargetTilt));
-  ParameterBlock squareness = BlockOf("target_squareness", kMicroradians, {"YZ", "XZ", "XY"},
-                                      instrument.target.u_squareness);
+  blocks.push_back(ParameterBlock::AroundZero(Named("head_turn " + axis, target),
+                                              estimation::kMicroradians, {"u", "s", "n"},
+                                              tolerance.installation));
+  blocks.push_back(ParameterBlock::AroundZero(Named("head_place " + axis, target),
+                                              estimation::kMicrometres, {"u", "s", "n"},
+                                              tolerance.offset));
+  blocks.push_back(ParameterBlock::AroundZero(
+      Named("target_tilt", target), estimation::kMicroradians, {"a", "b", "c"}, kTargetTilt));
+  ParameterBlock squareness =
+      ParameterBlock::AroundZero("target_squareness", estimation::kMicroradians, {"YZ", "XZ", "XY"},
+                                 instrument.target.u_squareness);
   for (auto& entry : squareness.entries) {
     entry.nominal = entry.value = instrument.target.squareness;
   }
