@@ -75,6 +75,20 @@ Campaign Campaign::With(const fusion::ErrorPopulation& population,
   return other;
 }
 
+Campaign Campaign::Without(const std::vector<StrayReadings>& strays) const {
+  Campaign other = WithoutRuns();
+  for (Given given : given_) {
+    for (const StrayReadings& each : strays) {
+      if (each.run != given.recording->name) continue;
+      recording::Recording rest = *given.recording;
+      given.flagged.push_back(FlagOutliers(rest, each.object, each.times));
+      given.recording = std::make_shared<const recording::Recording>(std::move(rest));
+    }
+    other.Prepare({given.recording, given.flagged});
+  }
+  return other;
+}
+
 void Campaign::Add(recording::Recording recording) {
   recording::RefuseOtherMachine(recording, instruments_.machine.name);
   const simulation::RunKind& kind = simulation::KindOf(recording);

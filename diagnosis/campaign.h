@@ -33,6 +33,13 @@ namespace abbe::diagnosis {
 using simulation::InvalidReadings;
 using simulation::PreparedRun;
 
+// Readings of a channel that a fit takes for outliers (stray_readings.h).
+struct StrayReadings {
+  std::string run;            // name of the recording
+  std::string object;         // "probe_a", "pivot_1"
+  std::vector<double> times;  // s since the recording began
+};
+
 class Campaign {
  public:
   explicit Campaign(simulation::Instruments instruments);
@@ -45,6 +52,9 @@ class Campaign {
   Campaign With(const fusion::ErrorPopulation& population,
                 const std::array<double, machine::kAxes>& knots,
                 const machine::Population& lines) const;
+
+  // The same runs without these readings.
+  Campaign Without(const std::vector<StrayReadings>& strays) const;
 
   // A campaign without runs, for parts of those of this one or further ones on the same clock.
   Campaign WithoutRuns() const;

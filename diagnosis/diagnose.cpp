@@ -9,6 +9,8 @@
 #include "diagnosis/noise_hypothesis.h"
 #include "diagnosis/population_hypothesis.h"
 #include "diagnosis/search.h"
+#include "diagnosis/stray_readings.h"
+#include "failure/failure.h"
 #include "simulation/excess_noise.h"
 
 namespace abbe::diagnosis {
@@ -42,6 +44,35 @@ std::vector<double> ExcessOf(const Fit& fit) {
   return excess;
 }
 
+// Of what is left when causes alone are taken in, for a structure may have followed an outlier.
+std::vector<StrayReadings> StraysLeft(const Answer& answer) {
+  std::vector<Candidate> causes;
+  for (const Finding& finding : answer.diagnosis.findings) {
+    if (IsModelled(finding)) causes.push_back(finding.score.candidate);
+  }
+  const Fit& base = answer.search->base();
+  if (causes.empty()) return StrayReadingsOf(base);
+  try {
+    return StrayReadingsOf(Fit(base, std::move(causes)));
+  } catch (const NumericalError&) {  // they need what is in no catalogue beside them
+    return {};
+  }
+}
+
+// What is left in the end may be outliers that only a fit shows.
+Diagnosis WithoutStrays(std::shared_ptr<const Campaign> campaign) {
+  constexpr int kRounds = 3;
+  for (int round = 1;; ++round) {
+    Answer answer = BesideMemory(BesidePopulation(campaign));
+    if (answer.diagnosis.verdict != Verdict::kUnexplained || round == kRounds) {
+      return std::move(answer.diagnosis);
+    }
+    const std::vector<StrayReadings> strays = StraysLeft(answer);
+    if (strays.empty()) return std::move(answer.diagnosis);
+    campaign = std::make_shared<const Campaign>(campaign->Without(strays));
+  }
+}
+
 }  // namespace
 
 bool IsModelled(const Finding& finding) {
@@ -71,7 +102,7 @@ const Campaign& CampaignOf(const Diagnosis& diagnosis, const Campaign& given) {
 
 Diagnosis Diagnose(const Campaign& campaign) {
   if (!campaign.EstimatesNoise()) {
-    return BesideMemory(BesidePopulation(std::make_shared<const Campaign>(campaign))).diagnosis;
+    return WithoutStrays(std::make_shared<const Campaign>(campaign));
   }
   Campaign noisy = campaign;
   // Runs that do not go together leave much more than each does alone.

@@ -289,6 +289,11 @@ std::pair<std::size_t, std::size_t> StuckOf(const Table& table, std::size_t whic
   return others_change ? longest : std::pair<std::size_t, std::size_t>{0, 0};
 }
 
+void AddFlags(recording::Recording& recording) {
+  if (recording.Find("flags")) return;
+  recording.columns.push_back({"flags", Numbers(recording.rows(), 0.0)});
+}
+
 void Flag(recording::Recording& recording, std::size_t row) {
   for (auto& column : recording.columns) {
     if (column.name == "flags") column.values[row] = kFlag;
@@ -302,9 +307,7 @@ std::vector<InvalidReadings> FlagInvalidReadings(recording::Recording& recording
   const Table table = TableOf(recording);
   std::vector<InvalidReadings> bad;
   if (table.rows.size() < kLeastStuck) return bad;
-  if (!recording.Find("flags")) {
-    recording.columns.push_back({"flags", Numbers(recording.rows(), 0.0)});
-  }
+  AddFlags(recording);
   for (std::size_t c = 0; c < table.channels.size(); ++c) {
     const Channel& channel = table.channels[c];
     const auto [first, last] = StuckOf(table, c);
@@ -323,6 +326,21 @@ std::vector<InvalidReadings> FlagInvalidReadings(recording::Recording& recording
     for (const std::size_t i : outliers) Flag(recording, table.rows[i]);
   }
   return bad;
+}
+
+simulation::InvalidReadings FlagOutliers(recording::Recording& recording, const std::string& object,
+                                         const std::vector<double>& times) {
+  AddFlags(recording);
+  InvalidReadings found{"outliers", object, times.front(), times.front(), 0};
+  const auto clock = recording.Find("time_s");
+  for (std::size_t row = 0; row < clock->size(); ++row) {
+    if (std::ranges::find(times, (*clock)[row]) == times.end()) continue;
+    Flag(recording, row);
+    found.from = std::min(found.from, (*clock)[row]);
+    found.to = std::max(found.to, (*clock)[row]);
+    ++found.count;
+  }
+  return found;
 }
 
 }  // namespace abbe::diagnosis

@@ -30,4 +30,8 @@ inline constexpr double kFar = 8.0;
 // Sets the flags in `recording`.
 std::vector<simulation::InvalidReadings> FlagInvalidReadings(recording::Recording& recording);
 
+// Flags the rows of these `times`, s, as outliers of one channel.
+simulation::InvalidReadings FlagOutliers(recording::Recording& recording, const std::string& object,
+                                         const std::vector<double>& times);
+
 }  // namespace abbe::diagnosis
