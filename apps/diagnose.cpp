@@ -21,7 +21,6 @@
 #include "failure/failure.h"
 #include "learned/carried.h"
 #include "learned/explain.h"
-#include "recording/file_hash.h"
 #include "settings/toml_text.h"
 #include "simulation/doubt.h"
 #include "simulation/kinds.h"
@@ -38,11 +37,8 @@ struct DiagnoseArguments {
   bool plan = false, learn = false, quiet = false;
 };
 
-void WriteModel(simulation::ExtendedModel model, const DiagnoseArguments& arguments) {
-  for (const fs::path& path : arguments.recordings) {
-    model.sources.push_back({path.filename().string(), recording::Sha256OfFile(path)});
-  }
-  WriteText(simulation::ExtendedModelText(model), arguments.out);
+void WriteModel(const simulation::ExtendedModel& model, const DiagnoseArguments& arguments) {
+  WriteText(ModelText(model, arguments.recordings), arguments.out);
   if (!simulation::IsUnexplained(model)) return;
   fmt::print(stderr,
              "abbe: {}: other commands will refuse it, because something is left unexplained, "

@@ -23,10 +23,8 @@ std::vector<recording::Recording> PathsOf(const PlanArguments& arguments, const 
   std::vector<recording::Recording> paths;
   for (const auto& path : arguments.recordings) paths.push_back(recording::Read(path));
   if (!arguments.campaign.empty()) {
-    const auto machine = rig::ReadCampaignMachine(file.document.Root());
-    const rig::CampaignPlan plan{.kind = CampaignKinds().at(arguments.campaign)};
-    for (auto& recorded : rig::RecordCampaign(machine, kSeed, {}, plan).recordings) {
-      paths.push_back(std::move(recorded));
+    for (auto& path : CampaignPaths(file.document, arguments.campaign)) {
+      paths.push_back(std::move(path));
     }
   }
   if (paths.empty()) {
@@ -39,17 +37,38 @@ std::vector<recording::Recording> PathsOf(const PlanArguments& arguments, const 
 
 }  // namespace
 
-int DiagnosePlan(const PlanArguments& arguments) {
-  const MachineFile file = ReadMachineFile(arguments.machine);
-  diagnosis::Campaign campaign(InstrumentsOf(file));
-  std::vector<std::string> runs;
-  for (auto& path : PathsOf(arguments, file)) {
-    runs.push_back(std::filesystem::path(path.name).filename().string());
+std::vector<recording::Recording> CampaignPaths(const settings::Document& machine,
+                                                const std::string& campaign) {
+  const auto& kinds = CampaignKinds();
+  const auto kind = kinds.find(campaign);
+  if (kind == kinds.end()) {
+    throw InputError(
+        fmt::format("campaign: \"{}\"; give \"minimal\", \"standard\" or \"full\"", campaign));
+  }
+  const rig::CampaignPlan plan{.kind = kind->second};
+  return rig::RecordCampaign(rig::ReadCampaignMachine(machine.Root()), kSeed, {}, plan).recordings;
+}
+
+diagnosis::Plan PlanOfPaths(std::vector<recording::Recording> paths,
+                            simulation::Instruments instruments) {
+  diagnosis::Campaign campaign(std::move(instruments));
+  for (auto& path : paths) {
     campaign.Add(simulation::Planned(std::move(path), campaign.instruments()));
   }
   const random::CounterRandom random(kSeed, kStream);
   std::uint64_t index = 0;
-  const diagnosis::Plan plan = diagnosis::PlanOf(campaign, [&] { return random.Normal(index++); });
+  return diagnosis::PlanOf(campaign, [&] { return random.Normal(index++); });
+}
+
+int DiagnosePlan(const PlanArguments& arguments) {
+  const MachineFile file = ReadMachineFile(arguments.machine);
+  auto paths = PathsOf(arguments, file);
+  std::vector<std::string> runs;
+  runs.reserve(paths.size());
+  for (const auto& path : paths) {
+    runs.push_back(std::filesystem::path(path.name).filename().string());
+  }
+  const diagnosis::Plan plan = PlanOfPaths(std::move(paths), InstrumentsOf(file));
   if (!arguments.json.empty()) {
     auto json = PlanJson(plan);
     json["abbe"] = ABBE_VERSION;

@@ -357,4 +357,12 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
   return text;
 }
 
+std::string ModelText(simulation::ExtendedModel model,
+                      const std::vector<std::filesystem::path>& recordings) {
+  for (const std::filesystem::path& path : recordings) {
+    model.sources.push_back({path.filename().string(), recording::Sha256OfFile(path)});
+  }
+  return simulation::ExtendedModelText(model);
+}
+
 }  // namespace abbe::apps

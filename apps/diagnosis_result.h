@@ -1,11 +1,14 @@
 // The result of `abbe diagnose` as data (docs/diagnose.md) and as text.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "diagnosis/diagnose.h"
 #include "diagnosis/hold_out.h"
+#include "simulation/extended_model.h"
 
 namespace abbe::apps {
 
@@ -22,5 +25,9 @@ nlohmann::ordered_json DiagnosisJson(const diagnosis::Diagnosis& diagnosis,
                                      const diagnosis::HeldOutGain& gain);
 std::string DiagnosisText(const diagnosis::Diagnosis& diagnosis,
                           const diagnosis::HeldOutGain& gain);
+
+// The file of a model, which states the recordings that it was found from and their hashes.
+std::string ModelText(simulation::ExtendedModel model,
+                      const std::vector<std::filesystem::path>& recordings);
 
 }  // namespace abbe::apps

@@ -11,6 +11,7 @@ namespace abbe::apps {
 simulation::Instruments InstrumentsOf(const MachineFile& file);
 
 // Also of a file without [devices], which is enough for runs with a reference, an arm or a shaft.
+simulation::Instruments InstrumentsIn(const settings::Document& document);
 simulation::Instruments ReadInstruments(const std::filesystem::path& path);
 
 }  // namespace abbe::apps

@@ -8,6 +8,7 @@
 
 #include "apps/command.h"
 #include "apps/commands.h"
+#include "apps/evaluate_plate.h"
 #include "apps/machine_file.h"
 #include "apps/machine_recording.h"
 #include "apps/plate_result.h"
@@ -53,30 +54,11 @@ int Plate(const PlateArguments& arguments) {
   const machine::Machine machine = ReadMachineOf(arguments.machine);
   nlohmann::ordered_json whose = nlohmann::ordered_json::object();
   const auto setups = ReadSetups(arguments, machine, whose);
-  const auto runs_on = [&](const machine::VolumetricModel& model) {
-    std::vector<simulation::SimulatedRun> runs;
-    runs.reserve(setups.size());
-    for (const auto& setup : setups) {
-      runs.push_back(simulation::SimulatePlate(model, machine.reference, setup));
-    }
-    return runs;
-  };
-  PlateResult result{
-      fusion::Fuse(machine, runs_on(fusion::UnknownMachine(machine)),
-                   {.choose_smoothness = !arguments.fixed_smoothness, .runs_on = runs_on}),
-      {},
-      {},
-      {}};
+  PlateOptions options{.fixed_smoothness = arguments.fixed_smoothness,
+                       .holdout = arguments.holdout};
+  if (!arguments.specimen.empty()) options.specimen = ReadRecordingOf(machine, arguments.specimen);
+  const PlateResult result = EvaluatePlate(machine, setups, options);
   const fusion::FuseReport& fused = result.fused;
-  result.diagonals = fusion::SquarenessByDiagonals(fused, machine.reference, setups);
-  if (arguments.holdout > 0) {
-    result.interpolators =
-        fusion::CompareInterpolators(machine, fused.chosen_smoothness, setups, arguments.holdout);
-  }
-  if (!arguments.specimen.empty()) {
-    result.specimen =
-        fusion::CheckSpecimen(fused.map, ReadRecordingOf(machine, arguments.specimen));
-  }
   map::WriteMap(arguments.network ? WithNetworks(fused.map, setups) : fused.map, arguments.out);
   if (!arguments.json.empty()) {
     auto json = PlateJson(result);

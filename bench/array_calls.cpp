@@ -10,6 +10,7 @@
 #include "machine/volumetric_field.h"
 #include "map/map_file.h"
 #include "probes/head_inversion.h"
+#include "probes/inversion_of_rows.h"
 #include "relm/pivot_linkage.h"
 
 namespace {
@@ -67,9 +68,22 @@ void HeadInversion(benchmark::State& state) {
   }
 }
 
+void HeadSmallAngles(benchmark::State& state) {
+  using namespace abbe::probes;
+  const Eigen::MatrixXd readings = 1e-6 * Numbers(5);
+  const Eigen::VectorXd travel = 0.06 * Numbers(1).row(0).transpose();
+  for (auto _ : state) {
+    const SmallAngleInversion invert(NominalLayout(), MovingBody::kTarget);
+    ErrorRows errors(6, kRows);
+    InvertRows(invert, readings, travel, Eigen::VectorXd(), errors);
+    benchmark::DoNotOptimize(errors.data());
+  }
+}
+
 BENCHMARK(VolumetricError);
 BENCHMARK(LinkageTips);
 BENCHMARK(HeadInversion);
+BENCHMARK(HeadSmallAngles);
 
 }  // namespace
 

@@ -43,7 +43,8 @@ def main(program, abbe_program):
         readings, travel = 1e-6 * numbers(5), 0.06 * numbers(1)[:, 0]
         linkage = abbe.PivotLinkage(0.12, 0.12)
         calls = {"VolumetricError": lambda: map_.error(positions), "LinkageTips": lambda: linkage.tips(angles),
-                 "HeadInversion": lambda: abbe.invert_head(readings, travel)}
+                 "HeadInversion": lambda: abbe.invert_head(readings, travel),
+                 "HeadSmallAngles": lambda: abbe.invert_head(readings, travel, model="small-angle")}
         least = {name: [np.inf, np.inf] for name in calls}
         for _ in range(TURNS):
             done = subprocess.run([program, file, "--benchmark_format=json", "--benchmark_min_time=0.2"], check=True,

@@ -1,5 +1,7 @@
 #include "diagnosis/search.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +10,7 @@
 #include "diagnosis/scatter.h"
 #include "diagnosis/standing_pairs.h"
 #include "failure/failure.h"
+#include "failure/progress.h"
 #include "simulation/causes/registry.h"
 #include "simulation/causes/shaft.h"
 #include "simulation/excess_noise.h"
@@ -50,8 +53,11 @@ Search::Search(const Campaign& campaign)
 Diagnosis Search::Run() {
   diagnosis_.chi_before = fit_->chi_square() / fit_->rows();
   // Each sensor at a shaft may have a gain and a characteristic of its own.
-  while (CausesTaken() < kMostCauses + 2 * rim_sensors_ && TakeBest()) {
-  }
+  Steps steps(2);
+  do {
+    steps.Begin(fmt::format("cause {}", members_.size() + 1));
+  } while (CausesTaken() < kMostCauses + 2 * rim_sensors_ && TakeBest());
+  steps.Begin("leaving out each cause");
   DropSuperfluous();
   if (rim_sensors_ > 0) ForgiveRivalsFound();
   Describe();

@@ -9,6 +9,7 @@
 
 #include "estimation/linearization.h"
 #include "failure/failure.h"
+#include "failure/progress.h"
 #include "fusion/contradiction.h"
 #include "fusion/encoder_check.h"
 #include "fusion/mapping.h"
@@ -86,6 +87,8 @@ class CalibrationJob {
         simulation::MakeLinkageProblem(simulation_, runs_, options_.problem);
     RefusePoorPoses(runs_, estimation::Layout(problem).columns());
     CalibrationReport report;
+    Steps steps(2);
+    steps.Begin("fit of all poses");
     report.fit = Solve(problem);
     report.excess = Excess(report.fit);
     if (report.excess > kBadFit) CheckAllEncoders();
@@ -101,6 +104,7 @@ class CalibrationJob {
     report.before = DistancesOf(All(before));
     const auto gaps = Gaps(report.calibration, runs_);
     report.after = DistancesOf(All(gaps));
+    steps.Begin("poses held out");
     const auto held_out = HeldOut();
     report.held_out = DistancesOf(All(held_out));
     report.calibration.held_out_rms = report.held_out.rms;
@@ -171,7 +175,9 @@ class CalibrationJob {
     for (const LinkageRun& run : runs_) {
       gaps.emplace_back(Matrix3Xd::Constant(3, run.poses(), kNoGap));
     }
+    Steps steps(0);
     for (int fold = 0; options_.folds > 1 && fold < options_.folds; ++fold) {
+      steps.Begin(fmt::format("fit without part {}", fold + 1));
       std::vector<LinkageRun> rest, left_out;
       std::vector<std::vector<Index>> chosen;
       for (const LinkageRun& run : runs_) {

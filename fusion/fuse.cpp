@@ -1,5 +1,7 @@
 #include "fusion/fuse.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +13,7 @@
 #include <utility>
 
 #include "estimation/linearization.h"
+#include "failure/progress.h"
 #include "fusion/marginal.h"
 #include "fusion/plate_form.h"
 #include "fusion/reversals.h"
@@ -71,6 +74,8 @@ class FuseJob {
   }
 
   FuseReport Run() {
+    Steps steps(kFits + 1);
+    steps.Begin("fit 1");
     Fitted now = Fit({}, options_.choose_smoothness);
     for (int fits = 1; fits < kFits; ++fits) {
       const Judged reversals = JudgeReversals(machine_, now.fit, runs_);
@@ -80,9 +85,11 @@ class FuseJob {
       const bool condensed = change != Change::kKnots && Condense(now.fit);
       if (!options_.choose_smoothness && !condensed && reversals == Judged::kAsBefore) break;
       const bool last = change == Change::kNone || fits + 1 == kFits;
+      steps.Begin(fmt::format("fit {}", fits + 1));
       now = Fit(now.fit.blocks, options_.choose_smoothness && !last);
       if (last) break;
     }
+    steps.Begin("the map");
     return Report(std::move(now));
   }
 
@@ -234,6 +241,8 @@ class FuseJob {
       report.follows.push_back(Follows(now, r));
     }
     if (options_.holdout > 0) {
+      Steps steps(1);
+      steps.Begin("blocks of rows held out");
       report.held_out = HoldOut(options_.holdout, runs_, [&](const auto& runs) {
         return MakeMachineProblem(machine_, model_, Prior(), runs, noise_);
       });

@@ -1,6 +1,7 @@
 // The readers of the kinds of results, and what they have in common. For use within history/.
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>

@@ -6,6 +6,7 @@
 #include "diagnosis/found_model.h"
 #include "diagnosis/measured_noise.h"
 #include "diagnosis/next_run.h"
+#include "failure/progress.h"
 #include "simulation/kinds.h"
 
 namespace abbe::learned {
@@ -47,15 +48,26 @@ simulation::ExtendedModel ModelOf(const Explanation& all) {
 
 Explanation Explain(const std::vector<Recording>& recordings, simulation::Instruments instruments,
                     const ExplainOptions& options) {
+  // Each recording, the search, the next runs, rows held out, and what is learned.
+  Steps steps(recordings.size() + (options.learn ? 4 : 3));
   RefuseStrangers(recordings, instruments);
   diagnosis::UseMeasuredNoise(recordings, instruments);
   Explanation all{std::make_shared<diagnosis::Campaign>(std::move(instruments)), {}};
-  for (const Recording& each : recordings) all.campaign->Add(each);
+  for (const Recording& each : recordings) {
+    steps.Begin("simulating " + each.name);
+    all.campaign->Add(each);
+  }
   all.campaign->CarryOn(options.carried);
+  steps.Begin("looking for causes");
   all.diagnosis = diagnosis::Diagnose(*all.campaign);
+  steps.Begin("planning further runs");
   diagnosis::AddNextRuns(all.found(), recordings, all.diagnosis);
   const auto causes = ModelledCauses(all.diagnosis);
-  if (options.learn) all.learning = Learn(all.diagnosis);
+  if (options.learn) {
+    steps.Begin("learning what is left");
+    all.learning = Learn(all.diagnosis);
+  }
+  steps.Begin("holding rows out");
   std::string why_not;
   all.gain = diagnosis::HoldOutWhereTheySuffice(
       all.found(), recordings, all.learning.IsToBeDecided() ? all.learning.Candidates() : causes,

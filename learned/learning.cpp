@@ -257,8 +257,10 @@ Step Learner::Run(bool only_smooth) {
   Step step{start_, {}, {}, diagnosis::FindStructures(*start_), {}};
   step.left = LeftBeside(*start_, step.structures);
   const std::size_t most = only_smooth ? kMostSmooth : kMostTerms;
-  while (!step.left.empty() && step.terms.size() < most && TakeNext(only_smooth, step)) {
-  }
+  Steps steps(1);
+  do {
+    steps.Begin("a term");
+  } while (!step.left.empty() && step.terms.size() < most && TakeNext(only_smooth, step));
   if (!step.terms.empty()) TakeSizes(step, causes_.size(), step.terms);
   return step;
 }

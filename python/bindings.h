@@ -31,6 +31,8 @@ void BindCompensation(py::module_& m);
 void BindPaths(py::module_& m);
 void BindRelm(py::module_& m);
 void BindFusion(py::module_& m);
+void BindSimulation(py::module_& m);
 void BindDiagnosis(py::module_& m);
+void BindFleet(py::module_& m);
 
 }  // namespace abbe::python

@@ -1,27 +1,52 @@
+#include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <tuple>
 
+#include "apps/diagnose_plan.h"
 #include "apps/diagnosis_result.h"
 #include "apps/learned_result.h"
+#include "apps/plan_result.h"
 #include "bindings.h"
 #include "learned/carried.h"
 #include "learned/explain.h"
 #include "learned/words.h"
 #include "machine.h"
+#include "map/text_file.h"
+#include "progress.h"
 
 namespace abbe::python {
 namespace {
 
 using diagnosis::Finding;
+using diagnosis::Plan;
+using diagnosis::PlannedCause;
 using learned::Explanation;
 using learned::Learned;
 
 Explanation Diagnose(const std::vector<recording::Recording>& recordings,
                      const MachineFile& machine, bool learn,
-                     const std::vector<std::filesystem::path>& carried) {
-  Explanation all =
-      learned::Explain(recordings, machine.instruments, {learn, learned::CarriedFrom(carried)});
-  if (all.why_no_gain) all.diagnosis.notes.push_back(*all.why_no_gain);
-  return all;
+                     const std::vector<std::filesystem::path>& carried, const Asks& progress) {
+  return Long(progress, [&] {
+    Explanation all =
+        learned::Explain(recordings, machine.instruments, {learn, learned::CarriedFrom(carried)});
+    if (all.why_no_gain) all.diagnosis.notes.push_back(*all.why_no_gain);
+    return all;
+  });
+}
+
+Plan PlanOf(std::vector<recording::Recording> recordings, const MachineFile& machine,
+            const std::optional<std::string>& campaign) {
+  for (const recording::Recording& each : recordings) machine.RefuseOther(each);
+  if (campaign) {
+    for (auto& path : apps::CampaignPaths(machine.document(), *campaign)) {
+      recordings.push_back(std::move(path));
+    }
+  }
+  if (recordings.empty()) {
+    throw InputError("recordings: there is none, and no campaign; give runs to plan with");
+  }
+  return apps::PlanOfPaths(std::move(recordings), machine.instruments);
 }
 
 // {"width_um": (7.98, 0.05)}: what it is, and its U95, in the unit of the name.
@@ -109,6 +134,16 @@ void BindDiagnosis(py::module_& m) {
           "model", [](const Explanation& s) { return ExtendedModelText(learned::ModelOf(s)); },
           "model(self, /)\n--\n\nThe extended model (TOML), for --causes of the program.")
       .def(
+          "write",
+          [](const Explanation& s, const std::filesystem::path& path,
+             const std::vector<std::filesystem::path>& recordings) {
+            map::WriteWhole(apps::ModelText(learned::ModelOf(s), recordings), path);
+          },
+          py::arg("path"), py::arg("recordings") = std::vector<std::filesystem::path>{},
+          "write(self, path, recordings=())\n--\n\n"
+          "The extended model with its verdict as a file, as `abbe diagnose -o`; recordings: the "
+          "files it was found from, which are stated with their hashes.")
+      .def(
           "to_dict",
           [](const Explanation& s) {
             auto json = apps::DiagnosisJson(s.diagnosis, s.gain);
@@ -134,11 +169,65 @@ void BindDiagnosis(py::module_& m) {
           },
           "__repr__(self, /)\n--\n\n");
   m.def("diagnose", &Diagnose, py::arg("recordings"), py::arg("machine"), py::arg("learn") = false,
-        py::arg("learned") = std::vector<std::filesystem::path>{}, py::call_guard<WithoutLock>(),
-        "diagnose(recordings, machine, learn=False, learned=())\n--\n\n"
+        py::arg("learned") = std::vector<std::filesystem::path>{}, py::arg("progress") = py::none(),
+        "diagnose(recordings, machine, learn=False, learned=(), progress=None)\n--\n\n"
         "Which causes explain the recordings of a machine, as `abbe diagnose`. With `learn`, what "
         "no cause explains is learned; `learned` are extended models of other machines, whose "
-        "terms compete. Takes a minute on a whole campaign; Ctrl-C ends it.");
+        "terms compete. Takes a minute on a whole campaign; Ctrl-C ends it. progress(done, total, "
+        "what): called as the work goes on; total grows while more is found to do.");
+  py::class_<PlannedCause>(m, "PlannedCause", "A cause that planned runs would show, or not.")
+      .def_property_readonly(
+          "cause", [](const PlannedCause& s) { return s.candidate.cause->id; }, "\"backlash\".")
+      .def_property_readonly(
+          "object", [](const PlannedCause& s) { return s.candidate.object.name(); }, "\"X\" ...")
+      .def_property_readonly(
+          "name", [](const PlannedCause& s) { return s.candidate.Name(); }, "\"backlash:X\".")
+      .def_readonly("visible", &PlannedCause::visible,
+                    "Standard deviations by which one of plausible size stands out.")
+      .def_property_readonly("seen", &PlannedCause::seen, "Whether it would be seen.")
+      .def(
+          "__repr__",
+          [](const PlannedCause& s) {
+            return fmt::format("<abbe.PlannedCause {}, {:.1f} sd>", s.candidate.Name(), s.visible);
+          },
+          "__repr__(self, /)\n--\n\n");
+  py::class_<Plan>(m, "Plan", "Which causes a set of runs would show, before anything is measured.")
+      .def_readonly("causes", &Plan::causes)
+      .def_property_readonly(
+          "cannot_show",
+          [](const Plan& s) {
+            return apps::PlanJson(s).at("cannot_show").get<std::vector<std::string>>();
+          },
+          "The names of those that would not be seen at their usual size.")
+      .def_property_readonly(
+          "alike",
+          [](const Plan& s) {
+            std::vector<std::tuple<std::string, std::string, double>> alike;
+            for (const auto& [first, second, cosine] : s.alike) {
+              alike.emplace_back(s.causes[first].candidate.Name(),
+                                 s.causes[second].candidate.Name(), cosine);
+            }
+            return alike;
+          },
+          "Pairs of names that would be seen and not be separated, with their cosine.")
+      .def(
+          "to_dict", [](const Plan& s) { return ToPython(apps::PlanJson(s)); },
+          "to_dict(self, /)\n--\n\nAll of it, the keys of docs/diagnose.md.")
+      .def("__str__", &apps::PlanText, "__str__(self, /)\n--\n\n")
+      .def(
+          "__repr__",
+          [](const Plan& s) {
+            return fmt::format("<abbe.Plan: {} of {} causes would be seen>",
+                               std::ranges::count_if(s.causes, &PlannedCause::seen),
+                               s.causes.size());
+          },
+          "__repr__(self, /)\n--\n\n");
+  m.def("plan", &PlanOf, py::arg("recordings"), py::arg("machine"),
+        py::arg("campaign") = py::none(), py::call_guard<WithoutLock>(),
+        "plan(recordings, machine, campaign=None)\n--\n\n"
+        "Which causes runs on the paths of these recordings would show, and from which size on, as "
+        "`abbe diagnose --plan`; their readings do not matter. campaign: the runs of one of the "
+        "virtual rig besides, \"minimal\", \"standard\" or \"full\".");
 }
 
 }  // namespace abbe::python

@@ -2,6 +2,7 @@
 
 #include "apps/arm_tables.h"
 #include "apps/calibration_tables.h"
+#include "apps/evaluate_plate.h"
 #include "apps/fuse_result.h"
 #include "bindings.h"
 #include "error_map.h"
@@ -10,6 +11,7 @@
 #include "fusion/fuse_sources.h"
 #include "machine.h"
 #include "map/text_file.h"
+#include "progress.h"
 #include "relm/linkage_text.h"
 #include "simulation/arm/arm_run.h"
 #include "simulation/kinds.h"
@@ -26,20 +28,22 @@ struct Calibrated {
 };
 
 Calibrated Calibrate(const Recordings& recordings, const MachineFile& machine,
-                     const std::string& model, bool displacement, int folds) {
-  const auto& linkage = machine.instruments.LinkageFor(machine.path.string());
+                     const std::string& model, bool displacement, int folds, const Asks& progress) {
+  const auto& linkage = machine.instruments.LinkageFor(machine.name());
   fusion::CalibrateOptions options{.model = relm::ErrorModelNamed(model), .folds = folds};
   options.problem.displacement = displacement;
-  std::vector<simulation::LinkageRun> runs;
-  simulation::OneBall ball("give recordings of one ball at a time");
-  for (const recording::Recording& each : recordings) {
-    machine.RefuseOther(each);
-    runs.push_back(simulation::MeansOfStays(simulation::ReadLinkageRun(each, linkage)));
-    ball.Add(each, runs.back());
-  }
-  auto report = fusion::Calibrate(machine.machine().chain, linkage, runs, options);
-  report.calibration.machine = machine.machine().name;
-  return {std::move(report), std::move(runs)};
+  return Long(progress, [&] {
+    std::vector<simulation::LinkageRun> runs;
+    simulation::OneBall ball("give recordings of one ball at a time");
+    for (const recording::Recording& each : recordings) {
+      machine.RefuseOther(each);
+      runs.push_back(simulation::MeansOfStays(simulation::ReadLinkageRun(each, linkage)));
+      ball.Add(each, runs.back());
+    }
+    auto report = fusion::Calibrate(machine.machine().chain, linkage, runs, options);
+    report.calibration.machine = machine.machine().name;
+    return Calibrated{std::move(report), std::move(runs)};
+  });
 }
 
 std::vector<std::string> CalibrationNames(const Calibrated& self) {
@@ -71,7 +75,7 @@ struct CalibratedArm {
 
 CalibratedArm CalibrateArm(const Recordings& recordings, const MachineFile& machine,
                            const Recordings& tests) {
-  const auto& linkage = machine.instruments.LinkageFor(machine.path.string());
+  const auto& linkage = machine.instruments.LinkageFor(machine.name());
   std::vector<simulation::RunSource> sources;
   const auto poses_of = [&](const Recordings& of) {
     std::vector<fusion::ArmPoses> poses;
@@ -89,8 +93,8 @@ CalibratedArm CalibrateArm(const Recordings& recordings, const MachineFile& mach
 }
 
 void WriteArm(const CalibratedArm& self, const std::filesystem::path& path) {
-  map::WriteWhole(relm::WithGeometry(map::ReadWhole(self.machine.path), self.found.written,
-                                     self.found.u95, self.machine.path.string()),
+  map::WriteWhole(relm::WithGeometry(self.machine.keys.text(), self.found.written, self.found.u95,
+                                     self.machine.name()),
                   path);
 }
 
@@ -103,15 +107,34 @@ std::vector<double> RmsOf(const std::vector<fusion::ArmFigures>& of,
 }
 
 fusion::FuseReport Fuse(const Recordings& recordings, const MachineFile& machine,
-                        bool fixed_smoothness, int holdout) {
-  std::vector<simulation::RunSource> sources;
-  for (const recording::Recording& each : recordings) {
-    machine.RefuseOther(each);
-    sources.push_back(simulation::SourceOf(each));
-  }
-  simulation::RefuseStrangers(sources, machine.instruments);
-  return fusion::FuseSources(sources, machine.instruments,
-                             {.choose_smoothness = !fixed_smoothness, .holdout = holdout});
+                        bool fixed_smoothness, int holdout, const Asks& progress) {
+  return Long(progress, [&] {
+    std::vector<simulation::RunSource> sources;
+    for (const recording::Recording& each : recordings) {
+      machine.RefuseOther(each);
+      sources.push_back(simulation::SourceOf(each));
+    }
+    simulation::RefuseStrangers(sources, machine.instruments);
+    return fusion::FuseSources(sources, machine.instruments,
+                               {.choose_smoothness = !fixed_smoothness, .holdout = holdout});
+  });
+}
+
+// The 21 errors by a hole plate.
+apps::PlateResult EvaluatePlate(const Recordings& recordings, const MachineFile& machine,
+                                int holdout, const std::optional<recording::Recording>& specimen,
+                                bool fixed_smoothness, const Asks& progress) {
+  return Long(progress, [&] {
+    std::vector<simulation::PlateSetup> setups;
+    for (const recording::Recording& each : recordings) {
+      machine.RefuseOther(each);
+      for (auto& setup : simulation::ReadPlate(each)) setups.push_back(std::move(setup));
+    }
+    if (specimen) machine.RefuseOther(*specimen);
+    return apps::EvaluatePlate(
+        machine.machine(), setups,
+        {.fixed_smoothness = fixed_smoothness, .holdout = holdout, .specimen = specimen});
+  });
 }
 
 }  // namespace
@@ -166,9 +189,11 @@ void BindFusion(py::module_& m) {
           "__repr__(self, /)\n--\n\n");
   m.def("calibrate", &Calibrate, py::arg("recordings"), py::arg("machine"),
         py::arg("model") = "complete", py::arg("displacement") = false, py::arg("folds") = 5,
-        py::call_guard<WithoutLock>(),
-        "calibrate(recordings, machine, model='complete', displacement=False, folds=5)\n--\n\n"
-        "The parameters of the linkage from recordings of it, as `abbe calibrate`.");
+        py::arg("progress") = py::none(),
+        "calibrate(recordings, machine, model='complete', displacement=False, folds=5, "
+        "progress=None)\n--\n\n"
+        "The parameters of the linkage from recordings of it, as `abbe calibrate`. "
+        "progress(done, total, what): called as the work goes on.");
   py::class_<CalibratedArm>(m, "ArmCalibration",
                             "The numbers of an arm before an instrument, with U95.")
       .def_property_readonly(
@@ -230,10 +255,37 @@ void BindFusion(py::module_& m) {
           },
           "__repr__(self, /)\n--\n\n");
   m.def("fuse", &Fuse, py::arg("recordings"), py::arg("machine"),
-        py::arg("fixed_smoothness") = false, py::arg("holdout") = 0, py::call_guard<WithoutLock>(),
-        "fuse(recordings, machine, fixed_smoothness=False, holdout=0)\n--\n\n"
+        py::arg("fixed_smoothness") = false, py::arg("holdout") = 0,
+        py::arg("progress") = py::none(),
+        "fuse(recordings, machine, fixed_smoothness=False, holdout=0, progress=None)\n--\n\n"
         "One error map of the machine from recordings of any kind, as `abbe fuse`; holdout: every "
-        "n-th block of rows is held out.");
+        "n-th block of rows is held out. progress(done, total, what): called as the work goes on; "
+        "total grows while more is found to do.");
+  py::class_<apps::PlateResult>(m, "PlateReport", "The 21 errors of a machine by a hole plate.")
+      .def_property_readonly(
+          "map", [](const apps::PlateResult& s) { return Map(s.fused.map); }, "The error map.")
+      .def_property_readonly(
+          "noise", [](const apps::PlateResult& s) { return s.fused.noise; },
+          "Of each set-up, over what is stated.")
+      .def(
+          "to_dict", [](const apps::PlateResult& s) { return ToPython(apps::PlateJson(s)); },
+          "to_dict(self, /)\n--\n\nAll of it, the keys of docs/plate.md.")
+      .def("__str__", &apps::PlateTable, "__str__(self, /)\n--\n\n")
+      .def(
+          "__repr__",
+          [](const apps::PlateResult& s) {
+            return fmt::format("<abbe.PlateReport of \"{}\": {} set-ups>",
+                               s.fused.map.origin().machine, s.fused.runs.size());
+          },
+          "__repr__(self, /)\n--\n\n");
+  m.def("evaluate_plate", &EvaluatePlate, py::arg("recordings"), py::arg("machine"),
+        py::arg("holdout") = 0, py::arg("specimen") = py::none(),
+        py::arg("fixed_smoothness") = false, py::arg("progress") = py::none(),
+        "evaluate_plate(recordings, machine, holdout=0, specimen=None, fixed_smoothness=False, "
+        "progress=None)\n--\n\n"
+        "The 21 errors of a machine from recordings of a hole plate, as `abbe plate`; holdout: "
+        "every n-th hole is left out in turn; specimen: a recording of lengths, measured before "
+        "and after correction. progress(done, total, what): called as the work goes on.");
 }
 
 }  // namespace abbe::python

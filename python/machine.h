@@ -1,18 +1,25 @@
-// A machine file as Python holds it.
+// A machine file as Python holds it: its text and what it describes.
 #pragma once
 
 #include <filesystem>
 
 #include "recording/recording.h"
+#include "settings/document.h"
+#include "settings/toml_keys.h"
 #include "simulation/instruments.h"
 
 namespace abbe::python {
 
 struct MachineFile {
-  std::filesystem::path path;
+  settings::TomlKeys keys;
   simulation::Instruments instruments;
 
+  // InputError with the name of the text, line and key.
+  explicit MachineFile(settings::TomlKeys of);
+
+  const std::string& name() const { return keys.name(); }
   const machine::Machine& machine() const { return instruments.machine; }
+  settings::Document document() const { return settings::Document::Parse(keys.text(), name()); }
   // InputError when it names another machine.
   void RefuseOther(const recording::Recording& recording) const;
 };

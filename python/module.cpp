@@ -29,6 +29,8 @@ PYBIND11_MODULE(_abbe, m) {
   BindPaths(m);
   BindRelm(m);
   BindFusion(m);
+  BindSimulation(m);
   BindDiagnosis(m);
+  BindFleet(m);
   NameAfterPackage(m);
 }

@@ -19,7 +19,7 @@ struct Circle {
 MeasuredPath LinkagePathOf(const recording::Recording& recording, const MachineFile& machine,
                            const std::optional<std::filesystem::path>& calibration) {
   machine.RefuseOther(recording);
-  apps::LinkageReader reader(apps::ReadMachineFile(machine.path), calibration.value_or(""));
+  apps::LinkageReader reader(apps::ReadMachineFile(machine.document()), calibration.value_or(""));
   return reader.Path(recording);
 }
 

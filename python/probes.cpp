@@ -4,14 +4,13 @@
 #include "bindings.h"
 #include "machine.h"
 #include "probes/head_inversion.h"
+#include "probes/inversion_of_rows.h"
 #include "probes/sweep_reduction.h"
 
 namespace abbe::python {
 namespace {
 
 using namespace abbe::probes;
-using Errors = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-using Readings = Eigen::Matrix<double, kProbes, Eigen::Dynamic>;
 
 MovingBody MovingNamed(const std::string& moving) {
   if (moving == "target") return MovingBody::kTarget;
@@ -51,10 +50,10 @@ py::array LayoutArray(double arm, double side_height) {
 PerProbe<> ReadingsAt(const double* row) { return {row[0], row[1], row[2], row[3], row[4]}; }
 
 template <typename Model>
-Readings ReadingsOf(const Eigen::Map<const Errors>& errors, const double* travel,
-                    const Model& model) {
+ReadingRows ReadingsOf(const Eigen::Map<const ErrorRows>& errors, const double* travel,
+                       const Model& model) {
   const WithoutLock without_lock;
-  Readings readings(static_cast<int>(kProbes), errors.cols());
+  ReadingRows readings(static_cast<int>(kProbes), errors.cols());
   for (Eigen::Index i = 0; i < errors.cols(); ++i) {
     const auto e = errors.col(i);
     const PerProbe<> row = model(HeadErrors<>{e[0], e[1], e[2], e[3], e[4], e[5]}, travel[i]);
@@ -87,13 +86,28 @@ py::array Inverted(const Array& readings, const Array& travel, const std::option
   const auto r = Columns<kProbes>(readings, "readings_m");
   const double* d = Numbers(travel, r.cols(), "travel_m").data();
   const double* x = exx ? Numbers(*exx, r.cols(), "positioning_m").data() : nullptr;
-  Errors errors(6, r.cols());
+  ErrorRows errors(6, r.cols());
   {
     const WithoutLock without_lock;
     for (Eigen::Index i = 0; i < r.cols(); ++i) {
       const auto e = invert(ReadingsAt(r.col(i).data()), d[i], x ? x[i] : 0.0);
       errors.col(i) << e.eax, e.ebx, e.ecx, e.eyx, e.ezx, e.exx;
     }
+  }
+  return Rows(std::move(errors));
+}
+
+// By the kernels for many stations.
+py::array InvertedSmall(const Array& readings, const Array& travel, const std::optional<Array>& exx,
+                        const SmallAngleInversion& invert) {
+  const auto r = Columns<kProbes>(readings, "readings_m");
+  const auto d = Numbers(travel, r.cols(), "travel_m");
+  Eigen::Map<const Eigen::VectorXd> x(nullptr, 0);
+  if (exx) new (&x) Eigen::Map<const Eigen::VectorXd>(Numbers(*exx, r.cols(), "positioning_m"));
+  ErrorRows errors(6, r.cols());
+  {
+    const WithoutLock without_lock;
+    InvertRows(invert, r, d, x, errors);
   }
   return Rows(std::move(errors));
 }
@@ -105,7 +119,7 @@ py::array InvertHead(const Array& readings, const Array& travel, const std::stri
   const MovingBody body = MovingNamed(moving);
   if (model == "rigid") return Inverted(readings, travel, exx, RigidInversion(LinesOf(at), body));
   if (model == "small-angle") {
-    return Inverted(readings, travel, exx, SmallAngleInversion(at, body));
+    return InvertedSmall(readings, travel, exx, SmallAngleInversion(at, body));
   }
   if (model == "simplified") return Inverted(readings, travel, exx, SimplifiedInversion(at, body));
   RefuseModel(model, "\"rigid\", \"small-angle\", \"simplified\"");

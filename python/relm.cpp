@@ -54,8 +54,7 @@ py::array Jacobian(const PivotLinkage& self, const Array& angles) {
 }
 
 LinkageModel MakeLinkage(const MachineFile& machine, const std::string& model) {
-  return MakeLinkageModel(machine.instruments.LinkageFor(machine.path.string()),
-                          ErrorModelNamed(model));
+  return MakeLinkageModel(machine.instruments.LinkageFor(machine.name()), ErrorModelNamed(model));
 }
 
 LinkageReadings LinkageReadingsOf(const LinkageModel& model, const Array& angles,

@@ -43,7 +43,7 @@ ARROWS = {
     "rig": "failure random settings recording hal",
     "study": "failure random settings recording hal estimation machine probes paths relm simulation fusion diagnosis rig",
     "apps": "failure random settings recording geometry estimation standards hal machine map compensation probes paths relm simulation fusion certificate diagnosis learned investigate history track fleet report live rig study",
-    "python": "failure settings recording estimation machine map compensation probes paths relm simulation fusion diagnosis learned apps",
+    "python": "failure settings recording estimation machine map compensation probes paths relm simulation fusion diagnosis learned fleet apps",
 }
 
 # header of a library or of a transport -> the files that may include it; everybody else goes through them.

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """The checks of the headers' comments must bark: at a name that is gone, at an example that would not be compiled, at
-a contract that got poorer."""
+a contract that got poorer, at a name that no include brings."""
 import tomllib
 import unittest
 
 import header_contract
 import header_examples
+import header_includes
 import header_names
 import small_house
 
@@ -46,6 +47,29 @@ class HeadersTest(small_house.HouseTest):
 
     def test_what_exists_is_not_found(self):
         self.assertEqual(self.names("See Volume(), ball.h, relm/ball.h and docs/sweep.md; export_NAME.cpp."), [])
+
+    def lacks(self, includes, code):
+        """The names that a header of relm/ lacks, beside one of recording/ and one of relm/ that includes it."""
+        root = self.house({
+            "recording/recording.h": "#pragma once\nnamespace abbe::recording {\nstruct Recording {};\n"
+                                     "Recording Read(const char* path);\ninline constexpr int kRows = 3;\n}\n",
+            "relm/ball.h": '#pragma once\n#include "recording/recording.h"\n' + HEADER.split("#pragma once")[1].replace(
+                "class Ball", "namespace abbe::relm {\nclass Ball") + "}\n",
+            "relm/a.h": f"#pragma once\n{includes}\nnamespace abbe::relm {{\n{code}\n}}\n"})
+        return [line.split(" uses ")[1].split(" and ")[0] for line in header_includes.complaints(root)]
+
+    def test_a_name_without_its_header_is_found(self):
+        self.assertEqual(self.lacks("", "recording::Recording Of(Ball ball);"), ["recording::Recording", "Ball"])
+        self.assertEqual(self.lacks("", "inline int rows = recording::kRows; // Ball"), ["recording::kRows"])
+        self.assertEqual(self.lacks("#include <vector>", "std::vector<Eigen::Vector3d> Points(std::string text);"),
+                         ["std::string", "Eigen::"])
+
+    def test_a_name_that_comes_with_another_header_is_not_found(self):
+        self.assertEqual(self.lacks('#include "relm/ball.h"', "recording::Recording Of(Ball ball);"), [])
+        self.assertEqual(self.lacks("#include <string>", 'inline std::string ball = "Ball";'), [])
+
+    def test_a_declaration_in_advance_will_do(self):
+        self.assertEqual(self.lacks("", "class Ball;\nvoid Roll(Ball& ball);"), [])
 
     def test_an_example_becomes_a_function_at_its_line(self):
         text, count = header_examples.source(self.house({"relm/ball.h": HEADER}), {"relm": {"ball.h": "double radius"}})

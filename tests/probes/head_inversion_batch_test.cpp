@@ -8,6 +8,7 @@
 
 #include "failure/failure.h"
 #include "probes/head_inversion.h"
+#include "probes/inversion_of_rows.h"
 #include "random/counter_random.h"
 #include "tests/each_width.h"
 
@@ -147,6 +148,49 @@ TEST(HeadInversionBatch, RefusesColumnsOfDifferentLengths) {
   Errors errors;
   EXPECT_THROW(invert.Invert(s.readings, s.d.head(4), s.exx, errors), InputError);
   EXPECT_THROW(invert.Invert(s.readings, s.d, s.exx.head(4), errors), InputError);
+}
+
+TEST(HeadInversionOfRows, GivesBackTheErrorsOfTheReadings) {
+  for (const MovingBody moving : {MovingBody::kTarget, MovingBody::kHead}) {
+    const SmallAngleInversion invert(NominalLayout(), moving);
+    for (const Index count : {0, 1, 255, 256, 257, 3001}) {
+      const Stations s = Drawn(moving, count);
+      const ReadingRows readings = s.readings.transpose();
+      ErrorRows errors(6, count), without(6, count);
+      InvertRows(invert, readings, s.d, s.exx, errors);
+      InvertRows(invert, readings, s.d, Eigen::VectorXd(), without);
+      if (count == 0) continue;
+      EXPECT_LT(WorstAngle(errors.transpose(), s.truth), 8 * kEps * kOverArm);
+      EXPECT_LT(WorstTranslation(errors.transpose(), s.truth), 8 * kEps * kReading);
+      EXPECT_EQ(errors.row(5).transpose(), s.exx);
+      EXPECT_EQ(without.row(5).norm(), 0);
+    }
+  }
+}
+
+TEST(HeadInversionOfRows, RefusesTheFirstOfThoseThatAreRefused) {
+  const Stations s = Drawn(MovingBody::kTarget, 600);
+  const SmallAngleInversion invert(NominalLayout(), MovingBody::kTarget);
+  ReadingRows readings = s.readings.transpose();
+  readings(2, 301) = 1e3;
+  readings(1, 599) = std::nan("");
+  const PerProbe<> first{readings(0, 301), readings(1, 301), 1e3, readings(3, 301),
+                         readings(4, 301)};
+  ErrorRows errors(6, 600);
+  const std::string refused =
+      RefusalOf([&] { InvertRows(invert, readings, s.d, Eigen::VectorXd(), errors); });
+  EXPECT_EQ(refused, RefusalOf([&] { invert(first, s.d[301]); }));
+  EXPECT_NE(refused, "");
+}
+
+TEST(HeadInversionOfRows, RefusesRowsOfDifferentLengths) {
+  const Stations s = Drawn(MovingBody::kTarget, 5);
+  const SmallAngleInversion invert(NominalLayout(), MovingBody::kTarget);
+  const ReadingRows readings = s.readings.transpose();
+  ErrorRows errors(6, 5), short_of(6, 4);
+  EXPECT_THROW(InvertRows(invert, readings, s.d.head(4), s.exx, errors), InputError);
+  EXPECT_THROW(InvertRows(invert, readings, s.d, s.exx.head(4), errors), InputError);
+  EXPECT_THROW(InvertRows(invert, readings, s.d, s.exx, short_of), InputError);
 }
 
 }  // namespace head_inversion_batch_test

@@ -7,6 +7,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -109,6 +110,24 @@ class HeadTest(unittest.TestCase):
                 np.testing.assert_allclose(abbe.invert_head(readings, travel, moving, model), errors, rtol=0,
                                            atol=1e-14)
 
+    def test_readings_that_no_small_motion_gives_are_refused_in_any_row(self):
+        readings = abbe.head_readings(np.full((1000, 6), 1e-6), np.zeros(1000), model="small-angle")
+        readings[700, 2] = np.nan
+        for model in ("rigid", "small-angle"):
+            with self.assertRaises(abbe.NumericalError):
+                abbe.invert_head(readings, np.zeros(1000), model=model)
+        self.assertEqual(abbe.invert_head(readings[:0], [], model="small-angle").shape, (0, 6))
+
+    def test_the_positioning_that_is_known_is_taken(self):
+        """Moving target: a reading depends on travel and positioning by their sum alone."""
+        rng = np.random.default_rng(6)
+        errors = rng.normal(size=(700, 6)) * [1e-4, 1e-4, 1e-4, 5e-6, 5e-6, 20e-6]
+        travel = rng.uniform(0, 0.06, size=700)
+        for model in ("rigid", "small-angle"):
+            readings = abbe.head_readings(errors, travel, model=model)
+            np.testing.assert_allclose(
+                abbe.invert_head(readings, travel, model=model, positioning_m=errors[:, 5]), errors, rtol=0, atol=1e-14)
+
     def test_small_errors_are_those_of_the_published_equations(self):
         """To first order, target moving: A reads EZX + y EAX + (d - x) EBX, D reads EYX - z EAX - (d - x) ECX."""
         eax, ebx, ecx, eyx, ezx = 1e-9, 2e-9, -3e-9, 4e-9, -5e-9
@@ -152,6 +171,34 @@ class LinkageTest(Folder):
         step = h * np.eye(len(x))[2]
         slope = (model.tips(q, parameters=x + step) - model.tips(q, parameters=x - step))[0] / (2 * h)
         np.testing.assert_allclose(jacobian[0, :, 2], slope, atol=1e-8)
+
+
+class MachineTest(Folder):
+    def test_a_key_is_changed_and_all_else_stays(self):
+        key, (first, last) = "axis.X.travel_mm", self.machine["axis.X.travel_mm"]
+        longer = self.machine.changed({key: np.array([first, last + 20])})
+        self.assertEqual(longer.travels_m.tolist()[0], [first / 1e3, (last + 20) / 1e3])
+        self.assertEqual(self.machine.travels_m.tolist()[0], [first / 1e3, last / 1e3])
+        self.assertIn(key, longer.keys())
+        lines = zip(self.machine.text.splitlines(), longer.text.splitlines(), strict=True)
+        (pair,) = [(old, new) for old, new in lines if old != new]
+        self.assertEqual(pair, (f"travel_mm = [{first}, {last}]", f"travel_mm = [{first}, {last + 20}]"))
+
+    def test_what_is_written_is_read_again(self):
+        changed = self.machine.changed({"name": "other mill", "population.smoothness_mm": 33})
+        changed.write(self.path / "other.toml")
+        self.assertEqual((self.path / "other.toml").read_text(), changed.text)
+        read = abbe.read_machine(self.path / "other.toml")
+        self.assertEqual((read.name, read["population.smoothness_mm"], read.path), ("other mill", 33, self.path / "other.toml"))
+        self.assertEqual(abbe.parse_machine(changed.text, "a text").path, pathlib.Path("a text"))
+
+    def test_what_would_be_refused_is_refused(self):
+        with self.assertRaisesRegex(abbe.InputError, r"demo_mill\.toml:\d+: axis\.X\.travel_m: "):
+            self.machine.changed({"axis.X.travel_m": 1.0})
+        with self.assertRaisesRegex(abbe.InputError, "axis.X.travel_mm"):
+            self.machine.changed({"axis.X.travel_mm": "far"})
+        with self.assertRaisesRegex(abbe.InputError, "did you mean axis.X.travel_mm"):
+            self.machine["axis.X.travel_m"]
 
 
 class ResultTest(Folder):
@@ -243,6 +290,117 @@ class ResultTest(Folder):
         self.assertEqual(diagnosis.to_dict()["findings"], by_program["findings"])
         self.assertEqual([finding.object for finding in diagnosis.findings], ["X"])
         self.assertIn("backlash:X", repr(diagnosis))
+        # The model as a file is that of the program, and gives what it took out back.
+        self.program("diagnose", file, "--machine", MACHINE, "-o", self.path / "by_program.toml", "--quiet", "--force")
+        diagnosis.write(self.path / "causes.toml", [file])
+        self.assertEqual((self.path / "causes.toml").read_text(), (self.path / "by_program.toml").read_text())
+        model = abbe.read_model(self.path / "causes.toml", self.machine)
+        self.assertEqual((model.verdict, [cause.name for cause in model.causes]), ("explained", ["backlash:X"]))
+        width, u95 = model.causes[0].parameters["width_um"]
+        self.assertLess(abs(width - 8), 2 * u95)
+        model.write(self.path / "again.causes.toml")
+        self.assertEqual((self.path / "again.causes.toml").read_text(), (self.path / "causes.toml").read_text())
+        other = self.machine.changed({"name": "other"})
+        with self.assertRaisesRegex(abbe.InputError, "other"):
+            abbe.read_model(self.path / "causes.toml", other)
+        recording = abbe.read_recording(file)
+        corrected = abbe.correct_recording(recording, self.machine, self.path / "causes.toml")
+        moved_um = 1e3 * (corrected["x_mm"] - recording["x_mm"])
+        self.assertAlmostEqual(np.ptp(moved_um), width, delta=0.01)
+        self.assertFalse(abbe.diagnose([corrected], self.machine).findings)
+        with self.assertRaisesRegex(abbe.InputError, "calibrating"):
+            abbe.correct_recording(recording, self.machine, self.path / "causes.toml", "all")
+
+    def test_a_plan(self):
+        files = [self.record(f"p{axis}.csv", "--axis", axis) for axis in "XY"]
+        plan = abbe.plan([abbe.read_recording(file) for file in files], self.machine)
+        by_program = self.json_of("diagnose", "--plan", *files, "--machine", MACHINE)
+        self.assertEqual(plan.to_dict(), {key: by_program[key] for key in plan.to_dict()})
+        seen = {cause.name for cause in plan.causes if cause.seen}
+        # A cable with the wrong sign turns every error round.
+        self.assertIn("channel-sign:probe_a", seen)
+        self.assertTrue(seen.isdisjoint(plan.cannot_show))
+        self.assertTrue(all({first, second} <= seen for first, second, _ in plan.alike))
+        with self.assertRaisesRegex(abbe.InputError, "standard"):
+            abbe.plan([], self.machine, campaign="large")
+        with self.assertRaisesRegex(abbe.InputError, "runs to plan with"):
+            abbe.plan([], self.machine)
+
+    def test_a_plan_of_a_campaign(self):
+        plan = abbe.plan([], self.machine, campaign="minimal")
+        by_program = self.json_of("diagnose", "--plan", "--campaign", "minimal", "--machine", MACHINE)
+        self.assertEqual(plan.to_dict(), {key: by_program[key] for key in plan.to_dict()})
+
+    def test_a_plate(self):
+        file = self.record("plate.csv", "--plate")
+        heard = []
+        report = abbe.evaluate_plate([abbe.read_recording(file)], self.machine, holdout=4,
+                                     progress=lambda *step: heard.append(step))
+        by_program = self.json_of("plate", file, "--machine", MACHINE, "--holdout", "4", "-o", self.path / "plate.toml")
+        finite = re.sub(r"\b(NaN|Infinity)\b", "null", json.dumps(report.to_dict()))
+        self.assertEqual(json.loads(finite), {key: by_program[key] for key in report.to_dict()})
+        at = 0.5 * self.machine.travels_m.sum(axis=1)[None, :]
+        np.testing.assert_array_equal(report.map.error(at), abbe.read_map(self.path / "plate.toml").error(at))
+        self.assertEqual(len(report.noise), 5)
+        self.assertIn("holes held out", [what for _, _, what in heard])
+
+
+class FleetTest(Folder):
+    def test_it_is_that_of_the_program(self):
+        given, campaigns = [], []
+        for seed in (1, 2, 3):
+            folder = self.path / f"fleet{seed}"
+            folder.mkdir()
+            files = [self.record(folder / f"{axis}.csv", "--axis", axis, seed=seed) for axis in "XY"]
+            given.append(f"M{seed}={folder}")
+            campaigns.append(abbe.campaign_of([abbe.read_recording(file) for file in files], self.machine, f"M{seed}",
+                                              str(folder)))
+        campaigns.append(campaigns[0])  # said again of the same machine
+        fleet = abbe.fit_fleet(campaigns, self.machine)
+        self.assertEqual(fleet.machines, ["M1", "M2", "M3"])
+        self.program("fleet", "fit", *given, "--machine", MACHINE, "--store", self.path / "fleet.store", "--json",
+                     self.path / "fleet.json", "--quiet")
+        by_program = json.loads((self.path / "fleet.json").read_text())
+        self.assertEqual({key.split(".", 1)[1] for key in fleet.population}, set(by_program["population"]))
+        for key, (stated, seen, factor) in fleet.population.items():
+            line = by_program["population"][key.split(".", 1)[1]]
+            self.assertEqual(stated, line["file"])
+            self.assertEqual(math.isfinite(factor), "fleet" in line)
+            if math.isfinite(factor):  # the sums are in another order
+                self.assertAlmostEqual(seen / line["fleet"], 1.0, places=5)
+                self.assertAlmostEqual(math.log(factor) / (2 * line["u_log"]), 1.0, places=5)
+        self.assertEqual([(odd["machine"], odd["error"]) for odd in fleet.odd_errors],
+                         [(odd["machine"], odd["error"]) for odd in by_program["odd_errors"]])
+        self.assertEqual(fleet.odd_identities(), [])
+        information = campaigns[0].information
+        self.assertFalse(information.flags.owndata)
+        np.testing.assert_allclose(information, information.T, rtol=0, atol=1e-9 * np.abs(information).max())
+
+
+class ProgressTest(Folder):
+    @classmethod
+    def setUpClass(cls):
+        """Each long call, with the recording that it takes."""
+        super().setUpClass()
+        sweep = abbe.read_recording(cls.record("sweep.csv", "--axis", "X"))
+        cube = abbe.read_recording(cls.record("cube.csv", "--course", "cube", "--size", "45", "--points", "4,4,4",
+                                              "--dwell", "0.2", "--feed", "2000", "--reference"))
+        cls.calls = [(abbe.fuse, sweep), (abbe.diagnose, sweep), (abbe.calibrate, cube)]
+
+    def test_each_long_call_says_how_far_it_is(self):
+        for call, recording in self.calls:
+            heard = []
+            call([recording], self.machine, progress=lambda *step, heard=heard: heard.append(step))
+            self.assertGreater(len(heard), 2, call)
+            done, total, what = zip(*heard)
+            self.assertTrue(all(a <= b for a, b in zip(done, total)))
+            self.assertEqual((list(done), list(total)), (sorted(done), sorted(total)))
+            self.assertEqual((done[0], done[-1], what[-1]), (0, total[-1], "done"))
+
+    def test_what_it_throws_ends_the_call(self):
+        for call, recording in self.calls:
+            with self.assertRaisesRegex(KeyError, "enough"):
+                call([recording], self.machine, progress=lambda done, total, what: {}["enough"])
 
 
 class LongCallTest(Folder):
