@@ -43,10 +43,12 @@ int DiagnosePlan(const PlanArguments& arguments) {
   const MachineFile file = ReadMachineFile(arguments.machine);
   diagnosis::Campaign campaign(InstrumentsOf(file));
   std::vector<std::string> runs;
+  std::vector<recording::Recording> planned;
   for (auto& path : PathsOf(arguments, file)) {
     runs.push_back(std::filesystem::path(path.name).filename().string());
-    campaign.Add(simulation::Planned(std::move(path), campaign.instruments()));
+    planned.push_back(simulation::Planned(std::move(path), campaign.instruments()));
   }
+  campaign.Add(std::move(planned));
   const random::CounterRandom random(kSeed, kStream);
   std::uint64_t index = 0;
   const diagnosis::Plan plan = diagnosis::PlanOf(campaign, [&] { return random.Normal(index++); });

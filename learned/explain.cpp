@@ -50,7 +50,7 @@ Explanation Explain(const std::vector<Recording>& recordings, simulation::Instru
   RefuseStrangers(recordings, instruments);
   diagnosis::UseMeasuredNoise(recordings, instruments);
   Explanation all{std::make_shared<diagnosis::Campaign>(std::move(instruments)), {}};
-  for (const Recording& each : recordings) all.campaign->Add(each);
+  all.campaign->Add(recordings);
   all.campaign->CarryOn(options.carried);
   all.diagnosis = diagnosis::Diagnose(*all.campaign);
   diagnosis::AddNextRuns(all.found(), recordings, all.diagnosis);
