@@ -1,6 +1,6 @@
-// How far five kernels stand from what the processor can do at all: the time of one item beside the
-// time that its floating-point operations, its divisions and roots, and its way through the memory
-// take at least on one core. The limits are measured in the same run.
+// How far five kernels stand from what the processor can do at all: the processor time of one item
+// beside the time that its floating-point operations, its divisions and roots, and its way through
+// the memory take at least on one core. The limits are measured in the same run.
 //
 //   bench/roofline [SECONDS]            // of each kernel in each place, 0.5 by default
 //
@@ -25,9 +25,9 @@
 //                      in which it acts, 2 rows (parameters + 1), and against all other parameters,
 //                      n^2 of the triangular solve. Whitening and the making of columns are extra.
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -118,11 +118,14 @@ HWY_EXPORT(Copied);
 using Eigen::Index;
 using Work = std::function<void()>;
 
+// Processor time, s: others work on this computer too.
 double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// Seconds of the fastest run: others work on this computer too.
+// Seconds of the fastest run.
 double Fastest(const Work& work, double seconds) {
   double best = std::numeric_limits<double>::infinity();
   work();
