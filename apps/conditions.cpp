@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "estimation/in_parallel.h"
 #include "failure/failure.h"
 #include "recording/instant.h"
 
@@ -18,6 +19,25 @@ constexpr double kStep = 1.0;  // s
 struct Mean {
   double sum = 0.0, count = 0.0;
 };
+using Means = std::map<std::string, Mean>;
+
+bool HasSensors(const recording::Recording& head) {
+  return std::ranges::any_of(head.columns,
+                             [](const auto& column) { return !SensorOf(column.name).empty(); });
+}
+
+void AddTo(Means& means, const recording::Recording& block) {
+  for (const recording::Column& column : block.columns) {
+    const std::string sensor = SensorOf(column.name);
+    if (sensor.empty()) continue;
+    Mean& mean = means[sensor];
+    for (const double value : column.values) {
+      if (!std::isfinite(value)) continue;
+      mean.sum += value;
+      mean.count += 1.0;
+    }
+  }
+}
 
 }  // namespace
 
@@ -41,25 +61,18 @@ double MustHaveBegan(const recording::Recording& head) {
 
 track::Conditions MeanConditions(const std::vector<simulation::RunSource>& sources) {
   track::Conditions conditions;
-  std::map<std::string, Mean> means;
-  for (const simulation::RunSource& source : sources) {
-    conditions.time = std::max(conditions.time, BeganAt(source.head));
-    const auto& columns = source.head.columns;
-    if (std::none_of(columns.begin(), columns.end(),
-                     [](const auto& column) { return !SensorOf(column.name).empty(); })) {
-      continue;
+  std::vector<Means> of_sources(sources.size());
+  estimation::InParallel(sources.size(), [&](std::size_t s) {
+    if (!HasSensors(sources[s].head)) return;
+    sources[s].blocks([&](const recording::Recording& block) { AddTo(of_sources[s], block); });
+  });
+  Means means;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    conditions.time = std::max(conditions.time, BeganAt(sources[s].head));
+    for (const auto& [sensor, mean] : of_sources[s]) {
+      means[sensor].sum += mean.sum;
+      means[sensor].count += mean.count;
     }
-    source.blocks([&](const recording::Recording& block) {
-      for (const recording::Column& column : block.columns) {
-        const std::string sensor = SensorOf(column.name);
-        if (sensor.empty()) continue;
-        for (const double value : column.values) {
-          if (!std::isfinite(value)) continue;
-          means[sensor].sum += value;
-          means[sensor].count += 1.0;
-        }
-      }
-    });
   }
   for (const auto& [sensor, mean] : means) {
     if (mean.count > 0.0) conditions.temperature[sensor] = mean.sum / mean.count;

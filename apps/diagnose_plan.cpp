@@ -52,9 +52,8 @@ std::vector<recording::Recording> CampaignPaths(const settings::Document& machin
 diagnosis::Plan PlanOfPaths(std::vector<recording::Recording> paths,
                             simulation::Instruments instruments) {
   diagnosis::Campaign campaign(std::move(instruments));
-  for (auto& path : paths) {
-    campaign.Add(simulation::Planned(std::move(path), campaign.instruments()));
-  }
+  for (auto& path : paths) path = simulation::Planned(std::move(path), campaign.instruments());
+  campaign.Add(std::move(paths));
   const random::CounterRandom random(kSeed, kStream);
   std::uint64_t index = 0;
   return diagnosis::PlanOf(campaign, [&] { return random.Normal(index++); });

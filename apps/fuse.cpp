@@ -127,7 +127,7 @@ int Fuse(const FuseArguments& arguments) {
     other = FuseIfItFits(instruments, sources, certain, choose);
   }
   const auto corrected = [&](const RunSource& source) {
-    return causes.Active() ? simulation::SourceOf(causes.Take(source.whole())) : source;
+    return simulation::SourceOf(causes.Take(source.whole()));
   };
   const track::Conditions conditions = MeanConditions(sources);
   fusion::FuseOptions options{.choose_smoothness = choose,
@@ -137,7 +137,9 @@ int Fuse(const FuseArguments& arguments) {
   for (const auto& [sensor, mean] : conditions.temperature) {
     options.sensors.push_back({sensor, 0.0, mean, mean});
   }
-  const fusion::FuseReport report = fusion::FuseSources(sources, instruments, options, corrected);
+  const fusion::FuseReport report =
+      fusion::FuseSources(sources, instruments, options,
+                          causes.Active() ? fusion::AsTaken(corrected) : fusion::AsTaken());
   map::WriteMap(report.map, arguments.out);
   auto json = FuseJson(report);
   for (const RunSource& source : sources) AddProtocol(source.head, json);

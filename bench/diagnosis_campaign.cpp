@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
       {machine::ReadMachine(document.Root()), probes::ReadHeadSettings(document.Root()),
        probes::ReadTargetSettings(document.Root()), probes::ReadProbeNoise(document.Root()),
        relm::ReadLinkageSettings(document.Root())});
-  for (const auto& recording : world.recordings) campaign.Add(recording);
+  campaign.Add(world.recordings);
   const double read = Seconds();
   const auto found = diagnosis::Diagnose(campaign);
   const double done = Seconds();

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "diagnosis/extended_run.h"
 #include "diagnosis/invalid_readings.h"
 #include "diagnosis/remembering_run.h"
+#include "estimation/in_parallel.h"
 #include "failure/failure.h"
 #include "recording/made_on.h"
 #include "simulation/kinds.h"
@@ -71,40 +75,70 @@ Campaign Campaign::With(const fusion::ErrorPopulation& population,
   other.instruments_.machine.population = lines;
   other.model_ = fusion::UnknownMachine(instruments_.machine, knots);
   other.prior_ = {instruments_.machine, other.model_, population};
-  for (const Given& given : given_) other.Prepare({given.recording, given.flagged});
+  std::vector<Given> same;
+  for (const Given& given : given_) same.push_back({given.recording, given.flagged});
+  other.Prepare(std::move(same));
   return other;
 }
 
 Campaign Campaign::Without(const std::vector<StrayReadings>& strays) const {
-  Campaign other = WithoutRuns();
-  for (Given given : given_) {
+  std::vector<Given> rest;
+  for (const Given& given : given_) {
+    rest.push_back({given.recording, given.flagged});
     for (const StrayReadings& each : strays) {
       if (each.run != given.recording->name) continue;
-      recording::Recording rest = *given.recording;
-      given.flagged.push_back(FlagOutliers(rest, each.object, each.times));
-      given.recording = std::make_shared<const recording::Recording>(std::move(rest));
+      recording::Recording flagged = *rest.back().recording;
+      rest.back().flagged.push_back(FlagOutliers(flagged, each.object, each.times));
+      rest.back().recording = std::make_shared<const recording::Recording>(std::move(flagged));
     }
-    other.Prepare({given.recording, given.flagged});
   }
+  Campaign other = WithoutRuns();
+  other.Prepare(std::move(rest));
   return other;
 }
 
 void Campaign::Add(recording::Recording recording) {
-  recording::RefuseOtherMachine(recording, instruments_.machine.name);
-  const simulation::RunKind& kind = simulation::KindOf(recording);
-  RequireAxes(recording, kind, instruments_);
-  std::vector<InvalidReadings> flagged;
-  if (kind.RowsFollowEachOther()) flagged = FlagInvalidReadings(recording);
-  Prepare({std::make_shared<const recording::Recording>(std::move(recording)), std::move(flagged)});
+  std::vector<recording::Recording> one;
+  one.push_back(std::move(recording));
+  Add(std::move(one));
 }
 
-void Campaign::Prepare(Given given) {
-  const recording::Recording& recording = *given.recording;
-  const simulation::RunKind& kind = simulation::KindOf(recording);
-  simulation::PreparedRuns prepared = kind.Prepare(recording, model_, instruments_, facts_);
+void Campaign::Add(std::vector<recording::Recording> recordings) {
+  std::vector<Given> given(recordings.size());
+  estimation::InParallel(recordings.size(), [&](std::size_t i) {
+    recording::Recording& recording = recordings[i];
+    recording::RefuseOtherMachine(recording, instruments_.machine.name);
+    const simulation::RunKind& kind = simulation::KindOf(recording);
+    RequireAxes(recording, kind, instruments_);
+    if (kind.RowsFollowEachOther()) given[i].flagged = FlagInvalidReadings(recording);
+    given[i].recording = std::make_shared<const recording::Recording>(std::move(recording));
+  });
+  Prepare(std::move(given));
+}
+
+void Campaign::Prepare(std::vector<Given> given) {
+  std::vector<std::optional<simulation::PreparedRuns>> prepared(given.size());
+  const auto prepare = [&](std::size_t i) {
+    const recording::Recording& recording = *given[i].recording;
+    prepared[i] = simulation::KindOf(recording).Prepare(recording, model_, instruments_, facts_);
+  };
+  // The first of a name has the facts of all of that name.
+  std::set<std::string> names;
+  std::vector<bool> is_alone;
+  for (const Given& each : given) is_alone.push_back(names.insert(each.recording->name).second);
+  estimation::InParallel(given.size(), [&](std::size_t i) {
+    if (is_alone[i] && !simulation::KindOf(*given[i].recording).AsksForOthers()) prepare(i);
+  });
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (!prepared[i]) prepare(i);
+    Enter(std::move(given[i]), std::move(*prepared[i]));
+  }
+}
+
+void Campaign::Enter(Given given, simulation::PreparedRuns prepared) {
   given.in_preparing = std::move(prepared.invalid);
+  if (prepared.facts) facts_.emplace(given.recording->name, std::move(prepared.facts));
   given_.push_back(std::move(given));
-  if (prepared.facts) facts_.emplace(recording.name, std::move(prepared.facts));
   std::move(prepared.notes.begin(), prepared.notes.end(), std::back_inserter(notes_));
   for (PreparedRun& run : prepared.runs) {
     run.simulated.loss = estimation::RobustLoss::None();

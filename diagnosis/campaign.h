@@ -46,6 +46,8 @@ class Campaign {
 
   // Takes its invalid readings out first.
   void Add(recording::Recording recording);
+  // All of them, in this order; what needs no other run is done at once.
+  void Add(std::vector<recording::Recording> recordings);
 
   // The same runs on a machine whose errors are of other sizes and correlation lengths, its knots
   // so far apart, m; `lines` of the machine file, for all that goes by these.
@@ -97,7 +99,8 @@ class Campaign {
     std::vector<InvalidReadings> flagged, in_preparing = {};  // on its own clock
   };
 
-  void Prepare(Given given);
+  void Prepare(std::vector<Given> given);
+  void Enter(Given given, simulation::PreparedRuns prepared);
   void NumberRuns();
 
   simulation::Instruments instruments_;

@@ -3,11 +3,14 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "diagnosis/extended_run.h"
 #include "diagnosis/remembering_run.h"
 #include "estimation/extended_residual.h"
+#include "estimation/in_parallel.h"
 #include "estimation/weak_directions.h"
 #include "failure/failure.h"
 
@@ -71,8 +74,18 @@ class Chords {
     sums.data_information = MatrixXd::Zero(n, n);
     sums.data_gradient = VectorXd::Zero(n);
     sums.cost = 0.0;
-    for (const estimation::Term& term : problem_.terms()) {
-      if (!IsOfPrior(term) && !AddRun(term, x, sums)) return false;
+    const auto& terms = problem_.terms();
+    std::vector<std::optional<RunSums>> of_runs(terms.size());
+    estimation::InParallel(terms.size(), [&](std::size_t t) {
+      if (!IsOfPrior(terms[t])) of_runs[t] = SumsOf(terms[t], x);
+    });
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      if (IsOfPrior(terms[t])) continue;
+      if (!of_runs[t]) return false;
+      const auto& [columns, square, slope, cost] = *of_runs[t];
+      sums.data_information(columns, columns) += square;
+      sums.data_gradient(columns) += slope;
+      sums.cost += cost;
     }
     sums.information = sums.data_information;
     sums.gradient = sums.data_gradient;
@@ -110,15 +123,23 @@ class Chords {
     return problem_.sources()[static_cast<std::size_t>(term.source.index)].options.is_prior;
   }
 
-  bool AddRun(const estimation::Term& term, const VectorXd& x, FitSums& sums) const {
+  struct RunSums {
+    std::vector<int> columns;
+    MatrixXd square;
+    VectorXd slope;
+    double cost;
+  };
+
+  // Empty: the run does not know its derivatives.
+  std::optional<RunSums> SumsOf(const estimation::Term& term, const VectorXd& x) const {
     const KnownTerm parts = PartsOf(term);
-    if (parts.run == nullptr) return false;
+    if (parts.run == nullptr) return {};
     const VectorXd inputs = InputsOf(term, x);
     const Index own = inputs.size() - parts.causes();
     const VectorXd at = inputs.head(own);
     VectorXd r(term.residual->Rows());
     term.residual->Evaluate(inputs, r, nullptr);
-    if (!r.allFinite()) return false;
+    if (!r.allFinite()) return {};
     const auto known = parts.run->KnownAt(at);
     MatrixXd square(inputs.size(), inputs.size());
     VectorXd slope(inputs.size());
@@ -133,10 +154,8 @@ class Chords {
       slope.tail(C.cols()).noalias() = -C.transpose() * r;
     }
     const FreeInputs free(term, layout_);
-    sums.data_information(free.columns, free.columns) += square(free.inputs, free.inputs);
-    sums.data_gradient(free.columns) += slope(free.inputs);
-    sums.cost += 0.5 * r.squaredNorm();
-    return true;
+    return RunSums{free.columns, square(free.inputs, free.inputs), slope(free.inputs),
+                   0.5 * r.squaredNorm()};
   }
 
   const estimation::Problem& problem_;

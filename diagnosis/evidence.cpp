@@ -1,7 +1,5 @@
 #include "diagnosis/evidence.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +7,8 @@
 #include <limits>
 #include <span>
 #include <utility>
+
+#include "estimation/in_parallel.h"
 
 namespace abbe::diagnosis {
 
@@ -131,8 +131,8 @@ std::vector<Score> ScoreAll(const Fit& fit, const std::vector<Candidate>& candid
     rest = rest.subspan(count);
   }
   std::vector<std::vector<Score>> of_parts(parts.size());
-  tbb::parallel_for(std::size_t{0}, parts.size(),
-                    [&](std::size_t i) { of_parts[i] = ScoreTogether(fit, parts[i]); });
+  estimation::InParallel(parts.size(),
+                         [&](std::size_t i) { of_parts[i] = ScoreTogether(fit, parts[i]); });
   std::vector<Score> scores;
   scores.reserve(candidates.size());
   for (auto& part : of_parts) std::move(part.begin(), part.end(), std::back_inserter(scores));

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "diagnosis/chord_solve.h"
 #include "diagnosis/extended_run.h"
+#include "estimation/in_parallel.h"
 #include "failure/failure.h"
 #include "fusion/machine_problem.h"
 #include "simulation/causes/shaft.h"
@@ -88,7 +90,6 @@ estimation::Result Solve(const Problem& problem, const Near& near, FitSums& sums
   constexpr int kFewPasses = 20;
   estimation::Linearization at;
   auto result = problem.Solve({.max_iterations = kFewPasses,
-                               .threads = 1,
                                .settled = near.settled,
                                .tolerated = near.tolerated,
                                .jacobian_bytes = 0,
@@ -151,12 +152,12 @@ Fit::Fit(const Fit& before, std::vector<Candidate> taken_in, int rounds)
   if (of_shaft) StartFromKnown(before.taken_in_, taken_in_);
   constexpr double kShapeFound = 1e-3;  // relative
   for (int round = 1;; ++round) {
-    std::vector<SimulatedRun> runs;
-    for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
+    std::vector<SimulatedRun> runs(campaign_.runs().size());
+    estimation::InParallel(runs.size(), [&](std::size_t r) {
       const LinearRun& run = round == 1 ? before.runs_[r].at : runs_[r].at;
-      runs.push_back(Extend(campaign_.runs()[r], run, taken_in_));
-      StartFrom(result_, runs.back().blocks);
-    }
+      runs[r] = Extend(campaign_.runs()[r], run, taken_in_);
+      StartFrom(result_, runs[r].blocks);
+    });
     const Problem problem = ProblemOf(campaign_, runs, taken_in_, result_);
     FitSums at;
     result_ = SolveWithCauses(campaign_, problem, at);
@@ -218,14 +219,14 @@ double Fit::SeenOf(const Candidate& cause) const {
 void Fit::TakeRuns(const Problem& problem) {
   const VectorXd x = fusion::ValuesFound(result_, result_.blocks);
   const estimation::Layout layout(problem);
-  estimation::RowEvaluator evaluator(problem, layout);
-  runs_.clear();
-  for (std::size_t r = 0; r < campaign_.runs().size(); ++r) {
+  std::vector<RunRows> runs(campaign_.runs().size());
+  estimation::InParallel(runs.size(), [&](std::size_t r) {
     const PreparedRun& run = campaign_.runs()[r];
+    estimation::RowEvaluator evaluator(problem, layout);
     const VectorXd& left = evaluator.Evaluate(problem.terms()[r], x, false)->r;
-    runs_.push_back(
-        {LinearAt(run, ValuesIn(result_, run.simulated), left, taken_in_), left, {}, {}});
-  }
+    runs[r] = {LinearAt(run, ValuesIn(result_, run.simulated), left, taken_in_), left, {}, {}};
+  });
+  runs_ = std::move(runs);
 }
 
 void Fit::Linearize(const Problem& problem, FitSums at) {
@@ -252,19 +253,20 @@ void Fit::Linearize(const Problem& problem, FitSums at) {
   const double curvature = 2.0 * MatrixXd(H_.matrixL()).diagonal().array().log().sum() -
                            2.0 * scale_.array().log().sum();
   log_likelihood_ = -at.cost + 0.5 * (priors - curvature);
-  left_out_ = 0.0;
-  for (std::size_t r = 0; r < runs_.size(); ++r) {
-    if (!runs_[r].at.response) continue;
+  std::vector<double> left_out(runs_.size(), 0.0);
+  estimation::InParallel(runs_.size(), [&](std::size_t r) {
+    if (!runs_[r].at.response) return;
     RunDerivatives derivatives = DerivativesAt(problem, layout, problem.terms()[r], x);
     runs_[r].columns = std::move(derivatives.columns);
     const PreparedRun& run = campaign_.runs()[r];
     const MatrixXd& both = derivatives.both;
     if (run.EstimatesNoise()) {
-      left_out_ += run.excess * run.excess *
-                   LeftOut(both.rightCols<1>(), runs_[r].columns, both.leftCols(both.cols() - 1));
+      left_out[r] = run.excess * run.excess *
+                    LeftOut(both.rightCols<1>(), runs_[r].columns, both.leftCols(both.cols() - 1));
     }
     runs_[r].back = runs_[r].at.response->BackToReadings(both);
-  }
+  });
+  left_out_ = std::accumulate(left_out.begin(), left_out.end(), 0.0);
 }
 
 // The residual r_B of rows B that are left out becomes (1 - J_B H^-1 J_B')^-1 r_B: Allen,

@@ -11,6 +11,7 @@
 
 #include "diagnosis/extended_run.h"
 #include "diagnosis/fit.h"
+#include "estimation/in_parallel.h"
 #include "failure/failure.h"
 #include "fusion/machine_problem.h"
 #include "simulation/kinds.h"
@@ -74,11 +75,17 @@ struct Left {
 };
 
 Left LeftOf(const Campaign& held, const Fit& fit) {
+  const std::vector<PreparedRun>& runs = held.runs();
+  std::vector<VectorXd> residuals(runs.size());
+  estimation::InParallel(runs.size(), [&](std::size_t r) {
+    if (Knows(fit, runs[r])) residuals[r] = ResidualAt(fit, runs[r]);
+  });
   double sum = 0.0, in_space = 0.0;
   Left left;
-  for (const PreparedRun& run : held.runs()) {
-    if (!Knows(fit, run)) continue;
-    const VectorXd residual = ResidualAt(fit, run);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const PreparedRun& run = runs[r];
+    const VectorXd& residual = residuals[r];
+    if (residual.size() == 0) continue;
     sum += residual.squaredNorm() * run.excess * run.excess;
     left.rows += residual.size();
     if (!run.simulated.in_space) continue;
@@ -110,20 +117,23 @@ HeldOutGain HoldOut(const Campaign& campaign, const std::vector<Recording>& reco
                     const std::vector<Candidate>& causes) {
   Campaign kept = campaign.WithoutRuns(), held = campaign.WithoutRuns();
   const std::map<const Recording*, bool> whole = WholeRuns(recordings);
+  std::vector<Recording> to_keep, to_hold;
   for (const Recording& recording : recordings) {
     if (const auto found = whole.find(&recording); found != whole.end()) {
-      (found->second ? held : kept).Add(recording);
+      (found->second ? to_hold : to_keep).push_back(recording);
       continue;
     }
     const simulation::RunKind& kind = simulation::KindOf(recording);
     const simulation::RowRule is_held = kind.HeldOut(recording);
     if (!is_held) {
-      kept.Add(recording);
+      to_keep.push_back(recording);
       continue;
     }
-    kept.Add(kind.Part(recording, [&](std::size_t row) { return !is_held(row); }));
-    held.Add(kind.Part(recording, is_held));
+    to_keep.push_back(kind.Part(recording, [&](std::size_t row) { return !is_held(row); }));
+    to_hold.push_back(kind.Part(recording, is_held));
   }
+  kept.Add(std::move(to_keep));
+  held.Add(std::move(to_hold));
   if (held.runs().empty()) return {};
   const Fit baseline(kept);
   const Left before = LeftOf(held, baseline);

@@ -9,6 +9,7 @@
 #include "diagnosis/drawn_machine.h"
 #include "diagnosis/linear_runs.h"
 #include "diagnosis/standing_pairs.h"
+#include "estimation/in_parallel.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -24,13 +25,14 @@ class PlannedRuns {
  public:
   PlannedRuns(const Campaign& campaign, const Values& machine)
       : linear_(campaign, campaign.runs(), machine) {
-    for (std::size_t run = 0; run < linear_.count(); ++run) runs_.push_back(linear_.At(run));
+    runs_.resize(linear_.count());
+    estimation::InParallel(runs_.size(), [&](std::size_t run) { runs_[run] = linear_.At(run); });
   }
 
   MatrixXd Information(const std::vector<Candidate>& candidates) const {
-    std::vector<RunSums> sums;
-    sums.reserve(runs_.size());
-    for (const LinearizedRun& run : runs_) sums.push_back(linear_.SumsOf(run, candidates));
+    std::vector<RunSums> sums(runs_.size());
+    estimation::InParallel(
+        sums.size(), [&](std::size_t run) { sums[run] = linear_.SumsOf(runs_[run], candidates); });
     return linear_.Information(PointersTo(sums));
   }
 
@@ -52,24 +54,34 @@ void Keep(const PlannedCause& cause, std::vector<PlannedCause>& best) {
   }
 }
 
+std::vector<PlannedCause> VisibleOf(const PlannedRuns& runs,
+                                    const std::vector<Candidate>& candidates) {
+  const VectorXd information = runs.Information(candidates).diagonal();
+  std::vector<PlannedCause> causes;
+  Index at = 0;
+  for (const Candidate& each : candidates) {
+    const VectorXd plausible = PlausibleOf(each);
+    PlannedCause cause{each};
+    const VectorXd own = information.segment(at, plausible.size()).cwiseMax(0.0);
+    const VectorXd each_visible = plausible.cwiseProduct(own.cwiseSqrt());
+    cause.visible = each_visible.maxCoeff(&cause.coefficient);
+    if (each.cause->IsRandomField()) cause.visible = each_visible.norm();
+    causes.push_back(std::move(cause));
+    at += plausible.size();
+  }
+  return causes;
+}
+
 std::vector<PlannedCause> BestOf(const PlannedRuns& runs,
                                  const std::vector<Candidate>& candidates) {
+  std::vector<std::vector<PlannedCause>> of_parts((candidates.size() + kAtOnce - 1) / kAtOnce);
+  estimation::InParallel(of_parts.size(), [&](std::size_t part) {
+    const std::size_t first = part * kAtOnce, last = std::min(first + kAtOnce, candidates.size());
+    of_parts[part] = VisibleOf(runs, {candidates.begin() + first, candidates.begin() + last});
+  });
   std::vector<PlannedCause> best;
-  for (std::size_t first = 0; first < candidates.size(); first += kAtOnce) {
-    const auto begin = candidates.begin() + first;
-    const std::vector<Candidate> some(begin, begin + std::min(kAtOnce, candidates.size() - first));
-    const VectorXd information = runs.Information(some).diagonal();
-    Index at = 0;
-    for (const Candidate& each : some) {
-      const VectorXd plausible = PlausibleOf(each);
-      PlannedCause cause{each};
-      const VectorXd own = information.segment(at, plausible.size()).cwiseMax(0.0);
-      const VectorXd each_visible = plausible.cwiseProduct(own.cwiseSqrt());
-      cause.visible = each_visible.maxCoeff(&cause.coefficient);
-      if (each.cause->IsRandomField()) cause.visible = each_visible.norm();
-      Keep(cause, best);
-      at += plausible.size();
-    }
+  for (const auto& part : of_parts) {
+    for (const PlannedCause& cause : part) Keep(cause, best);
   }
   return best;
 }
@@ -105,16 +117,18 @@ std::vector<Alike> AlikeOf(const PlannedRuns& runs, const std::vector<PlannedCau
     plausible.segment(first[i], first[i + 1] - first[i]) = PlausibleOf(candidates[i]);
   }
   const MatrixXd S = plausible.asDiagonal() * runs.Information(candidates) * plausible.asDiagonal();
-  for (std::size_t a = 0; a < seen.size(); ++a) {
+  std::vector<std::vector<Alike>> of_first(seen.size());
+  estimation::InParallel(seen.size(), [&](std::size_t a) {
     for (std::size_t b = a + 1; b < seen.size(); ++b) {
       const Index of_a = first[a + 1] - first[a], of_b = first[b + 1] - first[b];
       MatrixXd both(of_a + of_b, of_a + of_b);
       both << S.block(first[a], first[a], of_a, of_a), S.block(first[a], first[b], of_a, of_b),
           S.block(first[b], first[a], of_b, of_a), S.block(first[b], first[b], of_b, of_b);
       const double cosine = Likeness(both, of_a);
-      if (cosine > kAlike) alike.push_back({seen[a], seen[b], cosine});
+      if (cosine > kAlike) of_first[a].push_back({seen[a], seen[b], cosine});
     }
-  }
+  });
+  for (const auto& some : of_first) alike.insert(alike.end(), some.begin(), some.end());
   return alike;
 }
 

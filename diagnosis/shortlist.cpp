@@ -6,6 +6,7 @@
 
 #include "diagnosis/evidence.h"
 #include "diagnosis/line_search.h"
+#include "estimation/in_parallel.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -72,7 +73,7 @@ double LogSumOfExponentials(const std::vector<double>& logs) {
 
 std::vector<Named> Shortlist(const Fit& fit, const std::vector<Candidate>& candidates) {
   std::vector<Named> names = ByName(ScoreAll(fit, candidates));
-  for (Named& named : names) FindLine(fit, named);
+  estimation::InParallel(names.size(), [&](std::size_t i) { FindLine(fit, names[i]); });
   SortByEvidence(names);
   return names;
 }

@@ -1,7 +1,5 @@
 #include "diagnosis/structure_search.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -14,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "estimation/in_parallel.h"
 #include "simulation/variables.h"
 
 namespace abbe::diagnosis {
@@ -244,7 +243,7 @@ void AddStrongest(const Fit& fit, const simulation::Scene& scene,
   const ScoresByRun scores = ScoresOf(fit, of_channel);
   const std::vector<std::string> variables = PeriodicVariablesOf(scene);
   std::vector<std::vector<std::vector<Structure>>> of_variable(variables.size());
-  tbb::parallel_for(std::size_t{0}, variables.size(), [&](std::size_t v) {
+  estimation::InParallel(variables.size(), [&](std::size_t v) {
     of_variable[v] = StrongestOf(fit, scene, variables[v], scores, of_channel);
   });
   for (const auto& strongest : of_variable) {
@@ -373,8 +372,8 @@ std::vector<Found> FindStructures(const Fit& fit) {
   AddStrongest(fit, scene, of_channel);
   SharedFunctions shared(fit);
   std::vector<std::vector<Found>> found(of_channel.size());
-  tbb::parallel_for(std::size_t{0}, of_channel.size(),
-                    [&](std::size_t c) { found[c] = Ask(fit, of_channel[c], shared); });
+  estimation::InParallel(of_channel.size(),
+                         [&](std::size_t c) { found[c] = Ask(fit, of_channel[c], shared); });
   std::vector<Found> all;
   for (auto& of_one : found) std::move(of_one.begin(), of_one.end(), std::back_inserter(all));
   std::sort(all.begin(), all.end(),

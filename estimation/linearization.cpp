@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 #include <tbb/info.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "estimation/in_parallel.h"
 #include "failure/interruption.h"
 
 namespace abbe::estimation {
@@ -121,6 +121,21 @@ void Sum(const Problem& problem, const Layout& layout, const VectorXd& x, Piece&
     const Source& source = problem.sources()[term->source.index];
     accumulator.Add(*rows, source.options.loss);
   }
+}
+
+// Of the pieces of a source, in order; `trouble` of the first that has one.
+SourceSums Joined(std::vector<Piece>& pieces, Index columns, std::string& trouble) {
+  SourceSums sums;
+  if (pieces.empty()) Clear(sums, columns);
+  for (Piece& piece : pieces) {
+    if (trouble.empty()) trouble = piece.trouble;
+    if (&piece == &pieces.front()) {
+      sums = std::move(piece.sums);
+    } else {
+      Add(sums, piece.sums);
+    }
+  }
+  return sums;
 }
 
 SourceSums PriorSums(const Layout& layout, const VectorXd& x) {
@@ -243,27 +258,26 @@ VectorXd Linearization::Gradient() const {
 
 Linearization Linearize(const Problem& problem, const Layout& layout, const VectorXd& x,
                         int threads) {
-  const int cores = tbb::info::default_concurrency();
-  tbb::task_arena arena(threads > 0 ? std::min(threads, cores) : cores);
+  const auto terms = TermsOfSources(problem);
+  std::vector<std::string> troubles(terms.size());
   Linearization result;
   result.prior = PriorSums(layout, x);
-  for (const auto& terms : TermsOfSources(problem)) {
-    MayBeInterrupted();
-    std::vector<Piece> pieces = Divide(terms);
-    arena.execute([&] {
-      tbb::parallel_for(std::size_t{0}, pieces.size(),
-                        [&](std::size_t i) { Sum(problem, layout, x, pieces[i]); });
+  result.sources.resize(terms.size());
+  const auto sum = [&] {
+    InParallel(terms.size(), [&](std::size_t s) {
+      MayBeInterrupted();
+      std::vector<Piece> pieces = Divide(terms[s]);
+      InParallel(pieces.size(), [&](std::size_t i) { Sum(problem, layout, x, pieces[i]); });
+      result.sources[s] = Joined(pieces, layout.columns(), troubles[s]);
     });
-    SourceSums& sums = result.sources.emplace_back();
-    if (pieces.empty()) Clear(sums, layout.columns());
-    for (Piece& piece : pieces) {
-      if (result.trouble.empty()) result.trouble = piece.trouble;
-      if (&piece == &pieces.front()) {
-        sums = std::move(piece.sums);
-      } else {
-        Add(sums, piece.sums);
-      }
-    }
+  };
+  if (threads > 0) {
+    tbb::task_arena(std::min(threads, tbb::info::default_concurrency())).execute(sum);
+  } else {
+    sum();
+  }
+  for (std::string& trouble : troubles) {
+    if (result.trouble.empty()) result.trouble = std::move(trouble);
   }
   return result;
 }

@@ -1,4 +1,4 @@
-// How far a long computation is, for whom called it.
+// How far a long computation is, for its caller.
 //
 //   const ProgressTo caller([](std::size_t done, std::size_t total, const std::string& what) {});
 //   Steps steps(2);                  // in the computation

@@ -18,7 +18,8 @@
 
 namespace abbe::fusion {
 
-// One source at a time, each as `as_taken` has it (empty: as it is).
+// Each source as `as_taken` has it, one at a time, for they are whole then. Empty: as they are,
+// several at once.
 using AsTaken = std::function<simulation::RunSource(const simulation::RunSource&)>;
 
 // Simulates the sources on the machine, again where other knots are tried, and fuses them. Knots that

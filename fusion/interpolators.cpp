@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "estimation/chosen_rows.h"
+#include "estimation/in_parallel.h"
 #include "failure/failure.h"
 #include "fusion/machine_problem.h"
 #include "simulation/linkage/linkage_problem.h"
@@ -202,7 +204,54 @@ estimation::Result FitWithout(const machine::Machine& machine, double smoothness
     run.residual = std::make_shared<estimation::ChosenRows>(run.residual, std::move(rows));
   }
   return simulation::SolveLinkage(
-      MakeMachineProblem(machine, model, MachinePrior(machine, model, smoothness), runs));
+      MakeMachineProblem(machine, model, MachinePrior(machine, model, smoothness), runs), 0, false);
+}
+
+// Adds the networks that were learned, each at its worst.
+void AddTo(Learning& all, const Learning& more) {
+  all.rms = std::max(all.rms, more.rms);
+  all.cycles = std::max(all.cycles, more.cycles);
+  all.neurons = std::max(all.neurons, more.neurons);
+}
+
+// A function of the machine as a network, where there is one.
+struct Taught {
+  std::optional<Teacher::Lesson> lesson;
+  Learning learning;
+};
+
+Taught TaughtBy(const machine::VolumetricModel& model, int axis, int motion,
+                const std::vector<double>& at, NetworkBias bias) {
+  VectorXd values(at.size());
+  for (Index i = 0; i < values.size(); ++i) {
+    values[i] = model.Function(axis, motion).Evaluate(at[i]);
+  }
+  Taught taught;
+  if (values.size() == 0 || values.cwiseAbs().maxCoeff() < kNothing) return taught;
+  const Teacher teacher(model, axis, motion, bias);
+  taught.lesson = teacher.Learn(at, values);
+  const int size = (taught.lesson->form->size() + 1) / (bias == NetworkBias::kWithBias ? 3 : 2);
+  taught.learning = {.rms = teacher.InMetres(taught.lesson->rms),
+                     .cycles = taught.lesson->cycles,
+                     .neurons = size};
+  return taught;
+}
+
+// The checks with one fold held out.
+void CheckFold(const machine::Machine& machine, double smoothness,
+               const std::vector<PlateSetup>& setups, const Folds& split, int fold,
+               std::vector<InterpolatorCheck>& checks) {
+  const estimation::Result fit = FitWithout(machine, smoothness, setups, split, fold);
+  machine::VolumetricModel model = UnknownMachine(machine);
+  model.SetParameters(ValuesFound(fit, model.Blocks()));
+  const auto stations = StationsOf(setups);
+  for (InterpolatorCheck& check : checks) {
+    const NetworkBias bias =
+        check.name == "network" ? NetworkBias::kAsPrinted : NetworkBias::kWithBias;
+    const machine::VolumetricModel interpolated =
+        check.name == "b-spline" ? model : AsNetworks(model, stations, bias, &check.learning);
+    check.held_out = HeldOutRms(machine, interpolated, setups, split, fold, fit);
+  }
 }
 
 }  // namespace
@@ -212,23 +261,20 @@ machine::VolumetricModel AsNetworks(const machine::VolumetricModel& model,
                                     NetworkBias bias, Learning* learning) {
   machine::VolumetricModel networks(model.chain(), model.travels());
   networks.SetSquareness(model.squareness());
+  constexpr std::size_t kFunctions = machine::kAxes * machine::kMotions;
+  std::array<std::array<Taught, machine::kMotions>, machine::kAxes> taught;
+  estimation::InParallel(kFunctions, [&](std::size_t function) {
+    const int axis = static_cast<int>(function) / machine::kMotions,
+              motion = static_cast<int>(function) % machine::kMotions;
+    taught[axis][motion] = TaughtBy(model, axis, motion, stations[axis], bias);
+  });
   for (int axis = 0; axis < machine::kAxes; ++axis) {
-    const auto& at = stations[axis];
     for (int motion = 0; motion < machine::kMotions; ++motion) {
-      VectorXd values(at.size());
-      for (Index i = 0; i < values.size(); ++i) {
-        values[i] = model.Function(axis, motion).Evaluate(at[i]);
-      }
-      if (values.size() == 0 || values.cwiseAbs().maxCoeff() < kNothing) continue;
-      const Teacher teacher(model, axis, motion, bias);
-      const auto lesson = teacher.Learn(at, values);
-      networks.SetForm(axis, motion, lesson.form);
-      networks.SetCoefficients(axis, motion, lesson.coefficients);
-      if (learning == nullptr) continue;
-      learning->rms = std::max(learning->rms, teacher.InMetres(lesson.rms));
-      learning->cycles = std::max(learning->cycles, lesson.cycles);
-      const int size = (lesson.form->size() + 1) / (bias == NetworkBias::kWithBias ? 3 : 2);
-      learning->neurons = std::max(learning->neurons, size);
+      const auto& [lesson, of_one] = taught[axis][motion];
+      if (!lesson) continue;
+      networks.SetForm(axis, motion, lesson->form);
+      networks.SetCoefficients(axis, motion, lesson->coefficients);
+      if (learning != nullptr) AddTo(*learning, of_one);
     }
   }
   return networks;
@@ -258,17 +304,14 @@ std::vector<InterpolatorCheck> CompareInterpolators(const machine::Machine& mach
                                                     int folds) {
   std::vector<InterpolatorCheck> checks{{"b-spline"}, {"network"}, {"network with bias"}};
   const Folds split(setups, folds);
-  for (int fold = 0; fold < folds; ++fold) {
-    const estimation::Result fit = FitWithout(machine, smoothness, setups, split, fold);
-    machine::VolumetricModel model = UnknownMachine(machine);
-    model.SetParameters(ValuesFound(fit, model.Blocks()));
-    const auto stations = StationsOf(setups);
-    for (InterpolatorCheck& check : checks) {
-      const NetworkBias bias =
-          check.name == "network" ? NetworkBias::kAsPrinted : NetworkBias::kWithBias;
-      const machine::VolumetricModel interpolated =
-          check.name == "b-spline" ? model : AsNetworks(model, stations, bias, &check.learning);
-      check.held_out += HeldOutRms(machine, interpolated, setups, split, fold, fit) / folds;
+  std::vector<std::vector<InterpolatorCheck>> of_fold(folds, checks);
+  estimation::InParallel(of_fold.size(), [&](std::size_t fold) {
+    CheckFold(machine, smoothness, setups, split, static_cast<int>(fold), of_fold[fold]);
+  });
+  for (const auto& of_one : of_fold) {
+    for (std::size_t i = 0; i < checks.size(); ++i) {
+      checks[i].held_out += of_one[i].held_out / folds;
+      AddTo(checks[i].learning, of_one[i].learning);
     }
   }
   return checks;

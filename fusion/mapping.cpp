@@ -1,13 +1,13 @@
 #include "fusion/mapping.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "estimation/in_parallel.h"
 #include "failure/failure.h"
 #include "relm/tip_path.h"
 #include "simulation/linkage/linkage_problem.h"
@@ -120,7 +120,7 @@ MappedParameters MapParameters(const LinkageSimulation& simulation, const Linkag
     }
   }
   mapped.values.resize(centres.size());
-  tbb::parallel_for(std::size_t{0}, centres.size(), [&](std::size_t c) {
+  estimation::InParallel(centres.size(), [&](std::size_t c) {
     const auto poses = PosesAround(grid, centres[c]);
     mapped.values[c] = x.tail(simulation.model().parameters());
     if (poses.empty()) return;

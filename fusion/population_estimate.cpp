@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "estimation/in_parallel.h"
 #include "failure/interruption.h"
 #include "fusion/population_evidence.h"
 #include "settings/unit.h"
@@ -64,9 +65,9 @@ class Estimate {
     return runs_.form.empty() ? 1.0 : std::pow(k * runs_.form_stated, -2);
   }
 
-  // Over all parameters, without the prior of the functions and squarenesses. These and the form
-  // count from 0, all others from x.
-  Quadratic All() const {
+  // Over all parameters, with so large a form, without the prior of the functions and squarenesses.
+  // These and the form count from 0, all others from x.
+  Quadratic All(double form) const {
     Quadratic all{runs_.prior.information, -runs_.prior.gradient};
     for (std::size_t r = 0; r < runs_.runs.size(); ++r) {
       const double weight = std::pow(runs_.noise[r] / noise_[r], 2);
@@ -88,18 +89,18 @@ class Estimate {
       all.vector[column] += precision * runs_.values[evidence_.squareness() + k];
     }
     all.vector += all.information * x;
-    all.information.diagonal()(runs_.form).array() += FormPrecision(form_);
+    all.information.diagonal()(runs_.form).array() += FormPrecision(form);
     return all;
   }
 
-  Quadratic OfMachine() const {
-    Quadratic seen = Marginalised(All(), runs_.machine);
-    seen.log += 0.5 * runs_.form.size() * std::log(FormPrecision(form_));
+  Quadratic OfMachine(double form) const {
+    Quadratic seen = Marginalised(All(form), runs_.machine);
+    seen.log += 0.5 * runs_.form.size() * std::log(FormPrecision(form));
     return seen;
   }
 
   void Maximise() {
-    of_machine_ = OfMachine();
+    of_machine_ = OfMachine(form_);
     if (theta_.size() == 0) theta_ = evidence_.AtBestLength(of_machine_);
     highest_ = evidence_.Maximise(of_machine_, theta_, evidence_.count());
     theta_ = highest_.theta;
@@ -110,15 +111,17 @@ class Estimate {
     if (runs_.form.empty() || runs_.form_known_to == 1.0) return false;
     const double before = form_, known_to = std::log(runs_.form_known_to);
     const auto log_at = [&](double log_form) {
-      form_ = std::exp(log_form);
-      of_machine_ = OfMachine();
-      const double log = of_machine_.log + evidence_.At(of_machine_, theta_).log;
+      const Quadratic of_machine = OfMachine(std::exp(log_form));
+      const double log = of_machine.log + evidence_.At(of_machine, theta_).log;
       return (std::isfinite(log) ? log : kImpossible) - 0.5 * std::pow(log_form / known_to, 2);
     };
     log_form_ = std::log(before);
     for (const double step : kFormSteps) {
-      double below = log_at(log_form_ - step), here = log_at(log_form_),
-             above = log_at(log_form_ + step);
+      std::array<double, 3> logs{};
+      estimation::InParallel(logs.size(), [&](std::size_t i) {
+        logs[i] = log_at(log_form_ + (static_cast<double>(i) - 1.0) * step);
+      });
+      auto [below, here, above] = logs;
       while (above > here && log_form_ < kMostForm) {
         log_form_ += step;
         below = std::exchange(here, std::exchange(above, log_at(log_form_ + step)));
@@ -134,13 +137,13 @@ class Estimate {
     }
     // The root mean square of what it may be, and no less than the file states.
     form_ = std::exp(std::max(log_form_ + form_variance_, 0.0));
-    of_machine_ = OfMachine();
+    of_machine_ = OfMachine(form_);
     return std::abs(std::log(form_ / before)) > kSteady;
   }
 
   // False where nothing changes.
   bool SetNoise() {
-    Quadratic all = All();
+    Quadratic all = All(form_);
     const MatrixXd L = evidence_.FactorAt(theta_);
     // Scaled by the prior of the machine, 1 elsewhere.
     const Index n = all.vector.size();
@@ -158,8 +161,8 @@ class Estimate {
     VectorXd off = found;  // from x
     off(runs_.machine) -= runs_.values;
     off(runs_.form) -= runs_.form_values;
-    bool changed = false;
-    for (std::size_t r = 0; r < runs_.runs.size(); ++r) {
+    std::vector<double> set(noise_.size());
+    estimation::InParallel(set.size(), [&](std::size_t r) {
       const auto& run = runs_.runs[r];
       const MatrixXd seen = root.transpose() * run.information * root;
       const double before = std::pow(noise_[r] / runs_.noise[r], 2);  // over that of the sums
@@ -169,10 +172,13 @@ class Estimate {
       const double square = std::pow(runs_.noise[r], 2) * (chi_square + kRowsOfPrior) /
                             (std::max(redundancy, 0.0) + kRowsOfPrior);
       const double off_one = (square - 1.0) * std::sqrt((redundancy + kRowsOfPrior) / 2.0);
-      const double set = std::abs(off_one) > kNoiseSeen ? std::sqrt(square) : 1.0;
-      changed = changed || std::abs(std::log(set / noise_[r])) > kSteady;
-      noise_[r] = set;
+      set[r] = std::abs(off_one) > kNoiseSeen ? std::sqrt(square) : 1.0;
+    });
+    bool changed = false;
+    for (std::size_t r = 0; r < set.size(); ++r) {
+      changed = changed || std::abs(std::log(set[r] / noise_[r])) > kSteady;
     }
+    noise_ = std::move(set);
     return changed;
   }
 

@@ -1,10 +1,12 @@
 #include "fusion/population_evidence.h"
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "estimation/in_parallel.h"
 #include "failure/interruption.h"
 #include "settings/unit.h"
 
@@ -129,17 +131,16 @@ MatrixXd PopulationEvidence::FactorAt(const VectorXd& theta) const {
   const MachinePrior prior(machine_, model_, population);
   const Index n = squareness_ + 3;
   MatrixXd L = MatrixXd::Zero(n, n);
-  for (int axis = 0; axis < machine::kAxes; ++axis) {
-    for (int motion = 0; motion < machine::kMotions; ++motion) {
-      const Index size = model_.Function(axis, motion).size(), at = first_[axis][motion];
-      if (size == 0) continue;
-      const auto spread = prior.SpreadOf(axis, motion);
-      const double least = kHardlyMoves * spread.deviations.maxCoeff();
-      const VectorXd deviations =
-          (spread.deviations.array() < least).select(0.0, spread.deviations);
-      L.block(at, at, size, size) = spread.axes * deviations.asDiagonal();
-    }
-  }
+  estimation::InParallel(machine::kAxes * machine::kMotions, [&](std::size_t function) {
+    const int axis = static_cast<int>(function) / machine::kMotions,
+              motion = static_cast<int>(function) % machine::kMotions;
+    const Index size = model_.Function(axis, motion).size(), at = first_[axis][motion];
+    if (size == 0) return;
+    const auto spread = prior.SpreadOf(axis, motion);
+    const double least = kHardlyMoves * spread.deviations.maxCoeff();
+    const VectorXd deviations = (spread.deviations.array() < least).select(0.0, spread.deviations);
+    L.block(at, at, size, size) = spread.axes * deviations.asDiagonal();
+  });
   L.diagonal().tail<3>().setConstant(population.squareness);
   return L;
 }
@@ -198,9 +199,10 @@ PopulationEvidence::Slopes PopulationEvidence::SlopesAt(const Quadratic& of_mach
     local.gradient[one.knob] +=
         0.5 * (b.dot(one.slope * b) - one.slope.cwiseProduct(A.block(one.at, one.at, n, n)).sum());
   }
-  std::vector<MatrixXd> rows;  // slope * A, of each part
-  rows.reserve(parts.size());
-  for (const Part& one : parts) rows.push_back(one.slope * A.middleRows(one.at, one.slope.rows()));
+  std::vector<MatrixXd> rows(parts.size());  // slope * A, of each part
+  estimation::InParallel(parts.size(), [&](std::size_t i) {
+    rows[i] = parts[i].slope * A.middleRows(parts[i].at, parts[i].slope.rows());
+  });
   for (std::size_t i = 0; i < parts.size(); ++i) {
     for (std::size_t j = 0; j < parts.size(); ++j) {
       const Index m = parts[i].slope.rows(), n = parts[j].slope.rows();
@@ -215,17 +217,21 @@ PopulationEvidence::Slopes PopulationEvidence::SlopesAt(const Quadratic& of_mach
 }
 
 VectorXd PopulationEvidence::AtBestLength(const Quadratic& of_machine) const {
+  std::array<VectorXd, kCommonLengths.size()> thetas;
+  std::array<double, kCommonLengths.size()> logs{};
+  estimation::InParallel(thetas.size(), [&](std::size_t length) {
+    thetas[length] = VectorXd::Zero(count());
+    for (Index i = 0; i < count(); ++i) {
+      if (IsLength(i)) thetas[length][i] = std::log(kCommonLengths[length]);
+    }
+    logs[length] = At(of_machine, thetas[length]).log;
+  });
   double best = -std::numeric_limits<double>::infinity();
   VectorXd chosen = VectorXd::Zero(count());
-  for (const double factor : kCommonLengths) {
-    VectorXd theta = VectorXd::Zero(count());
-    for (Index i = 0; i < count(); ++i) {
-      if (IsLength(i)) theta[i] = std::log(factor);
-    }
-    const double log = At(of_machine, theta).log;
-    if (log > best) {
-      best = log;
-      chosen = theta;
+  for (std::size_t length = 0; length < thetas.size(); ++length) {
+    if (logs[length] > best) {
+      best = logs[length];
+      chosen = thetas[length];
     }
   }
   return chosen;

@@ -5,6 +5,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "estimation/in_parallel.h"
 #include "fusion/marginal.h"
 
 namespace abbe::fusion {
@@ -58,11 +59,14 @@ std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
                                       const estimation::Linearization& sums) {
   MatrixXd all = sums.prior.information;
   for (const auto& source : sums.sources) all += source.information;
-  std::vector<RunConsistency> checks;
+  std::vector<std::size_t> runs;
   for (std::size_t s = 0; s < sums.sources.size(); ++s) {
-    if (problem.sources()[s].options.is_prior) continue;
-    checks.push_back(Check(problem.sources()[s].name, sums.sources[s], all));
+    if (!problem.sources()[s].options.is_prior) runs.push_back(s);
   }
+  std::vector<RunConsistency> checks(runs.size());
+  estimation::InParallel(runs.size(), [&](std::size_t r) {
+    checks[r] = Check(problem.sources()[runs[r]].name, sums.sources[runs[r]], all);
+  });
   return checks;
 }
 

@@ -28,7 +28,7 @@ diagnosis::Campaign CampaignOf(const std::vector<Recording>& recordings,
                                simulation::Instruments instruments) {
   diagnosis::UseMeasuredNoise(recordings, instruments);
   diagnosis::Campaign campaign(std::move(instruments));
-  for (const Recording& recording : recordings) campaign.Add(recording);
+  campaign.Add(recordings);
   return campaign;
 }
 

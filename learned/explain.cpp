@@ -48,15 +48,13 @@ simulation::ExtendedModel ModelOf(const Explanation& all) {
 
 Explanation Explain(const std::vector<Recording>& recordings, simulation::Instruments instruments,
                     const ExplainOptions& options) {
-  // Each recording, the search, the next runs, rows held out, and what is learned.
-  Steps steps(recordings.size() + (options.learn ? 4 : 3));
+  // The runs, the search, the next runs, rows held out, and what is learned.
+  Steps steps(options.learn ? 5 : 4);
   RefuseStrangers(recordings, instruments);
   diagnosis::UseMeasuredNoise(recordings, instruments);
   Explanation all{std::make_shared<diagnosis::Campaign>(std::move(instruments)), {}};
-  for (const Recording& each : recordings) {
-    steps.Begin("simulating " + each.name);
-    all.campaign->Add(each);
-  }
+  steps.Begin("simulating the runs");
+  all.campaign->Add(recordings);
   all.campaign->CarryOn(options.carried);
   steps.Begin("looking for causes");
   all.diagnosis = diagnosis::Diagnose(*all.campaign);

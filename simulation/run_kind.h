@@ -116,7 +116,9 @@ class RunKind {
                                            const machine::VolumetricModel& model,
                                            const Instruments& instruments) const;
 
-  // A diagnosis. `known`: the facts of the runs prepared before, this one's included.
+  // A diagnosis. `known`: the facts of the runs prepared before, this one's included. A kind that
+  // asks for those of others is prepared after them, one run after the other.
+  virtual bool AsksForOthers() const { return false; }
   virtual PreparedRuns Prepare(const recording::Recording& recording,
                                const machine::VolumetricModel& model,
                                const Instruments& instruments, const FactsByRun& known) const = 0;

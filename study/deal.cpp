@@ -1,5 +1,7 @@
 #include "study/deal.h"
 
+#include <oneapi/tbb/global_control.h>
+
 #include <algorithm>
 #include <exception>
 #include <mutex>
@@ -58,6 +60,8 @@ Row RowOf(const Study& study, std::uint64_t seed) {
 }
 
 void Deal(const Study& study, const Dealing& dealing, Ranks& ranks, const Keep& keep) {
+  // The cores have worlds to work on: what a world deals out stays with its own thread.
+  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
   if (ranks.number() > 0) {
     ranks.Ask([&](std::uint64_t seed) { return RowOf(study, seed).dump(); });
     return;

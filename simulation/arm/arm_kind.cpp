@@ -113,6 +113,7 @@ class ArmRuns : public RunKind {
   // An arm may well stand with a pivot that shows one value, and its poses are no neighbours.
   bool RowsFollowEachOther() const override { return false; }
 
+  bool AsksForOthers() const override { return true; }
   PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel&,
                        const Instruments& on, const FactsByRun& known) const override {
     const relm::LinkageSettings& settings = on.LinkageFor(recording.name);

@@ -64,7 +64,7 @@ diagnosis::Campaign HiddenWorlds::Recordings(const rig::Campaign& world) const {
   simulation::Instruments setup = setup_;
   diagnosis::UseMeasuredNoise(world.recordings, setup);
   diagnosis::Campaign campaign(std::move(setup));
-  for (const auto& recording : world.recordings) campaign.Add(recording);
+  campaign.Add(world.recordings);
   return campaign;
 }
 
