@@ -19,4 +19,7 @@ if(Python3_FOUND)
     DEPENDS reference abbe_program
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     COMMENT "Writing the site of the manual")
+  # In the package of the manual where it has been built.
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/site/ DESTINATION share/doc/abbe/html COMPONENT manual OPTIONAL
+          PATTERN "*.map" EXCLUDE PATTERN "sitemap.xml*" EXCLUDE)
 endif()

@@ -128,6 +128,20 @@ def build(pages, out, more):
     return done.stderr if done.returncode != 0 else ""
 
 
+def search_in_files(site):
+    """Lets pages search that a browser opened as files (search_of_files.js)."""
+    search = site / "search"
+    shutil.copy(pathlib.Path(__file__).with_name("search_of_files.js"), search)
+    index = search.joinpath("search_index.json").read_text()
+    search.joinpath("search_index.js").write_text(f"searchIndex = {index};\n")
+    for page in site.rglob("*.html"):
+        text = page.read_text()
+        base = re.search(r'<script src="([^"]*)assets/javascripts/bundle', text)
+        if base:
+            script = f'<script src="{base[1]}search/search_of_files.js" data-base="{base[1]}"></script>'
+            page.write_text(text[:base.start()] + script + text[base.start():])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--abbe", required=True, type=pathlib.Path, help="the program")
@@ -143,6 +157,7 @@ def main():
         refused = build(pages, given.out.resolve(), {"nav": menu(pages, given.reference is not None)})
     if refused:
         sys.exit(refused)
+    search_in_files(given.out)
     print(given.out / "index.html")
 
 

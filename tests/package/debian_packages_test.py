@@ -6,6 +6,7 @@ removed without a trace. With ABBE_BARE=1 in a bare Debian, where apt finds what
 """
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -63,6 +64,16 @@ class MadeTest(Packages):
             names = run("dpkg-deb", "-c", deb)
             for file in ("copyright", "changelog.gz", "changelog.Debian.gz"):
                 self.assertIn(f"./usr/share/doc/{package}/{file}\n", names)
+
+    def test_the_manual_has_its_site(self):
+        """Where it was built (target site); setup/packages builds it."""
+        site = BUILD / "site"
+        names = set(re.findall(r"\./usr/share/doc(?:/abbe/html|-base)/(\S+)$", run("dpkg-deb", "-c", self.debs["abbe-doc"]), re.M))
+        if not (site / "index.html").exists():
+            self.assertEqual(names, set())
+            return
+        built = {path.relative_to(site).as_posix() for path in site.rglob("*.html")}
+        self.assertLessEqual(built | {"search/search_index.json", "abbe-doc.abbe"}, names)
 
     @unittest.skipUnless(shutil.which("lintian"), "needs lintian")
     def test_lintian_finds_no_error(self):

@@ -6,6 +6,7 @@
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -68,6 +69,21 @@ class SiteTest(unittest.TestCase):
         index = json.loads((self.site / "search/search_index.json").read_text())
         found = {page["location"] for page in index["docs"] if "lost motion" in page["text"].lower()}
         self.assertIn("glossary.html", " ".join(found))
+
+    def test_every_page_can_search_as_a_file(self):
+        for page in (self.site / "index.html", self.site / "causes/backlash.html"):
+            (base,) = re.findall(r'<script src="([./]*)search/search_of_files.js" data-base="\1">', page.read_text())
+            self.assertTrue((page.parent / base / "search/search_index.js").exists())
+
+    @unittest.skipUnless(shutil.which("chromium"), "needs chromium")
+    def test_a_browser_finds_words_in_files(self):
+        with tempfile.TemporaryDirectory() as profile:
+            shown = subprocess.run(
+                ["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}",
+                 "--virtual-time-budget=20000", "--dump-dom", f"{self.site.as_uri()}/index.html?q=lost+motion"],
+                capture_output=True, text=True, check=False, timeout=120).stdout
+        self.assertRegex(shown, r"\d+ matching documents")
+        self.assertRegex(shown, r'href="[^"]*glossary\.html\?h=lost\+motion')
 
     def test_loads_nothing_from_the_network(self):
         for page in self.site.rglob("*.html"):
