@@ -170,7 +170,8 @@ std::vector<StrayReadings> StrayReadingsOf(const Fit& fit) {
   }
   std::vector<StrayReadings> strays;
   for (std::size_t i = 0; i < suspects.size(); ++i) {
-    const auto [run, row] = suspects[i];
+    const std::size_t run = suspects[i].run;
+    const Index row = suspects[i].row;
     const Trace& trace = fit.TraceOf(run);
     const auto channel = ChannelOf(projections[i], explained[i]);
     const auto may_be_axis = [&](int axis) { return jumps[axis] && TurnsNear(trace, row, axis); };
