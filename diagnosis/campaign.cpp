@@ -125,6 +125,7 @@ void Campaign::Prepare(std::vector<Given> given) {
   // The first of a name has the facts of all of that name.
   std::set<std::string> names;
   std::vector<bool> is_alone;
+  is_alone.reserve(given.size());
   for (const Given& each : given) is_alone.push_back(names.insert(each.recording->name).second);
   estimation::InParallel(given.size(), [&](std::size_t i) {
     if (is_alone[i] && !simulation::KindOf(*given[i].recording).AsksForOthers()) prepare(i);

@@ -80,6 +80,7 @@ std::vector<Index> StagesOf(const Trace& trace) {
 
 std::vector<Fit::Projection> ProjectionsOf(const Fit& fit, const std::vector<Suspect>& suspects) {
   std::vector<Index> groups;
+  groups.reserve(suspects.size());
   for (const Suspect& each : suspects)
     groups.push_back(std::ssize(StagesOf(fit.TraceOf(each.run))));
   const auto one_row_each = [&](const Trace& of_run) {
