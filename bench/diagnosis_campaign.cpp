@@ -9,12 +9,12 @@
 #include <sys/resource.h>
 
 #include <Eigen/Dense>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <vector>
 
+#include "clock.h"
 #include "diagnosis/diagnose.h"
 #include "estimation/linearization.h"
 #include "fusion/machine_problem.h"
@@ -27,15 +27,12 @@
 namespace {
 
 using namespace abbe;
+using bench::Seconds;
 using diagnosis::Candidate;
 using diagnosis::Score;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-double Seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Everything that a candidate is scored against, at a fit.
 struct Linear {

@@ -8,31 +8,17 @@
 #include <string>
 #include <string_view>
 
-#include "machine/configurations.h"
+#include "column_machine.h"
 #include "map/error_map.h"
 
 namespace {
 
 using namespace abbe;
+using bench::kTravel;
 using Eigen::Vector3d;
 
-constexpr double kTravel = 0.5;  // m
-
-map::ErrorMap Column() {
-  machine::VolumetricModel model(machine::ChainOf("column"),
-                                 {{{0, kTravel}, {0, kTravel}, {0, kTravel}}});
-  const auto form = machine::MakeBSplineForm(geometry::BSplineBasis::Uniform(3, 0.0, kTravel, 12));
-  for (int axis = 0; axis < machine::kAxes; ++axis) {
-    for (int motion = 0; motion < machine::kMotions; ++motion) model.SetForm(axis, motion, form);
-  }
-  Eigen::VectorXd p(model.ParameterCount());
-  for (Eigen::Index i = 0; i < p.size(); ++i) p[i] = 20e-6 * std::cos(1.7 * static_cast<double>(i));
-  model.SetParameters(p);
-  return {{}, model, {}};
-}
-
 void ShortLines(benchmark::State& state) {
-  const compensation::Corrector corrector(Column(), Vector3d::Zero());
+  const compensation::Corrector corrector({{}, bench::ColumnMachine(), {}}, Vector3d::Zero());
   std::string program;
   for (int i = 0; i < 1000; ++i) {
     const double t = 2e-3 * std::numbers::pi * i;

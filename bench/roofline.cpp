@@ -25,7 +25,6 @@
 //                      in which it acts, 2 rows (parameters + 1), and against all other parameters,
 //                      n^2 of the triangular solve. Whitening and the making of columns are extra.
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -91,11 +90,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <oneapi/tbb/global_control.h>
 
+#include "clock.h"
+#include "column_machine.h"
 #include "diagnosis/evidence.h"
 #include "diagnosis/fit.h"
 #include "estimation/linearization.h"
 #include "fusion/machine_problem.h"
-#include "machine/configurations.h"
 #include "machine/volumetric_field.h"
 #include "probes/head_inversion.h"
 #include "probes/head_settings.h"
@@ -118,28 +118,21 @@ HWY_EXPORT(Copied);
 using Eigen::Index;
 using Work = std::function<void()>;
 
-// Processor time, s: others work on this computer too.
-double Now() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 // Seconds of the fastest run.
 double Fastest(const Work& work, double seconds) {
   double best = std::numeric_limits<double>::infinity();
   work();
-  for (const double end = Now() + seconds; Now() < end;) {
-    const double start = Now();
+  for (const double end = ProcessorSeconds() + seconds; ProcessorSeconds() < end;) {
+    const double start = ProcessorSeconds();
     work();
-    best = std::min(best, Now() - start);
+    best = std::min(best, ProcessorSeconds() - start);
   }
   return best;
 }
 
 volatile double kept;  // a result that somebody might want
 
-// Of one core.
+// What one core can do.
 struct Machine {
   double flops, division, root, bandwidth;  // 1/s, s, s, byte/s
 };
@@ -174,7 +167,7 @@ void Print(const Machine& machine) {
       "div ns", "mem ns", "took ns", "Gflop/s", "of its limit");
 }
 
-// Of one item.
+// What one item takes.
 struct Needs {
   double flops, divisions, roots, numbers_read, numbers_written;
 };
@@ -227,33 +220,19 @@ Work LinkageForward(Index count) {
   return [state] { state->linkage.Tips(state->q, state->p); };
 }
 
-constexpr double kTravel = 0.5;  // m
 const Eigen::Vector3d kTool(0.05, -0.04, 0.1);
-
-machine::VolumetricModel Column() {
-  machine::VolumetricModel model(machine::ChainOf("column"),
-                                 {{{0, kTravel}, {0, kTravel}, {0, kTravel}}});
-  const auto form = machine::MakeBSplineForm(geometry::BSplineBasis::Uniform(3, 0.0, kTravel, 12));
-  for (int axis = 0; axis < machine::kAxes; ++axis) {
-    for (int motion = 0; motion < machine::kMotions; ++motion) model.SetForm(axis, motion, form);
-  }
-  Eigen::VectorXd p(model.ParameterCount());
-  for (Index i = 0; i < p.size(); ++i) p[i] = 20e-6 * std::cos(1.7 * static_cast<double>(i));
-  model.SetParameters(p);
-  return model;
-}
 
 Eigen::Matrix3Xd Positions(Index count) {
   return (0.5 * kTravel * (1.0 + Eigen::Array3Xd::Random(3, count))).matrix();
 }
 
 Work MapExact(Index count) {
-  const auto field = std::make_shared<machine::VolumetricField>(Column());
+  const auto field = std::make_shared<machine::VolumetricField>(ColumnMachine());
   return [field, positions = Positions(count)] { kept = field->Errors(positions, kTool)(0, 0); };
 }
 
 Work MapWithSlopes(Index count) {
-  const auto field = std::make_shared<machine::VolumetricField>(Column());
+  const auto field = std::make_shared<machine::VolumetricField>(ColumnMachine());
   const auto linear = std::make_shared<machine::VolumetricField::Linearized>();
   return [field, linear, positions = Positions(count)] {
     field->Linearize(positions, kTool, *linear);

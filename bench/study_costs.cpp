@@ -12,7 +12,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -20,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "clock.h"
 #include "study/ranks.h"
 #include "study/store.h"
 
@@ -27,10 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace abbe::study;
-
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+using abbe::bench::Seconds;
 
 double Megabytes() {
   rusage usage{};
@@ -43,9 +40,9 @@ template <typename Call>
 std::vector<double> Times(std::size_t count, const Call& call) {
   std::vector<double> times;
   for (std::size_t i = 0; i < count; ++i) {
-    const double start = Now();
+    const double start = Seconds();
     call(i);
-    times.push_back(1e3 * (Now() - start));
+    times.push_back(1e3 * (Seconds() - start));
   }
   std::ranges::sort(times);
   return times;
@@ -59,9 +56,9 @@ void Print(const char* what, const std::vector<double>& ms) {
 }
 
 void PrintStore(const fs::path& path) {
-  const double before = Megabytes(), start = Now();
+  const double before = Megabytes(), start = Seconds();
   const Stored stored = ReadStores({path});
-  const double count = static_cast<double>(stored.rows.size()), read = Now() - start;
+  const double count = static_cast<double>(stored.rows.size()), read = Seconds() - start;
   fmt::print("{} rows of {:.0f} bytes; to read all: {:.4f} ms and {:.3f} MB a row\n",
              stored.rows.size(), static_cast<double>(fs::file_size(path)) / count,
              1e3 * read / count, (Megabytes() - before) / count);
@@ -93,7 +90,7 @@ void PrintStore(const fs::path& path) {
 void PrintMessages(Ranks& ranks) {
   constexpr std::uint64_t kTasks = 4000;
   std::uint64_t at = 0, came = 0;
-  const double start = Now();
+  const double start = Seconds();
   ranks.Serve(
       [&]() -> std::optional<std::uint64_t> {
         if (at == kTasks) return std::nullopt;
@@ -101,7 +98,7 @@ void PrintMessages(Ranks& ranks) {
       },
       [&](std::uint64_t, const std::string&) { ++came; });
   fmt::print("{} processes: {} tasks without work, {:.4f} ms each\n", ranks.count() - 1, came,
-             1e3 * (Now() - start) / static_cast<double>(came));
+             1e3 * (Seconds() - start) / static_cast<double>(came));
 }
 
 }  // namespace

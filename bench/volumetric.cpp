@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "machine/configurations.h"
+#include "column_machine.h"
 #include "machine/volumetric_field.h"
 #include "map/map_grid.h"
 #include "width.h"
@@ -15,26 +15,12 @@
 namespace {
 
 using namespace abbe::machine;
+using abbe::bench::ColumnMachine;
+using abbe::bench::kTravel;
 using Eigen::Vector3d;
 
-constexpr double kTravel = 0.5;  // m
-constexpr int kCoefficients = 12;
 constexpr Eigen::Index kPoints = 1 << 14;
 const Vector3d kTool(0.05, -0.04, 0.1);
-
-// A column machine with 18 cubic B-splines of 12 coefficients.
-VolumetricModel Column() {
-  VolumetricModel model(ChainOf("column"), {{{0, kTravel}, {0, kTravel}, {0, kTravel}}});
-  const SharedForm form =
-      MakeBSplineForm(abbe::geometry::BSplineBasis::Uniform(3, 0.0, kTravel, kCoefficients));
-  for (int axis = 0; axis < kAxes; ++axis) {
-    for (int motion = 0; motion < kMotions; ++motion) model.SetForm(axis, motion, form);
-  }
-  Eigen::VectorXd p(model.ParameterCount());
-  for (Eigen::Index i = 0; i < p.size(); ++i) p[i] = 20e-6 * std::cos(1.7 * static_cast<double>(i));
-  model.SetParameters(p);
-  return model;
-}
 
 Eigen::Matrix3Xd Positions() {
   Eigen::Matrix3Xd positions(3, kPoints);
@@ -47,7 +33,7 @@ Eigen::Matrix3Xd Positions() {
 }
 
 void Exact(benchmark::State& state) {
-  const VolumetricField field(Column());
+  const VolumetricField field(ColumnMachine());
   const Eigen::Matrix3Xd positions = Positions();
   Eigen::Matrix3Xd errors;
   for (auto _ : state) {
@@ -59,7 +45,7 @@ void Exact(benchmark::State& state) {
 }
 
 void WithDerivatives(benchmark::State& state) {
-  const VolumetricModel model = Column();
+  const VolumetricModel model = ColumnMachine();
   const Eigen::Matrix3Xd positions = Positions();
   for (auto _ : state) {
     for (Eigen::Index i = 0; i < kPoints; ++i) {
@@ -70,7 +56,7 @@ void WithDerivatives(benchmark::State& state) {
 }
 
 void WithDerivativesInBatch(benchmark::State& state) {
-  const VolumetricField field(Column());
+  const VolumetricField field(ColumnMachine());
   const Eigen::Matrix3Xd positions = Positions();
   VolumetricField::Linearized linear;
   for (auto _ : state) {
@@ -81,7 +67,8 @@ void WithDerivativesInBatch(benchmark::State& state) {
 }
 
 void OnGrid(benchmark::State& state) {
-  const abbe::map::MapGrid grid = abbe::map::SampleGrid({{}, Column(), {}}, kTool, {51, 51, 51});
+  const abbe::map::MapGrid grid =
+      abbe::map::SampleGrid({{}, ColumnMachine(), {}}, kTool, {51, 51, 51});
   const Eigen::Matrix3Xd positions = Positions();
   Eigen::Matrix3Xd errors(3, kPoints);
   for (auto _ : state) {

@@ -7,11 +7,11 @@
 // Each piece writes to a place of its own, and sums are made afterwards in the order of the pieces:
 // so results are the same to the last bit for any number of cores. May be called within a piece.
 // Shapes: pieces are numbered from 0 to count - 1 and begun in any order.
-// Failure: all pieces are done, then what the first in order has thrown is thrown, whatever the
-// others threw: the message too is the same for any number of cores.
+// Failure: all pieces are done; then the exception of the first in order is thrown, so that the
+// message too is the same for any number of cores.
 // Source: oneTBB, which also keeps to the processors that the process is allowed (taskset).
 // Validity: pieces of a tenth of a millisecond or more. A piece must not deal out work while it
-// holds a mutex: whoever waits for that work takes up other pieces, which may want the mutex.
+// holds a mutex: the thread that waits for it takes up other pieces, which may want the mutex.
 #pragma once
 
 #include <cstddef>

@@ -123,7 +123,7 @@ void Sum(const Problem& problem, const Layout& layout, const VectorXd& x, Piece&
   }
 }
 
-// Of the pieces of a source, in order; `trouble` of the first that has one.
+// The sums of a source from those of its pieces, in order; `trouble` of the first that has one.
 SourceSums Joined(std::vector<Piece>& pieces, Index columns, std::string& trouble) {
   SourceSums sums;
   if (pieces.empty()) Clear(sums, columns);

@@ -8,7 +8,6 @@
 #include "fusion/fuse_sources.h"
 #include "machine.h"
 #include "progress.h"
-#include "simulation/kinds.h"
 
 namespace abbe::python {
 namespace {
@@ -18,14 +17,8 @@ using fleet::Campaign;
 Campaign CampaignOf(const std::vector<recording::Recording>& recordings, const MachineFile& type,
                     std::string machine, std::string name, const Asks& progress) {
   return Long(progress, [&] {
-    std::vector<simulation::RunSource> sources;
-    for (const recording::Recording& each : recordings) {
-      type.RefuseOther(each);
-      sources.push_back(simulation::SourceOf(each));
-    }
-    simulation::RefuseStrangers(sources, type.instruments);
-    auto report =
-        fusion::FuseSources(sources, type.instruments, {.knots = fleet::KnotsOf(type.machine())});
+    auto report = fusion::FuseSources(type.SourcesOf(recordings), type.instruments,
+                                      {.knots = fleet::KnotsOf(type.machine())});
     return Campaign{std::move(machine), std::move(name), std::move(report.seen)};
   });
 }

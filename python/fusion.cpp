@@ -109,13 +109,7 @@ std::vector<double> RmsOf(const std::vector<fusion::ArmFigures>& of,
 fusion::FuseReport Fuse(const Recordings& recordings, const MachineFile& machine,
                         bool fixed_smoothness, int holdout, const Asks& progress) {
   return Long(progress, [&] {
-    std::vector<simulation::RunSource> sources;
-    for (const recording::Recording& each : recordings) {
-      machine.RefuseOther(each);
-      sources.push_back(simulation::SourceOf(each));
-    }
-    simulation::RefuseStrangers(sources, machine.instruments);
-    return fusion::FuseSources(sources, machine.instruments,
+    return fusion::FuseSources(machine.SourcesOf(recordings), machine.instruments,
                                {.choose_smoothness = !fixed_smoothness, .holdout = holdout});
   });
 }

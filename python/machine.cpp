@@ -1,5 +1,6 @@
 #include "machine.h"
 
+#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "bindings.h"
 #include "map/text_file.h"
 #include "recording/made_on.h"
+#include "simulation/kinds.h"
 
 namespace abbe::python {
 namespace {
@@ -45,6 +47,17 @@ MachineFile::MachineFile(settings::TomlKeys of)
 
 void MachineFile::RefuseOther(const recording::Recording& recording) const {
   recording::RefuseOtherMachine(recording, machine().name);
+}
+
+std::vector<simulation::RunSource> MachineFile::SourcesOf(
+    const std::vector<recording::Recording>& recordings) const {
+  std::vector<simulation::RunSource> sources;
+  for (const recording::Recording& each : recordings) {
+    RefuseOther(each);
+    sources.push_back(simulation::SourceOf(each));
+  }
+  simulation::RefuseStrangers(sources, instruments);
+  return sources;
 }
 
 void BindMachine(py::module_& m) {

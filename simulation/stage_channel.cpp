@@ -7,8 +7,6 @@
 
 namespace abbe::simulation {
 
-namespace {}  // namespace
-
 Instrument InstrumentOf(const Trace& trace) {
   if (trace.rim) return kFeltAtRim;
   return trace.head ? kFeltByProbes : kFeltByLinkage;
