@@ -65,6 +65,7 @@ Campaign Campaign::WithoutRuns() const {
   if (origin_ || !runs_.empty()) empty.origin_ = origin();
   empty.facts_ = facts_;
   empty.carried_ = carried_;
+  empty.strays_ = strays_;
   return empty;
 }
 
@@ -82,19 +83,27 @@ Campaign Campaign::With(const fusion::ErrorPopulation& population,
 }
 
 Campaign Campaign::Without(const std::vector<StrayReadings>& strays) const {
+  Campaign other = WithoutRuns();
+  other.strays_ = strays;
   std::vector<Given> rest;
   for (const Given& given : given_) {
-    rest.push_back({given.recording, given.flagged});
-    for (const StrayReadings& each : strays) {
-      if (each.run != given.recording->name) continue;
-      recording::Recording flagged = *rest.back().recording;
-      rest.back().flagged.push_back(FlagOutliers(flagged, each.object, each.times));
-      rest.back().recording = std::make_shared<const recording::Recording>(std::move(flagged));
-    }
+    recording::Recording recording = *given.recording;
+    rest.push_back({nullptr, given.flagged});
+    other.LeaveStraysOut(recording, rest.back().flagged);
+    rest.back().recording = std::make_shared<const recording::Recording>(std::move(recording));
   }
-  Campaign other = WithoutRuns();
   other.Prepare(std::move(rest));
+  other.strays_.insert(other.strays_.begin(), strays_.begin(), strays_.end());
   return other;
+}
+
+void Campaign::LeaveStraysOut(recording::Recording& recording,
+                              std::vector<InvalidReadings>& flagged) const {
+  for (const StrayReadings& each : strays_) {
+    if (each.run != recording.name) continue;
+    InvalidReadings found = FlagOutliers(recording, each.object, each.times);
+    if (found.count > 0) flagged.push_back(std::move(found));
+  }
 }
 
 void Campaign::Add(recording::Recording recording) {
@@ -111,6 +120,7 @@ void Campaign::Add(std::vector<recording::Recording> recordings) {
     const simulation::RunKind& kind = simulation::KindOf(recording);
     RequireAxes(recording, kind, instruments_);
     if (kind.RowsFollowEachOther()) given[i].flagged = FlagInvalidReadings(recording);
+    LeaveStraysOut(recording, given[i].flagged);
     given[i].recording = std::make_shared<const recording::Recording>(std::move(recording));
   });
   Prepare(std::move(given));

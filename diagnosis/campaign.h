@@ -55,7 +55,7 @@ class Campaign {
                 const std::array<double, machine::kAxes>& knots,
                 const machine::Population& lines) const;
 
-  // The same runs without these readings.
+  // The same runs without these readings, which are left out of all that is made of it too.
   Campaign Without(const std::vector<StrayReadings>& strays) const;
 
   // A campaign without runs, for parts of those of this one or further ones on the same clock.
@@ -99,6 +99,8 @@ class Campaign {
     std::vector<InvalidReadings> flagged, in_preparing = {};  // on its own clock
   };
 
+  // Flags the strays that are among its readings.
+  void LeaveStraysOut(recording::Recording& recording, std::vector<InvalidReadings>& flagged) const;
   void Prepare(std::vector<Given> given);
   void Enter(Given given, simulation::PreparedRuns prepared);
   void NumberRuns();
@@ -108,6 +110,7 @@ class Campaign {
   fusion::MachinePrior prior_;
   std::optional<simulation::Origin> origin_;  // of the campaign that this is a part of
   simulation::FactsByRun facts_;
+  std::vector<StrayReadings> strays_;
   std::vector<Given> given_;
   std::vector<PreparedRun> runs_;
   std::vector<std::string> notes_;

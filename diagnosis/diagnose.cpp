@@ -44,7 +44,7 @@ std::vector<double> ExcessOf(const Fit& fit) {
   return excess;
 }
 
-// Of what is left when causes alone are taken in, for a structure may have followed an outlier.
+// With the causes alone taken in, for a structure may have followed an outlier.
 std::vector<StrayReadings> StraysLeft(const Answer& answer) {
   std::vector<Candidate> causes;
   for (const Finding& finding : answer.diagnosis.findings) {

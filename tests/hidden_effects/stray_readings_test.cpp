@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "diagnosis/hold_out.h"
 #include "tests/hidden_effects/judgement.h"
 
 namespace abbe {
@@ -19,6 +20,20 @@ TEST(StrayReadings, AreCountedWithTheOutliersOfTheirChannel) {
   const Finding& outliers = diagnosis.findings.back();
   EXPECT_EQ(outliers.score.candidate.Name(), "outliers:pivot_1");
   EXPECT_EQ(outliers.score.coefficients[0], 12.0);
+}
+
+// What is held out is simulated anew from the recordings.
+TEST(StrayReadings, StayOutOfWhatIsHeldOut) {
+  const HiddenWorlds worlds(rig::CampaignKind::kStandard);
+  const auto world = worlds.Record(3, {"outliers:object=pivot_1:count=12"});
+  const diagnosis::Campaign campaign = worlds.Recordings(world);
+  const auto strays = diagnosis::StrayReadingsOf(diagnosis::Fit(campaign));
+  ASSERT_FALSE(strays.empty());
+  const auto held_out = [&](const diagnosis::Campaign& of) {
+    return diagnosis::HoldOut(of, world.recordings, {}).before;
+  };
+  EXPECT_GT(held_out(campaign), 1.1);
+  EXPECT_LT(held_out(campaign.Without(strays)), 1.05);
 }
 
 TEST(StrayReadings, AreNoneWhereAnAxisJumpsAsItTurns) {
