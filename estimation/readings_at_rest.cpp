@@ -87,8 +87,34 @@ VectorXd AboutMeans(const std::vector<Stay>& stays, const VectorXd& values) {
   return about;
 }
 
-Sine StrongestSine(const std::vector<Stay>& stays, double step) {
-  constexpr double kOfAWave = 0.4, kMost = 20000.0;
+double SpanOf(const std::vector<Stay>& stays) {
+  const VectorXd &first = stays.front().time, &last = stays.back().time;
+  return last[last.size() - 1] - first[0];
+}
+
+constexpr double kOfAWave = 0.4;  // over all readings, from one frequency to the next
+
+// Those that even readings tell apart.
+std::vector<double> FrequenciesUpTo(double highest, double span) {
+  constexpr double kMost = 20000.0;
+  const double apart = std::max(kOfAWave / span, highest / kMost);
+  std::vector<double> frequencies;
+  for (double each = apart; each <= highest; each += apart) frequencies.push_back(each);
+  return frequencies;
+}
+
+// Where the readings are not quite even a line beyond them has no alias among them.
+std::vector<double> FrequenciesOfMains(double span) {
+  constexpr double kOff = 0.1, kClose = 0.25;  // Hz; of the step: an alias differs by little
+  std::vector<double> frequencies;
+  for (const double mains : {50.0, 60.0}) {
+    for (double off = -kOff; off <= kOff; off += kClose * kOfAWave / span)
+      frequencies.push_back(mains + off);
+  }
+  return frequencies;
+}
+
+Sine StrongestSine(const std::vector<Stay>& stays, const std::vector<double>& frequencies) {
   Index count = 0;
   for (const Stay& stay : stays) count += stay.value.size();
   VectorXd time(count), value(count);
@@ -100,14 +126,11 @@ Sine StrongestSine(const std::vector<Stay>& stays, double step) {
   }
   value = AboutMeans(stays, value);
   time.array() -= time[0];
-  const double highest = 0.5 / step;
-  const double span = time.maxCoeff() - time.minCoeff();
-  const double apart = std::max(kOfAWave / span, highest / kMost);
   const double freedom = count - static_cast<double>(stays.size());
   const double squares = value.squaredNorm();
   Sine best;
-  double most = 0.0, tried = 0.0;
-  for (double frequency = apart; frequency <= highest; frequency += apart, ++tried) {
+  double most = 0.0;
+  for (const double frequency : frequencies) {
     const VectorXd phase = 2.0 * std::numbers::pi * frequency * time;
     const VectorXd sine = AboutMeans(stays, phase.array().sin());
     const VectorXd cosine = AboutMeans(stays, phase.array().cos());
@@ -123,7 +146,7 @@ Sine StrongestSine(const std::vector<Stay>& stays, double step) {
   if (most == 0.0 || freedom <= 3.0) return best;
   best.sd = std::sqrt(std::max(0.0, squares - most) / (freedom - 2.0));
   best.gain = -0.5 * freedom * std::log1p(-std::min(most / squares, 1.0 - 1e-12)) -
-              std::log(std::max(tried, 1.0));
+              std::log(static_cast<double>(frequencies.size()));
   return best;
 }
 
@@ -139,11 +162,16 @@ RestNoise NoiseAtRest(const std::vector<Stay>& stays) {
   noise.sd = std::sqrt(next.variance);
   noise.freedom = 2.0 / 3.0 * next.pairs;
   noise.scatter = ScatterOf(stays);
-  if (!(next.variance > 0.0) || IsWhite(stays, next)) return noise;
   const std::vector<Stay> first = First(stays, kFewForLines);
-  MemoryFit memory = FitMemory(first);
-  if (!(memory.step > 0.0)) return noise;
-  const Sine sine = StrongestSine(first, memory.step);
+  if (!(next.variance > 0.0) || first.empty() || !(SpanOf(first) > 0.0)) return noise;
+  Sine sine = StrongestSine(first, FrequenciesOfMains(SpanOf(first)));
+  MemoryFit memory;
+  if (!IsWhite(stays, next)) {
+    memory = FitMemory(first);
+    if (!(memory.step > 0.0)) return noise;
+    const Sine slow = StrongestSine(first, FrequenciesUpTo(0.5 / memory.step, SpanOf(first)));
+    if (slow.gain > sine.gain) sine = slow;
+  }
   if (std::max(sine.gain, memory.gain) < kShown || sine.sd < kNoNoise * noise.scatter) return noise;
   if (sine.gain > memory.gain) {
     noise.freedom = std::min<double>(noise.freedom, kFewForLines);

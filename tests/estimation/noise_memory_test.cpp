@@ -96,6 +96,25 @@ TEST(ReadingsAtRest, TellWhiteNoiseMemoryAndLinesApart) {
   }
 }
 
+// Readings whose pace is not quite even have no alias of the mains below half their rate.
+TEST(ReadingsAtRest, KnowTheMainsBeyondHalfTheirRate) {
+  constexpr Index kReadings = 400;
+  constexpr double kHum = 0.4, kWhite = 0.02;
+  for (const double mains : {50.0, 60.03}) {
+    const random::CounterRandom random(7, 3);
+    Stay stay{VectorXd(kReadings), VectorXd(kReadings)};
+    for (Index i = 0; i < kReadings; ++i) {
+      stay.time[i] = 0.09 * static_cast<double>(i) + random.Uniform(2 * i, 0.0, 1e-3);
+      stay.value[i] = kWhite * random.Normal(2 * i + 1) +
+                      kHum * std::sin(2.0 * std::numbers::pi * mains * stay.time[i]);
+    }
+    const RestNoise noise = NoiseAtRest({stay});
+    EXPECT_EQ(noise.kind, RestKind::kLine);
+    EXPECT_NEAR(noise.frequency, mains, 0.02);
+    EXPECT_LT(noise.sd, 2.0 * kWhite);
+  }
+}
+
 TEST(ReadingsAtRest, LeaveOneReadingThatStandsOutAside) {
   std::vector<Stay> stays = Drawn({1.0, 0.0, 1.0}, 1, 200, 50);
   stays[0].value[70] += 40.0;
