@@ -39,6 +39,15 @@ std::optional<double> TurnNear(const Trace& trace, Index axis, Index row, double
   return trace.axes(axis, row) - 0.5 * velocity * ago;
 }
 
+// How long ago the motion at a row was surely no other, s: half a second, or on a bent path half a
+// radian of it.
+double FollowedBack(const Trace& trace, Index row) {
+  constexpr double kSeconds = 0.5, kRadians = 0.5;
+  const double velocity = trace.velocity.col(row).norm();
+  const double bent = trace.acceleration.col(row).norm() / velocity;  // rad/s
+  return velocity > 0.0 && bent > 0.0 ? std::max(kSeconds, kRadians / bent) : kSeconds;
+}
+
 }  // namespace
 
 Derivatives DerivativesOf(const MatrixXd& values, const Trace& trace) {
@@ -103,13 +112,12 @@ RowVectorXd HeadingOfAxis(const Trace& trace, Index axis) {
 }
 
 RowVectorXd SinceReversal(const Trace& trace, Index axis, double beyond) {
-  constexpr double kBefore = 0.5;  // s
   const RowVectorXd& position = trace.axes.row(axis);
   RowVectorXd since = RowVectorXd::Constant(position.size(), kLongAgo);
   std::optional<double> turned, turns;  // it has; it will before the next row
   for (Index row = 0; row < position.size(); ++row) {
     if (trace.acceleration(axis, row) != 0.0 && Begins(trace, row)) {
-      turned = TurnNear(trace, axis, row, kBefore, 0.0);
+      turned = TurnNear(trace, axis, row, FollowedBack(trace, row), 0.0);
       if (!turned && row + 1 < position.size()) {
         turns = TurnNear(trace, axis, row, 0.0, trace.time[row + 1] - trace.time[row]);
       }
