@@ -48,9 +48,10 @@ nlohmann::ordered_json ChangeJson(const Change& change) {
 }
 
 // Whether recordings can be corrected for the cause: parameters of the head cannot be removed from
-// gaps, and those of the machine stay in its map.
+// gaps, those of the machine stay in its map, and of a random field the size alone is known.
 bool Takes(const ModelledCause& cause) {
-  return cause.cause->columns || cause.object.kind() == simulation::Object::Kind::kPivot ||
+  return (cause.cause->columns && !cause.cause->IsRandomField()) ||
+         cause.object.kind() == simulation::Object::Kind::kPivot ||
          cause.object.kind() == simulation::Object::Kind::kLink;
 }
 

@@ -101,10 +101,13 @@ std::vector<std::string> StandingPairs(const simulation::Scene& scene) {
 
 Keys KeysOf(const Score& score) {
   constexpr double kStep = 1e-3;  // standard uncertainties
+  // Of a random field the first number is its size.
+  const Eigen::Index sized =
+      score.candidate.cause->IsRandomField() ? 1 : score.candidate.shape.size();
   const auto values_at = [&](const Eigen::VectorXd& off) -> Eigen::VectorXd {
     const Eigen::Index count = score.coefficients.size();
     Eigen::VectorXd shape = score.candidate.shape;
-    if (off.size() > count) shape *= std::exp(off[count]);
+    if (off.size() > count) shape.head(sized) *= std::exp(off[count]);
     return score.candidate.cause->ValuesOf(score.coefficients + off.head(count), shape);
   };
   const Eigen::Index count = score.covariance.rows();

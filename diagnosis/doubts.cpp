@@ -151,7 +151,8 @@ void AddDoubtsOfHeldOut(const HeldOutGain& gain, Diagnosis& diagnosis) {
   for (Finding& finding : diagnosis.findings) {
     if (!IsModelled(finding)) continue;
     const std::size_t place = modelled++;
-    if (place >= gain.without.size() || finding.score.candidate.cause->one_event) continue;
+    const simulation::Cause& cause = *finding.score.candidate.cause;
+    if (place >= gain.without.size() || cause.one_event || cause.own_in_each_run) continue;
     if (gain.without[place].held < gain.after) {
       Doubt(finding,
             fmt::format("rows that were held out come out worse with it: rms {:.3f} instead of "

@@ -19,7 +19,7 @@ using simulation::Disturbance;
 
 namespace {
 
-constexpr SizeRange kForms{0.01e-6, 10e-6, 1.1};  // m
+constexpr SizeRange kDraws{0.01e-6, 10e-6, 1.1};  // m
 constexpr Index kColumnsAtOnce = 512;             // so many share the derivatives of the simulation
 
 // One that relaxes parameters, or candidates with columns together.
@@ -94,7 +94,7 @@ Score ScoreFrom(Candidate candidate, const Fit::Projection& projection) {
   if (candidate.cause->IsRandomField()) {
     const VectorXd usual = candidate.Plausible();
     const double visible = std::sqrt(std::max(0.0, S.diagonal().dot(usual.cwiseAbs2())));
-    const DrawnSize size = SizeOfDraws(projection, kForms, candidate.shape[1]);
+    const DrawnSize size = SizeOfDraws(projection, kDraws, candidate.shape[1]);
     candidate.shape[0] = size.sd;
     return {std::move(candidate), VectorXd::Zero(g.size()), MatrixXd::Zero(g.size(), g.size()),
             size.log_evidence, visible};

@@ -39,7 +39,7 @@ Sums SumsOf(Trace& trace, const std::vector<ModelledCause>& causes, const Origin
   const MatrixXd none = MatrixXd::Zero(kStages + trace.pivots(), trace.rows());
   Sums sums{none, none};
   for (const ModelledCause& each : causes) {
-    if (!each.cause->columns) continue;
+    if (!each.cause->columns || each.cause->IsRandomField()) continue;
     const auto [coefficients, shape] = each.cause->RecallFrom(each.values);
     const auto columns = each.cause->columns(trace, each.object, shape);
     const bool instrument = each.cause->CorrectedAt(each.object) == CorrectedBy::kInstrument;

@@ -29,7 +29,8 @@ Trace TraceOf(const Eigen::Matrix3Xd& path, double feed) {
 
 bool ActsOnPath(const ModelledCause& cause) {
   return cause.cause->CorrectedAt(cause.object) == CorrectedBy::kMotion &&
-         cause.object.IsOfAxes() && cause.cause->follows == Follows::kPath;
+         cause.object.IsOfAxes() && cause.cause->follows == Follows::kPath &&
+         !cause.cause->IsRandomField();
 }
 
 Eigen::Matrix3Xd PathDisplacement(const Eigen::Matrix3Xd& path, double feed,

@@ -19,7 +19,7 @@
 
 namespace abbe::simulation {
 
-// Seat kMotion, and neither time nor temperature.
+// Seat kMotion, neither time nor temperature, and known by more than its size.
 bool ActsOnPath(const ModelledCause& cause);
 
 // Causes that do not act on a path add nothing.

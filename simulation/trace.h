@@ -69,6 +69,8 @@ struct Trace {
   std::optional<RimReadings> rim;
 
   Eigen::Index rows() const { return time.size(); }
+  // Tells the runs of a campaign apart, in any part of it: when it began, else its number.
+  double identity() const { return started != 0.0 ? started : number; }
   Eigen::Index pivots() const { return linkage ? linkage->angles.rows() : 0; }
   // Whether the tilt of the faces is known.
   bool HasTilt() const { return head && head->tilt.size() > 0; }

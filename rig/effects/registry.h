@@ -14,6 +14,7 @@ namespace abbe::rig {
 #define ABBE_HIDDEN_EFFECTS(EFFECT) \
   EFFECT(Backlash) \
   EFFECT(VaryingBacklash) \
+  EFFECT(StandingPosition) \
   EFFECT(LeadscrewCyclic) \
   EFFECT(ScaleError) \
   EFFECT(Squareness) \

@@ -21,6 +21,7 @@ namespace abbe::simulation {
 #define ABBE_CAUSES(CAUSE) \
   CAUSE(Backlash) \
   CAUSE(VaryingBacklash) \
+  CAUSE(StandingPosition) \
   CAUSE(LeadscrewCyclic) \
   CAUSE(ScaleError) \
   CAUSE(Squareness) \

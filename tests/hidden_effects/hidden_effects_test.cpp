@@ -80,6 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
               {{"displacement_um", 0.882940829574997}}},
         Shown{"load-coupling:object=XY:coefficient_nm_per_mm2=2",
               {{"coefficient_nm_per_mm2", 2.0}}},
+        Shown{"standing-position:object=Z:rms_um=1.5"},
         Shown{"mains-pickup:object=probe_b:frequency_hz=50:amplitude_um=0.2",
               {{"frequency_hz", 50.0}, {"amplitude_um", 0.2}}},
         Shown{"stuck-channel:object=probe_c"}));

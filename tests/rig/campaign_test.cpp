@@ -142,6 +142,7 @@ TEST(MeasuringCampaign, NeutralEffectsChangeNothing) {
             "servo-lag:object=X:delay_ms=0",
             "reversal-spike:object=X:height_um=0",
             "load-coupling:object=XY:coefficient_nm_per_mm2=0",
+            "standing-position:object=X:rms_um=0",
             "vibration:object=Z:amplitude_um=0",
             "probe-gain:object=probe_a:delta=0",
             "probe-nonlinearity:object=probe_b:quadratic_per_mm=0",

@@ -37,9 +37,9 @@ TEST(CompareFindings, TellsWhatWasFoundWhatWasNotAndWhatIsWrong) {
 
 TEST(CompareFindings, TakesAPhaseWithinHalfATurn) {
   const auto truth = ordered_json::parse(R"({"hidden": [
-    {"cause": "mains-pickup", "object": "probe_a", "parameters": {"phase_rad": 6.2}}]})");
+    {"cause": "leadscrew-cyclic", "object": "X", "parameters": {"phase_rad": 6.2}}]})");
   const auto diagnosis = ordered_json::parse(R"({"findings": [
-    {"cause": "mains-pickup", "object": "probe_a", "probability": 1.0, "parameters": [
+    {"cause": "leadscrew-cyclic", "object": "X", "probability": 1.0, "parameters": [
       {"name": "phase_rad", "value": -0.1, "unit": "rad", "u95": 0.05}]}]})");
 
   const auto comparison = CompareFindings(truth, diagnosis, "d.json");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "failure/failure.h"
 #include "settings/unit.h"
@@ -166,6 +167,53 @@ TEST(Causes, AGainOfTheTrueGapIsToldFromWhatWasRead) {
   EXPECT_NEAR(ProbeGain().ValuesOf(found, {})[0], delta, 1e-15);
 }
 
+// Nobody knows the phase of the mains, nor on which side of its play an axis stands.
+TEST(Causes, RunsHaveMainsAndStandingPositionsOfTheirOwn) {
+  Trace first = ToAndFro(), second = ToAndFro();
+  for (Trace* trace : {&first, &second}) {
+    trace->head.emplace();
+    trace->time *= 5.0;
+  }
+  first.started = 1000.0;
+  second.started = 2000.0;
+  const Scene scene{{&first, &second}, Eigen::Vector3d::Constant(0.06)};
+  for (const auto& [cause, object] :
+       {std::pair{MainsPickup(), "probe_b"}, {StandingPosition(), "Y"}}) {
+    const VectorXd shape = cause.ShapesFor(scene, object).front();
+    const auto in_first = cause.columns(first, object, shape);
+    const auto in_second = cause.columns(second, object, shape);
+    int used = 0;
+    for (std::size_t i = 0; i < in_first.size(); ++i) {
+      EXPECT_TRUE(in_first[i].stages().empty() || in_second[i].stages().empty()) << cause.id;
+      used += in_first[i].stages().empty() ? 0 : 1;
+    }
+    EXPECT_EQ(used, cause.id == "mains-pickup" ? 10 : 1);  // nodes 8.75 s apart over 35 s
+  }
+  EXPECT_TRUE(StandingPosition()
+                  .columns(first, "X", StandingPosition().ShapesFor(scene, "X").front())
+                  .empty());
+}
+
+// From the top of a circle a slow axis is followed back far in time, and not far in angle.
+TEST(Causes, AReversalBeforeTheFirstRowOfACircleIsKnown) {
+  constexpr double kRadius = 20e-3, kRate = 0.1;  // m, rad/s
+  for (const auto& [angle, is_known] : {std::pair{0.3, true}, {0.9, false}}) {
+    Trace trace;
+    constexpr Eigen::Index kRows = 40;
+    trace.time = trace.clock = VectorXd::LinSpaced(kRows, 0.0, 3.9);
+    trace.pass.assign(kRows, 1);
+    trace.direction.assign(kRows, 1);
+    const Eigen::ArrayXd at = angle + kRate * trace.time.array();
+    Eigen::Matrix3Xd path = Eigen::Matrix3Xd::Zero(3, kRows);
+    path.row(0) = kRadius * at.cos();
+    path.row(1) = kRadius * at.sin();
+    trace.SetAxes(path);
+    const double truth = is_known ? kRadius * (1.0 - std::cos(angle)) : kLongAgo;
+    EXPECT_NEAR(trace.since_reversal(0, 0), truth, 0.03 * truth);
+    EXPECT_EQ(trace.since_reversal(1, 0), kLongAgo);
+  }
+}
+
 // Coefficients of each cause, and one of its shapes; "tell" and back.
 TEST(Causes, WhatIsToldCanBeRecalled) {
   const Trace trace = ToAndFro();
@@ -180,7 +228,7 @@ TEST(Causes, WhatIsToldCanBeRecalled) {
       ASSERT_EQ(values.size(), static_cast<Eigen::Index>(cause.keys.size())) << cause.id;
       const Recalled recalled = cause.RecallFrom(values);
       if (cause.IsRandomField()) {  // how large its draws are, not which
-        EXPECT_EQ(recalled.shape[0], shape[0]) << cause.id;
+        EXPECT_DOUBLE_EQ(recalled.shape[0], shape[0]) << cause.id;
         EXPECT_TRUE(recalled.coefficients.isZero(0.0)) << cause.id;
         continue;
       }

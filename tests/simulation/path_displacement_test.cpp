@@ -69,8 +69,8 @@ TEST(PathDisplacement, OfAllCausesThoseActThatFollowThePath) {
     const VectorXd values = cause.ValuesOf(cause.plausible, shape);
     for (const Object& object : cause.objects(scene)) {
       const ModelledCause modelled{&cause, object, values, {}, {}};
-      const bool acts =
-          cause.CorrectedAt(object) == CorrectedBy::kMotion && cause.follows == Follows::kPath;
+      const bool acts = cause.CorrectedAt(object) == CorrectedBy::kMotion &&
+                        cause.follows == Follows::kPath && !cause.IsRandomField();
       EXPECT_EQ(ActsOnPath(modelled), acts) << modelled.Name();
       const Matrix3Xd beside = PathDisplacement(path, 10e-3, {modelled});
       EXPECT_EQ(beside.norm() > 0.0, acts) << modelled.Name();

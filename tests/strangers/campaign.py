@@ -45,8 +45,9 @@ class Run:
 
 
 def history(q):
-    """Sense of the last motion and way since the last reversal, of each axis, along places (n, 3)."""
-    sense, since = np.ones(q.shape), np.zeros(q.shape)
+    """Sense of the last motion and way since the last reversal, of each axis, along places (n, 3). All axes have
+    come from afar."""
+    sense, since = np.ones(q.shape), np.ones(q.shape)
     for i in range(1, len(q)):
         step = q[i] - q[i - 1]
         way = np.where(step == 0, sense[i - 1], np.sign(step))
@@ -78,12 +79,12 @@ def sweep(draw, axis, start, passes=5, mounting="first", head="0deg"):
     k = "XYZ".index(axis)
     there = [*STATIONS, STATIONS[-1] + 5e-4]
     back = [*STATIONS[::-1], STATIONS[0] - 5e-4]
-    line = np.array([STATIONS[0] - 5e-4] + (there + back) * passes)
+    line = np.array([STATIONS[-1], STATIONS[0] - 5e-4] + (there + back) * passes)  # it turns before the first one too
     places = np.zeros((len(line), 3))
     places[:, k] = line
-    on = np.isin(line, STATIONS)
+    on = np.isin(line, STATIONS) & (np.arange(len(line)) > 1)
     t, q, sense, since, index = stays(draw, places, 13, 0.02, on)
-    number = (index - 1) // (2 * len(there)) + 1
+    number = (index - 2) // (2 * len(there)) + 1
     header = [f'axis = "{axis}"', "[sweep]", "window_um = 20", "settle_s = 0.1", "[mounting]",
               f'id = "{mounting}"', f'head = "{head}"', "target_shift_mm = 0.0", "target_reversed = false"]
     n = len(t)
@@ -123,10 +124,15 @@ def circle(plane, feed, start, radius=0.020):
         q[:, j] += radius * np.sin(angle)
         v = np.zeros((len(t), 3))
         v[:, i], v[:, j] = -way * feed * np.sin(angle), way * feed * np.cos(angle)
-        parts.append((t, q, v, np.full(len(t), way)))
+        since = np.ones((len(t), 3))  # all axes have come from afar
+        for axis, top in ((i, 0.0), (j, np.pi / 2)):  # where it turns, and each half turn later
+            turned = np.floor((angle * way - top) / np.pi) * np.pi + top
+            way_since = radius * np.abs(1 - np.cos(angle * way - turned))
+            since[:, axis] = np.where(turned >= -0.2, way_since, 1.0)
+        parts.append((t, q, v, np.full(len(t), way), since))
         clock = t[-1] + 4.0
-    t, q, v, way = (np.concatenate(p) for p in zip(*parts))
-    sense, since = history(q)
+    t, q, v, way, since = (np.concatenate(p) for p in zip(*parts))
+    sense = np.where(v == 0, 1.0, np.sign(v))
     keep = np.concatenate([np.arange(count + 12) >= 12] * 2)
     header = ['course = "circle"', f'axis = "{plane}"', f"radius_mm = {radius * 1e3}", 'elbow = "up"',
               "[mounting]", 'base = "first"']
@@ -153,7 +159,7 @@ def standstill(draw, start):
     n = len(t)
     header = ['axis = "X"', 'elbow = "up"', "[mounting]", 'id = "first"', 'head = "0deg"',
               "target_shift_mm = 0.0", "target_reversed = false", 'base = "first"']
-    return Run("dwell", "dwell", "X", start, t, np.zeros((n, 3)), np.ones((n, 3)), np.zeros((n, 3)),
+    return Run("dwell", "dwell", "X", start, t, np.zeros((n, 3)), np.ones((n, 3)), np.ones((n, 3)),
                np.zeros((n, 3)), np.ones(n, int), np.zeros(n), np.zeros(n), header)
 
 

@@ -27,6 +27,7 @@ class Effect:
     named_by: tuple = ()  # a leftover in one of these variables, or of one of these objects, has found the place
     # Findings that are honestly the same thing: (cause, object or None, {parameter: (lowest, highest)}).
     same_as: tuple = ()
+    truth: dict = dataclasses.field(default_factory=dict)  # its sizes, where a cause has them: {parameter: value}
 
 
 def size(draw, low, high):

@@ -19,6 +19,13 @@ def same_thing(finding, effect):
     return False
 
 
+def sizes(result, effect):
+    """Error over U95 of each parameter of the findings that are the hidden effect."""
+    return {p["name"]: (p["value"] - effect.truth[p["name"]]) / p["u95"]
+            for f in result["findings"] if same_thing(f, effect) for p in f["parameters"]
+            if p["name"] in effect.truth and p["u95"] > 0}
+
+
 def diagnosis(result, effect):
     """Of the JSON of `abbe diagnose`: verdict, certain findings that are wrong, whether the place was named."""
     told = [f"{f['cause']}:{f['object']}" for f in result["findings"]]
@@ -32,7 +39,7 @@ def diagnosis(result, effect):
     return {"verdict": result["verdict"], "findings": list(zip(told, chance)), "wrong": wrong,
             "advised": [t for t, f in zip(told, result["findings"])
                         if t in wrong and f.get("words", {}).get("remedy")],
-            "unexplained": leftovers, "or": alike, "right": right,
+            "unexplained": leftovers, "or": alike, "right": right, "sizes": sizes(result, effect),
             "named": right or bool(effect and words & set(effect.named_by))}
 
 

@@ -13,7 +13,8 @@ the world it came from is replaced by fresh ones (another --seed).
     run.py --abbe build/dev/abbe --worlds 20 --seed 1 --apply --out applied.jsonl  # fuse --causes of a diagnosis
     run.py --table results.jsonl                                                 # the table once more
 
-World i has seed S + i and, with --effect all, the i-th effect of effects.py in turn. One line of JSON a world.
+World i has seed S + i and, with --effect all, the i-th effect of effects.py in turn, with --effect usual that of
+usual.py. One line of JSON a world.
 """
 import argparse
 import functools
@@ -27,6 +28,7 @@ import tempfile
 import judge
 import table
 from effects import EFFECTS
+from usual import USUAL
 from world import World, changes
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -102,7 +104,7 @@ def applied(program, world, folder):
 def one(job, program, task, wide=False):
     """One world, from its seed to its line in the results."""
     seed, name = job
-    world = World(seed, MACHINE, EFFECTS.get(name), wide)
+    world = World(seed, MACHINE, {**EFFECTS, **USUAL}.get(name), wide)
     line = {"seed": seed, "effect": name, "says": world.effect.says if world.effect else ""}
     if world.effect:
         moved = changes(world, World(seed, MACHINE, wide=wide))
@@ -117,7 +119,7 @@ def one(job, program, task, wide=False):
 
 
 def jobs_of(effect, worlds, seed):
-    names = list(EFFECTS) if effect == "all" else [effect]
+    names = {"all": list(EFFECTS), "usual": list(USUAL)}.get(effect, [effect])
     return [(seed + i, names[i % len(names)]) for i in range(worlds)]
 
 
@@ -126,7 +128,7 @@ def main():
     parser.add_argument("--abbe", help="the program")
     parser.add_argument("--worlds", type=int, default=1)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--effect", default="all", choices=["all", "clean", *EFFECTS])
+    parser.add_argument("--effect", default="all", choices=["all", "usual", "clean", *EFFECTS, *USUAL])
     parser.add_argument("--wide", action="store_true", help="with gap steps and the target mounted a second time")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--out", type=pathlib.Path, help="lines are added to it")

@@ -15,6 +15,7 @@ import run
 from effects import EFFECTS
 from instruments import Head, Linkage, Target
 from machine import turn
+from usual import USUAL
 from world import World
 
 PROGRAM = os.environ["ABBE"]
@@ -69,7 +70,7 @@ class TheWorldItself(unittest.TestCase):
 class DiagnosisOfStrangers(unittest.TestCase):
     def diagnosed(self, seed, effect, wide=False):
         with tempfile.TemporaryDirectory() as folder:
-            world = World(seed, run.MACHINE, EFFECTS.get(effect), wide)
+            world = World(seed, run.MACHINE, {**EFFECTS, **USUAL}.get(effect), wide)
             return run.diagnosed(PROGRAM, world, pathlib.Path(folder))
 
     def test_clean_worlds_stay_clean(self):
@@ -85,6 +86,15 @@ class DiagnosisOfStrangers(unittest.TestCase):
         self.assertEqual(found["verdict"], "unexplained", found)
         told = [variable for variable, _ in found["unexplained"] + found["or"]]
         self.assertIn("column load_n", told, found)
+
+    def test_what_is_usual_is_named_with_its_size(self):
+        # Axes stand on either side of their play; the phase of the mains is another one in each recording.
+        for seed, effect in ((31, "play"), (32, "mains"), (33, "late_axis")):
+            with self.subTest(seed=seed, effect=effect):
+                found = self.diagnosed(seed, effect)
+                self.assertEqual(found["verdict"], "explained", found)
+                self.assertTrue(found["right"], found)
+                self.assertEqual(found["wrong"], [], found)
 
     def test_nothing_certain_is_wrong(self):
         for seed, effect in ((21, "bend_with_rate"), (22, "beyond_threshold"), (23, "unequal_probes"),

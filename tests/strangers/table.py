@@ -26,15 +26,17 @@ def count(lines, test):
 
 
 def diagnoses(lines):
-    """Per effect: verdicts; worlds with a certain finding that is not there; with its place named."""
+    """Per effect: verdicts; worlds with a certain finding that is not there; with its place named; sizes."""
     body = []
     for name, some in [*grouped(lines).items(), ("all", lines)]:
         verdicts = collections.Counter(line["verdict"] for line in some)
+        sizes = [v for line in some for v in line.get("sizes", {}).values()]
         body.append((name, middle([line.get("size_sd") for line in some]),
                      ", ".join(f"{n} {v}" for v, n in verdicts.items()), count(some, lambda r: r["wrong"]),
-                     count(some, lambda r: r.get("named")), middle([line.get("seconds") for line in some]),
+                     count(some, lambda r: r.get("named")), count(sizes, lambda v: abs(v) <= 1),
+                     middle([line.get("seconds") for line in some]),
                      ", ".join(sorted({w for line in some for w in line["wrong"]})) if name != "all" else ""))
-    return rows(("effect", "sd", "verdicts", "certain and wrong", "named", "s", "which"), body)
+    return rows(("effect", "sd", "verdicts", "certain and wrong", "named", "sizes in U95", "s", "which"), body)
 
 
 def maps(lines):
