@@ -11,6 +11,6 @@ target_include_directories(abbe_headers PRIVATE ${CMAKE_CURRENT_LIST_DIR})
 target_link_libraries(abbe_headers PRIVATE fmt::fmt)
 
 foreach(target abbe_factorizations abbe_headers)
-  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:abbe_warnings>)
+  target_link_libraries(${target} PRIVATE Eigen3::Eigen $<BUILD_INTERFACE:abbe_warnings>)
   abbe_position_independent(${target})
 endforeach()
