@@ -50,7 +50,7 @@ Rows RowsOf(const recording::Recording& recording, char axis) {
   rows.position = recording.At(fmt::format("{:c}_mm", axis - 'X' + 'x'));
   rows.pass = recording.At("pass");
   rows.direction = recording.At("direction");
-  rows.flags = recording.At("flags");
+  rows.flags = recording.Find("flags").value_or(std::span<const double>{});
   rows.axes = {recording.At("x_mm"), recording.At("y_mm"), recording.At("z_mm")};
   rows.first_row = recording.first_row;
   for (std::size_t probe = 0; probe < kProbes; ++probe)
@@ -106,6 +106,9 @@ class DwellFinder {
 
   // The pooled scatter of all dwells closed so far.
   PerProbe<Scatter> Scatters() const;
+  // Readings that are outliers by the scatter of their dwell and by that of all dwells: of a few
+  // readings the former is hardly known.
+  std::size_t Outliers(const PerProbe<Scatter>& scatter) const;
 
  private:
   struct Sums {
@@ -133,12 +136,12 @@ class DwellFinder {
   double position_ = 0.0;
   PerProbe<std::vector<double>> gaps_;  // um
   PerProbe<Sums> sums_;
+  PerProbe<std::vector<double>> far_;  // m, deviations of the outliers of each dwell
 };
 
 double DwellFinder::Mean(std::size_t probe) {
   const std::vector<double>& readings = gaps_[probe];
   const estimation::RobustMean mean = estimation::HuberMean(readings);
-  found_.counts.outliers += mean.outliers;
   Sums& sums = sums_[probe];
   sums.dwells += 1.0;
   const double widest = estimation::RobustMeanOptions{}.outlier_at * mean.scale;
@@ -146,6 +149,7 @@ double DwellFinder::Mean(std::size_t probe) {
   for (const double reading : readings) {
     const bool outlier = std::abs(reading - mean.mean) > widest;
     const double deviation = (reading - mean.mean) * kMicrometre;
+    if (outlier) far_[probe].push_back(std::abs(deviation));
     if (!outlier) {
       sums.squares += deviation * deviation;
       sums.readings += 1.0;
@@ -172,6 +176,15 @@ PerProbe<Scatter> DwellFinder::Scatters() const {
   return scatter;
 }
 
+std::size_t DwellFinder::Outliers(const PerProbe<Scatter>& scatter) const {
+  std::size_t outliers = 0;
+  for (std::size_t probe = 0; probe < kProbes; ++probe) {
+    const double widest = estimation::RobustMeanOptions{}.outlier_at * scatter[probe].white;
+    outliers += std::ranges::count_if(far_[probe], [&](double far) { return far > widest; });
+  }
+  return outliers;
+}
+
 void RefuseImpossibleGap(const recording::Recording& recording, const Rows& rows, std::size_t row,
                          const PerProbe<>& ranges) {
   for (std::size_t probe = 0; probe < kProbes; ++probe) {
@@ -189,7 +202,8 @@ void RefuseImpossibleGap(const recording::Recording& recording, const Rows& rows
 bool IsGood(const Rows& rows, std::size_t row) {
   double sum = rows.time[row] + rows.position[row] + rows.pass[row] + rows.direction[row];
   for (const auto& gap : rows.gaps) sum += gap[row];
-  return rows.flags[row] == 0.0 && !std::isnan(sum);
+  const bool flagged = !rows.flags.empty() && rows.flags[row] != 0.0;
+  return !flagged && !std::isnan(sum);
 }
 
 double Median(std::vector<double> values) {
@@ -277,6 +291,7 @@ SweepDwells FindDwells(const recording::Recording& head, const recording::Blocks
   found.start = found.dwells.front().axes;
   found.start[found.axis - 'X'] = found.stations[found.dwells.front().station];
   found.scatter = finder.Scatters();
+  found.counts.outliers = finder.Outliers(found.scatter);
   for (const Dwell& dwell : found.dwells) found.counts.used += dwell.samples;
   return found;
 }

@@ -212,7 +212,7 @@ std::optional<std::string> FormNote(const TargetSettings& target, const SweepRes
   if (most < kMatters) return std::nullopt;
   const double flatter = std::pow(UncheckedTimes(target.form_known_to), -2);
   return fmt::format(
-      "{:.0f} % of the variance of {} rest on target.form_nm = {:.3g}, which one sweep cannot check: "
+      "{:.0f} % of the variance of {} rests on target.form_nm = {:.3g}, which one sweep cannot check: "
       "u holds it as known to a factor of {:.3g}; on a target with {:.0f} times that form U95 would "
       "be {:.1f} times as large. Measure the flatness of the faces and state it with form_known_to "
       "= 1, or sweep once more with the target shifted or reversed and fuse",
