@@ -38,9 +38,10 @@ void CheckSignature(std::string_view line, const Places& places) {
     const bool binary =
         std::any_of(line.begin(), line.end(), [](char c) { return c >= 0 && c < 9; });
     throw Error(places, 1,
-                binary
-                    ? std::string("this is a binary file, not a CSV recording; check the path")
-                    : fmt::format("is not a recording: its first line must be `{}`", kSignature));
+                binary ? std::string("this is a binary file, not a CSV recording; check the path")
+                       : fmt::format("is not a recording: its first line must be `{}`; a table of "
+                                     "another program becomes one by abbe convert",
+                                     kSignature));
   }
   if (packed.substr(key.size()) != "1") {
     throw Error(

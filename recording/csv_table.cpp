@@ -143,6 +143,7 @@ class TableReader {
     }
     for (const MonitoredColumn& column : columns_) {
       sums_.push_back(ParseColumnSum(column.channel, column.name, names_, path_));
+      for (std::string& note : sums_.back().notes) recording_.warnings.push_back(std::move(note));
     }
     for (const auto& [column, wanted] : options_.where) {
       asked_.push_back(ParseColumnSum(column, column, names_, path_).terms.front().column);

@@ -59,6 +59,41 @@ TEST_F(CsvTable, ColumnsTakeTheirNamesAndUnits) {
   EXPECT_EQ(recording.HeaderText("sources.ref_x_mm"), "x_m");
 }
 
+// As spreadsheets and data loggers write units.
+TEST_F(CsvTable, UnitsInBracketsAreConverted) {
+  const Recording recording = ReadText(
+      "Zeit [ms];Ist X [m];Soll Y (\u00b5m);Z / inch;J 1 [deg];Druck [hPa]\n1500;0,25;300;2;180;7\n",
+      {{{"time_s", "Zeit [ms]"},
+        {"x_mm", "Ist X [m]"},
+        {"y_mm", "Soll Y (\u00b5m)"},
+        {"z_mm", "Z / inch"},
+        {"pivot_1_rad", "\"J 1 [deg]\"*2"},
+        {"own", "Druck [hPa]"}},
+       {},
+       "linkage"});
+  EXPECT_DOUBLE_EQ(recording.At("time_s")[0], 1.5);
+  EXPECT_DOUBLE_EQ(recording.At("x_mm")[0], 250.0);
+  EXPECT_DOUBLE_EQ(recording.At("y_mm")[0], 0.3);
+  EXPECT_DOUBLE_EQ(recording.At("z_mm")[0], 50.8);
+  EXPECT_DOUBLE_EQ(recording.At("pivot_1_rad")[0], 2 * 3.14159265358979323846);
+  EXPECT_DOUBLE_EQ(recording.At("own")[0], 7.0);
+  EXPECT_TRUE(recording.warnings.empty());
+}
+
+TEST_F(CsvTable, AUnitOfAnotherQuantityIsRefused) {
+  EXPECT_THAT(Refusal("angle_deg\n1\n", {{{"ref_x_mm", "angle_deg"}}, {}, "linkage"}),
+              HasSubstr("\"angle_deg\" is in deg, which is no unit of what is wanted in mm"));
+}
+
+// probe_c is no temperature.
+TEST_F(CsvTable, ALetterAtTheEndThatIsNoUnitOfThisIsTakenAsItIs) {
+  const Recording recording =
+      ReadText("probe_c\n98.5\n", {{{"probe_c_um", "probe_c"}}, {}, "sweep"});
+  EXPECT_DOUBLE_EQ(recording.At("probe_c_um")[0], 98.5);
+  ASSERT_EQ(recording.warnings.size(), 1U);
+  EXPECT_THAT(recording.warnings[0], HasSubstr("\"probe_c\" is taken as it is, in um"));
+}
+
 TEST_F(CsvTable, ARowWithoutANumberIsFlagged) {
   EXPECT_THAT(ReadText(kTable).At("flags"), testing::ElementsAre(0.0, kDeviceError));
 }
