@@ -42,7 +42,8 @@ std::string HeadText(const ErrorMap& map) {
       "{}\nsquareness = {}\n"
       "squareness_from = {}\n\n[travel]\n",
       kFormat, Quoted(origin.machine), Quoted(map.model().chain().Text()),
-      Quoted(map.model().chain().PositiveText()), Floats(origin.reference), Floats(origin.tool),
+      Quoted(map.model().chain().PositiveText()), Floats(origin.reference),
+      Floats(Eigen::Vector3d(origin.tool.array() + 0.0)),  // no -0
       Float(origin.temperature), Quoted(map.Scale()), Floats(map.model().squareness()),
       QuotedList(std::array{of_squareness(0), of_squareness(1), of_squareness(2)}));
   for (std::size_t axis = 0; axis < kTravelKeys.size(); ++axis) {
