@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <sstream>
 #include <vector>
 
 #include "diagnosis/found_model.h"
+#include "recording/file_hash.h"
 #include "settings/unit.h"
 #include "simulation/variables.h"
 
@@ -204,24 +206,111 @@ std::string OthersText(const Leftover& leftover) {
   return text;
 }
 
-std::string WhatItDoes(const Leftover& leftover) {
-  if (leftover.variable == diagnosis::kScatter) return "scatters beyond its stated noise";
-  if (leftover.variable == diagnosis::kAtRest) return "scatters where nothing moves";
-  if (leftover.variable == diagnosis::kMemory) return "is correlated from one reading to the next";
+// With the verb for one thing or for many.
+std::string WhatItDoes(const Leftover& leftover, bool many) {
+  if (leftover.variable == diagnosis::kScatter) {
+    return many ? "scatter beyond their stated noise" : "scatters beyond its stated noise";
+  }
+  if (leftover.variable == diagnosis::kAtRest) {
+    return many ? "scatter where nothing moves" : "scatters where nothing moves";
+  }
+  if (leftover.variable == diagnosis::kMemory) {
+    return fmt::format("{} correlated from one reading to the next", many ? "are" : "is");
+  }
   if (IsOfAnInterval(leftover)) {
     const auto unit = simulation::UnitOf(leftover.variable);
-    return fmt::format("is offset where {} is {:.4g} to {:.4g} {},{}{}", leftover.variable,
-                       leftover.from / unit.si, leftover.to / unit.si, unit.name,
+    return fmt::format("{} offset where {} is {:.4g} to {:.4g} {},{}{}", many ? "are" : "is",
+                       leftover.variable, leftover.from / unit.si, leftover.to / unit.si, unit.name,
                        OthersText(leftover), leftover.one_of.empty() ? "" : ",");
   }
-  return fmt::format("varies with {}{}{}", leftover.variable, PeriodText(leftover),
-                     OthersText(leftover));
+  return fmt::format("{} with {}{}{}", many ? "vary" : "varies", leftover.variable,
+                     PeriodText(leftover), OthersText(leftover));
 }
 
 std::string WhatFollows(const Leftover& leftover) {
-  if (leftover.variable != diagnosis::kAtRest) return "no known cause explains it";
-  return "look for a bad contact, a loose mounting or a source of interference, or state its true "
-         "noise in the machine file";
+  if (leftover.variable == diagnosis::kAtRest) {
+    return "look for a bad contact, a loose mounting or a source of interference, or state the "
+           "true noise in the machine file";
+  }
+  if (leftover.variable == diagnosis::kScatter) {
+    return "no known cause explains it; look for what disturbs, or state the true noise in the "
+           "machine file";
+  }
+  return "no known cause explains it";
+}
+
+bool AreAlike(const Leftover& one, const Leftover& other) {
+  return WhatItDoes(one, true) == WhatItDoes(other, true) && one.unit.name == other.unit.name;
+}
+
+// "0.12 um", or from the least to the largest: "0.12 to 0.4 um".
+std::string AmplitudesText(const std::vector<Leftover>& alike) {
+  const auto [least, most] = std::ranges::minmax_element(alike, {}, &Leftover::amplitude);
+  const auto& unit = alike.front().unit;
+  const auto told = [&](const Leftover& one) {
+    return fmt::format("{:.3g}", one.amplitude / unit.si);
+  };
+  const std::string range =
+      told(*least) == told(*most) ? told(*most) : told(*least) + " to " + told(*most);
+  return fmt::format("{} {}", range, unit.name);
+}
+
+// Each once, the largest first.
+std::vector<std::string> ObjectsOf(std::vector<Leftover> alike) {
+  std::ranges::stable_sort(alike, std::greater{}, &Leftover::amplitude);
+  std::vector<std::string> objects;
+  for (const Leftover& one : alike) {
+    if (std::ranges::find(objects, one.object) == objects.end()) objects.push_back(one.object);
+  }
+  return objects;
+}
+
+// "probe_a, probe_b and probe_c", or the first `most` of them "and 4 more".
+std::string ListText(const std::vector<std::string>& objects, std::size_t most) {
+  const std::size_t shown = objects.size() > most + 1 ? most : objects.size();
+  std::string text;
+  for (std::size_t i = 0; i < shown; ++i) {
+    const bool last = i + 1 == objects.size();
+    if (i > 0) text += last ? " and " : ", ";
+    text += objects[i];
+  }
+  if (shown < objects.size()) text += fmt::format(" and {} more", objects.size() - shown);
+  return text;
+}
+
+// "p 3e-07", of several "p at most 3e-07"; below the smallest number it is no 0.
+std::string ChanceText(double p_value, bool many) {
+  constexpr double kSmallest = 1e-300;
+  if (p_value < kSmallest) return "p below 1e-300";
+  return fmt::format("p {}{:.1g}", many ? "at most " : "", p_value);
+}
+
+std::string LeftoverText(const std::vector<Leftover>& alike) {
+  constexpr std::size_t kObjectsShown = 4;
+  const std::vector<std::string> objects = ObjectsOf(alike);
+  const double p_value = std::ranges::max(alike, {}, &Leftover::p_value).p_value;
+  const std::string folded = objects.size() > kObjectsShown + 1 ? "; --verbose: each" : "";
+  return fmt::format("\nUNEXPLAINED: {} {} by {} ({}{}); {}\n", ListText(objects, kObjectsShown),
+                     WhatItDoes(alike.front(), objects.size() > 1), AmplitudesText(alike),
+                     ChanceText(p_value, alike.size() > 1), folded, WhatFollows(alike.front()));
+}
+
+// One line for all that do the same, or one each.
+std::string LeftoversText(const std::vector<Leftover>& leftovers, bool each) {
+  std::vector<std::vector<Leftover>> groups;
+  for (const Leftover& leftover : leftovers) {
+    const auto alike = std::ranges::find_if(groups, [&](const std::vector<Leftover>& group) {
+      return !each && AreAlike(group.front(), leftover);
+    });
+    if (alike == groups.end()) {
+      groups.push_back({leftover});
+    } else {
+      alike->push_back(leftover);
+    }
+  }
+  std::string text;
+  for (const auto& group : groups) text += LeftoverText(group);
+  return text;
 }
 
 std::string EvidenceText(const Diagnosis& diagnosis) {
@@ -326,20 +415,16 @@ ordered_json DiagnosisJson(const Diagnosis& diagnosis, const HeldOutGain& gain) 
   return json;
 }
 
-std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
+std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain, bool verbose) {
   std::string text =
       fmt::format("verdict: {}\nchi-square per row {:.3f}, with the causes found {:.3f}\n",
                   Name(diagnosis.verdict), diagnosis.chi_before, diagnosis.chi_after);
-  for (const Leftover& leftover : diagnosis.leftovers) {
-    text += fmt::format("\nUNEXPLAINED: {} {} by {:.3g} {} (p {:.1g}); {}\n", leftover.object,
-                        WhatItDoes(leftover), leftover.amplitude / leftover.unit.si,
-                        leftover.unit.name, leftover.p_value, WhatFollows(leftover));
-  }
+  text += LeftoversText(diagnosis.leftovers, verbose);
   text += FindingsText(diagnosis, gain);
   if (gain.rows > 0) {
     text += fmt::format(
         "\nheld out: {} rows, rms {:.3f} of the stated noise without the causes found, {:.3f} with "
-        "it\n",
+        "them\n",
         gain.rows, gain.before, gain.after);
   }
   if (!diagnosis.findings.empty() && diagnosis.map_change > 0.0) {
@@ -347,8 +432,10 @@ std::string DiagnosisText(const Diagnosis& diagnosis, const HeldOutGain& gain) {
                         1e6 * diagnosis.map_change);
   }
   if (gain.arm_poses > 0) {
-    text += fmt::format("{} poses of arms held out: {:.4g} mm rms in space, {:.4g} mm with it\n",
-                        gain.arm_poses, 1e3 * gain.arm_before, 1e3 * gain.arm_after);
+    text += fmt::format(
+        "{} poses of arms held out: {:.4g} mm rms in space, {:.4g} mm with the causes "
+        "found\n",
+        gain.arm_poses, 1e3 * gain.arm_before, 1e3 * gain.arm_after);
   }
   text += EvidenceText(diagnosis);
   if (!diagnosis.cannot_show.empty()) {

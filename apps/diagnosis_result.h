@@ -23,8 +23,9 @@ nlohmann::ordered_json LeftoverJson(const diagnosis::Leftover& leftover);
 
 nlohmann::ordered_json DiagnosisJson(const diagnosis::Diagnosis& diagnosis,
                                      const diagnosis::HeldOutGain& gain);
-std::string DiagnosisText(const diagnosis::Diagnosis& diagnosis,
-                          const diagnosis::HeldOutGain& gain);
+// What is left unexplained alike is one line, with `verbose` a line each.
+std::string DiagnosisText(const diagnosis::Diagnosis& diagnosis, const diagnosis::HeldOutGain& gain,
+                          bool verbose = false);
 
 // The file of a model, which states the recordings that it was found from and their hashes.
 std::string ModelText(simulation::ExtendedModel model,

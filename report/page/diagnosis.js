@@ -205,33 +205,99 @@ function cannotShowBlock(result) {
       (result.cannot_show ?? []).map(candidateName));
 }
 
+// What is left that depends on no variable: of one thing, and of many.
 const WITHOUT_VARIABLE = {
-  scatter: 'scatters beyond its stated noise',
-  memory: 'is correlated from one reading to the next',
+  'scatter': ['scatters beyond its stated noise', 'scatter beyond their stated noise'],
+  'scatter at rest': ['scatters where nothing moves', 'scatter where nothing moves'],
+  'memory': [
+    'is correlated from one reading to the next', 'are correlated from one reading to the next'
+  ],
 };
+const OBJECTS_SHOWN = 4;  // before the others are folded
+
+// A run keeps its name as it is.
+const isOfRun = ({variable}) => variable === 'scatter' || variable === 'memory';
+const leftName = (left) => isOfRun(left) ? left.object : objectName(left.object);
 
 // Where other variables do as well, none of them is certain.
 const oneOf = ({object, one_of: others}) => (others ?? []).map(
     (other, i) => `${i ? ', ' : ' or with one of these: '}${other.variable}${
         other.object === object ? '' : ` of ${objectName(other.object)}`}`).join('');
 
-const whatItDoes = (left) => {
+const whatItDoes = (left, many) => {
   const {variable, from, to, variable_unit: unit} = left;
-  if (WITHOUT_VARIABLE[variable]) return WITHOUT_VARIABLE[variable];
-  if (!isNumber(from)) return `varies with ${variable}${oneOf(left)}`;
+  if (WITHOUT_VARIABLE[variable]) return WITHOUT_VARIABLE[variable][many ? 1 : 0];
+  if (!isNumber(from)) return `${many ? 'vary' : 'varies'} with ${variable}${oneOf(left)}`;
   const [first, last] = [from, to].map((border) => plain(Number(border.toPrecision(4))));
-  return `is offset where ${variable} is ${first} to ${last}\u00a0${unit},${oneOf(left)}`;
+  return `${many ? 'are' : 'is'} offset where ${variable} is ${first} to ${last}\u00a0${unit},${
+      oneOf(left)}`;
 };
+
+const WHAT_FOLLOWS = {
+  'scatter at rest':
+      'look for a bad contact, a loose mounting or a source of interference, or state the true noise in the machine file',
+  'scatter':
+      'no known cause makes it; look for what disturbs, or state the true noise in the machine file',
+};
+
+// What does the same, together, the largest first.
+function alikeLeft(left) {
+  const groups = new Map();
+  for (const one of left) {
+    const key = `${whatItDoes(one, true)} ${one.unit}`;
+    groups.set(key, [...(groups.get(key) ?? []), one]);
+  }
+  return [...groups.values()].map((group) => group.sort((a, b) => b.amplitude - a.amplitude));
+}
+
+function leftTogether(group) {
+  const [most] = group;
+  const names = [...new Set(group.map(leftName))];
+  const many = names.length > 1;
+  const shown = names.length > OBJECTS_SHOWN + 1 ? names.slice(0, OBJECTS_SHOWN) : names;
+  const objects = shown.length < names.length ?
+      `${shown.join(', ')} and ${names.length - shown.length} more` :
+      shown.join(', ').replace(/, ([^,]*)$/, ' and $1');
+  const [least, largest] = [group.at(-1), most].map(({amplitude}) => significant(amplitude));
+  const sizes = least === largest ? largest : `${least} to ${largest}`;
+  const p = Math.max(...group.map(({p_value: chance}) => chance));
+  return `${isOfRun(most) ? objects : capital(objects)} ${whatItDoes(most, many)} by ${sizes}\u00a0${unitText(most.unit)} (${
+      chanceText(p, group.length > 1)}): ${
+      WHAT_FOLLOWS[most.variable] ?? 'no known cause makes it'}`;
+}
+
+// Below the smallest number it is no 0.
+const chanceText = (p, many) => p < 1e-300 ?
+    'p below 1e-300' :
+    `p ${many ? 'at most' : '='} ${plain(Number(p.toPrecision(1)))}`;
+
+// Each of the groups that do not fit into their line.
+function leftoversOneByOne(left) {
+  const folded = alikeLeft(left).filter((group) => group.length > OBJECTS_SHOWN + 1).flat();
+  if (!folded.length) return null;
+  return element(
+      'details', {class: 'values group'},
+      element('summary', {}, `Each of these ${folded.length}`), table({
+        caption: 'What is left unexplained, one by one',
+        columns: [
+          {head: 'Channel or run'}, {head: 'It'}, {head: 'Size', numeric: true}, {head: 'Unit'},
+          {head: 'p', numeric: true}
+        ],
+        rows: folded.map((one) => [
+          isOfRun(one) ? one.object : capital(objectName(one.object)), whatItDoes(one, false), significant(one.amplitude),
+          unitText(one.unit), chanceText(one.p_value, false).replace(/^p (= )?/, '')
+        ]),
+      }));
+}
 
 // What was left before anything was learned stands there too, where a term explains it.
 function leftoverBlock(result) {
   const learned = result.verdict === 'learned';
-  const left = learned ? result.left_before_learning : result.unexplained;
-  return notesBlock(learned ? 'Left by the known causes:' : 'Left unexplained:', (left ?? []).map((left) => {
-    const {object, amplitude, unit, p_value: p} = left;
-    return `${capital(objectName(object))} ${whatItDoes(left)} by ${significant(amplitude)}\u00a0${
-        unitText(unit)} in a way that no known cause makes (p = ${plain(Number(p?.toPrecision(1)))})`;
-  }));
+  const left = (learned ? result.left_before_learning : result.unexplained) ?? [];
+  return [
+    notesBlock(learned ? 'Left by the known causes:' : 'Left unexplained:', alikeLeft(left).map(leftTogether)),
+    leftoversOneByOne(left)
+  ];
 }
 
 const REGIMES = {
@@ -299,7 +365,7 @@ registerSection({
       ['Recordings', (result.recordings ?? []).join(', '), true], ['Extended model', result.model],
       ['The error map changes by up to', result.map_change_um > 0 && result.findings?.length ?
          `${significant(result.map_change_um)}\u00a0\u00b5m` : null]],
-  body: (result) => [leftoverBlock(result), ...(result.learned ?? []).map(learnedGroup), inPart(result), ...(result.findings ?? []).map((one) => findingGroup(one, result.heldout)),
+  body: (result) => [...leftoverBlock(result), ...(result.learned ?? []).map(learnedGroup), inPart(result), ...(result.findings ?? []).map((one) => findingGroup(one, result.heldout)),
                      rivalsTable(result), gainTable(result), evidenceTable(result),
                      cannotShowBlock(result)]
                         .flat()

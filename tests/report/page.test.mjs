@@ -295,6 +295,16 @@ test(
       const text = await section.textContent();
       assert.match(text, /How it shows/);
       assert.doesNotMatch(text, /What to check|What to do/);
+      // Ten runs that scatter are one line, and each a row behind it.
+      const left = await section.locator('[role=note] li').allTextContents();
+      assert.deepEqual(left.length, 4 + 1);
+      assert.match(
+          left[1],
+          /^12_run_of_day_12, 11_run_of_day_11, .* and 6 more scatter beyond their stated noise by 0\.80* to 1\.70* .*p at most 0\.001/);
+      assert.match(left[2], /^04_run_of_day_4 and 03_run_of_day_3 are correlated/);
+      assert.match(left[3], /^Probe c scatters where nothing moves by 5\.1.*loose mounting/);
+      await section.getByText('Each of these 10').click();
+      assert.equal(await section.locator('details[open] tbody tr', {hasText: 'run_of_day'}).count(), 10);
       await section.screenshot({path: join(screenshots, 'diagnosis_in_part.png')});
     }));
 

@@ -597,7 +597,21 @@ export function diagnosisResult() {
 export function diagnosisInPart() {
   const result = diagnosisResult();
   const [{words: {what, shows}, ...finding}] = result.findings;
-  return {...result, verdict: 'unexplained', rivals: [], findings: [{...finding, words: {what, shows}}]};
+  const run = (variable, index) => ({
+    variable,
+    object: `${String(index).padStart(2, '0')}_run_of_day_${index}`,
+    amplitude: 0.5 + index / 10,
+    unit: 'times the noise',
+    p_value: 10 ** -index
+  });
+  const unexplained = [
+    ...result.unexplained, ...[3, 4, 5, 6, 7, 8, 9, 10, 11, 12].map((index) => run('scatter', index)),
+    ...[3, 4].map((index) => run('memory', index)),
+    {variable: 'scatter at rest', object: 'probe_c', amplitude: 5.1, unit: 'times the noise', p_value: 1e-30}
+  ];
+  return {
+    ...result, verdict: 'unexplained', rivals: [], unexplained, findings: [{...finding, words: {what, shows}}]
+  };
 }
 
 // Two causes that a set of runs shows and confuses, and one that it does not.
