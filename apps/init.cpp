@@ -63,25 +63,61 @@ std::pair<double, double> TravelAnswer(char axis, std::pair<double, double> fall
       taken != static_cast<int>(answer.size())) {
     throw InputError(fmt::format("\"{}\": a travel is two numbers, such as 0,500", answer));
   }
+  if (!(travel.first < travel.second)) {
+    throw InputError(fmt::format("\"{}\": give the lower end of the travel first", answer));
+  }
   return travel;
+}
+
+// What `take` makes of an answer. A person at a terminal is asked again where it cannot be taken.
+template <typename Take>
+auto Asked(const Take& take) {
+  for (;;) {
+    try {
+      return take();
+    } catch (const InputError& failure) {
+      if (isatty(STDIN_FILENO) == 0 || !std::cin) throw;
+      fmt::print("{}\n", failure.what());
+    }
+  }
+}
+
+std::string KindAnswer() {
+  const std::string kind = Answer("Kind of machine: mill, gantry, lathe, axis, arm, shaft", "mill");
+  DescriptionOf(kind);
+  return kind;
+}
+
+// "tool" or "carriage".
+std::string PositiveAnswer() {
+  const std::string answer = Answer(
+      "Jog the table to a larger number: does the tool go towards the + end of the workpiece (tool), "
+      "or the table towards + of the machine (carriage)?",
+      "tool");
+  if (answer == "tool" || answer == "carriage") return answer;
+  throw InputError(fmt::format("\"{}\": answer tool or carriage", answer));
+}
+
+bool YesAnswer(const std::string& question) {
+  const std::string answer = Answer(question + " (yes, no)", "no");
+  if (answer == "yes" || answer == "y") return true;
+  if (answer == "no" || answer == "n") return false;
+  throw InputError(fmt::format("\"{}\": answer yes or no", answer));
 }
 
 void Ask(InitCommand& options, MachineDescription& machine) {
   machine.name = Answer("Name of the machine, as recordings will carry it", machine.name);
   bool carries = false;
   for (AxisDescription& axis : machine.axes) {
-    axis.travel_mm = TravelAnswer(axis.letter, axis.travel_mm);
+    axis.travel_mm = Asked([&] { return TravelAnswer(axis.letter, axis.travel_mm); });
     carries = carries || axis.carries_work;
   }
   if (carries) {
-    options.positive = Answer(
-        "Jog the table to a larger number: does the tool go towards the + end of the workpiece (tool), "
-        "or the table towards + of the machine (carriage)?",
-        "tool");
+    options.positive = Asked(PositiveAnswer);
   }
   if (!machine.axes.empty()) {
     options.has_head =
-        Answer("Will it be swept with the five-probe head? (yes, no)", "no") == "yes";
+        Asked([] { return YesAnswer("Will it be swept with the five-probe head?"); });
   }
 }
 
@@ -91,7 +127,7 @@ MachineDescription Described(InitCommand& options) {
   if (asks && !may_ask) {
     throw InputError("--kind mill, gantry, lathe, axis, arm or shaft is missing");
   }
-  if (asks) options.kind = Answer("Kind of machine: mill, gantry, lathe, axis, arm, shaft", "mill");
+  if (asks) options.kind = Asked(KindAnswer);
   if (options.kind.empty()) options.kind = "mill";
   MachineDescription machine = DescriptionOf(options.kind);
   if (!options.ini.empty()) ReadLinuxcncIni(options.ini, machine);

@@ -7,6 +7,7 @@
 
 #include "failure/failure.h"
 #include "hal/transports.h"
+#include "settings/toml_text.h"
 
 namespace abbe::apps {
 namespace {
@@ -204,8 +205,8 @@ std::string MachineText(const MachineDescription& machine) {
   std::string text = fmt::format(
       "# {}: written by abbe init. Every key is described in docs/machine-file.md;\n"
       "# \"abbe init --check FILE\" says what is missing for which command.\n\n"
-      "name = \"{}\"          # stands in every recording and result\n",
-      machine.kind == "axis" ? "one axis" : machine.kind, machine.name);
+      "name = {}          # stands in every recording and result\n",
+      machine.kind == "axis" ? "one axis" : machine.kind, settings::Quoted(machine.name));
   if (machine.kind == "arm") return text + std::string(kArm);
   if (machine.axes.empty()) {
     return text +

@@ -8,6 +8,7 @@ import json
 import math
 import os
 import pathlib
+import pty
 import random
 import re
 import shutil
@@ -51,6 +52,29 @@ class InitTest(ProgramCase):
         out = self.path / "map.toml"
         self.done(*sweeps, "--machine", path, "-o", out, "--fixed-smoothness", command="fuse")
         return out
+
+    def test_a_name_may_hold_quotes(self):
+        path = self.made("shaft", "--name", 'wheel "7" \\ left')
+        self.assertEqual(tomllib.loads(path.read_text())["name"], 'wheel "7" \\ left')
+
+    def test_a_person_is_asked_again_after_a_slip(self):
+        ours, theirs = pty.openpty()
+        path = self.path / "asked.toml"
+        asked = subprocess.Popen([PROGRAM, "init", "--out", path], stdin=theirs, stdout=theirs, stderr=theirs)
+        os.close(theirs)
+        os.write(ours, b"miill\nmill\nmill-3\n0;500\n300,0\n0,300\n0,200\n0,250\nboth\ncarriage\nmaybe\ny\n")
+        said = b""
+        while True:
+            try:
+                said += os.read(ours, 4096)
+            except OSError:  # it has ended
+                break
+        os.close(ours)
+        self.assertEqual(asked.wait(timeout=60), 0, said)
+        machine = tomllib.loads(path.read_text())
+        self.assertEqual((machine["name"], machine["axis"]["X"]["travel_mm"]), ("mill-3", [0, 300]))
+        self.assertEqual(machine["axis"]["X"]["positive"], "carriage")
+        self.assertIn("probe_a", machine["head"])
 
     def test_a_mill_and_a_gantry_are_measured_mapped_and_corrected(self):
         for kind in ("mill", "gantry"):
