@@ -20,6 +20,7 @@
 #include "apps/machine_recording.h"
 #include "apps/protocol.h"
 #include "apps/result_file.h"
+#include "apps/working_line.h"
 #include "fusion/calibration_file.h"
 #include "fusion/doubted_calibration.h"
 #include "recording/recording_file.h"
@@ -109,6 +110,7 @@ class Calibration {
   }
 
   void FromRecordings() {
+    RefuseTwice(arguments_.recordings);
     std::vector<simulation::LinkageRun> runs, certain;
     simulation::OneBall ball("give recordings of one ball at a time");
     nlohmann::ordered_json whose = nlohmann::ordered_json::object();
@@ -137,6 +139,7 @@ class Calibration {
   }
 
   fusion::CalibrationReport CalibrationOf(const std::vector<simulation::LinkageRun>& runs) const {
+    const WorkingLine line("calibrate", arguments_.quiet);
     return fusion::Calibrate(file_.sweep_setup.machine.chain, *file_.linkage, runs, options_);
   }
 

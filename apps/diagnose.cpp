@@ -1,6 +1,7 @@
 // abbe diagnose: finds the causes of the residuals of a simulation.
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "apps/machine_recording.h"
 #include "apps/protocol.h"
 #include "apps/result_file.h"
+#include "apps/working_line.h"
 #include "failure/failure.h"
 #include "learned/carried.h"
 #include "learned/explain.h"
@@ -34,7 +36,7 @@ struct DiagnoseArguments {
   std::vector<fs::path> recordings, learned;
   fs::path machine, out, json;
   std::string campaign;  // of the plan
-  bool plan = false, learn = false, quiet = false;
+  bool plan = false, learn = false, verbose = false, quiet = false;
 };
 
 void WriteModel(const simulation::ExtendedModel& model, const DiagnoseArguments& arguments) {
@@ -62,6 +64,12 @@ nlohmann::ordered_json JsonOf(const DiagnoseArguments& arguments,
   return json;
 }
 
+void Print(const learned::Explanation& all, bool verbose) {
+  fmt::print("{}{}", DiagnosisText(all.diagnosis, all.gain, verbose), LearnedText(all.learning));
+  for (const std::string& note : all.Notes()) fmt::print("\nNote: {}\n", note);
+  std::fflush(stdout);
+}
+
 int Diagnose(const DiagnoseArguments& arguments) {
   if (arguments.plan) {
     return DiagnosePlan({arguments.recordings, arguments.campaign, arguments.machine,
@@ -70,17 +78,20 @@ int Diagnose(const DiagnoseArguments& arguments) {
   if (arguments.recordings.empty()) {
     throw InputError("diagnose: no recording is given; name at least one, or plan with --plan");
   }
+  RefuseTwice(arguments.recordings);
+  simulation::Instruments instruments = ReadInstruments(arguments.machine);
   std::vector<recording::Recording> recordings;
   for (const fs::path& path : arguments.recordings) recordings.push_back(ReadWithWarnings(path));
-  const learned::Explanation all =
-      learned::Explain(recordings, ReadInstruments(arguments.machine),
-                       {arguments.learn, learned::CarriedFrom(arguments.learned)});
+  const learned::Explanation all = [&] {
+    const WorkingLine line("diagnose", arguments.quiet);
+    return learned::Explain(recordings, std::move(instruments),
+                            {arguments.learn, learned::CarriedFrom(arguments.learned)});
+  }();
   if (all.why_no_gain) fmt::print(stderr, "abbe: {}\n", *all.why_no_gain);
+  // First, so that it is not lost where a file cannot be written.
+  if (!arguments.quiet) Print(all, arguments.verbose);
   if (!arguments.out.empty()) WriteModel(learned::ModelOf(all), arguments);
   if (!arguments.json.empty()) WriteResult(JsonOf(arguments, recordings, all), arguments.json);
-  if (arguments.quiet) return kDone;
-  fmt::print("{}{}", DiagnosisText(all.diagnosis, all.gain), LearnedText(all.learning));
-  for (const std::string& note : all.Notes()) fmt::print("\nNote: {}\n", note);
   return kDone;
 }
 
@@ -115,6 +126,11 @@ void AddDiagnose(CLI::App& program, int& exit_code) {
       ->add_option("--learned", arguments->learned,
                    "Extended models of other machines: the terms that were learned there compete "
                    "as named causes")
+      ->excludes(plan);
+  command
+      ->add_flag(
+          "--verbose", arguments->verbose,
+          "A line for each channel and run that is left unexplained, also where they are alike")
       ->excludes(plan);
   command->add_flag("--quiet", arguments->quiet, "No tables");
   command->footer(

@@ -9,6 +9,7 @@
 #include "apps/instruments.h"
 #include "apps/plan_result.h"
 #include "apps/result_file.h"
+#include "apps/working_line.h"
 #include "failure/failure.h"
 #include "random/counter_random.h"
 #include "recording/recording_file.h"
@@ -67,7 +68,10 @@ int DiagnosePlan(const PlanArguments& arguments) {
   for (const auto& path : paths) {
     runs.push_back(std::filesystem::path(path.name).filename().string());
   }
-  const diagnosis::Plan plan = PlanOfPaths(std::move(paths), InstrumentsOf(file));
+  const diagnosis::Plan plan = [&] {
+    const WorkingLine line("diagnose --plan", arguments.quiet);
+    return PlanOfPaths(std::move(paths), InstrumentsOf(file));
+  }();
   if (!arguments.json.empty()) {
     auto json = PlanJson(plan);
     json["abbe"] = ABBE_VERSION;

@@ -279,7 +279,7 @@ std::string ListText(const std::vector<std::string>& objects, std::size_t most) 
 }
 
 // "p 3e-07", of several "p at most 3e-07"; below the smallest number it is no 0.
-std::string ChanceText(double p_value, bool many) {
+std::string ChanceOfLeft(double p_value, bool many) {
   constexpr double kSmallest = 1e-300;
   if (p_value < kSmallest) return "p below 1e-300";
   return fmt::format("p {}{:.1g}", many ? "at most " : "", p_value);
@@ -292,7 +292,7 @@ std::string LeftoverText(const std::vector<Leftover>& alike) {
   const std::string folded = objects.size() > kObjectsShown + 1 ? "; --verbose: each" : "";
   return fmt::format("\nUNEXPLAINED: {} {} by {} ({}{}); {}\n", ListText(objects, kObjectsShown),
                      WhatItDoes(alike.front(), objects.size() > 1), AmplitudesText(alike),
-                     ChanceText(p_value, alike.size() > 1), folded, WhatFollows(alike.front()));
+                     ChanceOfLeft(p_value, alike.size() > 1), folded, WhatFollows(alike.front()));
 }
 
 // One line for all that do the same, or one each.

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -17,8 +16,10 @@
 #include "apps/fuse_result.h"
 #include "apps/instruments.h"
 #include "apps/machine_recording.h"
+#include "apps/output_guard.h"
 #include "apps/protocol.h"
 #include "apps/result_file.h"
+#include "apps/working_line.h"
 #include "fusion/fuse_sources.h"
 #include "map/map_file.h"
 #include "map/map_grid.h"
@@ -93,17 +94,8 @@ std::string NotInMap(const std::vector<simulation::ModelledCause>& causes) {
   return text;
 }
 
-// A recording given twice would count twice.
-void RefuseTwice(const std::vector<fs::path>& recordings) {
-  std::set<fs::path> seen;
-  for (const fs::path& path : recordings) {
-    if (seen.insert(fs::weakly_canonical(path)).second) continue;
-    throw InputError(fmt::format("{}: is given twice, and its rows would count twice; give it once",
-                                 path.string()));
-  }
-}
-
 int Fuse(const FuseArguments& arguments) {
+  RefuseUnwritable(arguments.out);
   RefuseTwice(arguments.recordings);
   const MachineFile file = ReadMachineFile(arguments.machine);
   const machine::Machine& machine = file.sweep_setup.machine;
@@ -118,6 +110,7 @@ int Fuse(const FuseArguments& arguments) {
   std::vector<RunSource> sources;
   for (const fs::path& path : arguments.recordings) sources.push_back(SourceAt(machine, path));
   simulation::RefuseStrangers(sources, instruments);
+  std::optional<WorkingLine> line(std::in_place, "fuse", arguments.quiet);
   const bool choose = !arguments.fixed_smoothness;
   std::optional<fusion::FuseReport> other;
   if (causes.WidensU95()) {
@@ -140,7 +133,6 @@ int Fuse(const FuseArguments& arguments) {
   const fusion::FuseReport report =
       fusion::FuseSources(sources, instruments, options,
                           causes.Active() ? fusion::AsTaken(corrected) : fusion::AsTaken());
-  map::WriteMap(report.map, arguments.out);
   auto json = FuseJson(report);
   for (const RunSource& source : sources) AddProtocol(source.head, json);
   std::string text = FuseTable(report);
@@ -158,8 +150,12 @@ int Fuse(const FuseArguments& arguments) {
       text += "without them no map fits the recordings\n";
     }
   }
+  line.reset();
+  // First, so that it is not lost where a file cannot be written.
+  if (!arguments.quiet) fmt::print("{}\n", text);
+  map::WriteMap(report.map, arguments.out);
+  if (!arguments.quiet) fmt::print("map: {}\n", arguments.out.string());
   if (!arguments.json.empty()) WriteResult(json, arguments.json);
-  if (!arguments.quiet) fmt::print("{}\nmap: {}\n", text, arguments.out.string());
   return kDone;
 }
 

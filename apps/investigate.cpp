@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "apps/command.h"
@@ -12,6 +13,7 @@
 #include "apps/instruments.h"
 #include "apps/investigate_recorders.h"
 #include "apps/result_file.h"
+#include "apps/working_line.h"
 #include "failure/failure.h"
 #include "investigate/investigation.h"
 #include "recording/file_hash.h"
@@ -75,10 +77,15 @@ int Investigate(const InvestigateArguments& arguments) {
                       recording::SecondsOf(recording::UtcNow()).value_or(0.0)});
   const auto show = [&](const std::string& line) {
     if (arguments.quiet) return;
+    WorkingLine::Erase();
     fmt::print("{}\n", line);
     std::fflush(stdout);
   };
+  // An operator is asked on the same terminal.
+  std::optional<WorkingLine> line(std::in_place, "investigate",
+                                  arguments.quiet || arguments.devices);
   const investigate::Ended ended = investigate::Investigate(subject, *recorder, journal, show);
+  line.reset();
   if (ended.diagnosis && ended.why != investigate::Why::kWaiting) {
     auto json = DiagnosisJson(*ended.diagnosis, ended.gain);
     json["abbe"] = ABBE_VERSION;

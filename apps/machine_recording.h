@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "machine/machine.h"
 #include "recording/blocks.h"
@@ -9,6 +10,9 @@
 #include "simulation/run_source.h"
 
 namespace abbe::apps {
+
+// InputError where one file is given twice, or a copy of it: its rows would count twice.
+void RefuseTwice(const std::vector<std::filesystem::path>& recordings);
 
 // Reads any recording and prints its warnings on standard error. Failure: that of
 // recording/recording_file.h.

@@ -63,8 +63,10 @@ std::string UnknownOption(const ActiveCommand& active, int argc, char** argv) {
     if (!word.starts_with("--") || word.size() == 2) continue;
     const std::string name = word.substr(2, word.find('=') - 2);
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    return fmt::format("--{}: {} has no such option; did you mean --{}?", name, active.typed,
-                       abbe::settings::NearestWord(name, known));
+    const std::string nearest = abbe::settings::NearestWord(name, known);
+    // --help alone is near to nothing but itself, and is named anyway.
+    const std::string meant = nearest == "help" ? "" : fmt::format("; did you mean --{}?", nearest);
+    return fmt::format("--{}: {} has no such option{}", name, active.typed, meant);
   }
   return "";
 }

@@ -1,7 +1,12 @@
 #include "apps/output_guard.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -9,6 +14,7 @@
 #include <system_error>
 #include <vector>
 
+#include "failure/failure.h"
 #include "recording/whole_file.h"
 
 namespace abbe::apps {
@@ -35,8 +41,20 @@ bool MayReplace(const CLI::App& command, const CLI::Option& option) {
          (command.get_name() == "track" && option.get_name() == "map");
 }
 
+// The folder in which a file of this name, or a folder, would be made; none for a device.
+fs::path FolderOf(const fs::path& output) {
+  std::error_code error;
+  const fs::file_status status = fs::status(output, error);
+  if (fs::is_directory(status)) return output;
+  if (fs::exists(status) && !fs::is_regular_file(status)) return {};
+  fs::path folder = fs::absolute(output, error).parent_path();
+  while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+  return fs::is_directory(folder, error) ? folder : fs::path();
+}
+
 struct Places {
   std::vector<fs::path> inputs, outputs;
+  std::vector<fs::path> named;  // outputs that need not be there
 };
 
 void Gather(const CLI::App& command, Places& places) {
@@ -44,6 +62,7 @@ void Gather(const CLI::App& command, Places& places) {
     if (option->count() == 0) continue;
     for (const std::string& word : option->results()) {
       std::error_code error;
+      if (IsOutput(*option)) places.named.emplace_back(word);
       if (!fs::is_regular_file(word, error)) continue;
       if (MayReplace(command, *option)) continue;
       (IsOutput(*option) ? places.outputs : places.inputs).emplace_back(word);
@@ -63,6 +82,13 @@ void AddForce(CLI::App& command, const std::shared_ptr<bool>& force) {
 
 }  // namespace
 
+void RefuseUnwritable(const fs::path& output) {
+  const fs::path folder = FolderOf(output);
+  if (folder.empty() || access(folder.c_str(), W_OK | X_OK) == 0) return;
+  throw InputError(fmt::format("{}: cannot be created: {}; choose a folder that can be written",
+                               output.string(), std::strerror(errno)));
+}
+
 void GuardOutputs(CLI::App& program) {
   const auto force = std::make_shared<bool>(false);
   AddForce(program, force);
@@ -71,6 +97,7 @@ void GuardOutputs(CLI::App& program) {
     Gather(program, places);
     recording::SetOverwriting({places.inputs, *force});
     for (const fs::path& output : places.outputs) recording::RefuseToOverwrite(output);
+    for (const fs::path& output : places.named) RefuseUnwritable(output);
   });
 }
 

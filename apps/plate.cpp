@@ -11,9 +11,11 @@
 #include "apps/evaluate_plate.h"
 #include "apps/machine_file.h"
 #include "apps/machine_recording.h"
+#include "apps/output_guard.h"
 #include "apps/plate_result.h"
 #include "apps/protocol.h"
 #include "apps/result_file.h"
+#include "apps/working_line.h"
 #include "map/map_file.h"
 
 namespace abbe::apps {
@@ -32,6 +34,7 @@ struct PlateArguments {
 std::vector<simulation::PlateSetup> ReadSetups(const PlateArguments& arguments,
                                                const machine::Machine& machine,
                                                nlohmann::ordered_json& result) {
+  RefuseTwice(arguments.recordings);
   std::vector<simulation::PlateSetup> setups;
   for (const fs::path& path : arguments.recordings) {
     const recording::Recording recording = ReadRecordingOf(machine, path);
@@ -51,13 +54,17 @@ map::ErrorMap WithNetworks(const map::ErrorMap& map,
 }
 
 int Plate(const PlateArguments& arguments) {
+  RefuseUnwritable(arguments.out);
   const machine::Machine machine = ReadMachineOf(arguments.machine);
   nlohmann::ordered_json whose = nlohmann::ordered_json::object();
   const auto setups = ReadSetups(arguments, machine, whose);
   PlateOptions options{.fixed_smoothness = arguments.fixed_smoothness,
                        .holdout = arguments.holdout};
   if (!arguments.specimen.empty()) options.specimen = ReadRecordingOf(machine, arguments.specimen);
-  const PlateResult result = EvaluatePlate(machine, setups, options);
+  const PlateResult result = [&] {
+    const WorkingLine line("plate", arguments.quiet);
+    return EvaluatePlate(machine, setups, options);
+  }();
   const fusion::FuseReport& fused = result.fused;
   map::WriteMap(arguments.network ? WithNetworks(fused.map, setups) : fused.map, arguments.out);
   if (!arguments.json.empty()) {

@@ -1,26 +1,21 @@
 #include "apps/progress.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
+
+#include "apps/terminal.h"
 
 namespace abbe::apps {
 namespace {
 
 constexpr std::size_t kBarWidth = 24;
 
-std::string Duration(double seconds) {
-  const auto whole = static_cast<long>(seconds + 0.5);
-  return whole < 60 ? fmt::format("{} s", whole)
-                    : fmt::format("{} min {:02} s", whole / 60, whole % 60);
-}
-
 }  // namespace
 
 Progress::Progress(std::string title, bool quiet)
-    : title_(std::move(title)), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+    : title_(std::move(title)), quiet_(quiet), terminal_(IsTerminal(stderr)) {}
 
 Progress::~Progress() {
   if (line_open_) fmt::print(stderr, "\n");
@@ -41,11 +36,12 @@ void Progress::Show(std::size_t done, std::size_t total, const std::string& note
   drawn_ = now;
   const double elapsed = std::chrono::duration<double>(now - started_).count();
   const std::string left = share > 0.0 && share < 1.0
-                               ? Duration(elapsed * (1.0 - share) / share) + " left"
-                               : Duration(elapsed);
+                               ? DurationText(elapsed * (1.0 - share) / share) + " left"
+                               : DurationText(elapsed);
   const auto filled = static_cast<std::size_t>(share * kBarWidth);
-  fmt::print(stderr, "\r{} [{:=<{}}{:.<{}}] {:3.0f} % {} {}\x1b[K", title_, "", filled, "",
-             kBarWidth - filled, 100.0 * share, left, note);
+  const std::string line = fmt::format("{} [{:=<{}}{:.<{}}] {:3.0f} % {} {}", title_, "", filled,
+                                       "", kBarWidth - filled, 100.0 * share, left, note);
+  fmt::print(stderr, "\r{}\x1b[K", line.substr(0, TerminalWidth() - 1));
   std::fflush(stderr);
   line_open_ = true;
 }

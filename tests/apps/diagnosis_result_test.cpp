@@ -19,8 +19,8 @@ diagnosis::Diagnosis WithLeftovers() {
   diagnosis::Diagnosis diagnosis;
   diagnosis.verdict = diagnosis::Verdict::kUnexplained;
   for (int run = 1; run <= 9; ++run) {
-    diagnosis.leftovers.push_back(Left(diagnosis::kScatter, "run_" + std::to_string(run),
-                                       0.5 + 0.1 * run, 1e-9 * run));
+    diagnosis.leftovers.push_back(
+        Left(diagnosis::kScatter, "run_" + std::to_string(run), 0.5 + 0.1 * run, 1e-9 * run));
   }
   diagnosis.leftovers.push_back({"time", "probe_a", 0.35e-6, {"um", 1e-6}, 0.0});
   diagnosis.leftovers.push_back({"time", "ball_y", 0.27e-6, {"um", 1e-6}, 1e-20});
@@ -43,15 +43,18 @@ TEST(DiagnosisText, GathersWhatIsLeftAlike) {
                               "noise by 0.6 to 1.4 times the noise (p at most 9e-09; --verbose: "
                               "each)"));
   // Other units are other things.
-  EXPECT_THAT(text, HasSubstr("probe_a and ball_y vary with time by 0.27 to 0.35 um (p at most 1e-20)"));
+  EXPECT_THAT(text,
+              HasSubstr("probe_a and ball_y vary with time by 0.27 to 0.35 um (p at most 1e-20)"));
   EXPECT_THAT(text, HasSubstr("pivot_1 varies with time by 2 to 40 urad"));
-  EXPECT_THAT(text, HasSubstr("probe_c scatters where nothing moves by 5.1 times the noise (p 1e-40)"));
+  EXPECT_THAT(text,
+              HasSubstr("probe_c scatters where nothing moves by 5.1 times the noise (p 1e-40)"));
 }
 
 TEST(DiagnosisText, SaysEachOnRequest) {
   const std::string text = DiagnosisText(WithLeftovers(), {}, true);
   EXPECT_EQ(LinesOf(text, "UNEXPLAINED"), 14) << text;
-  EXPECT_THAT(text, HasSubstr("run_3 scatters beyond its stated noise by 0.8 times the noise (p 3e-09)"));
+  EXPECT_THAT(text,
+              HasSubstr("run_3 scatters beyond its stated noise by 0.8 times the noise (p 3e-09)"));
   EXPECT_THAT(text, HasSubstr("probe_a varies with time by 0.35 um (p below 1e-300)"));
   EXPECT_THAT(text, Not(HasSubstr("--verbose")));
 }

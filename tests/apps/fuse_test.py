@@ -54,6 +54,16 @@ class FuseTest(ProgramCase):
         self.refuse(*runs, "--machine", MACHINE, "-o", self.path / "map.toml",
                     saying=["cube_2.csv", 'mounting.ball is "2", and "1" in', "one ball at a time"])
 
+    def test_a_copy_of_a_recording_would_count_twice(self):
+        run = self.rig_record("line.csv", "--length", "X")
+        copy = self.path / "line again.csv"
+        copy.write_bytes(run.read_bytes())
+        self.refuse(run, copy, "--machine", MACHINE, "-o", self.path / "map.toml",
+                    saying=["line again.csv: is a copy of", "line.csv", "would count twice"])
+        diagnosis = self.run_program(run, run, "--machine", MACHINE, command="diagnose")
+        self.assertEqual(diagnosis.returncode, 2)
+        self.assertIn("is given twice", diagnosis.stderr)
+
     def test_a_squareness_without_a_prior_is_refused_with_its_line(self):
         machine = self.path / "square.toml"
         machine.write_text(pathlib.Path(MACHINE).read_text().replace("squareness_urad = 30.0", "squareness_urad = 0.0", 1))

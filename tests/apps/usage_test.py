@@ -4,10 +4,11 @@
     ABBE=path/to/abbe ABBE_MACHINE=machine.toml usage_test.py
 """
 import os
+import subprocess
 import unittest
 from unittest import mock
 
-from program_case import ProgramCase
+from program_case import MACHINE, PROGRAM, ProgramCase
 
 
 class UsageTest(ProgramCase):
@@ -27,6 +28,23 @@ class UsageTest(ProgramCase):
         run = self.run_program(command="diagnoze")
         self.assertEqual(run.returncode, 2)
         self.assertIn('did you mean "abbe diagnose"?', run.stderr)
+
+    def test_a_word_that_is_near_to_nothing(self):
+        run = self.run_program("a.csv", "--axis", "X", command="reduce")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("--axis: abbe reduce has no such option; see abbe reduce --help", run.stderr)
+
+    def test_a_place_that_cannot_be_written_is_refused_before_any_work(self):
+        folder = self.path / "read_only"
+        folder.mkdir()
+        folder.chmod(0o555)
+        self.path.chmod(0o755)
+        nobody = {"user": 65534} if os.geteuid() == 0 else {}  # root may write everywhere
+        for place in (folder / "d.json", folder / "new" / "d.json"):
+            run = subprocess.run([PROGRAM, "diagnose", "missing.h5", "--machine", MACHINE, "--json", place],
+                                 capture_output=True, text=True, timeout=60, **nobody)
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertIn(f"{place}: cannot be created: Permission denied; choose a folder", run.stderr)
 
     def test_missing_option(self):
         self.refuse("a.h5", saying=["--machine is required", "abbe diagnose --help"])
