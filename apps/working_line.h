@@ -8,8 +8,8 @@
 
 namespace abbe::apps {
 
-// Of the steps (failure/progress.h) of the thread that makes it, as long as it exists. It appears
-// after a second, so that short work shows none.
+// Shows the steps (failure/progress.h) of the thread that makes it, as long as it exists. It
+// appears after a second, so that short work shows none.
 class WorkingLine {
  public:
   // "fuse": what is being done. Shows nothing if quiet.
