@@ -54,13 +54,16 @@ class World:
     def hook(self, name, run, *values, otherwise=0.0):
         return self.hooks[name](run, *values) if name in self.hooks else otherwise
 
-    def exact(self, run):
-        """Gaps (n, 5) in m and angles (n, 3) in rad without noise; None where the run has none."""
+    def poses(self, run):
+        """Workpiece and tool seen from the bed in each row."""
         more = {a: np.zeros((len(run.t), 6)) for a in "XYZ"}
         for axis, value in self.hook("carriage", run, otherwise={}).items():
             more[axis] = more[axis] + value
-        q = run.q + self.hook("travel", run)
-        work, tool = self.machine.poses(q, more)
+        return self.machine.poses(run.q + self.hook("travel", run), more)
+
+    def exact(self, run):
+        """Gaps (n, 5) in m and angles (n, 3) in rad without noise; None where the run has none."""
+        work, tool = self.poses(run)
         gaps = angles = None
         if run.probes:
             gaps = self.head.gaps(run.axis, work, tool, self.targets[run.mounting])
@@ -97,7 +100,8 @@ class World:
 
     def lengths(self, run):
         """The calibrated distance from the first row: the line stands on the table, the tool points at it."""
-        place = self.tip(run.q)
+        work, carried = self.poses(run)
+        place = joined(inverse(work), carried)[1]
         noise = 1e-7 * self.stream("noise", run.number, 3).normal(size=len(run.t))
         scale = 1 + 2e-6 * self.stream("noise", run.number, 4).normal()
         return np.where(np.arange(len(run.t)) == 0, 0.0,
