@@ -126,7 +126,7 @@ def circle(plane, feed, start, radius=0.020):
         v[:, i], v[:, j] = -way * feed * np.sin(angle), way * feed * np.cos(angle)
         since = np.ones((len(t), 3))  # all axes have come from afar
         for axis, top in ((i, 0.0), (j, np.pi / 2)):  # where it turns, and each half turn later
-            turned = np.floor((angle * way - top) / np.pi) * np.pi + top
+            turned = np.floor((angle * way - top) / np.pi - 1e-9) * np.pi + top  # not where it just arrives
             way_since = radius * np.abs(1 - np.cos(angle * way - turned))
             since[:, axis] = np.where(turned >= -0.2, way_since, 1.0)
         parts.append((t, q, v, np.full(len(t), way), since))

@@ -31,7 +31,8 @@ def place_before(run, late):
 
 def play(draw, runs):
     k, h = draw.integers(3), abs(size(draw, 3e-7, 6e-6))
-    return known("backlash", AXES[k], {"travel": lambda r: along(k, -h / 2 * r.sense[:, k])},
+    lag = lambda r: r.sense[:, k] * (h / 2 - np.minimum(r.since[:, k], h))  # taken up on the way
+    return known("backlash", AXES[k], {"travel": lambda r: along(k, lag(r))},
                  f"{AXES[k]} has {h * 1e6:.2f} um of play", "standing-position", width_um=h * 1e6)
 
 
