@@ -50,33 +50,23 @@ double Search::LogPosteriorBeside(const Fit& without, std::size_t i) const {
   return log_evidence + member.log_prior;
 }
 
-// Whether something else that was taken in does what the cause does, and more.
-bool Search::IsInOtherWords(std::size_t cause) const {
-  if (members_[cause].other) return false;
-  const simulation::Object& object = members_[cause].finding.score.candidate.object;
-  return std::ranges::any_of(members_, [&](const Member& member) {
-    return member.other && IsOfTheAxis(member.other->structure, object);
-  });
-}
-
 // Leaves out what the others explain as well, the least probable first: each that goes may be what
-// made another one superfluous. A cause goes after what says the same in other words.
+// made another one superfluous.
 void Search::DropSuperfluous() {
   for (;;) {
     for (Member& member : members_) member.beside = 1.0;
     if (members_.size() < 2) return;
     std::size_t least = 0;
-    std::pair<bool, double> first{true, 0.0};  // in other words, log odds
+    double least_odds = 0.0;
     FitPointer without_least;
     for (std::size_t i = 0; i < members_.size(); ++i) {
       FitPointer without = IsBeyondDoubt(i) ? nullptr : FitWith(Others(i));
       if (!without) continue;
       const double log_odds = LogPosteriorBeside(*without, i);
       members_[i].beside = ProbabilityOf(log_odds);
-      const std::pair order{IsInOtherWords(i), log_odds};
-      if (log_odds > 0.0 || order > first) continue;
+      if (log_odds > least_odds) continue;
       least = i;
-      first = order;
+      least_odds = log_odds;
       without_least = std::move(without);
     }
     if (!without_least) return;

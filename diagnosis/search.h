@@ -76,7 +76,6 @@ class Search {
   // judgement.cpp: what is said of it in the end.
   bool IsBeyondDoubt(std::size_t i) const;
   double LogPosteriorBeside(const Fit& without, std::size_t i) const;
-  bool IsInOtherWords(std::size_t cause) const;
   void DropSuperfluous();
   void ForgiveRivalsFound();
   double SomethingElseInstead(std::size_t i) const;

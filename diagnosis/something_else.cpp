@@ -86,14 +86,6 @@ void AddThoseAlike(const Fit& fit, const std::vector<Found>& found, Found& most)
   }
 }
 
-bool IsOfTheAxis(const Structure& structure, const simulation::Object& axis) {
-  if (axis.kind() != simulation::Object::Kind::kAxis) return false;
-  const std::string own{"xyz"[axis.first()]};
-  const std::string& channel = structure.channel.object;
-  return (structure.variable == own || structure.variable.ends_with(" of " + own)) &&
-         (channel == axis.name() || IsAlong(channel, own));
-}
-
 double LogPosterior(const Found& found, std::size_t questions) {
   return found.drawn.log_evidence + std::log(kElse / questions);
 }

@@ -36,9 +36,6 @@ class SomethingElse {
 std::optional<Found> MostProbable(const Fit& fit, const std::vector<Found>& found);
 // Other variables with which the data go nearly as well as with that of `most`.
 void AddThoseAlike(const Fit& fit, const std::vector<Found>& found, Found& most);
-// Whether it is the place of this axis along itself, over its own position, its direction or its way
-// since it turned: what play, screw and scale of the axis do in other words.
-bool IsOfTheAxis(const Structure& structure, const simulation::Object& axis);
 // Log odds that it is there, of so many that were asked for.
 double LogPosterior(const Found& found, std::size_t questions);
 

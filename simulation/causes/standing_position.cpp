@@ -1,6 +1,8 @@
-// Standing position: an axis that stands through a run does so at another place in each run, by a
-// random offset: on either side of its play, or as it was clamped.
+// Standing position: until it moves in a run an axis stands at another place in each run, by a random
+// offset: on either side of its play, or as it was clamped. How a swept axis came to its places is
+// known.
 #include <algorithm>
+#include <cmath>
 
 #include "simulation/causes/registry.h"
 #include "simulation/trace_motion.h"
@@ -27,10 +29,13 @@ VectorXd StandingRunsOf(const Scene& scene) {
   return shape;
 }
 
-bool Stands(const Trace& trace, int axis) {
-  if (trace.axes.cols() != trace.rows() || trace.rows() == 0) return false;
+// Those until it moves.
+Index RowsThatStand(const Trace& trace, int axis) {
+  if (trace.axes.cols() != trace.rows() || trace.axis == "XYZ"[axis]) return 0;
   const RowVectorXd position = trace.axes.row(axis);
-  return position.maxCoeff() - position.minCoeff() < kAxisBand;
+  Index rows = 0;
+  while (rows < position.size() && std::abs(position[rows] - position[0]) < kAxisBand) ++rows;
+  return rows;
 }
 
 }  // namespace
@@ -38,9 +43,8 @@ bool Stands(const Trace& trace, int axis) {
 Cause StandingPosition() {
   return {
       .id = "standing-position",
-      .words = {.what =
-                    "an axis that stands through a run stands elsewhere in each run, though its "
-                    "scale shows the same",
+      .words = {.what = "until it moves, an axis stands elsewhere in each run, though its scale "
+                        "shows the same",
                 .shows = "circles and sweeps lie apart along the axis that does not move in them",
                 .check = "play of the axis, from which side it came to its place, its clamp",
                 .remedy = "approach the place of an axis that will stand from the same side before "
@@ -51,12 +55,13 @@ Cause StandingPosition() {
       .columns = [](const Trace& trace, const Object& object,
                     const VectorXd& shape) -> std::vector<Disturbance> {
         const int axis = object.first();
-        if (!Stands(trace, axis)) return {};
+        const Index rows = RowsThatStand(trace, axis);
+        if (rows == 0) return {};
         const auto runs = shape.tail<kStandingRuns>();
         const auto own = std::find(runs.begin(), runs.end(), trace.identity());
         if (own == runs.end()) return {};
         std::vector<Disturbance> columns(kStandingRuns, NoDisturbance(trace));
-        columns[own - runs.begin()].row(Positioning(axis)).setOnes();
+        columns[own - runs.begin()].row(Positioning(axis)).head(rows).setOnes();
         return columns;
       },
       .shapes = [](const Scene& scene) -> std::vector<VectorXd> { return {StandingRunsOf(scene)}; },

@@ -300,7 +300,7 @@ test(
       assert.equal(left.length, 4);
       assert.match(
           left[1],
-          /^12_run_of_day_12, 11_run_of_day_11, .* and 6 more scatter beyond their stated noise by 0\.80* to 1\.70* .*p at most 0\.001/);
+          /^12_run_of_day_12, 11_run_of_day_11, .* and 6 more scatter beyond their stated noise by.0\.80*.to.1\.70*.*p at most.0\.001/);
       assert.match(left[2], /^04_run_of_day_4 and 03_run_of_day_3 are correlated/);
       assert.match(left[3], /^Probe c scatters where nothing moves by 5\.1.*loose mounting/);
       await section.getByText('Each of these 10').click();

@@ -189,9 +189,12 @@ TEST(Causes, RunsHaveMainsAndStandingPositionsOfTheirOwn) {
     }
     EXPECT_EQ(used, cause.id == "mains-pickup" ? 10 : 1);  // nodes 8.75 s apart over 35 s
   }
-  EXPECT_TRUE(StandingPosition()
-                  .columns(first, "X", StandingPosition().ShapesFor(scene, "X").front())
-                  .empty());
+  // X stands in the first row alone.
+  const auto until_it_moves =
+      StandingPosition().columns(first, "X", StandingPosition().ShapesFor(scene, "X").front());
+  const RowVectorXd x = At(until_it_moves.front(), Positioning(0), "standing-position");
+  EXPECT_EQ(x[0], 1.0);
+  EXPECT_TRUE(x.tail(x.size() - 1).isZero(0.0));
 }
 
 // From the top of a circle a slow axis is followed back far in time, and not far in angle.
