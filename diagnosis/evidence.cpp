@@ -65,8 +65,7 @@ DrawnSize SizeOfDraws(const Fit::Projection& projection, const SizeRange& sizes,
     if (S(i, i) > 0.0) seen.push_back(i);
   }
   if (seen.empty()) return {sizes.smallest, 0.0};
-  const MatrixXd of_seen = S(seen, seen);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(of_seen);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S(seen, seen));
   constexpr double kRounding = 1e-9;  // of the largest: below, a score is rounding too
   const Eigen::ArrayXd information = solver.eigenvalues().array().max(0.0);
   const Eigen::ArrayXd score =

@@ -164,8 +164,7 @@ MatrixXd LinearRuns::Information(const std::vector<const RunSums*>& runs) const 
     if (H(i, i) == 0.0) H(i, i) = 1.0;
   }
   const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
-  const MatrixXd scaled = scale.asDiagonal() * H * scale.asDiagonal();
-  const Eigen::LLT<MatrixXd> factor(scaled);
+  const Eigen::LLT<MatrixXd> factor(scale.asDiagonal() * H * scale.asDiagonal());
   const MatrixXd B = scale.asDiagonal() * C_J.transpose();
   MatrixXd left = C_C - B.transpose() * factor.solve(B);
   for (Index c = 0; c < left.rows(); ++c) {

@@ -1,2 +1,0 @@
-#define ABBE_ONCE
-#include "factorizations.h"
