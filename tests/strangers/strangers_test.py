@@ -151,7 +151,7 @@ class MapsOfStrangers(unittest.TestCase):
         self.assertEqual(self.fused(91000, "clean")[0]["reversals"], [])
 
     def test_a_contradiction_widens_every_uncertainty(self):
-        result, world = self.fused(91043, "beyond_threshold")
+        result, world = self.fused(91044, "beyond_threshold")
         self.assertEqual(len(result["contradictions"]), 1)
         told = next(c["agreement"] for c in result["chi2"] if c["run"] == result["contradictions"][0])
         self.assertAlmostEqual(result["widened"] ** 2, told["statistic"] / told["directions"], places=6)
