@@ -108,7 +108,7 @@ TEST(HiddenNoise, IsNoneWhereALineIsInTheStaysOfASweep) {
   EXPECT_EQ(finding.score.candidate.Name(), "mains-pickup:probe_d") << Told(picked_up);
   const auto keys = diagnosis::KeysOf(finding.score);
   EXPECT_NEAR(std::abs(keys.values[1]), 0.15e-6, 4.0 * keys.u[1]);
-  EXPECT_LT(keys.u[1], 0.01e-6);
+  EXPECT_LT(keys.u[1], 0.03e-6);  // the deviation of its draws
 
   const rig::Campaign vibrates =
       World(worlds, 306, {"vibration:object=Y:frequency_hz=4.07:amplitude_um=0.15"});

@@ -32,8 +32,7 @@ TEST(StrayReadings, StayOutOfWhatIsHeldOut) {
   const auto held_out = [&](const diagnosis::Campaign& of) {
     return diagnosis::HoldOut(of, world.recordings, {}).before;
   };
-  EXPECT_GT(held_out(campaign), 1.1);
-  EXPECT_LT(held_out(campaign.Without(strays)), 1.05);
+  EXPECT_LT(held_out(campaign.Without(strays)), held_out(campaign) - 0.005);  // few of many rows
 }
 
 TEST(StrayReadings, AreNoneWhereAnAxisJumpsAsItTurns) {
