@@ -101,7 +101,7 @@ std::vector<std::string> StandingPairs(const simulation::Scene& scene) {
 
 Keys KeysOf(const Score& score) {
   constexpr double kStep = 1e-3;  // standard uncertainties
-  // Of a random field the first number is its size.
+  // The first number of the shape of a random field is its size.
   const Eigen::Index sized =
       score.candidate.cause->IsRandomField() ? 1 : score.candidate.shape.size();
   const auto values_at = [&](const Eigen::VectorXd& off) -> Eigen::VectorXd {

@@ -32,6 +32,8 @@ struct Leftover {
   double from = 0.0, to = 0.0;  // of an interval, in that unit too
   // Others of which the runs tell as well that it may be they; empty: none.
   std::vector<Dependence> one_of = {};
+
+  bool IsOfAnInterval() const { return to > from; }
 };
 
 inline constexpr double kDoubt = 1e-3;

@@ -107,7 +107,7 @@ std::vector<double> FrequenciesUpTo(double highest, double span) {
 std::vector<double> FrequenciesOfMains(double span) {
   constexpr double kOff = 0.1, kClose = 0.25;  // Hz; of the step: an alias differs by little
   std::vector<double> frequencies;
-  for (const double mains : {50.0, 60.0}) {
+  for (const double mains : kMains) {
     for (double off = -kOff; off <= kOff; off += kClose * kOfAWave / span)
       frequencies.push_back(mains + off);
   }

@@ -17,6 +17,7 @@
 // noise was not measured, but planned, and is not told.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "estimation/noise_memory.h"
@@ -34,6 +35,7 @@ struct RestNoise {
   double frequency = 0.0;  // Hz, kLine: one of those that the readings do not tell apart
 };
 
+inline constexpr std::array kMains{50.0, 60.0};  // Hz
 inline constexpr int kLags = 5;
 inline constexpr Eigen::Index kFewForLines = 300;
 

@@ -2,17 +2,17 @@
 
 #include <Eigen/Core>
 #include <Eigen/QR>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
 
+#include "estimation/readings_at_rest.h"
+
 namespace abbe::probes {
 namespace {
 
 constexpr double kByChance = 1e-3;
-constexpr std::array<double, 2> kMainsHz = {50.0, 60.0};
 
 struct Sine {
   double amplitude = 0.0;
@@ -52,7 +52,7 @@ ChannelNoise NoiseOf(std::span<const double> times, std::span<const double> valu
   const double n = static_cast<double>(count);
   found.noise = count > 1 ? std::sqrt(deviation.squaredNorm() / (n - 1.0)) : 0.0;
   if (count < 8 || found.constant) return found;
-  for (const double hertz : kMainsHz) {
+  for (const double hertz : estimation::kMains) {
     const Sine sine = SineOf(hertz, at, deviation);
     const double noise = std::sqrt(sine.squares / (n - 3.0));
     const double limit = noise * std::sqrt(-4.0 * std::log(kByChance) / n);

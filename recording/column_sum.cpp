@@ -4,10 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "failure/failure.h"
@@ -15,64 +13,6 @@
 
 namespace abbe::recording {
 namespace {
-
-struct Spelling {
-  std::string_view written;
-  settings::Unit unit;
-};
-
-constexpr double kDegreeInRad = std::numbers::pi / 180.0;
-
-// As tables write them, in brackets.
-constexpr std::array<Spelling, 30> kSpellings{{{"m", {"m", 1.0}},
-                                               {"mm", {"mm", 1e-3}},
-                                               {"um", {"um", 1e-6}},
-                                               {"\u00b5m", {"um", 1e-6}},
-                                               {"\u03bcm", {"um", 1e-6}},
-                                               {"nm", {"nm", 1e-9}},
-                                               {"in", {"inch", 25.4e-3}},
-                                               {"inch", {"inch", 25.4e-3}},
-                                               {"rad", {"rad", 1.0}},
-                                               {"mrad", {"mrad", 1e-3}},
-                                               {"urad", {"urad", 1e-6}},
-                                               {"\u00b5rad", {"urad", 1e-6}},
-                                               {"\u03bcrad", {"urad", 1e-6}},
-                                               {"deg", {"deg", kDegreeInRad}},
-                                               {"\u00b0", {"deg", kDegreeInRad}},
-                                               {"s", {"s", 1.0}},
-                                               {"sec", {"s", 1.0}},
-                                               {"ms", {"ms", 1e-3}},
-                                               {"us", {"us", 1e-6}},
-                                               {"\u00b5s", {"us", 1e-6}},
-                                               {"\u03bcs", {"us", 1e-6}},
-                                               {"min", {"min", 60.0}},
-                                               {"mm/min", {"mm/min", 1e-3 / 60.0}},
-                                               {"m/min", {"m/min", 1.0 / 60.0}},
-                                               {"mm/s", {"mm/s", 1e-3}},
-                                               {"\u00b0C", {"degC", 1.0}},
-                                               {"degC", {"degC", 1.0}},
-                                               {"Hz", {"Hz", 1.0}},
-                                               {"N", {"N", 1.0}},
-                                               {"V", {"V", 1.0}}}};
-
-constexpr std::array<std::string_view, 5> kLengths{"m", "mm", "um", "nm", "inch"};
-constexpr std::array<std::string_view, 4> kAngles{"rad", "mrad", "urad", "deg"};
-constexpr std::array<std::string_view, 4> kTimes{"s", "ms", "us", "min"};
-constexpr std::array<std::string_view, 3> kFeeds{"mm/min", "m/min", "mm/s"};
-
-template <std::size_t n>
-bool IsOneOf(const std::array<std::string_view, n>& units, std::string_view unit) {
-  return std::ranges::find(units, unit) != units.end();
-}
-
-// The first unit of the same quantity.
-std::string_view QuantityOf(std::string_view unit) {
-  if (IsOneOf(kLengths, unit)) return kLengths.front();
-  if (IsOneOf(kAngles, unit)) return kAngles.front();
-  if (IsOneOf(kTimes, unit)) return kTimes.front();
-  if (IsOneOf(kFeeds, unit)) return kFeeds.front();
-  return unit;
-}
 
 // "mm" of "length [mm]", "length (mm)" and "length / mm"; empty: none.
 std::string_view BracketedIn(std::string_view name) {
@@ -87,11 +27,8 @@ std::string_view BracketedIn(std::string_view name) {
 
 // The unit that a table states in the name of a column.
 settings::Unit UnitOfColumn(std::string_view name) {
-  const std::string_view written = BracketedIn(name);
-  for (const Spelling& each : kSpellings) {
-    if (each.written == written) return each.unit;
-  }
-  return settings::UnitOf(name);
+  const settings::Unit written = settings::WrittenUnit(BracketedIn(name));
+  return written.name.empty() ? settings::UnitOf(name) : written;
 }
 
 class SumParser {
@@ -221,7 +158,7 @@ class SumParser {
   double FactorOf(std::string_view column) {
     const auto was = UnitOfColumn(column);
     if (was.name.empty() || unit_.name.empty()) return 1.0;
-    if (QuantityOf(was.name) == QuantityOf(unit_.name)) return was.si / unit_.si;
+    if (settings::MeasureTheSame(was, unit_)) return was.si / unit_.si;
     // One letter ends many a name that has no unit: probe_c.
     const bool letter = column.size() > 1 && column[column.size() - 2] == '_';
     if (!letter) {

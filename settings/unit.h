@@ -25,6 +25,14 @@ struct Unit {
 // a plain number. The longest ending wins ("feed_mm_min" is mm/min, not minutes).
 Unit UnitOf(std::string_view name);
 
+// The unit as tables write it: "mm", "\u00b5m", "inch", "mm/min", "\u00b0C"; none that is known is a
+// plain number.
+Unit WrittenUnit(std::string_view text);
+
+// Whether a number in the one can be converted to the other: both are lengths, angles, times or
+// feeds, or the same.
+bool MeasureTheSame(const Unit& one, const Unit& other);
+
 // `name` without that ending: "time_constant_s" -> "time_constant"; a plain number keeps its name.
 std::string_view StemOf(std::string_view name);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/readings_at_rest.h"
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
@@ -110,7 +111,9 @@ Cause MainsPickup() {
         return columns;
       },
       .shapes = [](const Scene& scene) -> std::vector<VectorXd> {
-        return {NodesIn(scene, 50.0), NodesIn(scene, 60.0)};
+        std::vector<VectorXd> shapes;
+        for (const double mains : estimation::kMains) shapes.push_back(NodesIn(scene, mains));
+        return shapes;
       },
       .tell = [](const VectorXd&, const VectorXd& shape) -> VectorXd {
         return Eigen::Vector2d(shape[kHertz], std::numbers::sqrt2 * shape[0]);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <string_view>
+#include <utility>
 
 namespace abbe::settings {
 namespace unit_test {
@@ -29,6 +31,32 @@ TEST(UnitTest, ReadsTheEndOfAName) {
   ExpectUnit("temp_column_c", "degC", 1.0);
   ExpectUnit("cap_force_n", "N", 1.0);
   ExpectUnit("supply_v", "V", 1.0);
+}
+
+TEST(UnitTest, ReadsWhatTablesWrite) {
+  for (const auto& [text, key] : {std::pair{"mm", "x_mm"},
+                                  {"\u00b5m", "gap_um"},
+                                  {"\u03bcrad", "yaw_urad"},
+                                  {"\u00b0", "angle_deg"},
+                                  {"\u00b0C", "temp_c"},
+                                  {"mm/min", "feed_mm_min"},
+                                  {"m/min", "feed_m_min"},
+                                  {"in", "x_inch"},
+                                  {"sec", "time_s"}}) {
+    EXPECT_EQ(WrittenUnit(text).name, UnitOf(key).name) << text;
+    EXPECT_EQ(WrittenUnit(text).si, UnitOf(key).si) << text;
+  }
+  EXPECT_DOUBLE_EQ(WrittenUnit("inch").si, 25.4e-3);
+  EXPECT_EQ(WrittenUnit("counts").name, "");
+}
+
+TEST(UnitTest, KnowsWhatCanBeConverted) {
+  EXPECT_TRUE(MeasureTheSame(UnitOf("x_mm"), WrittenUnit("inch")));
+  EXPECT_TRUE(MeasureTheSame(UnitOf("t_s"), UnitOf("t_min")));
+  EXPECT_TRUE(MeasureTheSame(UnitOf("temp_c"), WrittenUnit("\u00b0C")));
+  EXPECT_FALSE(MeasureTheSame(UnitOf("angle_deg"), UnitOf("x_mm")));
+  EXPECT_FALSE(MeasureTheSame(UnitOf("temp_c"), UnitOf("gap_um")));
+  EXPECT_FALSE(MeasureTheSame(UnitOf("x_m"), UnitOf("feed_m_min")));
 }
 
 TEST(UnitTest, TakesTheLongestEnd) {
