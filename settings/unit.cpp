@@ -1,9 +1,10 @@
 #include "settings/unit.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <numbers>
-#include <string>
 #include <utility>
 
 namespace abbe::settings {
@@ -89,7 +90,7 @@ Unit WrittenUnit(std::string_view text) {
 bool MeasureTheSame(const Unit& one, const Unit& other) {
   if (one.name == other.name) return true;
   const auto has = [](std::string_view quantity, const Unit& unit) {
-    return quantity.find(" " + std::string(unit.name) + " ") != std::string_view::npos;
+    return quantity.find(fmt::format(" {} ", unit.name)) != std::string_view::npos;
   };
   return std::ranges::any_of(kQuantities, [&](std::string_view quantity) {
     return has(quantity, one) && has(quantity, other);
