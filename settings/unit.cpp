@@ -1,10 +1,13 @@
 #include "settings/unit.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <numbers>
-#include <string>
 #include <utility>
+
+#include "settings/words.h"
 
 namespace abbe::settings {
 namespace {
@@ -62,6 +65,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kSpellin
 constexpr std::array<std::string_view, 4> kQuantities{" m mm um nm inch ", " rad mrad urad deg ",
                                                       " s ms us min ", " mm/min m/min mm/s "};
 
+// What stands before and after the unit in the name of a table's column.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kUnitMarks{
+    {{" / ", ""}, {"[", "]"}, {"(", ")"}}};
+
 const std::pair<std::string_view, Unit>* EndingOf(std::string_view name) {
   for (const auto& ending : kEndings) {
     if (name.ends_with(ending.first)) return &ending;
@@ -86,10 +93,21 @@ Unit WrittenUnit(std::string_view text) {
   return {"", 1.0};
 }
 
+ColumnName ColumnNameOf(std::string_view name) {
+  for (const auto& [open, close] : kUnitMarks) {
+    const auto at = name.rfind(open);
+    if (at == std::string_view::npos || !name.ends_with(close)) continue;
+    const std::size_t first = at + open.size();
+    const Unit unit = WrittenUnit(Trimmed(name.substr(first, name.size() - close.size() - first)));
+    if (!unit.name.empty()) return {Trimmed(name.substr(0, at)), unit};
+  }
+  return {StemOf(name), UnitOf(name)};
+}
+
 bool MeasureTheSame(const Unit& one, const Unit& other) {
   if (one.name == other.name) return true;
   const auto has = [](std::string_view quantity, const Unit& unit) {
-    return quantity.find(" " + std::string(unit.name) + " ") != std::string_view::npos;
+    return quantity.find(fmt::format(" {} ", unit.name)) != std::string_view::npos;
   };
   return std::ranges::any_of(kQuantities, [&](std::string_view quantity) {
     return has(quantity, one) && has(quantity, other);
