@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "failure/failure.h"
+#include "settings/column_name.h"
 #include "settings/unit.h"
 
 namespace abbe::compensation {

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "failure/failure.h"
+#include "settings/column_name.h"
 #include "settings/unit.h"
 
 namespace abbe::recording {

@@ -7,8 +7,6 @@
 #include <numbers>
 #include <utility>
 
-#include "settings/words.h"
-
 namespace abbe::settings {
 namespace {
 
@@ -65,10 +63,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kSpellin
 constexpr std::array<std::string_view, 4> kQuantities{" m mm um nm inch ", " rad mrad urad deg ",
                                                       " s ms us min ", " mm/min m/min mm/s "};
 
-// What stands before and after the unit in the name of a table's column.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kUnitMarks{
-    {{" / ", ""}, {"[", "]"}, {"(", ")"}}};
-
 const std::pair<std::string_view, Unit>* EndingOf(std::string_view name) {
   for (const auto& ending : kEndings) {
     if (name.ends_with(ending.first)) return &ending;
@@ -91,17 +85,6 @@ Unit WrittenUnit(std::string_view text) {
     if (unit.name == text) return unit;
   }
   return {"", 1.0};
-}
-
-ColumnName ColumnNameOf(std::string_view name) {
-  for (const auto& [open, close] : kUnitMarks) {
-    const auto at = name.rfind(open);
-    if (at == std::string_view::npos || !name.ends_with(close)) continue;
-    const std::size_t first = at + open.size();
-    const Unit unit = WrittenUnit(Trimmed(name.substr(first, name.size() - close.size() - first)));
-    if (!unit.name.empty()) return {Trimmed(name.substr(0, at)), unit};
-  }
-  return {StemOf(name), UnitOf(name)};
 }
 
 bool MeasureTheSame(const Unit& one, const Unit& other) {

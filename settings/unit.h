@@ -29,14 +29,6 @@ Unit UnitOf(std::string_view name);
 // plain number.
 Unit WrittenUnit(std::string_view text);
 
-// What a table states in the name of a column: {"length", mm} of "length [mm]", "length (mm)",
-// "length / mm" and "length_mm"; all of another name, without a unit.
-struct ColumnName {
-  std::string_view quantity;
-  Unit unit;
-};
-ColumnName ColumnNameOf(std::string_view name);
-
 // Whether a number in the one can be converted to the other: both are lengths, angles, times or
 // feeds, or the same.
 bool MeasureTheSame(const Unit& one, const Unit& other);

@@ -50,19 +50,6 @@ TEST(UnitTest, ReadsWhatTablesWrite) {
   EXPECT_EQ(WrittenUnit("counts").name, "");
 }
 
-TEST(UnitTest, ReadsTheNamesOfColumns) {
-  for (const auto* name : {"X [mm]", "X(mm)", "X / mm", "X_mm", "X [ mm ]"}) {
-    EXPECT_EQ(ColumnNameOf(name).quantity, "X") << name;
-    EXPECT_EQ(ColumnNameOf(name).unit.name, "mm") << name;
-  }
-  EXPECT_EQ(ColumnNameOf("speed [m/min]").unit.name, "m/min");
-  EXPECT_EQ(ColumnNameOf("order (of probing)").quantity, "order (of probing)");
-  EXPECT_EQ(ColumnNameOf("order (of probing)").unit.name, "");
-  for (const auto* odd : {"", "]", "[", "][", "()", " / "}) {
-    EXPECT_EQ(ColumnNameOf(odd).quantity, odd);
-  }
-}
-
 TEST(UnitTest, KnowsWhatCanBeConverted) {
   EXPECT_TRUE(MeasureTheSame(UnitOf("x_mm"), WrittenUnit("inch")));
   EXPECT_TRUE(MeasureTheSame(UnitOf("t_s"), UnitOf("t_min")));
