@@ -1,6 +1,5 @@
 // `abbe align`: sets head and target up for the sweep of an axis, with the operator at its screws.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -8,11 +7,11 @@
 #include <optional>
 #include <string>
 
+#include "apps/align_operator.h"
 #include "apps/align_result.h"
 #include "apps/command.h"
 #include "apps/commands.h"
 #include "apps/interrupt.h"
-#include "apps/key_press.h"
 #include "apps/live_view.h"
 #include "apps/machine_file.h"
 #include "apps/mounting_file.h"
@@ -45,59 +44,6 @@ struct AlignCommand {
   LiveOptions live;
 };
 
-// Where the gaps and the position of the axis are among the channels.
-struct ChannelPlaces {
-  probes::PerProbe<std::size_t> gap{};
-  std::optional<std::size_t> position;
-
-  ChannelPlaces(const std::vector<hal::Channel>& channels, char axis, const std::string& machine) {
-    const auto find = [&](const std::string& name) -> std::optional<std::size_t> {
-      for (std::size_t i = 0; i < channels.size(); ++i) {
-        if (channels[i].name == name) return i;
-      }
-      return {};
-    };
-    for (std::size_t i = 0; i < kProbes; ++i) {
-      const std::string name = fmt::format("probe_{:c}_um", 'a' + i);
-      const auto found = find(name);
-      if (!found) {
-        throw InputError(fmt::format(
-            "{}: no device has the channel {}; an alignment needs all five gaps", machine, name));
-      }
-      gap[i] = *found;
-    }
-    position = find(fmt::format("{:c}_mm", axis - 'X' + 'x'));
-  }
-};
-
-// A line on the terminal with the present position and gaps, ten times a second.
-class GapLine {
- public:
-  GapLine(const ChannelPlaces& places, char axis) : places_(places), axis_(axis) {}
-
-  void Show(const hal::SampleSet& set) {
-    if (isatty(STDERR_FILENO) == 0 || set.time_s < shown_s_ + 0.1) return;
-    shown_s_ = set.time_s;
-    fmt::print(stderr, "\r");
-    if (places_.position) {
-      fmt::print(stderr, "{:c} {:9.3f} mm ", axis_, set.samples[*places_.position].value);
-    }
-    for (std::size_t i = 0; i < kProbes; ++i) {
-      const hal::Sample& sample = set.samples[places_.gap[i]];
-      fmt::print(stderr, " {:c} {:>9}", 'a' + i,
-                 sample.good() ? fmt::format("{:.2f}", sample.value)
-                               : std::string(hal::NameOf(sample.cause)).substr(0, 9));
-    }
-    fmt::print(stderr, " um\x1b[K");
-    std::fflush(stderr);
-  }
-
- private:
-  const ChannelPlaces& places_;
-  char axis_;
-  double shown_s_ = -1.0;
-};
-
 class Alignment {
  public:
   Alignment(const AlignCommand& options, const MachineFile& file, const hal::SweepPlan& plan,
@@ -105,12 +51,9 @@ class Alignment {
       : options_(options),
         file_(file),
         plan_(plan),
-        clock_(clock),
-        source_(source),
         view_(view),
-        row_(source.channels().size() + 1),
-        places_(source.channels(), plan.axis, options.machine),
-        line_(places_, plan.axis),
+        channels_(source.channels(), plan.axis, options.machine),
+        operator_(channels_, plan.axis, file.devices.rate, clock, source, view),
         aligner_(file.sweep_setup.machine, file.sweep_setup.head, file.align, plan.axis,
                  plan.first(), plan.last()) {
     status_.axis = plan.axis;
@@ -118,10 +61,6 @@ class Alignment {
     status_.started = recording::UtcNow();
     status_.first = plan.first();
     status_.last = plan.last();
-    if (view_ == nullptr) return;
-    std::vector<std::string> columns = {"time_s"};
-    for (const hal::Channel& channel : source.channels()) columns.push_back(channel.name);
-    feed_ = view_->Watch(nullptr, columns, {});
   }
 
   const AlignStatus& Run() {
@@ -138,22 +77,6 @@ class Alignment {
   }
 
  private:
-  // Asks the operator, in the terminal and on the page.
-  void Ask(const std::string& what) {
-    fmt::print("{}\n", what);
-    std::fflush(stdout);
-    if (view_ != nullptr) view_->Show({.note = "At the terminal: " + what});
-  }
-
-  void Shown(const hal::SampleSet& set) {
-    line_.Show(set);
-    if (!feed_) return;
-    if (!first_s_) first_s_ = set.time_s;
-    row_[0] = set.time_s - *first_s_;
-    for (std::size_t i = 0; i < set.samples.size(); ++i) row_[i + 1] = set.samples[i].value;
-    feed_->Append(row_);
-  }
-
   // The result so far, for the page.
   void ShowResult() {
     if (view_ == nullptr) return;
@@ -165,17 +88,11 @@ class Alignment {
     const double seconds = std::max(plan_.dwell, file_.devices.stale + kBeyondStale);
     int refused = 0;
     while (true) {
-      Ask(fmt::format(
+      operator_.Ask(fmt::format(
           "move {:c} to {:.6g} mm, or as far towards it as all five gaps are shown, then "
           "press Enter",
           plan_.axis, goal / kMillimetre));
-      const auto standstill =
-          hal::AwaitStandstill(source_, clock_,
-                               {.rate = file_.devices.rate,
-                                .seconds = seconds,
-                                .confirmed = [&] { return keys_.Poll(); },
-                                .shown = [&](const hal::SampleSet& set) { Shown(set); }});
-      if (isatty(STDERR_FILENO) == 1) fmt::print(stderr, "\r\x1b[K");
+      const auto standstill = operator_.AwaitStandstill(seconds);
       if (!standstill) return false;
       const std::string refusal = Take(*standstill, goal);
       if (status_.end != AlignEnd::kGoesOn) return false;
@@ -204,7 +121,7 @@ class Alignment {
   std::string Take(const hal::Standstill& standstill, double goal) {
     probes::GapsAt at{.setting = static_cast<int>(status_.turned.size())};
     double position = goal;
-    if (places_.position) {
+    if (channels_.position) {
       const auto found = PositionOf(standstill);
       if (!found) {
         return fmt::format(
@@ -216,7 +133,7 @@ class Alignment {
     }
     at.travel = aligner_.TravelOf(position);
     for (std::size_t i = 0; i < kProbes; ++i) {
-      const std::size_t channel = places_.gap[i];
+      const std::size_t channel = channels_.gap[i];
       const bool good =
           standstill.good[channel] >= kLeastGood * static_cast<double>(standstill.readings());
       if (!good) return Unread(i, standstill.cause[channel], position);
@@ -262,7 +179,7 @@ class Alignment {
 
   // m; nothing when the axis did not stand, or gave no position.
   std::optional<double> PositionOf(const hal::Standstill& standstill) const {
-    const auto& values = standstill.values[*places_.position];
+    const auto& values = standstill.values[*channels_.position];
     double low = INFINITY, high = -INFINITY;
     for (const double value : values) {
       if (std::isnan(value)) continue;
@@ -349,19 +266,13 @@ class Alignment {
     const probes::HeadAlignment none;
     const auto lines = TurnLines(turns, status_.alignment ? *status_.alignment : none, file_.align);
     for (const std::string& line : lines) fmt::print("turn: {}\n", line);
-    Ask("then press Enter");
+    operator_.Ask("then press Enter");
     if (view_ != nullptr) {
       view_->Show({.note = fmt::format("Turn {}; then press Enter at the terminal",
                                        fmt::join(lines, ", "))});
     }
     ShowResult();
-    const auto standstill =
-        hal::AwaitStandstill(source_, clock_,
-                             {.rate = file_.devices.rate,
-                              .seconds = 0.0,
-                              .confirmed = [&] { return keys_.Poll(); },
-                              .shown = [&](const hal::SampleSet& set) { Shown(set); }});
-    if (!standstill) return false;
+    if (!operator_.AwaitStandstill(0.0)) return false;
     status_.turned.push_back(turns);
     return true;
   }
@@ -369,15 +280,9 @@ class Alignment {
   const AlignCommand& options_;
   const MachineFile& file_;
   const hal::SweepPlan& plan_;
-  hal::Clock& clock_;
-  hal::SampleSource& source_;
   LiveView* view_;
-  std::unique_ptr<recording::Writer> feed_;
-  std::vector<double> row_;
-  std::optional<double> first_s_;
-  ChannelPlaces places_;
-  GapLine line_;
-  KeyPress keys_;
+  GapChannels channels_;
+  AlignOperator operator_;
   probes::HeadAligner aligner_;
   AlignStatus status_;
   bool half_back_ = false;  // the last turns were

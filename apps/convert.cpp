@@ -86,6 +86,12 @@ std::vector<recording::MonitoredColumn> ColumnsOf(const ConvertOptions& options)
 }
 
 recording::Recording ReadTable(const ConvertOptions& options) {
+  if (!options.import.axis.empty() || options.import.u_probing_um > 0.0) {
+    throw InputError(
+        options.from.string() +
+        ": --axis and --probing-um are for files of other programs (.dat, .rtl, .txt); "
+        "leave them out, and name the columns of this table with --column");
+  }
   recording::CsvTableOptions table{
       ColumnsOf(options), {}, options.kind, options.names, options.shuffled};
   for (const std::string& text : options.where) {

@@ -1,4 +1,4 @@
-// A path from a table: the columns x_mm, y_mm, z_mm of a CSV, in any order among others.
+// A path from a table of positions (compensation/position_table.h).
 #pragma once
 
 #include <Eigen/Core>

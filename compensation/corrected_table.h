@@ -1,11 +1,10 @@
 // Correction of measured coordinates: the readings of the scales become positions of the tool.
 //
-// The table is a CSV with the columns x_mm, y_mm, z_mm in any order among others; `#` lines
-// before the header and all other columns are copied. Every position p becomes Made(p)
-// (corrector.h) plus the column of `beside`, the displacement of the axes in that row that is not
-// in the map (3 x rows, m; empty: none).
-// Units: mm in the file. Failure: InputError with file and line for a missing column, a row of a
-// wrong length, a word that is not a number, a position outside the travels.
+// The table is one of positions (position_table.h); `#` lines and all other columns are copied.
+// Every position p becomes Made(p) (corrector.h) plus the column of `beside`, the displacement of
+// the axes in that row that is not in the map (3 x rows, m; empty: none).
+// Units: those of the table. Failure: InputError with file and line for what PositionTable refuses
+// and a position outside the travels.
 #pragma once
 
 #include <string>

@@ -206,6 +206,7 @@ class ArmJob {
   // Of what is written, by its change with each free parameter.
   VectorXd Uncertainties(ArmCalibration& found) const {
     constexpr double kStep = 1e-6;  // m, rad: curvature and rounding both stay below 1e-5
+    constexpr double kRounding = 1e-13;
     const LinkageRun& run = fitted_.front().kept;
     const LinkageSimulation arm = ArmOf(run);
     const VectorXd x = ParametersOf(fit_, run), numbers = found.written.Numbers();
@@ -220,7 +221,10 @@ class ArmJob {
         moved[i] += step;
         return nominal_.With(arm.model().ChainAt(ModelPart(moved))).Numbers();
       };
-      J.col(column) = (at(kStep) - at(-kStep)) / (2.0 * kStep);
+      const VectorXd change = at(kStep) - at(-kStep);
+      // A number that the parameter does not move is held: what is left there is rounding.
+      const auto moved = change.array().abs() > kRounding * (1.0 + numbers.array().abs());
+      J.col(column) = moved.select(change, 0.0) / (2.0 * kStep);
     }
     found.ball_noise = BallNoise();
     return 2.0 * (J * fit_.covariance).cwiseProduct(J).rowwise().sum().cwiseMax(0.0).cwiseSqrt();

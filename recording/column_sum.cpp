@@ -9,27 +9,11 @@
 #include <optional>
 
 #include "failure/failure.h"
+#include "settings/column_name.h"
 #include "settings/unit.h"
 
 namespace abbe::recording {
 namespace {
-
-// "mm" of "length [mm]", "length (mm)" and "length / mm"; empty: none.
-std::string_view BracketedIn(std::string_view name) {
-  if (const auto slash = name.rfind(" / "); slash != std::string_view::npos) {
-    return name.substr(slash + 3);
-  }
-  if (!name.ends_with(']') && !name.ends_with(')')) return {};
-  const auto open = name.rfind(name.back() == ']' ? '[' : '(');
-  if (open == std::string_view::npos) return {};
-  return name.substr(open + 1, name.size() - open - 2);
-}
-
-// The unit that a table states in the name of a column.
-settings::Unit UnitOfColumn(std::string_view name) {
-  const settings::Unit written = settings::WrittenUnit(BracketedIn(name));
-  return written.name.empty() ? settings::UnitOf(name) : written;
-}
 
 class SumParser {
  public:
@@ -156,7 +140,7 @@ class SumParser {
   }
 
   double FactorOf(std::string_view column) {
-    const auto was = UnitOfColumn(column);
+    const settings::Unit was = settings::ColumnNameOf(column).unit;
     if (was.name.empty() || unit_.name.empty()) return 1.0;
     if (settings::MeasureTheSame(was, unit_)) return was.si / unit_.si;
     // One letter ends many a name that has no unit: probe_c.

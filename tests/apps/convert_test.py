@@ -80,6 +80,10 @@ class ConvertTest(unittest.TestCase):
         self.assert_refused(self.convert("c.csv", "none/b.csv"), "cannot be created")
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["a.csv", "c.csv"])
 
+    def test_an_option_of_another_program_s_file_is_not_ignored(self):
+        self.put("poses.csv", "S,T\n1,2\n")
+        self.assert_refused(self.convert("poses.csv", "b.csv", "--column", "a_rad=S", "--axis", "Y"), "--axis", "--column")
+
     def test_a_table_becomes_a_recording(self):
         self.put("a.dat", TABLE)
         done = self.convert("a.dat", "a.csv", "--axis", "Y")

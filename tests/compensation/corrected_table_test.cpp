@@ -1,5 +1,7 @@
 #include "compensation/corrected_table.h"
 
+#include <algorithm>
+
 #include "failure/failure.h"
 #include "map/words.h"
 #include "map_cases.h"
@@ -27,6 +29,27 @@ TEST(CorrectedTable, CorrectsThePositionsAndKeepsTheRest) {
   EXPECT_NE(table.text.find(",\"a b\"\n"), std::string::npos);
 }
 
+TEST(CorrectedTable, KeepsTheFormOfOtherPrograms) {
+  const map::ErrorMap map = map::RandomMap(2);
+  const Corrector corrector(map, Vector3d::Zero());
+  const auto corrected = [&](const std::string& text) {
+    return CorrectTable(text, "t.csv", corrector).text;
+  };
+  const std::string written = corrected("X [mm];Y [mm];Z [mm];note\n20,5;30,0;10,0;a\n");
+  std::string plain = corrected("x_mm,y_mm,z_mm,note\n20.5,30,10,a\n");
+  plain = plain.substr(plain.find('\n') + 1);
+  std::ranges::replace(plain, ',', ';');
+  std::ranges::replace(plain, '.', ',');
+  EXPECT_EQ(written, "X [mm];Y [mm];Z [mm];note\n" + plain);
+
+  const std::string tabs = corrected("\xEF\xBB\xBF\"X (um)\"\ty / mm\tz_m\n20500\t30\t0.01\n");
+  const auto words = map::PartsOf(tabs.substr(tabs.find('\n') + 1), '\t');
+  const Vector3d made = corrector.Made({0.0205, 0.03, 0.01});
+  EXPECT_NEAR(map::NumberOf(words[0], "x"), 1e6 * made.x(), 1e-9);
+  EXPECT_NEAR(map::NumberOf(words[1], "y"), 1e3 * made.y(), 1e-12);
+  EXPECT_NEAR(map::NumberOf(map::Trimmed(words[2]), "z"), made.z(), 1e-15);
+}
+
 TEST(CorrectedTable, RefusesWithTheLine) {
   const map::ErrorMap map = map::RandomMap(2);
   const Corrector corrector(map, Vector3d::Zero());
@@ -37,6 +60,9 @@ TEST(CorrectedTable, RefusesWithTheLine) {
   map::ExpectHas(refusal("x_mm,y_mm,z_mm\n1,2,3\n1,2\n"), "t.csv:3: 2 values");
   map::ExpectHas(refusal("x_mm,y_mm,z_mm\n1,nan,3\n"), "t.csv:2: \"nan\"");
   map::ExpectHas(refusal("x_mm,y_mm,z_mm\n1,2,61\n"), "t.csv:2: Z = 61 mm");
+  map::ExpectHas(refusal("X,Y,Z\n1,2,3\n"), "t.csv:1: the column X states no unit of length");
+  map::ExpectHas(refusal("X [deg],Y [mm],Z [mm]\n1,2,3\n"), "X [deg] states no unit of length");
+  map::ExpectHas(refusal("x_mm;y_mm;z_mm\n1,2,3;1;1\n"), "t.csv:2: \"1,2,3\" is not a number");
   map::ExpectHas(refusal("# nothing\n"), "is empty");
 }
 

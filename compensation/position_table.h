@@ -1,0 +1,58 @@
+// A table of positions, read row by row: a CSV with the columns x_mm, y_mm, z_mm in any order among
+// others, or with the unit as coordinate measuring machines and spreadsheets state it: "X [mm]",
+// "Y (um)", "z / inch". Semicolons or tabs may stand for the commas; then a decimal comma is one.
+// `#` lines and empty ones are no rows.
+//
+//   compensation::PositionTable table("x_mm,y_mm,z_mm\n1,2,3\n", "points.csv");
+//   while (table.Next()) {
+//     if (table.IsRow()) table.Position();  // m
+//   }
+//
+// Units: m. Failure: InputError with file and line for a missing column, one without a unit of
+// length, a row of a wrong length, a word that is not a number. Validity: UTF-8.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "map/words.h"
+
+namespace abbe::compensation {
+
+class PositionTable {
+ public:
+  // The text must outlive the table.
+  PositionTable(std::string_view text, const std::string& file);
+
+  // Goes to the next line; false after the last. InputError if there was no line of names.
+  bool Next();
+  std::string_view line() const { return line_; }
+  // Whether the line has a position; else it is a comment, empty or the names.
+  bool IsRow() const { return row_; }
+  const Eigen::Vector3d& Position() const { return position_; }
+  // The row with another position, in its own units, separators and decimals.
+  std::string WithPosition(const Eigen::Vector3d& position) const;
+  // "file:12".
+  std::string Where() const { return lines_.Where(); }
+
+ private:
+  void TakeNames(std::string_view names);
+  void TakeRow();
+  double NumberIn(std::string_view word) const;
+
+  map::Lines lines_;
+  std::string file_;
+  std::string_view line_;
+  bool row_ = false, named_ = false;
+  char separator_ = ',';
+  std::size_t width_ = 0;
+  std::array<std::size_t, 3> columns_{};
+  std::array<double, 3> si_{};
+  std::vector<std::string_view> words_;
+  Eigen::Vector3d position_;
+};
+
+}  // namespace abbe::compensation
