@@ -40,6 +40,7 @@ class AlignOperator {
   std::optional<hal::Standstill> AwaitStandstill(double seconds);
 
  private:
+  // On the terminal and on the page.
   void Show(const hal::SampleSet& set);
   // A line on the terminal with the present position and gaps, ten times a second.
   void ShowLine(const hal::SampleSet& set);

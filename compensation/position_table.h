@@ -29,9 +29,11 @@ class PositionTable {
 
   // Goes to the next line; false after the last. InputError if there was no line of names.
   bool Next();
+  // As it stands, without its end.
   std::string_view line() const { return line_; }
   // Whether the line has a position; else it is a comment, empty or the names.
   bool IsRow() const { return row_; }
+  // Of the row, m.
   const Eigen::Vector3d& Position() const { return position_; }
   // The row with another position, in its own units, separators and decimals.
   std::string WithPosition(const Eigen::Vector3d& position) const;

@@ -43,11 +43,12 @@ TEST(CorrectedTable, KeepsTheFormOfOtherPrograms) {
   EXPECT_EQ(written, "X [mm];Y [mm];Z [mm];note\n" + plain);
 
   const std::string tabs = corrected("\xEF\xBB\xBF\"X (um)\"\ty / mm\tz_m\n20500\t30\t0.01\n");
-  const auto words = map::PartsOf(tabs.substr(tabs.find('\n') + 1), '\t');
+  const std::string row = tabs.substr(tabs.find('\n') + 1);
+  const auto words = map::PartsOf(row, '\t');
   const Vector3d made = corrector.Made({0.0205, 0.03, 0.01});
   EXPECT_NEAR(map::NumberOf(words[0], "x"), 1e6 * made.x(), 1e-9);
   EXPECT_NEAR(map::NumberOf(words[1], "y"), 1e3 * made.y(), 1e-12);
-  EXPECT_NEAR(map::NumberOf(map::Trimmed(words[2]), "z"), made.z(), 1e-15);
+  EXPECT_NEAR(map::NumberOf(words[2], "z"), made.z(), 1e-15);
 }
 
 TEST(CorrectedTable, RefusesWithTheLine) {

@@ -188,7 +188,7 @@ TEST(SweepOfAnotherWorld, FollowsTheNoise) {
 }
 
 TEST(SweepOfAnotherWorld, CountsAFormThatNobodyMeasured) {
-  const char* form = "rest on target.form_nm";
+  const char* form = "rests on target.form_nm";
   const auto times = [](double factor) {
     return [=](rig::RigSettings& rig) { rig.form *= factor; };
   };
