@@ -122,7 +122,7 @@ class StudyOfTheHead(ProgramCase):
         self.refuse(*there, saying=["exists already", "--resume"])
         self.refuse(*there, "--resume", "--variant", "Z", saying=["asks", "another name"])
         self.refuse("--machine", MACHINE, "--store", self.path / "new.jsonl", "--shard", "4/3", saying=["--shard 4/3"])
-        self.refuse("--machine", MACHINE, "--store", "/nowhere/new.jsonl", saying=["/nowhere/new.jsonl"])
+        self.refuse("--machine", MACHINE, "--store", "/proc/nowhere/new.jsonl", saying=["/proc/nowhere/new.jsonl"])
         self.refuse("--machine", MACHINE, "--store", MACHINE, "--resume", saying=["demo_mill.toml:1", "abbe study"])
         one_axis = self.path / "none.toml"
         one_axis.write_text('name = "x"\n')
