@@ -67,13 +67,27 @@ def map_pulls(result, machine):
     return {name: pulls(e["value"], e["u"], truth[name]) for name, e in errors.items()}
 
 
+def without_frame(off, q):
+    """Displacements (3, n) at q (n, 3) less the rigid motion of all of them, in least squares."""
+    turns = np.stack([np.cross(axis, q) for axis in np.eye(3)], axis=2)
+    motions = np.concatenate([np.tile(np.eye(3), (len(q), 1, 1)), turns], axis=2).reshape(-1, 6)
+    moved = motions @ np.linalg.lstsq(motions, off.T.ravel(), rcond=None)[0]
+    return off - moved.reshape(-1, 3).T
+
+
 def volume_error(result, world):
-    """Largest and rms error of the map over its grid, m, and the rms of its u: the truth by exact motions."""
+    """Largest and rms error of the map over its grid, m, and the rms of its u: the truth by exact motions.
+
+    An effect that tilts a carriage as another axis moves tilts the travel of that axis, and with it the frame in which
+    a map is stated: beside such an effect the two are compared up to a rigid motion.
+    """
     grid = result["map"]["grid"]
     z, y, x = np.meshgrid(grid["z"], grid["y"], grid["x"], indexing="ij")
     q = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
     truth = world.tool_error(q, np.array(result["map"]["tool"])).T
     off = np.array(grid["error"]).reshape(3, -1) - truth
+    if {"carriage", "travel"} & set(world.hooks):
+        off = without_frame(off, q)
     u = np.array(grid["u"]).reshape(3, -1)
     return {"rms": float(np.sqrt(np.mean(off**2))), "u": float(np.sqrt(np.mean(u**2))),
             "worst": float(np.abs(off).max()), "inside": coverage(off[u > 0] / u[u > 0])}

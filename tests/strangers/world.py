@@ -6,6 +6,7 @@ machine, the same runs and the same noise, and the difference of both is the eff
 import datetime
 import pathlib
 import tomllib
+import types
 
 import numpy as np
 
@@ -56,7 +57,7 @@ class World:
 
     def poses(self, run):
         """Workpiece and tool seen from the bed in each row."""
-        more = {a: np.zeros((len(run.t), 6)) for a in "XYZ"}
+        more = {a: np.zeros((len(run.q), 6)) for a in "XYZ"}
         for axis, value in self.hook("carriage", run, otherwise={}).items():
             more[axis] = more[axis] + value
         return self.machine.poses(run.q + self.hook("travel", run), more)
@@ -88,9 +89,12 @@ class World:
         return (None if gaps is None else gaps + probe), (None if angles is None else angles + encoder)
 
     def tip(self, q, tool=(0.0, 0.0, 0.0)):
-        """The tool point in the workpiece (n, 3) at positions q, by the errors of the machine alone."""
-        nothing = {a: np.zeros((len(q), 6)) for a in "XYZ"}
-        work, carried = self.machine.poses(q, nothing)
+        """The tool point in the workpiece (n, 3) at positions q, by the errors of the machine and by an effect that
+        depends on the positions alone, not on time or the way that led there."""
+        try:
+            work, carried = self.poses(types.SimpleNamespace(q=q))
+        except AttributeError:
+            work, carried = self.machine.poses(q, {a: np.zeros((len(q), 6)) for a in "XYZ"})
         R, p = joined(inverse(work), carried)
         return p + apply(R, tool)
 
