@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "failure/failure.h"
@@ -32,6 +33,41 @@ Problem ProblemAt(const Campaign& campaign, const std::vector<PreparedRun>& runs
     }
   }
   return problem;
+}
+
+// Indices of the entries that are not zero: a cause of many functions acts in few of them in a run.
+std::vector<int> NotZero(const VectorXd& values) {
+  std::vector<int> indices;
+  for (Index i = 0; i < values.size(); ++i) {
+    if (values[i] != 0.0) indices.push_back(static_cast<int>(i));
+  }
+  return indices;
+}
+
+std::vector<int> Union(const std::vector<int>& sorted, std::vector<int> more) {
+  std::ranges::sort(more);
+  std::vector<int> both;
+  std::ranges::set_union(sorted, more, std::back_inserter(both));
+  return both;
+}
+
+// Of each index the place in `sorted`, which has it.
+std::vector<int> PlacesIn(const std::vector<int>& sorted, const std::vector<int>& indices) {
+  std::vector<int> places(indices.size());
+  std::ranges::transform(indices, places.begin(), [&](int index) {
+    return static_cast<int>(std::ranges::lower_bound(sorted, index) - sorted.begin());
+  });
+  return places;
+}
+
+// The columns whose unknowns the priors tie to others.
+std::vector<int> Tied(const MatrixXd& information) {
+  std::vector<int> tied;
+  for (Index i = 0; i < information.cols(); ++i) {
+    const auto others = (information.col(i).array() != 0.0).count() - (information(i, i) != 0.0);
+    if (others > 0) tied.push_back(static_cast<int>(i));
+  }
+  return tied;
 }
 
 void AddTo(MatrixXd& sum, const std::vector<int>& columns, const MatrixXd& part) {
@@ -123,7 +159,8 @@ LinearRuns::LinearRuns(const Campaign& campaign, std::vector<PreparedRun> runs, 
     : runs_(std::move(runs)),
       problem_(ProblemAt(campaign, runs_, at)),
       layout_(problem_),
-      prior_(PriorInformation(problem_, layout_)) {}
+      prior_(PriorInformation(problem_, layout_)),
+      tied_(Tied(prior_)) {}
 
 LinearizedRun LinearRuns::At(std::size_t run) const {
   const estimation::Term& term = problem_.terms()[run];
@@ -144,35 +181,53 @@ LinearizedRun LinearRuns::At(std::size_t run) const {
 RunSums LinearRuns::SumsOf(const LinearizedRun& run,
                            const std::vector<Candidate>& candidates) const {
   const MatrixXd C = ColumnsOf(run, layout_.names, candidates);
-  return {run.columns, run.J_J, C.transpose() * run.J, C.transpose() * C};
+  RunSums sums{.columns = run.columns,
+               .acting = NotZero(C.colwise().squaredNorm().transpose()),
+               .coefficients = C.cols(),
+               .J_J = run.J_J};
+  const MatrixXd acting = C(Eigen::all, sums.acting);
+  sums.C_J = acting.transpose() * run.J;
+  sums.C_C = acting.transpose() * acting;
+  return sums;
 }
 
 MatrixXd LinearRuns::Information(const std::vector<const RunSums*>& runs) const {
   constexpr double kRounding = 1e-9;  // of the information of a column
-  MatrixXd H = prior_;
-  MatrixXd C_J = MatrixXd::Zero(runs.front()->C_C.rows(), H.cols());
+  // An unknown of a run that is left out, tied to no other, changes nothing.
+  std::vector<int> taken = tied_, acting;
+  for (const RunSums* run : runs) {
+    taken = Union(taken, run->columns);
+    acting = Union(acting, run->acting);
+  }
+  MatrixXd H = prior_(taken, taken);
+  MatrixXd C_J = MatrixXd::Zero(std::ssize(acting), H.cols());
   MatrixXd C_C = MatrixXd::Zero(C_J.rows(), C_J.rows());
   for (const RunSums* run : runs) {
-    AddTo(H, run->columns, run->J_J);
-    for (std::size_t c = 0; c < run->columns.size(); ++c) {
-      C_J.col(run->columns[c]) += run->C_J.col(c);
-    }
-    C_C += run->C_C;
+    const std::vector<int> columns = PlacesIn(taken, run->columns);
+    const std::vector<int> rows = PlacesIn(acting, run->acting);
+    AddTo(H, columns, run->J_J);
+    C_J(rows, columns) += run->C_J;
+    C_C(rows, rows) += run->C_C;
   }
   // What nothing is known of and no run asks for.
   for (Index i = 0; i < H.rows(); ++i) {
     if (H(i, i) == 0.0) H(i, i) = 1.0;
   }
   const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<MatrixXd> factor(scale.asDiagonal() * H * scale.asDiagonal());
-  const MatrixXd B = scale.asDiagonal() * C_J.transpose();
-  MatrixXd left = C_C - B.transpose() * factor.solve(B);
+  H.array().colwise() *= scale.array();
+  H.array().rowwise() *= scale.transpose().array();
+  const Eigen::LLT<MatrixXd> factor(H);
+  const MatrixXd half = factor.matrixL().solve(scale.asDiagonal() * C_J.transpose());
+  MatrixXd left = C_C - half.transpose() * half;
   for (Index c = 0; c < left.rows(); ++c) {
     if (left(c, c) > kRounding * C_C(c, c)) continue;
     left.row(c).setZero();
     left.col(c).setZero();
   }
-  return left;
+  const Index count = runs.front()->coefficients;
+  MatrixXd of_all = MatrixXd::Zero(count, count);
+  of_all(acting, acting) = left;
+  return of_all;
 }
 
 }  // namespace abbe::diagnosis

@@ -33,10 +33,13 @@ struct LinearizedRun {
   Eigen::MatrixXd J, J_J;
 };
 
-// What a run adds to the normal equations of unknowns (J) and coefficients of causes (C).
+// What a run adds to the normal equations of unknowns (J) and of those coefficients of causes (C)
+// that act in it: of a cause of many functions, such as one of time, they are few.
 struct RunSums {
-  std::vector<int> columns;
-  Eigen::MatrixXd J_J, C_J, C_C;
+  std::vector<int> columns;       // of the unknowns
+  std::vector<int> acting = {};   // the coefficients, of all in order
+  Eigen::Index coefficients = 0;  // how many there are
+  Eigen::MatrixXd J_J, C_J = {}, C_C = {};
 };
 
 std::vector<const RunSums*> PointersTo(const std::vector<RunSums>& sums);
@@ -58,6 +61,7 @@ class LinearRuns {
   estimation::Problem problem_;
   estimation::Layout layout_;
   Eigen::MatrixXd prior_;  // information
+  std::vector<int> tied_;  // columns of prior_ that are not diagonal
 };
 
 }  // namespace abbe::diagnosis

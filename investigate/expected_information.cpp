@@ -25,9 +25,14 @@ class Judge {
       constant_ = -0.5 * S(0, 0);
       return;
     }
-    unit_ = candidate.Plausible();
-    const MatrixXd scaled = unit_.asDiagonal() * S * unit_.asDiagonal();
-    factor_.compute(scaled + MatrixXd::Identity(S.rows(), S.cols()));
+    // What acts nowhere adds nothing to the evidence.
+    for (Index i = 0; i < S.rows(); ++i) {
+      if (S(i, i) != 0.0) acting_.push_back(i);
+    }
+    if (acting_.empty()) return;
+    unit_ = candidate.Plausible()(acting_);
+    const MatrixXd scaled = unit_.asDiagonal() * S(acting_, acting_) * unit_.asDiagonal();
+    factor_.compute(scaled + MatrixXd::Identity(scaled.rows(), scaled.cols()));
     const double log_determinant = 2.0 * MatrixXd(factor_.matrixL()).diagonal().array().log().sum();
     constant_ = 0.5 * (factor_.solve(scaled).trace() - log_determinant);
   }
@@ -35,13 +40,14 @@ class Judge {
   double Evidence(const VectorXd& score) const {
     if (binary_) return score[0] + constant_;
     if (unit_.size() == 0) return 0.0;
-    const VectorXd mean = unit_.cwiseProduct(score);
+    const VectorXd mean = unit_.cwiseProduct(score(acting_));
     return 0.5 * mean.dot(factor_.solve(mean)) + constant_;
   }
 
  private:
   bool binary_ = false;
-  VectorXd unit_;
+  std::vector<Index> acting_;  // coefficients
+  VectorXd unit_;              // of these
   // Computed at once: a factorisation without content must not be copied.
   Eigen::LLT<MatrixXd> factor_{MatrixXd::Identity(1, 1)};
   double constant_ = 0.0;

@@ -112,6 +112,7 @@ Cause MainsPickup() {
       },
       .shapes = [](const Scene& scene) -> std::vector<VectorXd> {
         std::vector<VectorXd> shapes;
+        shapes.reserve(std::size(estimation::kMains));
         for (const double mains : estimation::kMains) shapes.push_back(NodesIn(scene, mains));
         return shapes;
       },
