@@ -1,5 +1,6 @@
 #include "diagnosis/invalid_readings.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -116,20 +117,31 @@ class Neighbours {
     out_[row] = out;
     for (std::size_t near = FirstNear(row); near < LastNear(row); ++near) off_[near] = OffOf(near);
   }
-  // Whether a reading goes with those of one side: then it is no outlier, but a channel or a
-  // machine that stands elsewhere from there on.
+  // Whether a channel that stands elsewhere from this reading or the next one on accounts for the
+  // rows around it better than one reading that is off; both beside a cubic of time.
   bool IsOfAStep(std::size_t row) const {
-    constexpr double kShare = 0.5;  // of what it is off the cubic
-    const std::optional<Prediction> cubic = ByCubic(row);
-    if (table_.stay[row] >= kStay || !cubic) return false;
-    const auto goes_with = [&](std::ptrdiff_t step) {
-      std::vector<std::size_t> side = Beside(row, step);
-      if (side.size() < 3) return false;
-      side.resize(3);
-      const double off = Prediction(table_.time, row, std::move(side)).Off(values_);
-      return std::abs(off) < kShare * std::abs(cubic->Off(values_));
+    constexpr std::size_t kLeastRows = 7;
+    std::vector<std::size_t> rows = Beside(row, -1);
+    const std::vector<std::size_t> after = Beside(row, 1);
+    if (table_.stay[row] >= kStay || rows.empty() || after.empty()) return false;
+    rows.push_back(row);
+    rows.insert(rows.end(), after.begin(), after.end());
+    if (rows.size() < kLeastRows) return false;
+    Eigen::MatrixXd functions(std::ssize(rows), 5);
+    Eigen::VectorXd read(std::ssize(rows));
+    const double span = std::abs(table_.time[after.back()] - table_.time[row]);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double t = (table_.time[rows[i]] - table_.time[row]) / span;
+      functions.row(i).head<4>() << 1.0, t, t * t, t * t * t;
+      read[i] = values_[rows[i]];
+    }
+    const auto left = [&](const auto& is_off) {
+      for (std::size_t i = 0; i < rows.size(); ++i) functions(i, 4) = is_off(rows[i]) ? 1.0 : 0.0;
+      return (read - functions * functions.householderQr().solve(read)).squaredNorm();
     };
-    return goes_with(-1) || goes_with(1);
+    const double alone = left([&](std::size_t at) { return at == row; });
+    return left([&](std::size_t at) { return at >= row; }) < alone ||
+           left([&](std::size_t at) { return at > row; }) < alone;
   }
   double LargestNear(std::size_t row) const {
     double most = 0.0;
