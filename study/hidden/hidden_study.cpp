@@ -75,7 +75,10 @@ std::optional<bool> IsAtFloor(const HiddenWorlds& worlds, const rig::Campaign& w
                               const Diagnosis& diagnosis) {
   constexpr double kOfTheFloor = 1.05;
   const Finding& finding = diagnosis.findings.front();
-  if (!diagnosis::IsModelled(finding)) return std::nullopt;
+  // What each run has of its own nobody predicts in another.
+  if (!diagnosis::IsModelled(finding) || finding.score.candidate.cause->own_in_each_run) {
+    return std::nullopt;
+  }
   const auto gain = diagnosis::HoldOut(CampaignOf(diagnosis, worlds.Recordings(world)),
                                        world.recordings, {finding.score.candidate});
   if (gain.rows == 0) return std::nullopt;
