@@ -8,21 +8,20 @@
 
 #include "failure/failure.h"
 #include "settings/column_name.h"
+#include "settings/table_cells.h"
 #include "settings/unit.h"
 
 namespace abbe::compensation {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-// A cell that a spreadsheet has quoted, without the quotes.
-std::string_view Unquoted(std::string_view cell) {
-  if (cell.size() < 2 || !cell.starts_with('"') || !cell.ends_with('"')) return cell;
-  return cell.substr(1, cell.size() - 2);
-}
-
 bool Names(std::string_view quantity, char axis) {
   return quantity.size() == 1 && std::tolower(static_cast<unsigned char>(quantity[0])) == axis;
+}
+
+std::vector<std::string> Unquoted(const std::vector<std::string_view>& cells) {
+  std::vector<std::string> columns(cells.size());
+  std::ranges::transform(cells, columns.begin(), settings::Unquoted);
+  return columns;
 }
 
 }  // namespace
@@ -39,7 +38,9 @@ bool PositionTable::Next() {
     return false;
   }
   std::string_view text = line_;
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (text.starts_with(settings::kByteOrderMark)) {
+    text.remove_prefix(settings::kByteOrderMark.size());
+  }
   if (text.empty() || text.starts_with('#')) return true;
   if (!named_) {
     TakeNames(text);
@@ -51,49 +52,42 @@ bool PositionTable::Next() {
 
 void PositionTable::TakeNames(std::string_view names) {
   named_ = true;
-  for (const char separator : {'\t', ';'}) {
-    if (names.find(separator) != std::string_view::npos) separator_ = separator;
-  }
-  words_ = map::PartsOf(names, separator_);
+  separator_ = settings::SeparatorOf(names);
+  words_ = settings::CellsOf(names, separator_);
   width_ = words_.size();
+  const std::vector<std::string> columns = Unquoted(words_);
   for (std::size_t k = 0; k < 3; ++k) {
     const char axis = "xyz"[k];
-    const auto found = std::ranges::find_if(words_, [&](std::string_view word) {
-      const auto name = settings::ColumnNameOf(Unquoted(word));
-      return Names(name.quantity, axis);
+    const auto found = std::ranges::find_if(columns, [&](const std::string& column) {
+      return Names(settings::ColumnNameOf(column).quantity, axis);
     });
-    if (found == words_.end()) {
+    if (found == columns.end()) {
       throw InputError(fmt::format(
           "{}: there is no column {}_mm among {}; a table of positions has x_mm, y_mm and z_mm, or "
           "\"X [mm]\" and so on",
-          Where(), axis, fmt::join(words_, ", ")));
+          Where(), axis, fmt::join(columns, ", ")));
     }
-    const settings::Unit unit = settings::ColumnNameOf(Unquoted(*found)).unit;
+    const settings::Unit unit = settings::ColumnNameOf(*found).unit;
     if (!settings::MeasureTheSame(unit, settings::WrittenUnit("mm"))) {
       throw InputError(
           fmt::format("{}: the column {} states no unit of length; name it {}_mm, or \"{} [mm]\"",
                       Where(), *found, axis, static_cast<char>(std::toupper(axis))));
     }
-    columns_[k] = found - words_.begin();
+    columns_[k] = found - columns.begin();
     si_[k] = unit.si;
   }
 }
 
-double PositionTable::NumberIn(std::string_view word) const {
-  if (separator_ == ',' || std::ranges::count(word, ',') != 1) {
-    return map::NumberOf(word, Where());
-  }
-  std::string number(word);
-  number[number.find(',')] = '.';
-  return map::NumberOf(number, Where());
-}
-
 void PositionTable::TakeRow() {
-  words_ = map::PartsOf(line_, separator_);
+  words_ = settings::CellsOf(line_, separator_);
   if (words_.size() != width_) {
     throw InputError(fmt::format("{}: {} values under {} columns", Where(), words_.size(), width_));
   }
-  for (std::size_t k = 0; k < 3; ++k) position_[k] = si_[k] * NumberIn(words_[columns_[k]]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::string number =
+        settings::WithDecimalPoint(settings::Unquoted(words_[columns_[k]]), separator_);
+    position_[k] = si_[k] * map::NumberOf(number, Where());
+  }
   row_ = true;
 }
 

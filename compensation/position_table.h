@@ -33,7 +33,7 @@ class PositionTable {
   std::string_view line() const { return line_; }
   // Whether the line has a position; else it is a comment, empty or the names.
   bool IsRow() const { return row_; }
-  // Of the row, m.
+  // The position of the row, m.
   const Eigen::Vector3d& Position() const { return position_; }
   // The row with another position, in its own units, separators and decimals.
   std::string WithPosition(const Eigen::Vector3d& position) const;
@@ -43,7 +43,6 @@ class PositionTable {
  private:
   void TakeNames(std::string_view names);
   void TakeRow();
-  double NumberIn(std::string_view word) const;
 
   map::Lines lines_;
   std::string file_;

@@ -7,7 +7,9 @@
 // scatter from its prediction: the median of the neighbouring rows of its stay where the axes stand
 // (the mean of the others in stays of three and four), the cubic through the next four valid
 // readings of the motion, two on either side if possible, where they move. The scatter is 1.4826
-// times the median absolute deviation. Channels: probe_*_um, pivot_*_rad.
+// times the median absolute deviation. Where a step of the channel accounts for the moving rows
+// around a reading better than that reading alone, it is no outlier. Channels: probe_*_um,
+// pivot_*_rad.
 // Units: s since the recording began. Rows with a flag are skipped; a recording without time_s is
 // not examined.
 // Failure: none.

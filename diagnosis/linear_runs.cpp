@@ -51,7 +51,7 @@ std::vector<int> Union(const std::vector<int>& sorted, std::vector<int> more) {
   return both;
 }
 
-// Of each index the place in `sorted`, which has it.
+// Where each index stands in `sorted`, which has them all.
 std::vector<int> PlacesIn(const std::vector<int>& sorted, const std::vector<int>& indices) {
   std::vector<int> places(indices.size());
   std::ranges::transform(indices, places.begin(), [&](int index) {

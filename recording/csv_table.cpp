@@ -14,52 +14,25 @@
 #include "recording/column_sum.h"
 #include "recording/csv_form.h"
 #include "recording/line_reader.h"
+#include "settings/table_cells.h"
 #include "settings/toml_text.h"
+#include "settings/words.h"
 
 namespace abbe::recording {
 namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-std::string_view WithoutBlanks(std::string_view text) {
-  constexpr std::string_view kCellEdges = " \t\r";
-  const auto first = text.find_first_not_of(kCellEdges);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kCellEdges) - first + 1);
-}
-
-// The separator of cells: spreadsheets write semicolons when numbers have a decimal comma.
-char SeparatorOf(std::string_view line) {
-  for (const char separator : {';', '\t'}) {
-    if (line.find(separator) != std::string_view::npos) return separator;
-  }
-  return ',';
-}
-
-// A separator inside quotes belongs to the cell; a doubled quote inside quotes is one quote.
 std::vector<std::string> CellsOf(std::string_view line, char separator) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') {
-      if (quoted && line.substr(i + 1).starts_with('"')) cells.back() += line[i++];
-      quoted = !quoted;
-    } else if (line[i] == separator && !quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += line[i];
-    }
+  std::vector<std::string> cells;
+  for (const std::string_view cell : settings::CellsOf(line, separator)) {
+    cells.push_back(settings::Unquoted(cell));
   }
-  for (std::string& cell : cells) cell = WithoutBlanks(cell);
   return cells;
 }
 
-double NumberIn(std::string cell, char separator) {
-  // In a table separated by commas, "1,5" occurs only in quotes and may mean 15.
-  if (separator != ',' && cell.find('.') == std::string::npos &&
-      std::count(cell.begin(), cell.end(), ',') == 1) {
-    cell[cell.find(',')] = '.';
-  }
+double NumberIn(std::string_view written, char separator) {
+  const std::string cell = settings::WithDecimalPoint(written, separator);
   double value = kNoNumber;
   const char* const end = cell.data() + cell.size();
   const char* const begin = cell.starts_with('+') ? cell.data() + 1 : cell.data();
@@ -96,7 +69,7 @@ class TableReader {
 
   Recording Read() {
     std::optional<std::string_view> line = Next();
-    separator_ = line ? SeparatorOf(*line) : ',';
+    separator_ = line ? settings::SeparatorOf(*line) : ',';
     if (options_.names.empty()) {
       names_ = line ? CellsOf(*line, separator_) : std::vector<std::string>{};
       line = std::nullopt;
@@ -159,7 +132,7 @@ class TableReader {
         throw InputError(fmt::format("{}:{}: is not UTF-8 text; save the table as CSV (UTF-8)",
                                      path_, lines_.number()));
       }
-      const std::string_view text = WithoutBlanks(*line);
+      const std::string_view text = settings::Trimmed(*line);
       if (!text.empty() && !text.starts_with('#')) return line;
     }
     return std::nullopt;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "failure/failure.h"
+#include "settings/table_cells.h"
 
 namespace abbe::recording {
 namespace {
@@ -42,10 +43,9 @@ std::size_t LineReader::ReadSome(char* to, std::size_t size) {
 }
 
 std::optional<std::string_view> LineReader::Next() {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   auto line = NextAsItIs();
-  if (line && number_ == 1 && line->starts_with(kByteOrderMark)) {
-    line->remove_prefix(kByteOrderMark.size());
+  if (line && number_ == 1 && line->starts_with(settings::kByteOrderMark)) {
+    line->remove_prefix(settings::kByteOrderMark.size());
   }
   return line;
 }

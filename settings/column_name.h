@@ -16,7 +16,7 @@ struct ColumnName {
   Unit unit;  // a plain number without one
 };
 
-// Of "length [mm]", "length (mm)", "length / mm" and "length_mm".
+// Reads "length [mm]", "length (mm)", "length / mm" and "length_mm".
 ColumnName ColumnNameOf(std::string_view name);
 
 }  // namespace abbe::settings

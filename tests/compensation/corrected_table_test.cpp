@@ -15,7 +15,7 @@ TEST(CorrectedTable, CorrectsThePositionsAndKeepsTheRest) {
   const map::ErrorMap map = map::RandomMap(2);
   const Corrector corrector(map, Vector3d::Zero());
   const CorrectedTable table = CorrectTable(
-      "# part 7\nname,z_mm,x_mm,y_mm,note\nhole 1,10,20,30,\"a b\"\nhole 2,1e1,20.0,+30,\n",
+      "# part 7\nname,z_mm,x_mm,y_mm,note\nhole 1,10,20,30,\"a, b\"\nhole 2,1e1,20.0,+30,\n",
       "t.csv", corrector);
   EXPECT_EQ(table.rows, 2);
   EXPECT_TRUE(table.text.starts_with("# part 7\nname,z_mm,x_mm,y_mm,note\nhole 1,"));
@@ -26,7 +26,7 @@ TEST(CorrectedTable, CorrectsThePositionsAndKeepsTheRest) {
   EXPECT_NEAR(map::NumberOf(words[2], "x"), 1e3 * made.x(), 1e-13);
   EXPECT_NEAR(map::NumberOf(words[3], "y"), 1e3 * made.y(), 1e-13);
   EXPECT_NEAR(table.largest, (made - Vector3d(0.02, 0.03, 0.01)).norm(), 1e-17);
-  EXPECT_NE(table.text.find(",\"a b\"\n"), std::string::npos);
+  EXPECT_NE(table.text.find(",\"a, b\"\n"), std::string::npos);
 }
 
 TEST(CorrectedTable, KeepsTheFormOfOtherPrograms) {

@@ -121,7 +121,7 @@ TEST(DataIntegrity, LeavesAStepAlone) {
       EXPECT_TRUE(FlagInvalidReadings(run).empty()) << from << " " << step;
     }
   }
-  // Of twenty times the noise it is hardly told from one reading by three.
+  // A step of twenty times the noise: three readings beside it hardly tell it from one outlier.
   for (std::uint64_t seed = 10; seed < 40; ++seed) {
     for (std::size_t from = 20; from < 80; from += 4) {
       Recording run = QuarterAndBack(seed);
