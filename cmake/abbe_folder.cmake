@@ -14,9 +14,9 @@ function(abbe_folder name)
     add_library(abbe_${name} STATIC ${arg_SOURCES})
     set(scope PUBLIC)
     target_link_libraries(abbe_${name} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:abbe_warnings>)
-    # For shared objects too, as the module of Python; functions are inlined as in a program.
-    set_target_properties(abbe_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    target_compile_options(abbe_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
+    abbe_position_independent(abbe_${name})
+    target_precompile_headers(abbe_${name} REUSE_FROM abbe_headers)
+    target_compile_definitions(abbe_${name} PRIVATE EIGEN_USE_BLAS)  # as in the headers, with Eigen or without
   else()
     add_library(abbe_${name} INTERFACE)
     set(scope INTERFACE)
@@ -40,6 +40,12 @@ function(abbe_folder name)
   endforeach()
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${name}/ DESTINATION include/abbe/${name}
           COMPONENT development FILES_MATCHING PATTERN "*.h" ${stay_home})
+endfunction()
+
+# For shared objects too, as the module of Python; functions are inlined as in a program.
+function(abbe_position_independent target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
 endfunction()
 
 # abbe_tests(NAME LABEL label SOURCES file... LINKS target... [SEEDS n [LONG_SEEDS n]])

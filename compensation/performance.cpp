@@ -24,8 +24,8 @@ using Eigen::Vector3d;
 Eigen::MatrixXd RootOf(const Eigen::MatrixXd& cov) {
   const Eigen::VectorXd size = cov.diagonal().cwiseSqrt();
   const Eigen::VectorXd scale = size.unaryExpr([](double s) { return s > 0.0 ? 1 / s : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * cov *
-                                                             scale.asDiagonal());
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * cov * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
   return size.asDiagonal() * eigen.eigenvectors() *
          eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }

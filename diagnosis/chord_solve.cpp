@@ -170,7 +170,8 @@ struct Step {
 
 Step StepFrom(const FitSums& sums) {
   const VectorXd scale = sums.information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<MatrixXd> factor(scale.asDiagonal() * sums.information * scale.asDiagonal());
+  const MatrixXd scaled = scale.asDiagonal() * sums.information * scale.asDiagonal();
+  const Eigen::LLT<MatrixXd> factor(scaled);
   VectorXd step = -scale.cwiseProduct(factor.solve(VectorXd(scale.cwiseProduct(sums.gradient))));
   const double square = -sums.gradient.dot(step);
   if (factor.info() != Eigen::Success) return {std::move(step), std::nan("")};

@@ -65,7 +65,8 @@ DrawnSize SizeOfDraws(const Fit::Projection& projection, const SizeRange& sizes,
     if (S(i, i) > 0.0) seen.push_back(i);
   }
   if (seen.empty()) return {sizes.smallest, 0.0};
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S(seen, seen));
+  const MatrixXd of_seen = S(seen, seen);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(of_seen);
   constexpr double kRounding = 1e-9;  // of the largest: below, a score is rounding too
   const Eigen::ArrayXd information = solver.eigenvalues().array().max(0.0);
   const Eigen::ArrayXd score =

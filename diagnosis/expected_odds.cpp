@@ -30,7 +30,8 @@ Expected ExpectedOf(const Candidate& candidate, const MatrixXd& S, const VectorX
   const auto& unit = plausible.asDiagonal();
   const MatrixXd scaled = unit * S * unit;
   const VectorXd mean = unit * m;
-  const Eigen::LLT<MatrixXd> M(scaled + MatrixXd::Identity(S.rows(), S.cols()));
+  const MatrixXd grown = scaled + MatrixXd::Identity(S.rows(), S.cols());
+  const Eigen::LLT<MatrixXd> M(grown);
   const double log_determinant = 2.0 * MatrixXd(M.matrixL()).diagonal().array().log().sum();
   const VectorXd solved = M.solve(mean);
   return {0.5 * (mean.dot(solved) + M.solve(scaled).trace() - log_determinant), unit * solved};
@@ -101,9 +102,10 @@ MatrixXd FreeOfOthers(const MatrixXd& S, Index count, const VectorXd& plausible)
   const Index others = S.rows() - count;
   if (others == 0) return S;
   const auto& unit = plausible.asDiagonal();
-  const MatrixXd scaled = unit * S.bottomRightCorner(others, others) * unit;
+  MatrixXd grown = unit * S.bottomRightCorner(others, others) * unit;
+  grown.diagonal().array() += 1.0;
   const MatrixXd cross = unit * S.bottomLeftCorner(others, count);
-  const Eigen::LLT<MatrixXd> factor(scaled + MatrixXd::Identity(others, others));
+  const Eigen::LLT<MatrixXd> factor(grown);
   return S.topLeftCorner(count, count) - cross.transpose() * factor.solve(cross);
 }
 

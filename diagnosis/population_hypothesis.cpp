@@ -43,9 +43,8 @@ double PossibleGain(const Fit& fit) {
   const auto local = evidence.SlopesAt(machine, stated, evidence.At(machine, stated));
   const Index free = evidence.of_functions();
   const VectorXd slope = local.gradient.head(free);
-  return 0.5 *
-         slope.dot(
-             (local.fisher + evidence.precision()).topLeftCorner(free, free).ldlt().solve(slope));
+  const MatrixXd curvature = (local.fisher + evidence.precision()).topLeftCorner(free, free);
+  return 0.5 * slope.dot(curvature.ldlt().solve(slope));
 }
 
 // Sizes and lengths of the errors as the runs show them.
@@ -70,9 +69,8 @@ class Population {
     const Index free = evidence.of_functions();
     const Index others = theta_.size() - free;
     const MatrixXd pi = evidence.precision();
-    const MatrixXd following = -pi.bottomRightCorner(others, others)
-                                    .ldlt()
-                                    .solve(MatrixXd(pi.bottomLeftCorner(others, free)));
+    const MatrixXd of_others = pi.bottomRightCorner(others, others);
+    const MatrixXd following = -of_others.ldlt().solve(MatrixXd(pi.bottomLeftCorner(others, free)));
     PopulationEvidence::Maximum highest;
     for (int round = 0; round < kRounds; ++round) {
       highest = evidence.Maximise(of_machine, theta_, free);

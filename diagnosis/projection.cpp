@@ -286,7 +286,8 @@ Fit::Projection Fit::ProjectionOf(std::size_t taken_in) const {
   const Index count = cause.cause->coefficients();
   const MatrixXd covariance =
       result_.Covariance(BlockOf(cause), BlockOf(cause)).topLeftCorner(count, count);
-  const MatrixXd known = covariance.ldlt().solve(MatrixXd::Identity(count, count));
+  const MatrixXd one = MatrixXd::Identity(count, count);
+  const MatrixXd known = covariance.ldlt().solve(one);
   Projection beside{known, known * result_.Block(BlockOf(cause)).Values().head(count)};
   beside.information.diagonal() -= cause.Plausible().cwiseAbs2().cwiseInverse();
   return beside;

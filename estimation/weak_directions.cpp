@@ -49,7 +49,8 @@ Spectrum SpectrumOf(const MatrixXd& data, MatrixXd reference) {
   s.factor.compute(s.reference);
   MatrixXd scaled = s.factor.matrixL().solve(data);
   scaled = s.factor.matrixL().solve(scaled.transpose()).eval();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (scaled + scaled.transpose()));
+  const MatrixXd symmetric = 0.5 * (scaled + scaled.transpose());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(symmetric);
   s.whitened = eigen.eigenvectors();
   s.lambda = eigen.eigenvalues().cwiseMax(0.0);
   while (s.weak < s.lambda.size() && s.lambda[s.weak] < kUnseen) ++s.weak;
@@ -193,7 +194,8 @@ PosteriorCovariance InvertInformation(const MatrixXd& data, const MatrixXd& prio
   MatrixXd undetermined(n, 0);
   if (spectrum.weak > 0) {
     const MatrixXd v = spectrum.Unwhiten(weak);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> share(v.transpose() * prior * v);
+    const MatrixXd of_prior = v.transpose() * prior * v;
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> share(of_prior);
     result.undetermined = (share.eigenvalues().array() < 0.5).count();
     undetermined = weak * share.eigenvectors().leftCols(result.undetermined);
   }
@@ -220,8 +222,8 @@ double ScaledCondition(const MatrixXd& data) {
   if (data.rows() == 0) return 1.0;
   if (!(data.diagonal().minCoeff() > 0.0)) return std::numeric_limits<double>::infinity();
   const VectorXd scale = data.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(
-      scale.asDiagonal() * data * scale.asDiagonal(), Eigen::EigenvaluesOnly);
+  const MatrixXd scaled = scale.asDiagonal() * data * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaled, Eigen::EigenvaluesOnly);
   const double smallest = eigen.eigenvalues().minCoeff();
   const double largest = eigen.eigenvalues().maxCoeff();
   if (smallest < kRounding * largest) return std::numeric_limits<double>::infinity();

@@ -45,7 +45,7 @@ void RefusePoorPoses(const std::vector<LinkageRun>& runs, Index free) {
     all.middleCols(at, run.poses()) = run.reference;
     at += run.poses();
   }
-  const Matrix3Xd off = all.colwise() - all.rowwise().mean();
+  const Eigen::MatrixXd off = all.colwise() - all.rowwise().mean();
   const Vector3d extent = off.jacobiSvd().singularValues() / std::sqrt(poses);
   if (extent[0] < kOnePlace) {
     throw InputError(fmt::format(

@@ -99,7 +99,8 @@ MachinePrior::MachinePrior(const machine::Machine& machine, const machine::Volum
     on.x = VectorXd::LinSpaced(points, travel.first, travel.last);
     MatrixXd B(points, size);
     for (Index row = 0; row < points; ++row) B.row(row) = basis.Row(on.x[row]);
-    on.onto = B.colPivHouseholderQr().solve(MatrixXd::Identity(points, points));
+    const MatrixXd all = MatrixXd::Identity(points, points);
+    on.onto = B.colPivHouseholderQr().solve(all);
     on.line = basis.LineCoefficients();
   }
 }

@@ -246,8 +246,8 @@ PopulationEvidence::Maximum PopulationEvidence::Maximise(const Quadratic& of_mac
     highest.local = SlopesAt(of_machine, highest.theta, now);
     const VectorXd slope = highest.local.gradient - pi_ * highest.theta;
     VectorXd way = VectorXd::Zero(count());
-    way.head(free) =
-        (highest.local.fisher + pi_).topLeftCorner(free, free).ldlt().solve(slope.head(free));
+    const MatrixXd curvature = (highest.local.fisher + pi_).topLeftCorner(free, free);
+    way.head(free) = curvature.ldlt().solve(VectorXd(slope.head(free)));
     const double gain = 0.5 * slope.dot(way);
     if (gain < kGainSettled) break;
     way *= std::min(1.0, kLongestStep / way.cwiseAbs().maxCoeff());

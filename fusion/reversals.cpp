@@ -105,9 +105,9 @@ Told ToldBy(const estimation::Result& fit, int axis, const VectorXd& deviations)
     }
   }
   const VectorXd scale = deviations.cwiseInverse();
-  const MatrixXd known = (scale.asDiagonal() * covariance * scale.asDiagonal())
-                             .ldlt()
-                             .solve(MatrixXd::Identity(machine::kMotions, machine::kMotions));
+  const MatrixXd scaled = scale.asDiagonal() * covariance * scale.asDiagonal();
+  const MatrixXd one = MatrixXd::Identity(machine::kMotions, machine::kMotions);
+  const MatrixXd known = scaled.ldlt().solve(one);
   Told told{known, known * scale.cwiseProduct(value)};
   told.information.diagonal() -= precision;
   return told;

@@ -38,7 +38,8 @@ RunConsistency Check(const std::string& name, const estimation::SourceSums& run,
   const auto U = factor.triangularView<Eigen::Lower>();
   const MatrixXd half = U.solve(MatrixXd(seen.information(touched, touched)));
   const MatrixXd M = U.solve(MatrixXd(half.transpose()));
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (M + M.transpose()));
+  const MatrixXd symmetric = 0.5 * (M + M.transpose());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(symmetric);
   const VectorXd y = eigen.eigenvectors().transpose() * U.solve(VectorXd(seen.score(touched)));
   for (Index i = 0; i < y.size(); ++i) {
     const double lambda = eigen.eigenvalues()[i];

@@ -25,7 +25,7 @@ Sine SineOf(double hertz, const Eigen::VectorXd& times, const Eigen::VectorXd& v
   terms << Eigen::VectorXd::Ones(times.size()), phase.sin().matrix(), phase.cos().matrix();
   const auto solver = terms.colPivHouseholderQr();
   if (solver.rank() < 3) return {};
-  const Eigen::Vector3d fit = solver.solve(values);
+  const Eigen::Vector3d fit = Eigen::VectorXd(solver.solve(values));
   return {std::hypot(fit[1], fit[2]), (values - terms * fit).squaredNorm()};
 }
 

@@ -148,7 +148,7 @@ void HeadAligner::Propose(HeadAlignment& found) const {
   auto solver = Eigen::CompleteOrthogonalDecomposition<MatrixXd>();
   solver.setThreshold(1e-6);
   solver.compute(all * unit.asDiagonal());
-  VectorXd moved = unit.asDiagonal() * solver.solve(-off);
+  VectorXd moved = unit.asDiagonal() * solver.solve(VectorXd(-off));
   if (by_hand) {
     found.motion = moved;
   } else {

@@ -125,7 +125,7 @@ def open_doors(root):
 
 def strangers(root):
     """Yields a line for each folder with sources that has no line in ARROWS."""
-    outside = {"tests", "bench", "build", "fuzz", "out"}
+    outside = {"tests", "bench", "build", "cmake", "fuzz", "out"}
     for folder in sorted(pathlib.Path(root).iterdir()):
         if folder.is_dir() and folder.name not in outside and not folder.name.startswith("."):
             if folder.name not in ARROWS and any(folder.glob("*.h")):

@@ -1,0 +1,2 @@
+#define ABBE_ONCE
+#include "factorizations.h"
