@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "certificate/dcc.h"
 #include "certificate/dcc_names.h"
 #include "failure/failure.h"
+#include "standards/chi_squared.h"
 
 namespace abbe::certificate {
 namespace {
@@ -249,11 +249,10 @@ XmlElement JointElement(const Joint& joint) {
     }
     matrix.Add(std::move(column));
   }
-  const boost::math::chi_squared chi(static_cast<double>(count));
+  const double squared = standards::ChiSquaredQuantile(0.95, static_cast<double>(count));
   XmlElement region("si:ellipsoidalRegionXMLList");
   region.Add(std::move(matrix))
-      .AddText("si:coverageFactor",
-               fmt::format("{:.6f}", std::sqrt(boost::math::quantile(chi, 0.95))))
+      .AddText("si:coverageFactor", fmt::format("{:.6f}", std::sqrt(squared)))
       .AddText("si:coverageProbability", kProbability)
       .AddText("si:distribution", "normal");
   return Result("Parameters with covariance", joint.words,

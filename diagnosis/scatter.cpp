@@ -1,11 +1,11 @@
 #include "diagnosis/scatter.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "diagnosis/measured_noise.h"
 #include "simulation/excess_noise.h"
+#include "standards/chi_squared.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -20,10 +20,6 @@ constexpr Index kFewRows = 8 * kLags;  // with less there are no such correlatio
 // an effect the least chance was 1e-4.
 constexpr double kDoubtOfMemory = 1e-6;
 
-double Chance(double chi_square, double freedom) {
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), chi_square));
-}
-
 // What was whitened by a memory is held against what is stated, of as many rows as are independent.
 Leftover ScatterOf(const VectorXd& left, const PreparedRun& run) {
   const double rows = left.size();
@@ -34,8 +30,8 @@ Leftover ScatterOf(const VectorXd& left, const PreparedRun& run) {
     freedom *= run.memory->Independent((time.maxCoeff() - time.minCoeff()) / (time.size() - 1));
   }
   const double beyond = std::sqrt(std::max(0.0, square - 1.0));
-  const double p_value =
-      Chance(square * freedom / (simulation::kNoiseIsKnown * simulation::kNoiseIsKnown), freedom);
+  const double p_value = standards::ChiSquaredExceeds(
+      square * freedom / (simulation::kNoiseIsKnown * simulation::kNoiseIsKnown), freedom);
   return {kScatter, {}, beyond, {"times the noise"}, p_value, 0.0};
 }
 
@@ -60,7 +56,7 @@ Leftover MemoryOf(const MatrixXd& left) {
     }
   }
   // A drift that is stated and not there leaves rows that alternate.
-  const double p_value = all > 0.0 ? Chance(sum, kLags * left.rows()) : 1.0;
+  const double p_value = all > 0.0 ? standards::ChiSquaredExceeds(sum, kLags * left.rows()) : 1.0;
   return {kMemory, {}, std::sqrt(most), {"times the noise"}, p_value, 0.0};
 }
 
@@ -80,7 +76,7 @@ Leftover AtRest(const simulation::NoisyChannel& noisy) {
           noisy.name,
           noisy.factor,
           {"times the noise"},
-          Chance(noisy.freedom * beyond, noisy.freedom),
+          standards::ChiSquaredExceeds(noisy.freedom * beyond, noisy.freedom),
           0.0};
 }
 

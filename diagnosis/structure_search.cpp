@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -14,6 +13,7 @@
 
 #include "estimation/in_parallel.h"
 #include "simulation/variables.h"
+#include "standards/chi_squared.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -37,8 +37,7 @@ constexpr SizeRange kSizes{1e-9, 1e-3, 1.25};
 // Natural logarithm of the probability of so much by chance.
 double LogChance(double chi_square, int freedom) {
   if (freedom == 0) return 0.0;
-  const boost::math::chi_squared distribution(freedom);
-  const double one = boost::math::cdf(boost::math::complement(distribution, chi_square));
+  const double one = standards::ChiSquaredExceeds(chi_square, freedom);
   return one > 0.0 ? std::log(one) : -0.5 * chi_square;
 }
 

@@ -4,13 +4,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <optional>
 
 #include "map/error_map.h"
+#include "standards/chi_squared.h"
 
 namespace abbe::fleet {
 namespace {
@@ -85,12 +85,11 @@ Seen SeenOf(const White& alone) {
 
 // In the mean over f, by the trapezoidal rule.
 double PValue(const Seen& seen, double spread) {
-  const boost::math::chi_squared chi_squared(static_cast<double>(seen.told.size()));
+  const auto freedom = static_cast<double>(seen.told.size());
   double sum = 0.0, weights = 0.0;
   for (double z = -kFar; z <= kFar; z += kStep) {
     const double weight = std::exp(-0.5 * z * z);
-    sum += weight * boost::math::cdf(
-                        boost::math::complement(chi_squared, seen.ChiSquare(std::exp(spread * z))));
+    sum += weight * standards::ChiSquaredExceeds(seen.ChiSquare(std::exp(spread * z)), freedom);
     weights += weight;
   }
   return sum / weights;

@@ -2,11 +2,11 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "estimation/in_parallel.h"
 #include "fusion/marginal.h"
+#include "standards/chi_squared.h"
 
 namespace abbe::fusion {
 namespace {
@@ -48,8 +48,7 @@ RunConsistency Check(const std::string& name, const estimation::SourceSums& run,
     ++check.directions;
   }
   if (check.directions > 0) {
-    const boost::math::chi_squared chi(check.directions);
-    check.probability = boost::math::cdf(boost::math::complement(chi, check.statistic));
+    check.probability = standards::ChiSquaredExceeds(check.statistic, check.directions);
   }
   return check;
 }

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -78,11 +76,12 @@ class ComponentEvaluation {
       if (source == 0) noise = result.budget[source];
     }
     const double dof = Freedom(noise, RootMeanSquare(station_V));
-    result.coverage = Quantile(0.975, dof);
+    result.coverage = standards::StudentQuantile(0.975, dof);
     if (result.reversal) {
       const Uncertain& mean = result.reversal->mean;
-      const double beyond =
-          Checked(means_) ? Quantile(1.0 - kFalseAlarm / 2.0, dof) : kBeyondUnchecked;
+      const double beyond = Checked(means_)
+                                ? standards::StudentQuantile(1.0 - kFalseAlarm / 2.0, dof)
+                                : kBeyondUnchecked;
       result.reversal->seen = std::abs(mean.value) > beyond * mean.u;
     }
     return result;
@@ -145,12 +144,6 @@ class ComponentEvaluation {
   double Freedom(double noise, double total) const {
     if (noise <= 0.0 || means_.noise.u_dof <= 0.0) return kKnown;
     return means_.noise.u_dof * std::pow(total / noise, 4.0);
-  }
-
-  // Student's t.
-  static double Quantile(double share, double dof) {
-    if (dof > kKnown / 2.0) return boost::math::quantile(boost::math::normal(), share);
-    return boost::math::quantile(boost::math::students_t(dof), share);
   }
 
   static constexpr double kKnown = 2e6;               // degrees of freedom as good as infinite

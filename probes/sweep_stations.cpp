@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -13,6 +12,7 @@
 #include "estimation/markov_noise.h"
 #include "failure/failure.h"
 #include "settings/unit.h"
+#include "standards/chi_squared.h"
 
 namespace abbe::probes {
 namespace {
@@ -213,7 +213,7 @@ Factors MostProbableNoise(const DwellFit& fit, const ProbeNoise& noise, StationM
 }
 
 bool Scattered(double chi2, double dof) {
-  return chi2 > boost::math::quantile(boost::math::chi_squared(dof), kSignificance);
+  return chi2 > standards::ChiSquaredQuantile(kSignificance, dof);
 }
 
 // Tests the noise model against the scatter between the passes. Where that is significantly larger,

@@ -1,5 +1,6 @@
 #include "standards/student_coverage.h"
 
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
@@ -9,10 +10,14 @@
 namespace abbe::standards {
 
 double StudentCoverage(double degrees_of_freedom) {
-  constexpr double kNormal = 1.959964, kMany = 1e6;
   if (!(degrees_of_freedom > 0.0)) return std::numeric_limits<double>::infinity();
-  if (degrees_of_freedom > kMany) return kNormal;
-  return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975);
+  return StudentQuantile(0.975, degrees_of_freedom);
+}
+
+double StudentQuantile(double share, double degrees_of_freedom) {
+  constexpr double kMany = 1e6;
+  if (degrees_of_freedom > kMany) return boost::math::quantile(boost::math::normal(), share);
+  return boost::math::quantile(boost::math::students_t(degrees_of_freedom), share);
 }
 
 double StudentTwoSided(double ratio, double degrees_of_freedom) {

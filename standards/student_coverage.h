@@ -10,6 +10,9 @@ namespace abbe::standards {
 
 double StudentCoverage(double degrees_of_freedom);
 
+// The value that Student's t exceeds with the probability 1 - `share`, which lies between 0 and 1.
+double StudentQuantile(double share, double degrees_of_freedom);
+
 // The probability that Student's t is farther from 0 than `ratio`, on either side.
 double StudentTwoSided(double ratio, double degrees_of_freedom);
 

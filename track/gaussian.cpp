@@ -1,11 +1,11 @@
 #include "track/gaussian.h"
 
 #include <Eigen/Dense>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <utility>
 
 #include "failure/failure.h"
+#include "standards/chi_squared.h"
 
 namespace abbe::track {
 namespace {
@@ -88,8 +88,7 @@ Agreement AgreementOf(const LinearTest& test, const Gaussian& state) {
     ++agreement.directions;
   }
   if (agreement.directions > 0) {
-    const boost::math::chi_squared chi(agreement.directions);
-    agreement.probability = boost::math::cdf(boost::math::complement(chi, agreement.statistic));
+    agreement.probability = standards::ChiSquaredExceeds(agreement.statistic, agreement.directions);
   }
   return agreement;
 }

@@ -37,7 +37,7 @@ ARROWS = {
     "investigate": "failure random settings recording machine simulation diagnosis",
     "history": "failure standards settings recording",
     "track": "failure settings recording standards estimation machine map simulation fusion history",
-    "fleet": "failure machine map fusion",
+    "fleet": "failure standards machine map fusion",
     "report": "failure",
     "live": "failure recording report",
     "rig": "failure random settings recording hal",
@@ -60,6 +60,7 @@ GATES = {
     "soci/": r"history/database\.cpp",
     "openssl/": r"recording/file_hash\.cpp",
     "libxml/": r"certificate/xml\.cpp",
+    "boost/math/distributions/": r"standards/.*|study/rate\.cpp",
     "mpi.h": r"study/ranks_mpi\.cpp",
     "httplib.h": r"live/page_server\.cpp",
 }

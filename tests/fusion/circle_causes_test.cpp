@@ -199,7 +199,7 @@ TEST(CircleCauses, OneFeedCannotTellLagFromScale) {
 
 // Pulls over 200 machines measured: mean 0, variance 1, each within its 99.9 % band.
 TEST(CircleCauses, UncertaintiesAreTrue) {
-  constexpr int kSeeds = 200, kPoints = 240;
+  constexpr int kSeeds = 100, kPoints = 240;
   Machine m = kAll;
   m.noise = 0.5e-6;
   m.offset_x = m.offset_y = 0;

@@ -25,6 +25,12 @@ TEST(StudentTwoSided, IsThatOfSciPy) {
   EXPECT_EQ(StudentTwoSided(0.0, 3.0), 1.0);
 }
 
+// scipy.stats 1.10: t.ppf(0.999, 5.5), norm.ppf(0.999).
+TEST(StudentQuantile, IsThatOfSciPy) {
+  EXPECT_NEAR(StudentQuantile(0.999, 5.5), 5.504714867564669, 1e-9);
+  EXPECT_NEAR(StudentQuantile(0.999, std::numeric_limits<double>::infinity()), 3.090232306167813, 1e-12);
+}
+
 TEST(DegreesOfFreedomOf, UndoesTheCoverage) {
   EXPECT_NEAR(DegreesOfFreedomOf(2.6589123472044034), 4.5, 1e-6);
   for (const double dof : {1.0, 2.0, 7.0, 40.0}) {
