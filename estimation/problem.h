@@ -96,7 +96,8 @@ struct SolveOptions {
   double settled = 1e-6;   // standard uncertainties
   double tolerated = 0.0;  // accepted in place of `settled` after the last iteration
   std::size_t jacobian_bytes = 200'000'000;
-  bool weak_directions = true;  // find them and the condition: costs several eigensystems
+  // Find them all and the condition, which costs several eigensystems; else those alone that nothing determines.
+  bool weak_directions = true;
 };
 
 class Problem {

@@ -138,10 +138,13 @@ Result Problem::Solve(const SolveOptions& options, Linearization* at) const {
   const PosteriorCovariance covariance = InvertInformation(information.data, information.prior);
   result.names = layout.names;
   result.covariance = covariance.matrix;
-  if (options.weak_directions || covariance.undetermined > 0) {
+  if (options.weak_directions) {
     result.condition = ScaledCondition(information.data);
     result.weak_directions =
         FindWeakDirections(information.data, information.prior, layout.tolerance, layout.names);
+  } else if (covariance.undetermined > 0) {
+    result.weak_directions = FindUndeterminedDirections(information.data, information.prior,
+                                                        layout.tolerance, layout.names);
   }
   for (Index c = 0; c < layout.columns(); ++c) {
     result.seen_by.push_back(DeterminedBy(layout, information, c, covariance.matrix(c, c)));

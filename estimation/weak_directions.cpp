@@ -93,6 +93,44 @@ WeakDirection::Held WhoHolds(const VectorXd& v, const MatrixXd& prior, const Vec
   return WeakDirection::Held::kByNothing;
 }
 
+// The weak directions that the prior does not determine either, as combinations of the weak ones: weak x k.
+MatrixXd UndeterminedOf(const Spectrum& spectrum, const MatrixXd& prior) {
+  if (spectrum.weak == 0) return MatrixXd(0, 0);
+  const MatrixXd v = spectrum.Unwhiten(spectrum.whitened.leftCols(spectrum.weak));
+  const MatrixXd of_prior = v.transpose() * prior * v;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> share(of_prior);
+  return share.eigenvectors().leftCols((share.eigenvalues().array() < 0.5).count());
+}
+
+// Combinations of the weak directions of a spectrum, the columns of `along` (weak x k), made simple.
+std::vector<WeakDirection> Described(const Spectrum& spectrum, MatrixXd along,
+                                     const MatrixXd& prior, const VectorXd& tolerance,
+                                     const std::vector<std::string>& names) {
+  if (along.cols() == 0) return {};
+  const MatrixXd weak_directions = spectrum.Unwhiten(spectrum.whitened.leftCols(spectrum.weak));
+  const VectorXd scale = spectrum.reference.diagonal().cwiseSqrt();
+  MatrixXd coefficients = scale.asDiagonal() * (weak_directions * along);
+  TurnToSimple(coefficients, along);
+  const MatrixXd directions = weak_directions * along;
+  const VectorXd variance = (1.0 + spectrum.lambda.head(spectrum.weak).array()).inverse();
+
+  std::vector<WeakDirection> weak(along.cols());
+  for (Index k = 0; k < along.cols(); ++k) {
+    WeakDirection& direction = weak[k];
+    direction.coefficients = coefficients.col(k).normalized();
+    MakeFirstLargePositive(direction.coefficients);
+    const double left = along.col(k).cwiseAbs2().dot(variance);
+    direction.ratio = std::sqrt(left);
+    direction.information = 1.0 / left - 1.0;
+    direction.held = WhoHolds(directions.col(k), prior, tolerance);
+    direction.words = InWords(direction.coefficients, names);
+  }
+  std::stable_sort(weak.begin(), weak.end(), [](const auto& a, const auto& b) {
+    return a.held != b.held ? a.held > b.held : a.information < b.information;
+  });
+  return weak;
+}
+
 VectorXd ToleranceInformation(const MatrixXd& prior, const VectorXd& tolerances) {
   VectorXd information = tolerances.cwiseAbs2().cwiseInverse();  // 0 where infinite
   for (Index i = 0; i < information.size(); ++i) {
@@ -153,30 +191,17 @@ std::vector<WeakDirection> FindWeakDirections(const MatrixXd& data, const Matrix
   MatrixXd reference = Reference(data, prior);
   reference.diagonal() += tolerance;
   const Spectrum spectrum = SpectrumOf(data, std::move(reference));
-  if (spectrum.weak == 0) return {};
-  const VectorXd scale = spectrum.reference.diagonal().cwiseSqrt();
-  MatrixXd directions = spectrum.Unwhiten(spectrum.whitened.leftCols(spectrum.weak));
-  MatrixXd coefficients = scale.asDiagonal() * directions;
-  MatrixXd turn = MatrixXd::Identity(spectrum.weak, spectrum.weak);
-  TurnToSimple(coefficients, turn);
-  directions = directions * turn;
-  const VectorXd variance = (1.0 + spectrum.lambda.head(spectrum.weak).array()).inverse();
+  return Described(spectrum, MatrixXd::Identity(spectrum.weak, spectrum.weak), prior, tolerance,
+                   names);
+}
 
-  std::vector<WeakDirection> weak(spectrum.weak);
-  for (Index k = 0; k < spectrum.weak; ++k) {
-    WeakDirection& direction = weak[k];
-    direction.coefficients = coefficients.col(k).normalized();
-    MakeFirstLargePositive(direction.coefficients);
-    const double left = turn.col(k).cwiseAbs2().dot(variance);
-    direction.ratio = std::sqrt(left);
-    direction.information = 1.0 / left - 1.0;
-    direction.held = WhoHolds(directions.col(k), prior, tolerance);
-    direction.words = InWords(direction.coefficients, names);
-  }
-  std::stable_sort(weak.begin(), weak.end(), [](const auto& a, const auto& b) {
-    return a.held != b.held ? a.held > b.held : a.information < b.information;
-  });
-  return weak;
+std::vector<WeakDirection> FindUndeterminedDirections(const MatrixXd& data, const MatrixXd& prior,
+                                                      const VectorXd& tolerances,
+                                                      const std::vector<std::string>& names) {
+  if (data.rows() == 0) return {};
+  const Spectrum spectrum = SpectrumOf(data, Reference(data, prior));
+  return Described(spectrum, UndeterminedOf(spectrum, prior), prior,
+                   ToleranceInformation(prior, tolerances), names);
 }
 
 PosteriorCovariance InvertInformation(const MatrixXd& data, const MatrixXd& prior) {
@@ -189,20 +214,13 @@ PosteriorCovariance InvertInformation(const MatrixXd& data, const MatrixXd& prio
     return result;
   }
   const Spectrum spectrum = SpectrumOf(data, Reference(data, prior));
-  // The weak directions that the prior does not determine either.
-  const MatrixXd weak = spectrum.whitened.leftCols(spectrum.weak);
-  MatrixXd undetermined(n, 0);
-  if (spectrum.weak > 0) {
-    const MatrixXd v = spectrum.Unwhiten(weak);
-    const MatrixXd of_prior = v.transpose() * prior * v;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> share(of_prior);
-    result.undetermined = (share.eigenvalues().array() < 0.5).count();
-    undetermined = weak * share.eigenvectors().leftCols(result.undetermined);
-  }
+  const MatrixXd along = UndeterminedOf(spectrum, prior);
+  result.undetermined = along.cols();
   if (result.undetermined == 0) {
     result.determined = result.matrix = total.Inverse();
     return result;
   }
+  const MatrixXd undetermined = spectrum.whitened.leftCols(spectrum.weak) * along;
   MatrixXd root = spectrum.whitened * (1.0 + spectrum.lambda.array()).rsqrt().matrix().asDiagonal();
   root -= undetermined * (undetermined.transpose() * root).eval();
   root = spectrum.Unwhiten(root);

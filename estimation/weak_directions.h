@@ -49,6 +49,12 @@ std::vector<WeakDirection> FindWeakDirections(const Eigen::MatrixXd& data,
                                               const Eigen::VectorXd& tolerances,
                                               const std::vector<std::string>& names);
 
+// Those of them alone that the priors do not determine either: a fraction of the time where hundreds are weak.
+std::vector<WeakDirection> FindUndeterminedDirections(const Eigen::MatrixXd& data,
+                                                      const Eigen::MatrixXd& prior,
+                                                      const Eigen::VectorXd& tolerances,
+                                                      const std::vector<std::string>& names);
+
 // The largest coefficients with their names, then the number of the others.
 std::string InWords(const Eigen::VectorXd& coefficients, const std::vector<std::string>& names);
 

@@ -63,6 +63,11 @@ Trace TraceOf(const Recording& recording, const BallbarRun& run) {
 }
 
 std::string ScatterText(const BallbarRun& run) {
+  if (run.sd <= kFinestNoise) {
+    return fmt::format(
+        "{}: neighbouring readings scatter by less than any ballbar tells apart: {:.2g} um taken",
+        run.points.name, kFinestNoise / settings::kMicrometre);
+  }
   return fmt::format("{}: noise of the ballbar by how far neighbouring readings scatter: {:.2g} um",
                      run.points.name, run.sd / settings::kMicrometre);
 }

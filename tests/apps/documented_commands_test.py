@@ -118,7 +118,7 @@ def ballbar_table():
     lines = ["angle;deviation"]
     for i, degrees in enumerate(turn):
         t, sense = math.radians(degrees), 1 if i <= 360 else -1
-        lost = 2.0 * sense * math.cos(t) * (1 if math.sin(t) > 0 else -1)
+        lost = 2.0 * sense * math.cos(t) * (1 if math.sin(t - 1e-3 * sense) > 0 else -1)  # as X came there
         lines.append(f"{degrees};{-8.0 * math.sin(2 * t) + lost + 1.5:.3f}".replace(".", ","))
     return "\n".join(lines) + "\n"
 

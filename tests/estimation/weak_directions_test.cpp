@@ -24,11 +24,12 @@ MatrixXd OnlyTheSum(Eigen::Index rows) {
   return a;
 }
 
-Result Solve(const MatrixXd& a, ParameterBlock block, double sigma) {
+Result Solve(const MatrixXd& a, ParameterBlock block, double sigma,
+             const SolveOptions& options = {}) {
   Problem problem;
   const BlockId id = problem.Add(std::move(block));
   problem.Add(problem.AddSource("data"), Linear(a, VectorXd::Zero(a.rows())), {id}, sigma);
-  return problem.Solve();
+  return problem.Solve(options);
 }
 
 TEST(WeakDirections, WithoutPriorTheSumIsSeenAndTheDifferenceIsNamed) {
@@ -67,6 +68,21 @@ TEST(WeakDirections, WithPriorTheDifferenceKeepsIt) {
   // a = ((a + b) + (a - b)) / 2 with a - b of the prior's sqrt(2) 1e-3.
   EXPECT_NEAR(result.Uncertainty("arm.a"), 1e-3 / std::sqrt(2.0), 1e-8);
   EXPECT_NEAR(result.Correlation("arm.a", "arm.b"), -1.0, 1e-5);
+}
+
+// Data that see the sum alone: c is held by its prior, a - b by nothing, and that is all that is named.
+TEST(WeakDirections, WhatNothingDeterminesIsNamedThoughTheOthersAreNotAskedFor) {
+  MatrixXd a = OnlyTheSum(50);
+  a.col(2).setZero();
+  ParameterBlock block = Block("arm", {"a", "b", "c", "d"});
+  block["c"].prior_sd = 1e-3;
+  const Result all = Solve(a, block, 1e-6), few = Solve(a, block, 1e-6, {.weak_directions = false});
+  EXPECT_EQ(all.weak_directions.size(), 2u);
+  ASSERT_EQ(few.weak_directions.size(), 1u);
+  EXPECT_EQ(few.weak_directions[0].words, "0.71 arm.a - 0.71 arm.b");
+  EXPECT_EQ(few.weak_directions[0].held, Held::kByNothing);
+  EXPECT_EQ(few.WhyNotUsable(), all.WhyNotUsable());
+  EXPECT_EQ(few.Uncertainty("arm.c"), all.Uncertainty("arm.c"));
 }
 
 TEST(WeakDirections, NothingIsInventedOnAWellPosedProblem) {

@@ -122,6 +122,18 @@ TEST_F(Ballbar, TakesItsNoiseFromTheScatterOfNeighbours) {
   EXPECT_EQ(ReadBallbarRun(CircleOf(noisy), 1e-6).sd, 1e-6);
 }
 
+// A table of a filtered signal: smooth to a nanometre, which no instrument is.
+TEST_F(Ballbar, IsNoQuieterThanBallbarsAre) {
+  const random::CounterRandom random(8, 1);
+  std::uint64_t row = 0;
+  const auto smooth = [&](double t) {
+    return kRadius + 2e-6 * std::cos(2.0 * t) + 1e-9 * random.Normal(row++);
+  };
+  EXPECT_EQ(ReadBallbarRun(CircleOf(smooth)).sd, kFinestNoise);
+  const auto stated = std::string(kCentreLine) + "u_radius_um = 0.001\n";
+  EXPECT_NEAR(ReadBallbarRun(CircleOf(smooth, stated)).sd, 1e-9, 1e-15);
+}
+
 TEST_F(Ballbar, KnowsItsTimesFromTheFeed) {
   Recording circle = CircleOf([](double t) { return kRadius + 1e-7 * std::sin(50.0 * t); });
   circle.columns.push_back({"feed_mm_min", std::vector<double>(circle.rows(), 600.0)});
