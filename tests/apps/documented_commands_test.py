@@ -114,12 +114,12 @@ def laser_table():
 
 def ballbar_table():
     """Both senses of a circle of axes that are not square, with lost motion in X."""
-    turn = [*range(0, 361), *range(359, -1, -1)]
+    draw, turn = random.Random(7), [*range(0, 361), *range(359, -1, -1)]
     lines = ["angle;deviation"]
     for i, degrees in enumerate(turn):
         t, sense = math.radians(degrees), 1 if i <= 360 else -1
         lost = 2.0 * sense * math.cos(t) * (1 if math.sin(t - 1e-3 * sense) > 0 else -1)  # as X came there
-        lines.append(f"{degrees};{-8.0 * math.sin(2 * t) + lost + 1.5:.3f}".replace(".", ","))
+        lines.append(f"{degrees};{-8.0 * math.sin(2 * t) + lost + 1.5 + draw.gauss(0, 0.1):.3f}".replace(".", ","))
     return "\n".join(lines) + "\n"
 
 
