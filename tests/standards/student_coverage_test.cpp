@@ -28,7 +28,8 @@ TEST(StudentTwoSided, IsThatOfSciPy) {
 // scipy.stats 1.10: t.ppf(0.999, 5.5), norm.ppf(0.999).
 TEST(StudentQuantile, IsThatOfSciPy) {
   EXPECT_NEAR(StudentQuantile(0.999, 5.5), 5.504714867564669, 1e-9);
-  EXPECT_NEAR(StudentQuantile(0.999, std::numeric_limits<double>::infinity()), 3.090232306167813, 1e-12);
+  EXPECT_NEAR(StudentQuantile(0.999, std::numeric_limits<double>::infinity()), 3.090232306167813,
+              1e-12);
 }
 
 TEST(DegreesOfFreedomOf, UndoesTheCoverage) {
