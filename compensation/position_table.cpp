@@ -37,10 +37,7 @@ bool PositionTable::Next() {
     }
     return false;
   }
-  std::string_view text = line_;
-  if (text.starts_with(settings::kByteOrderMark)) {
-    text.remove_prefix(settings::kByteOrderMark.size());
-  }
+  const std::string_view text = settings::WithoutByteOrderMark(line_);
   if (text.empty() || text.starts_with('#')) return true;
   if (!named_) {
     TakeNames(text);

@@ -44,9 +44,7 @@ std::size_t LineReader::ReadSome(char* to, std::size_t size) {
 
 std::optional<std::string_view> LineReader::Next() {
   auto line = NextAsItIs();
-  if (line && number_ == 1 && line->starts_with(settings::kByteOrderMark)) {
-    line->remove_prefix(settings::kByteOrderMark.size());
-  }
+  if (line && number_ == 1) line = settings::WithoutByteOrderMark(*line);
   return line;
 }
 

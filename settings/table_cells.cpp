@@ -6,6 +6,11 @@
 
 namespace abbe::settings {
 
+std::string_view WithoutByteOrderMark(std::string_view line) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  return line.starts_with(kByteOrderMark) ? line.substr(kByteOrderMark.size()) : line;
+}
+
 char SeparatorOf(std::string_view line) {
   for (const char separator : {';', '\t'}) {
     if (line.find(separator) != std::string_view::npos) return separator;

@@ -14,10 +14,10 @@
 
 namespace abbe::settings {
 
-// May stand before the first line.
-inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+// The first line of a file without the byte order mark that may stand before it.
+std::string_view WithoutByteOrderMark(std::string_view line);
 
-// Of the cells of the line: spreadsheets write semicolons where numbers have a decimal comma.
+// The separator between the cells: spreadsheets write semicolons where numbers have a decimal comma.
 char SeparatorOf(std::string_view line);
 
 // The cells of a line as they stand, without the blanks around them; a separator inside quotes

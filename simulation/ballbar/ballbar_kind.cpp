@@ -63,10 +63,10 @@ Trace TraceOf(const Recording& recording, const BallbarRun& run) {
 }
 
 std::string ScatterText(const BallbarRun& run) {
-  if (run.sd <= kFinestNoise) {
+  if (run.sd <= kFinestBallbarNoise) {
     return fmt::format(
         "{}: neighbouring readings scatter by less than any ballbar tells apart: {:.2g} um taken",
-        run.points.name, kFinestNoise / settings::kMicrometre);
+        run.points.name, kFinestBallbarNoise / settings::kMicrometre);
   }
   return fmt::format("{}: noise of the ballbar by how far neighbouring readings scatter: {:.2g} um",
                      run.points.name, run.sd / settings::kMicrometre);

@@ -49,7 +49,7 @@ double NoiseOf(const Recording& recording, const BallbarRun& run) {
                                  recording.name, kNoiseKey));
   }
   const double scatter = ScatterOf(run);
-  if (scatter > kSameReading) return std::max(scatter, kFinestNoise);
+  if (scatter > kSameReading) return std::max(scatter, kFinestBallbarNoise);
   throw InputError(
       fmt::format("{}: the noise of the ballbar is not known: its readings are too few, or too "
                   "coarse, to show it; state {} in the header",

@@ -7,7 +7,7 @@
 // the axes stand with the tool there. A position that the recording lacks is that of the centre.
 // `sd` is u_radius_um of the header, else how far neighbouring readings scatter: third differences
 // within a pass, by their median, which neither a circle nor a reversal changes, and at least
-// kFinestNoise: filtered readings scatter by less than what their instrument tells apart. Where no
+// kFinestBallbarNoise: filtered readings scatter by less than what their instrument tells apart. Where no
 // times are known they follow from the way and feed_mm_min, passes a second apart; without feed a
 // row counts a second. `length_sd` is u_length_um of the header, of the calibrated length; 0: not calibrated.
 // A pass begins where an axis may turn, and how it came there is not recorded: its first rows, until
@@ -31,7 +31,7 @@
 namespace abbe::simulation {
 
 // m: a step of 0.1 um, of the finest ballbars on the market, as a standard deviation.
-inline constexpr double kFinestNoise = 0.03e-6;
+inline constexpr double kFinestBallbarNoise = 0.03e-6;
 
 struct BallbarRun {
   MachinePoints points;

@@ -8,6 +8,7 @@
 
 #include "failure/failure.h"
 #include "random/counter_random.h"
+#include "tests/seeds.h"
 
 namespace abbe::fusion {
 namespace circle_causes_test {
@@ -199,12 +200,13 @@ TEST(CircleCauses, OneFeedCannotTellLagFromScale) {
 
 // Pulls over 200 machines measured: mean 0, variance 1, each within its 99.9 % band.
 TEST(CircleCauses, UncertaintiesAreTrue) {
-  constexpr int kSeeds = 100, kPoints = 240;
+  constexpr int kPoints = 240;
+  const auto count = static_cast<int>(SeedsFromEnvironment().last);
   Machine m = kAll;
   m.noise = 0.5e-6;
   m.offset_x = m.offset_y = 0;
   std::vector<double> sums(TruthOf(m).size()), squares(sums.size());
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  for (int seed = 0; seed < count; ++seed) {
     const auto slow = Measure(m, 0.002, {1, -1}, 10 + seed, kPoints),
                fast = Measure(m, 0.01, {1, -1}, 500 + seed, kPoints);
     const CircleCauses found = FitCircleCauses({&slow, &fast});
@@ -217,14 +219,14 @@ TEST(CircleCauses, UncertaintiesAreTrue) {
     }
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    const double mean = sums[i] / kSeeds;
-    const double variance = squares[i] / kSeeds - mean * mean;
+    const double mean = sums[i] / count;
+    const double variance = squares[i] / count - mean * mean;
     const char* name = TruthOf(m)[i].cause;
-    EXPECT_LT(std::abs(mean), 3.3 / std::sqrt(kSeeds)) << name;
+    EXPECT_LT(std::abs(mean), 3.3 / std::sqrt(count)) << name;
     // The noise is estimated with the factor for shared scatter, which is held at 1 and more: it
     // errs by up to 1 / sqrt(2 * 144 sectors) = 6 % upwards, half of the time.
-    EXPECT_GT(variance, (1 - 3.3 * std::sqrt(2.0 / kSeeds)) / 1.06) << name;
-    EXPECT_LT(variance, 1 + 3.3 * std::sqrt(2.0 / kSeeds)) << name;
+    EXPECT_GT(variance, (1 - 3.3 * std::sqrt(2.0 / count)) / 1.06) << name;
+    EXPECT_LT(variance, 1 + 3.3 * std::sqrt(2.0 / count)) << name;
   }
 }
 

@@ -15,6 +15,7 @@
 #include "random/counter_random.h"
 #include "recording/recording_file.h"
 #include "scratch.h"
+#include "tests/seeds.h"
 
 namespace abbe::recording {
 namespace crash_test {
@@ -22,8 +23,7 @@ namespace crash_test {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-constexpr std::uint64_t kTrials = 60;
-constexpr std::size_t kParts = 64;
+constexpr std::size_t kParts = 256;
 const std::vector<std::string> kColumns{"time_s", "x_mm", "a", "b", "c", "flags"};
 
 // Row `i` of every recorder here: whoever reads it back can tell whether it is whole.
@@ -90,7 +90,8 @@ std::filesystem::path FastFolder() {
 TEST_P(Crash, KeepsEveryRowThatWasFlushed) {
   const random::CounterRandom random(20261121, 1);
   std::uint64_t flushed = 0;
-  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
+  const std::uint64_t trials = SeedsFromEnvironment().last;
+  for (std::uint64_t trial = 0; trial < trials; ++trial) {
     const Scratch scratch(FastFolder());
     const auto path = scratch / ("a" + GetParam());
     Recorder recorder([&](Progress& progress) {
@@ -114,7 +115,7 @@ TEST_P(Crash, KeepsEveryRowThatWasFlushed) {
     flushed += recorder.progress().flushed;
     if (HasFatalFailure()) return;
   }
-  EXPECT_GT(flushed, kTrials * 37);
+  EXPECT_GT(flushed, trials * 37);
 }
 
 // Never flushes by itself and falls silent after a while: the rows that are a second old are there.

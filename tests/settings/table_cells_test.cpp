@@ -8,6 +8,11 @@ namespace table_cells_test {
 
 using testing::ElementsAre;
 
+TEST(TableCells, MayBeginWithAByteOrderMark) {
+  EXPECT_EQ(WithoutByteOrderMark("\xEF\xBB\xBFx,y"), "x,y");
+  EXPECT_EQ(WithoutByteOrderMark("x,y"), "x,y");
+}
+
 TEST(TableCells, KnowTheirSeparator) {
   EXPECT_EQ(SeparatorOf("x,y"), ',');
   EXPECT_EQ(SeparatorOf("x;y"), ';');

@@ -129,7 +129,7 @@ TEST_F(Ballbar, IsNoQuieterThanBallbarsAre) {
   const auto smooth = [&](double t) {
     return kRadius + 2e-6 * std::cos(2.0 * t) + 1e-9 * random.Normal(row++);
   };
-  EXPECT_EQ(ReadBallbarRun(CircleOf(smooth)).sd, kFinestNoise);
+  EXPECT_EQ(ReadBallbarRun(CircleOf(smooth)).sd, kFinestBallbarNoise);
   const auto stated = std::string(kCentreLine) + "u_radius_um = 0.001\n";
   EXPECT_NEAR(ReadBallbarRun(CircleOf(smooth, stated)).sd, 1e-9, 1e-15);
 }

@@ -74,7 +74,7 @@ class DiagnosisOfStrangers(unittest.TestCase):
             return run.diagnosed(PROGRAM, world, pathlib.Path(folder))
 
     def test_clean_worlds_stay_clean(self):
-        for seed in (2, 3):
+        for seed in (2, 3, 4):
             with self.subTest(seed=seed):
                 self.assertEqual(self.diagnosed(seed, "clean")["verdict"], "clean")
 
@@ -97,7 +97,8 @@ class DiagnosisOfStrangers(unittest.TestCase):
                 self.assertEqual(found["wrong"], [], found)
 
     def test_nothing_certain_is_wrong(self):
-        for seed, effect in ((21, "bend_with_rate"), (23, "unequal_probes"), (25, "encoder_noise_with_memory")):
+        for seed, effect in ((21, "bend_with_rate"), (22, "beyond_threshold"), (23, "unequal_probes"),
+                             (24, "speed_squared"), (25, "encoder_noise_with_memory")):
             with self.subTest(seed=seed, effect=effect):
                 found = self.diagnosed(seed, effect)
                 self.assertNotEqual(found["verdict"], "refused", found)
