@@ -53,7 +53,9 @@ endfunction()
 # One GoogleTest program NAME_LABEL_test; every TEST in it is the ctest entry NAME.LABEL.SUITE.TEST with
 # that label. A statistical suite draws SEEDS seeds (ABBE_SEEDS); with LONG_SEEDS its tests are there a
 # second time as NAME.long.SUITE.TEST, with that many. Under the sanitizers, which look at what a line does and not at how
-# often, a quarter of the seeds is drawn. Programs of label long are built only with ABBE_LONG_TESTS.
+# often, a quarter of the seeds is drawn, and each program runs as one entry, NAME.LABEL: there are a thousand and a half
+# tests of a moment, and a sanitized program takes longer to start than most of them. Programs of label long are built
+# only with ABBE_LONG_TESTS.
 function(abbe_tests name)
   cmake_parse_arguments(arg "" "LABEL;TIMEOUT;SEEDS;LONG_SEEDS" "SOURCES;LINKS" ${ARGN})
   if(NOT arg_TIMEOUT)
@@ -76,8 +78,14 @@ function(abbe_tests name)
 endfunction()
 
 function(abbe_register_tests program name label timeout seeds)
-  if(seeds AND ABBE_SANITIZE)
-    math(EXPR seeds "(${seeds} + 3) / 4")
+  if(ABBE_SANITIZE)
+    if(seeds)
+      math(EXPR seeds "(${seeds} + 3) / 4")
+    endif()
+    add_test(NAME ${name}.${label} COMMAND ${program})
+    set_tests_properties(${name}.${label} PROPERTIES LABELS ${label} TIMEOUT 900
+                         ENVIRONMENT "$<$<BOOL:${seeds}>:ABBE_SEEDS=${seeds}>")
+    return()
   endif()
   set(cost 10)  # suites begin before what takes a moment, so that no processor waits for the last of them
   if(label STREQUAL unit)
