@@ -71,7 +71,7 @@ int RunExport(const ExportCommand& options) {
     if (out == options.map.path) out.replace_extension("again" + std::string(format.extension));
   }
   const map::ExportOptions at{PointsOf(options.points), options.map.Tool(map)};
-  if (!map::SampleGrid(map, at.tool, at.counts).error().allFinite()) {
+  if (!map::SampleErrors(map, at.tool, at.counts).error().allFinite()) {
     throw InputError(fmt::format(
         "{}: gives no finite error in its volume; it may be damaged: export or fuse it again",
         options.map.path.string()));

@@ -47,10 +47,10 @@ struct MapChange {
 MapChange ChangeOf(const map::ErrorMap& before, const map::ErrorMap& after) {
   const Eigen::Vector3d& tool = after.origin().tool;
   const std::array<Eigen::Index, 3> points{11, 11, 11};
-  const Eigen::RowVectorXd change =
-      (map::SampleGrid(after, tool, points).error() - map::SampleGrid(before, tool, points).error())
-          .colwise()
-          .norm();
+  const Eigen::RowVectorXd change = (map::SampleErrors(after, tool, points).error() -
+                                     map::SampleErrors(before, tool, points).error())
+                                        .colwise()
+                                        .norm();
   return {std::sqrt(change.squaredNorm() / change.size()), change.maxCoeff()};
 }
 

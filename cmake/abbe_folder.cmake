@@ -100,5 +100,6 @@ endfunction()
 function(abbe_bench name)
   cmake_parse_arguments(arg "" "" "LINKS" ${ARGN})
   add_executable(${name} ${name}.cpp)
-  target_link_libraries(${name} PRIVATE ${arg_LINKS} benchmark::benchmark abbe_warnings)
+  target_link_libraries(${name} PRIVATE ${arg_LINKS} benchmark::benchmark abbe_warnings
+                        $<TARGET_OBJECTS:abbe_kept_memory>)
 endfunction()

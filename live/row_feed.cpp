@@ -14,7 +14,8 @@ namespace abbe::live {
 namespace {
 
 constexpr double kFlagsApart = 1.0;  // s: nearer stretches are one
-constexpr int kFileTries = 20;       // of a poll each: the writer hands rows over within 1/4 s
+// The writer hands rows over within 1/4 s; on a processor that others use, later.
+constexpr std::chrono::seconds kFilePatience{10};
 
 class WatchedWriter : public recording::Writer {
  public:
@@ -101,7 +102,8 @@ void RowFeed::TakeWaiting() {
 
 // Adds the rows before number `until` that the queue dropped.
 void RowFeed::CatchUp(std::uint64_t until) {
-  for (int tries = 0; next_ < until && tries < kFileTries && !file_.empty(); ++tries) {
+  const auto patience = std::chrono::steady_clock::now() + kFilePatience;
+  while (next_ < until && !file_.empty() && std::chrono::steady_clock::now() < patience) {
     try {
       recording::ReadBlocks(file_, [&](const recording::Recording& block) {
         std::vector<double> values(columns_.size());

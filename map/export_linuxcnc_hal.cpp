@@ -80,7 +80,7 @@ void RefuseLarge(const Matrix3Xd& errors) {
 }
 
 std::string GridText(const ErrorMap& map, const ExportOptions& options) {
-  const MapGrid grid = SampleGrid(map, options.tool, options.counts);
+  const MapGrid grid = SampleErrors(map, options.tool, options.counts);
   RefuseLarge(grid.error());
   Matrix3Xd positions(3, grid.size());
   for (Eigen::Index i = 0; i < grid.size(); ++i) positions.col(i) = grid.Position(i);

@@ -107,7 +107,8 @@ Vector3d MapGrid::Error(const Vector3d& position) const {
   return sum;
 }
 
-MapGrid SampleGrid(const ErrorMap& map, const Vector3d& p_TQ, const std::array<Index, 3>& counts) {
+MapGrid SampleErrors(const ErrorMap& map, const Vector3d& p_TQ,
+                     const std::array<Index, 3>& counts) {
   std::array<GridAxis, 3> axes;
   for (std::size_t k = 0; k < 3; ++k) {
     const machine::Travel& travel = map.model().travels()[k];
@@ -115,13 +116,19 @@ MapGrid SampleGrid(const ErrorMap& map, const Vector3d& p_TQ, const std::array<I
   }
   const Index points = counts[0] * counts[1] * counts[2];
   const MapGrid places(axes, Eigen::Matrix3Xd::Zero(3, points), {});
-  Eigen::Matrix3Xd positions(3, points), u95;
+  Eigen::Matrix3Xd positions(3, points);
   for (Index i = 0; i < points; ++i) positions.col(i) = places.Position(i);
-  if (map.StatesUncertainty()) u95.resize(3, points);
-  for (Index i = 0; i < u95.cols(); ++i) {
-    u95.col(i) = standards::kCoverage * map.StandardUncertainty(positions.col(i), p_TQ);
+  return {axes, map.model().Errors(positions, p_TQ), {}};
+}
+
+MapGrid SampleGrid(const ErrorMap& map, const Vector3d& p_TQ, const std::array<Index, 3>& counts) {
+  MapGrid grid = SampleErrors(map, p_TQ, counts);
+  if (!map.StatesUncertainty()) return grid;
+  Eigen::Matrix3Xd u95(3, grid.size());
+  for (Index i = 0; i < grid.size(); ++i) {
+    u95.col(i) = standards::kCoverage * map.StandardUncertainty(grid.Position(i), p_TQ);
   }
-  return {axes, map.model().Errors(positions, p_TQ), std::move(u95)};
+  return {grid.axes(), grid.error(), std::move(u95)};
 }
 
 Discrepancy Compare(const ErrorMap& map, const Vector3d& p_TQ, const ErrorField& field,

@@ -54,7 +54,10 @@ class MapGrid {
   Eigen::Vector3d first_, per_step_;
 };
 
-// The map at `counts` points along X, Y and Z, over the whole travels.
+// The errors of the map at `counts` points along X, Y and Z, over the whole travels; SampleGrid with
+// their U95, m, which take some twenty times as long.
+MapGrid SampleErrors(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
+                     const std::array<Eigen::Index, 3>& counts);
 MapGrid SampleGrid(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
                    const std::array<Eigen::Index, 3>& counts);
 
