@@ -26,8 +26,8 @@ namespace {
 constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
 constexpr std::size_t kMostBytes = kMebi;  // of one message
 constexpr char kFailed = 'e', kDone = 'd';
-constexpr rlim_t kChildSeconds = 3;
-constexpr int kSecondsOfClock = 20;  // per second of CPU, for a busy computer
+constexpr rlim_t kChildSeconds = 10;  // of CPU, where a file takes tenths of one
+constexpr int kSecondsOfClock = 20;   // per second of CPU, for a busy computer
 constexpr std::uint64_t kBytesPerSecond = 2'000'000;
 constexpr std::uint64_t kLibrary = 256 * kMebi;  // memory of libhdf5 itself
 

@@ -12,7 +12,7 @@ set(library_page ${PYTHON} ${SOURCE}/../library_page.py)
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 run(${library_page} write ${page} ${WORK}/programs)
 run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}/prefix
-    -DPROGRAMS=${WORK}/programs)
+    -DPROGRAMS=${WORK}/programs -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=gold)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 set(machine ${WORK}/prefix/share/abbe/machines/demo_mill.toml)
 run(${WORK}/build/measure ${machine})
