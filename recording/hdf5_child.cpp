@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
 #include <utility>
 
@@ -25,9 +26,10 @@ namespace {
 
 constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
 constexpr std::size_t kMostBytes = kMebi;  // of one message
-constexpr char kFailed = 'e', kDone = 'd';
-constexpr rlim_t kChildSeconds = 10;  // of CPU, where a file takes tenths of one
-constexpr int kSecondsOfClock = 20;   // per second of CPU, for a busy computer
+constexpr char kBegun = 'b', kFailed = 'e', kDone = 'd';
+constexpr int kFirstPatience = 200, kLastPatience = 30'000;  // ms, for a child to begin
+constexpr rlim_t kChildSeconds = 3;
+constexpr int kSecondsOfClock = 20;  // per second of CPU, for a busy computer
 constexpr std::uint64_t kBytesPerSecond = 2'000'000;
 constexpr std::uint64_t kLibrary = 256 * kMebi;  // memory of libhdf5 itself
 
@@ -48,12 +50,12 @@ void WriteAll(int pipe, const void* from, std::size_t size) {
   }
 }
 
-// False at the end of the pipe, and when the child has sent nothing for `patience` seconds.
+// False at the end of the pipe, and when the child has sent nothing for `patience` ms.
 bool ReadAll(int pipe, void* to, std::size_t size, int patience) {
   char* at = static_cast<char*>(to);
   while (size > 0) {
     pollfd waiting{pipe, POLLIN, 0};
-    const int ready = poll(&waiting, 1, 1000 * patience);
+    const int ready = poll(&waiting, 1, patience);
     if (ready < 0 && errno == EINTR) continue;
     if (ready <= 0) return false;
     const ssize_t count = read(pipe, at, size);
@@ -106,6 +108,8 @@ struct Child {
   if (!ABBE_ADDRESS_SANITIZER) Limit(RLIMIT_AS, child.memory);
   const Hdf5Sender sender(child.pipe[1]);
   try {
+    H5open();  // where a lock was copied while another thread held it, the child waits here for ever
+    WriteAll(child.pipe[1], &kBegun, 1);
     child.read(sender);
     sender.Send(kDone, std::string_view{});
   } catch (const std::bad_alloc&) {
@@ -117,7 +121,8 @@ struct Child {
 }
 
 // Forks while this thread holds the lock of libhdf5. Otherwise another thread could hold it, and
-// the child would wait for that thread for ever. H5Ewalk2 calls back with the lock held.
+// the child would wait for that thread for ever. H5Ewalk2 calls back with the lock held. A thread
+// that asks for that lock just then holds a lock within the lock for a moment: see Begin.
 void Fork(Child& child) {
   const auto fork_once = [](unsigned number, const H5E_error2_t*, void* to) -> herr_t {
     auto& forked = *static_cast<Child*>(to);
@@ -156,6 +161,21 @@ class ChildGuard {
   pid_t child_;
   int pipe_;
 };
+
+// A child that has begun to read. One that does not begin hangs in a lock that it copied, whatever
+// the file; it is ended and made again, with twice the patience for a busy computer.
+std::unique_ptr<ChildGuard> Begin(Child& child, const std::string& name) {
+  for (int patience = kFirstPatience; patience < kLastPatience; patience *= 2) {
+    if (pipe2(child.pipe, O_CLOEXEC) != 0) throw InputError(name + ": too many open files");
+    Fork(child);
+    close(child.pipe[1]);
+    auto ending = std::make_unique<ChildGuard>(child.id, child.pipe[0]);
+    if (child.id < 0) throw InputError(name + ": no process to read it in; close other programs");
+    char kind = 0;
+    if (ReadAll(child.pipe[0], &kind, 1, patience) && kind == kBegun) return ending;
+  }
+  throw InputError(name + ": its reading does not begin; close other programs and try again");
+}
 
 [[noreturn]] void ThrowEnded(const std::string& name, int status) {
   const bool slow =
@@ -224,14 +244,10 @@ void ReadInChild(const std::filesystem::path& path,
   const std::uint64_t size = SizeOf(path), most = MostHdf5Numbers(path);
   Child child{
       read, Mapped() + kLibrary + 2 * most, kChildSeconds + size / kBytesPerSecond, {-1, -1}};
-  if (pipe2(child.pipe, O_CLOEXEC) != 0) throw InputError(name + ": too many open files");
-  Fork(child);
-  close(child.pipe[1]);
-  ChildGuard ending(child.id, child.pipe[0]);
-  if (child.id < 0) throw InputError(name + ": no process to read it in; close other programs");
-  const auto receive = [&, patience = kSecondsOfClock * static_cast<int>(child.seconds)](
+  const std::unique_ptr<ChildGuard> ending = Begin(child, name);
+  const auto receive = [&, patience = 1000 * kSecondsOfClock * static_cast<int>(child.seconds)](
                            void* to, std::size_t count) {
-    if (!ReadAll(child.pipe[0], to, count, patience)) ThrowEnded(name, ending.End());
+    if (!ReadAll(child.pipe[0], to, count, patience)) ThrowEnded(name, ending->End());
   };
   std::string bytes;
   std::uint64_t received = 0;
@@ -240,7 +256,7 @@ void ReadInChild(const std::filesystem::path& path,
     std::uint64_t length = 0;
     receive(&kind, 1);
     receive(&length, sizeof(length));
-    if (length > kMostBytes || (received += length) > 2 * most) ThrowEnded(name, ending.End());
+    if (length > kMostBytes || (received += length) > 2 * most) ThrowEnded(name, ending->End());
     bytes.resize(length);
     receive(bytes.data(), length);
     if (kind == kFailed) throw InputError(bytes);

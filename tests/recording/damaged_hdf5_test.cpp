@@ -138,5 +138,19 @@ TEST(Hdf5Child, IsMadeWhileOthersUseTheLibrary) {
   }
 }
 
+// Who asks for the library's lock holds a lock within it for a moment, and a child made in that
+// moment hangs in it: the file is not to blame, and another child reads it.
+TEST(Hdf5Child, IsMadeAgainWhereItHangs) {
+  if (ABBE_ADDRESS_SANITIZER) {
+    GTEST_SKIP() << "the sanitizer's own locks do not survive a fork among threads";
+  }
+  const Scratch scratch;
+  Write(Dwell(100), scratch / "a.h5");
+  const std::jthread asks([](const std::stop_token& stop) {
+    while (!stop.stop_requested()) H5open();
+  });
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(Read(scratch / "a.h5").rows(), 100u);
+}
+
 }  // namespace damaged_hdf5_test
 }  // namespace abbe::recording
