@@ -102,8 +102,9 @@ void RowFeed::TakeWaiting() {
 
 // Adds the rows before number `until` that the queue dropped.
 void RowFeed::CatchUp(std::uint64_t until) {
-  const auto patience = std::chrono::steady_clock::now() + kFilePatience;
-  while (next_ < until && !file_.empty() && std::chrono::steady_clock::now() < patience) {
+  using Clock = std::chrono::steady_clock;
+  const auto given_up = Clock::now() + kFilePatience;
+  while (next_ < until && !file_.empty() && Clock::now() < given_up) {
     try {
       recording::ReadBlocks(file_, [&](const recording::Recording& block) {
         std::vector<double> values(columns_.size());

@@ -54,10 +54,11 @@ class MapGrid {
   Eigen::Vector3d first_, per_step_;
 };
 
-// The errors of the map at `counts` points along X, Y and Z, over the whole travels; SampleGrid with
-// their U95, m, which take some twenty times as long.
+// The map at `counts` points along X, Y and Z, over the whole travels, without its U95.
 MapGrid SampleErrors(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
                      const std::array<Eigen::Index, 3>& counts);
+
+// The same with the U95, where the map states uncertainties; they take most of the time.
 MapGrid SampleGrid(const ErrorMap& map, const Eigen::Vector3d& p_TQ,
                    const std::array<Eigen::Index, 3>& counts);
 
