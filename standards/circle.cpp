@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "failure/failure.h"
 #include "standards/narrowest_annulus.h"
@@ -18,7 +19,7 @@ constexpr int kMaxSteps = 50;
 constexpr double kSettled = 1e-13;
 
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
-// Part of a turn; a longer gap between two points of a path was not measured.
+// Part of a turn; a longer gap between two neighbours was not measured.
 constexpr double kGap = 0.05;
 
 void CheckPoints(std::span<const double> x, std::span<const double> y) {
@@ -123,18 +124,22 @@ std::vector<double> ArcsOf(std::span<const double> x, std::span<const double> y)
         fmt::format("arcs of {} x and {} y: give both coordinates", x.size(), y.size()));
   }
   const std::size_t n = x.size();
-  std::vector<double> steps(n);  // from each point to the next
+  std::vector<double> angles(n);
+  for (std::size_t i = 0; i < n; ++i) angles[i] = std::atan2(y[i], x[i]);
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [&](std::size_t i) { return angles[i]; });
+  std::vector<double> steps(n);  // from each point, in the order of their angles, to the next
   for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t next = (i + 1) % n;
-    const double turned = std::atan2(y[next], x[next]) - std::atan2(y[i], x[i]);
-    steps[i] = std::abs(std::remainder(turned, kFullTurn));
+    const double turned = angles[order[(i + 1) % n]] - angles[order[i]];
+    steps[i] = i + 1 < n ? turned : turned + kFullTurn;
   }
   std::vector<double> sorted = steps;
   const auto middle = sorted.begin() + std::ssize(sorted) / 2;
   std::nth_element(sorted.begin(), middle, sorted.end());
   for (double& step : steps) step = step > kGap * kFullTurn ? *middle : step;
   std::vector<double> arcs(n);
-  for (std::size_t i = 0; i < n; ++i) arcs[i] = (steps[i] + steps[(i + n - 1) % n]) / 2.0;
+  for (std::size_t i = 0; i < n; ++i) arcs[order[i]] = (steps[i] + steps[(i + n - 1) % n]) / 2.0;
   return arcs;
 }
 

@@ -37,10 +37,11 @@ struct Circle {
 Circle ReferenceCircle(CircleKind kind, std::span<const double> x, std::span<const double> y,
                        std::span<const double> weights = {});
 
-// The arc about (0, 0) for which each point of a path stands, rad: half the way to each of its two
-// neighbours along the path, the last and the first being neighbours. A gap above a twentieth of a
-// turn was not measured and counts as a usual step (the median). With it a least-squares circle
-// does not depend on how densely parts of the path were sampled.
+// The arc about (0, 0) for which each point stands, rad: half the way to each of its two neighbours
+// by angle, the last and the first being neighbours; all turns together, so what one turn lacks
+// another gives. A gap above a twentieth of a turn was not measured and counts as a usual step (the
+// median). With it a least-squares circle does not depend on how densely parts of the path were
+// sampled.
 std::vector<double> ArcsOf(std::span<const double> x, std::span<const double> y);
 
 // The figures of ISO 12181-1:2011 about a reference circle; for the minimum zone Error() is RONt.

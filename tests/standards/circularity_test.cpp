@@ -86,6 +86,24 @@ TEST(Circularity, FollowsThePathAndNotTheDensityOfItsPoints) {
   EXPECT_GT(unweighted.Error(), 1.08 * figures.cw->G_ls);
 }
 
+// What one turn lacks another gives. Gaps of 30 degrees; each turn by itself would be off by 4 %.
+TEST(Circularity, TakesFromOneTurnWhatAnotherLacks) {
+  constexpr double a = 4e-6;
+  const PlanePath even = Path([](double t) { return kRadius + a * std::sin(2 * t); }, 1e-6);
+  PlanePath turns;
+  for (const std::size_t gap : {30U, 200U}) {
+    for (std::size_t i = 0; i < 360; ++i) {
+      if (i >= gap && i < gap + 30) continue;
+      turns.x.push_back(even.x[i]);
+      turns.y.push_back(even.y[i]);
+    }
+  }
+  const auto figures = EvaluateCircularity({.radius = kRadius, .cw = even, .ccw = turns});
+  EXPECT_NEAR(figures.ccw->G_ls, figures.cw->G_ls, 1e-3 * a);
+  EXPECT_NEAR(figures.ccw->least_squares.x, figures.cw->least_squares.x, 1e-3 * a);
+  EXPECT_NEAR(figures.ccw->least_squares.y, figures.cw->least_squares.y, 1e-3 * a);
+}
+
 TEST(Circularity, RefusesWhatCannotBeJudged) {
   EXPECT_THROW(EvaluateCircularity({.radius = kRadius, .cw = {}, .ccw = {}}), InputError);
   EXPECT_THROW(EvaluateCircularity({.radius = 0.0, .cw = {}, .ccw = {{0, 1, 0}, {0, 0, 1}}}),
