@@ -66,11 +66,26 @@ std::string MachineFileNotes(const fusion::FuseReport& report) {
         line.stated / line.unit, line.seen / line.unit);
   }
   for (std::size_t i = 0; i < report.noise.size(); ++i) {
-    if (report.noise[i] == 1.0) continue;
+    if (report.noise[i] == 1.0 || report.scatter[i].axis >= 0) continue;
     text += fmt::format(
         "\nMACHINE FILE: the noise of {} is {:.2g} times what is stated, and is taken so; state "
         "it\n",
         report.fit.sources[i].name, report.noise[i]);
+  }
+  return text;
+}
+
+std::string ScatterLines(const fusion::FuseReport& report) {
+  std::string text;
+  for (std::size_t i = 0; i < report.scatter.size(); ++i) {
+    const auto& [axis, sd] = report.scatter[i];
+    if (axis < 0) continue;
+    const char name = "XYZ"[axis];
+    text += fmt::format(
+        "\nSCATTER: in {} the positions of {} scatter more than its noise, in the direction of {} "
+        "alone: a wave of its screw, gear or scale, shorter than the places are apart. U95 of E{}{} "
+        "contains one of {:.2g} um (rms); circles, or places closer together, show it.\n",
+        report.fit.sources[i].name, name, name, name, name, sd / kMicro);
   }
   return text;
 }
@@ -117,7 +132,8 @@ std::string RunTable(const fusion::FuseReport& report) {
     text += fmt::format(
         "\nDOES NOT FIT: {} is off by {:.1f} times its noise; {}.\n", report.runs[i].name,
         std::sqrt(ExcessOf(report, i)),
-        report.follows[i] < kOneAfterTheOther
+        report.scatter[i].axis >= 0 ? "the positions of an axis scatter (above)"
+        : report.follows[i] < kOneAfterTheOther
             ? "what is left scatters from row to row, so larger noise fits: state it"
             : "what is left goes on from row to row, so neither larger noise nor rougher errors "
               "nor a less flat target fits; check that chain, [head] and [linkage] of the machine "
@@ -156,7 +172,7 @@ std::string RunsText(const fusion::FuseReport& report) {
   return ScaleText(report.scale) +
          fmt::format("Correlation length of the error functions: {:.1f} mm\n",
                      1e3 * report.chosen_smoothness) +
-         ReversalLines(report) + MachineFileNotes(report) + RunTable(report);
+         ReversalLines(report) + ScatterLines(report) + MachineFileNotes(report) + RunTable(report);
 }
 
 ordered_json FuseJson(const fusion::FuseReport& report) {
@@ -182,6 +198,14 @@ ordered_json FuseJson(const fusion::FuseReport& report) {
                                  {"value", each.value / settings::kMicro},
                                  {"u", each.u / settings::kMicro},
                                  {"unit", each.rotates ? "urad" : "um"}});
+  }
+  json["scatter"] = ordered_json::array();
+  for (std::size_t i = 0; i < report.scatter.size(); ++i) {
+    const auto& [axis, sd] = report.scatter[i];
+    if (axis < 0) continue;
+    json["scatter"].push_back({{"run", report.fit.sources[i].name},
+                               {"axis", std::string(1, "XYZ"[axis])},
+                               {"sd_um", sd / kMicro}});
   }
   for (const auto& function : report.functions) {
     json["observability"][function.name] = {

@@ -34,7 +34,6 @@ using simulation::SimulatedRun;
 
 constexpr std::array kMounted{"target_tilt", "head_turn", "head_place", "base"};
 constexpr double kUnknown = std::numeric_limits<double>::infinity();  // of an uncertainty
-constexpr Index kFewRows = 50;          // too few to tell a correlation
 constexpr int kFits = 5;                // at most, until noise and knots have settled
 constexpr double kNoiseSettled = 0.05;  // of its logarithm
 // Standard uncertainties from the solution: of the last fit, and of those before it, whose priors
@@ -224,6 +223,15 @@ class FuseJob {
     Widen(widened, seen);
     if (by_theta_.size() > 0) seen.covariance += by_theta_ * by_theta_.transpose();
     AddDoubt(options_.doubt, found, -machine_.reference, seen.covariance);
+    const MachinePrior prior = Prior();
+    std::vector<PlaceScatter> scatter;
+    std::vector<double> follows;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      const VectorXd left = Left(now, r);
+      follows.push_back(CorrelationIn(left));
+      scatter.push_back(FindPlaceScatter(runs_[r], noise_[r] * left, found, prior));
+    }
+    CountScatter(scatter, found, seen);
     FuseReport report{.map = MapOf(found, seen, StateOf(now, seen.covariance))};
     report.functions = std::move(seen.functions);
     report.scale = seen.scale;
@@ -234,12 +242,11 @@ class FuseJob {
     report.reversals = ReversalsOf(now.fit, widened);
     for (const SimulatedRun& run : runs_) report.kinds.push_back(run.kind);
     report.runs = std::move(consistency);
+    report.scatter = std::move(scatter);
+    report.follows = std::move(follows);
     report.contradicting = contradicting;
     report.widened = widened;
     if (contradicting >= 0) report.suspect = SuspectOf(contradicting, now.fit);
-    for (std::size_t r = 0; r < runs_.size(); ++r) {
-      report.follows.push_back(Follows(now, r));
-    }
     if (options_.holdout > 0) {
       Steps steps(1);
       steps.Begin("blocks of rows held out");
@@ -291,10 +298,9 @@ class FuseJob {
     return mounting == (suspect == Suspect::kMounting);
   }
 
-  // The largest correlation of whitened rows of a run with those one or three after them: probes
-  // stand one after the other, places in threes. White noise has nearly none.
-  double Follows(const Fitted& now, std::size_t run) const {
-    double largest = 0.0;
+  // What a fit leaves of a run, whitened.
+  VectorXd Left(const Fitted& now, std::size_t run) const {
+    VectorXd left;
     const estimation::Layout layout(now.problem);
     const VectorXd x = ValuesFound(now.fit, now.fit.blocks);
     for (const auto& term : now.problem.terms()) {
@@ -302,14 +308,10 @@ class FuseJob {
       estimation::RowEvaluator rows(now.problem, layout);
       const auto* found = rows.Evaluate(term, x, false);
       if (found == nullptr) continue;
-      for (const Index lag : {Index{1}, Index{3}}) {
-        const Index n = found->r.size() - lag;
-        if (n < kFewRows) continue;
-        largest =
-            std::max(largest, found->r.head(n).dot(found->r.tail(n)) / found->r.squaredNorm());
-      }
+      left.conservativeResize(left.size() + found->r.size());
+      left.tail(found->r.size()) = found->r;
     }
-    return largest;
+    return left;
   }
 
   double SmoothnessSeen() const {

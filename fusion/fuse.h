@@ -31,6 +31,7 @@
 #include "fusion/holdout.h"
 #include "fusion/machine_problem.h"
 #include "fusion/map_doubt.h"
+#include "fusion/place_scatter.h"
 #include "fusion/population_estimate.h"
 #include "fusion/reversals.h"
 #include "fusion/run_consistency.h"
@@ -70,10 +71,12 @@ struct FuseReport {
   double chosen_smoothness = 0.0;          // m: of all functions together
   std::vector<std::string> kinds = {};     // of each run
   std::vector<RunConsistency> runs = {};
-  int contradicting = -1;              // index into `runs`; -1: none
-  double widened = 1.0;                // all uncertainties for it, by its Birge ratio
-  Suspect suspect = Suspect::kNone;    // of that contradiction
-  std::vector<double> follows = {};    // of each run: correlation of its residuals from row to row
+  int contradicting = -1;            // index into `runs`; -1: none
+  double widened = 1.0;              // all uncertainties for it, by its Birge ratio
+  Suspect suspect = Suspect::kNone;  // of that contradiction
+  std::vector<double> follows = {};  // of each run: correlation of its residuals from row to row
+  // Of each run: the axis whose positions scatter in it. The uncertainty of the map contains it.
+  std::vector<PlaceScatter> scatter = {};
   std::vector<HeldOut> held_out = {};  // one for each run; empty when not asked for
   // What the runs tell of the parameters of the map's model, without a prior of these; empty where
   // sizes and smoothness are not chosen.

@@ -90,4 +90,15 @@ int Contradicting(const std::vector<RunConsistency>& runs) {
   return static_cast<int>(worst - runs.begin());
 }
 
+double CorrelationIn(const Eigen::VectorXd& left) {
+  constexpr Eigen::Index kFewRows = 50;  // too few to tell
+  double largest = 0.0;
+  for (const Eigen::Index lag : {1, 3}) {
+    const Eigen::Index n = left.size() - lag;
+    if (n < kFewRows) continue;
+    largest = std::max(largest, left.head(n).dot(left.tail(n)) / left.squaredNorm());
+  }
+  return largest;
+}
+
 }  // namespace abbe::fusion

@@ -49,4 +49,8 @@ std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
 // set.
 int Contradicting(const std::vector<RunConsistency>& runs);
 
+// The largest correlation of whitened rows with those one or three after them: probes stand one
+// after the other, places in threes. White noise has nearly none; 0 for too few rows to tell.
+double CorrelationIn(const Eigen::VectorXd& left);
+
 }  // namespace abbe::fusion

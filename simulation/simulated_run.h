@@ -82,6 +82,8 @@ struct SimulatedRun {
   // Which way each axis last moved in each row: +1, -1, 0 where nobody knows; 3 x rows of the run.
   // Empty: not known.
   Eigen::Matrix3Xd heading = {};
+  // Positions of the axes, m, 3 x rows of the run. Empty: not known.
+  Eigen::Matrix3Xd commanded = {};
   std::function<std::shared_ptr<const estimation::Residual>(const Eigen::VectorXd& x)> condense =
       {};
   // With the form of the target beside the noise, which else contains as much of it as the machine

@@ -253,7 +253,10 @@ SimulatedRun SimulateLinkage(const machine::VolumetricModel& model, const Vector
   const auto residual =
       std::make_shared<LinkageOnMachine>(model, -reference, linkage, fitted, seated);
   simulated.residual = simulated.response = residual;
-  if (all == fitted.poses()) simulated.heading = HeadingsOf(fitted.commanded);
+  if (all == fitted.poses()) {
+    simulated.heading = HeadingsOf(fitted.commanded);
+    simulated.commanded = fitted.commanded;
+  }
   simulated.condense = [=, gathers = all > fitted.poses()](const VectorXd& x) {
     if (gathers) return Gather(model, -reference, linkage, parts, seated, x);
     auto recentred = std::make_shared<LinkageOnMachine>(*residual);

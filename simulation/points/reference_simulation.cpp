@@ -148,6 +148,7 @@ SimulatedRun SimulateReference(const machine::VolumetricModel& model, const Vect
   const auto residual = std::make_shared<ReferenceResidual>(model, reference, run);
   simulated.residual = simulated.response = residual;
   simulated.heading = HeadingsOf(run.points.axes);
+  simulated.commanded = run.points.axes;
   if (run.tested != ' ') simulated.heading.row(run.tested - 'X') = ApproachOf(run.direction);
   return simulated;
 }
