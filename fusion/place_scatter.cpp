@@ -25,16 +25,17 @@ constexpr double kLeast = 1e-8;   // m: the search for sd begins here, and goes 
 constexpr double kFactor = 1.09;  // so large a factor
 constexpr int kTried = 110;       // up to 0.1 mm
 constexpr Index kFewPlaces = 20;  // too few to tell
-constexpr Index kMostPlaces = 400;
-// m: correlation lengths of a wave, the longest as a part of that of the error; sizes; and the
-// prior of a size.
-constexpr double kShortestWave = 0.5e-3, kLongestWave = 0.5, kLengthFactor = 1.41;
-constexpr double kLeastWave = 2e-8, kMostWave = 3e-5, kSizeFactor = 1.5;
+constexpr Index kMostPlaces = 250;
+// m: correlation lengths l of a wave, the longest as a part of that of the error; sizes t, and
+// their prior.
+constexpr double kShortestWave = 0.5e-3, kLongestWave = 0.2, kLengthFactor = 1.41;
+constexpr double kLeastWave = 2e-8, kMostWave = 3e-5, kSizeFactor = 1.8;
 constexpr double kUsual = 1e-6;
 const double kUsualTo = std::log(4.0);
+constexpr std::array kParts{0.0, 0.35, 0.7, 1.0};  // of what scatters without a place
 
 struct Found {
-  double gain = 0.0, noise = 0.0;  // of the logarithm; c
+  double gain = 0.0, noise = 0.0, sd = 0.0;  // of the logarithm; c; rho c, m
 };
 
 // `r`, `g`: rows of a pose x poses.
@@ -49,7 +50,7 @@ Found Search(const MatrixXd& r, const MatrixXd& g) {
     const Eigen::ArrayXd times = 1.0 + rho * rho * gg;
     const double square = rr - rho * rho * (gr.square() / times).sum();
     const double gain = -0.5 * n * std::log(square / rr) - 0.5 * times.log().sum();
-    if (gain > best.gain) best = {gain, std::sqrt(square / n)};
+    if (gain > best.gain) best = {gain, std::sqrt(square / n), rho * std::sqrt(square / n)};
   }
   return best;
 }
@@ -67,8 +68,8 @@ struct Places {
   }
 };
 
-// The root of the mean of sd^2.
-double SizeOfWave(const Places& at, int axis, const machine::VolumetricModel& found,
+// The root of the mean of s^2 + t^2; `alone`: m, s where there is no wave.
+double SizeOfWave(const Places& at, double alone, int axis, const machine::VolumetricModel& found,
                   const MachinePrior& prior) {
   const auto& function = found.Function(axis, axis);
   MatrixXd S(at.x.size(), function.size());
@@ -89,13 +90,18 @@ double SizeOfWave(const Places& at, int axis, const machine::VolumetricModel& fo
     for (Index j = 0; j < wave.cols(); ++j) {
       wave.col(j) = (-0.5 * ((at.x.array() - at.x[j]) / length).square()).exp();
     }
-    for (double sd = kLeastWave; sd < kMostWave; sd *= kSizeFactor) {
-      const MatrixXd all = smooth + std::pow(sd / unit, 2) * wave;
-      const Eigen::LLT<MatrixXd> factor(all);
-      logs.push_back(-0.5 * factor.matrixL().solve(e / unit).squaredNorm() -
-                     factor.matrixLLT().diagonal().array().log().sum() -
-                     0.5 * std::pow(std::log(sd / kUsual) / kUsualTo, 2));
-      squares.push_back(sd * sd);
+    for (const double part : kParts) {
+      const double square = std::pow(part * alone, 2);
+      MatrixXd rest = smooth;
+      rest.diagonal().array() += square / (unit * unit);
+      for (double sd = kLeastWave; sd < kMostWave; sd *= kSizeFactor) {
+        const MatrixXd all = rest + std::pow(sd / unit, 2) * wave;
+        const Eigen::LLT<MatrixXd> factor(all);
+        logs.push_back(-0.5 * factor.matrixL().solve(e / unit).squaredNorm() -
+                       factor.matrixLLT().diagonal().array().log().sum() -
+                       0.5 * std::pow(std::log(sd / kUsual) / kUsualTo, 2));
+        squares.push_back(sd * sd + square);
+      }
     }
   }
   if (logs.empty()) return 0.0;
@@ -142,7 +148,7 @@ PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const VectorX
     return Search(r, shown(stage, poses).reshaped(rows, poses));
   };
   PlaceScatter named;
-  Found best{kNamed, 0.0};
+  Found best{.gain = kNamed};
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     const Found one = search(simulation::MotionStage(axis, axis));
     if (!(one.gain > best.gain)) continue;
@@ -158,7 +164,7 @@ PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const VectorX
   const VectorXd gg = g.colwise().squaredNorm();
   const VectorXd x = run.commanded.row(named.axis), e = g.cwiseProduct(r).colwise().sum();
   named.sd = SizeOfWave({x, e.cwiseQuotient(gg), best.noise * gg.cwiseSqrt().cwiseInverse()},
-                        named.axis, found, prior);
+                        best.sd, named.axis, found, prior);
   return named;
 }
 

@@ -18,15 +18,16 @@
 // second process beside the smooth one of the map: the error that was measured at the positions x,
 // e = E(x) + g'r / g'g, E that of the fit, has
 //
-//   cov e = c^2 diag(1 / g'g) + S V S' + sd^2 exp(-(dx / l)^2 / 2)
+//   cov e = c^2 diag(1 / g'g) + s^2 I + S V S' + t^2 exp(-(dx / l)^2 / 2)
 //
-// S the splines of the error at x, V their prior. `sd` is the root of the mean of sd^2 under its
-// posterior, with log l uniform from 0.5 mm to half the correlation length of the error and log sd
-// normal about 1 um, standard deviation log 4 (own choice).
+// S the splines of the error at x, V their prior, s what scatters without a place (rounding, play).
+// `sd` is the root of the mean of s^2 + t^2 under their posterior: log l uniform from 0.5 mm to a
+// fifth of the correlation length of the error, log t normal about 1 um with standard deviation
+// log 4 (own choice), s one of four parts of rho c.
 // Units: m. Shapes: `left`: the rows of the run's residual at the fit, over the stated noise.
 // Failure: none; a run without a response, or with one row for each place, cannot tell.
-// Source: own; Rasmussen and Williams (2006), 5.4.1 for the posterior of sd and l.
-// Validity: all other parameters as the fit has them; at most 400 places, evenly chosen, for sd.
+// Source: own; Rasmussen and Williams (2006), 5.4.1 for the posterior.
+// Validity: all other parameters as the fit has them; at most 250 places, evenly chosen, for sd.
 #pragma once
 
 #include <Eigen/Core>
@@ -41,7 +42,7 @@ namespace abbe::fusion {
 
 struct PlaceScatter {
   int axis = -1;    // 0 to 2; -1: none
-  double sd = 0.0;  // m, of the wave, anywhere on the axis
+  double sd = 0.0;  // m, anywhere on the axis
 };
 
 // `found`: the model of the fit; `prior`: of its functions.
