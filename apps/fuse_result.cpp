@@ -83,8 +83,8 @@ std::string ScatterLines(const fusion::FuseReport& report) {
     const char name = "XYZ"[axis];
     text += fmt::format(
         "\nSCATTER: in {} the positions of {} scatter more than its noise, in the direction of {} "
-        "alone: a wave of its screw, gear or scale, shorter than the places are apart, or positions "
-        "that were rounded. U95 of E{}{} contains {:.2g} um (rms) for it; circles, or places closer "
+        "alone: a wave of its screw, gear or scale, shorter than the places are apart, positions that "
+        "were rounded, or lost motion that varies. U95 of E{}{} contains {:.2g} um (rms) for it; circles, or places closer "
         "together, show it.\n",
         report.fit.sources[i].name, name, name, name, name, sd / kMicro);
   }

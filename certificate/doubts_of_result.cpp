@@ -45,6 +45,14 @@ std::vector<std::string> DoubtsOfResult(const Json& result) {
   for (const std::string& run : TextsAt(result, "misfits")) {
     doubts.push_back(fmt::format("Does not fit: the residuals of {} are beyond its noise", run));
   }
+  const auto scatter = result.find("scatter");
+  if (scatter != result.end() && scatter->is_array()) {
+    for (const Json& each : *scatter) {
+      doubts.push_back(fmt::format(
+          "Scatter: the positions of {} scatter in {} as no smooth map can hold; U95 contains it",
+          TextAt(each, "axis"), TextAt(each, "run")));
+    }
+  }
   if (const double excess = NumberAt(result, "residuals_over_noise", 0.0); excess > kFarOff) {
     doubts.push_back(
         fmt::format("Does not fit: the residuals are {:.2g} times the stated noise", excess));

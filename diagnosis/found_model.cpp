@@ -31,14 +31,6 @@ double LongestArm(const machine::Machine& mill) {
   return std::sqrt(squares) + mill.reference.norm();
 }
 
-VectorXd NominalValues(const PreparedRun& run) {
-  std::vector<double> values;
-  for (const auto& block : run.simulated.blocks) {
-    for (const auto& entry : block.entries) values.push_back(entry.value);
-  }
-  return Eigen::Map<const VectorXd>(values.data(), values.size());
-}
-
 // Standard deviation of one row of a run, m: where the run sees a metre in a stage, its whitened
 // rows are that many noises long. The worst of the probes, of the sensors, or of the axes.
 std::optional<double> NoiseInSpace(const PreparedRun& run) {
@@ -48,7 +40,7 @@ std::optional<double> NoiseInSpace(const PreparedRun& run) {
     return std::sqrt(noise.squaredNorm() / noise.cols());
   }
   if (!run.simulated.response) return std::nullopt;
-  const auto response = run.simulated.response->At(NominalValues(run));
+  const auto response = run.simulated.response->At(fusion::NominalValues(run.simulated.blocks));
   std::vector<Index> stages;
   for (Index i = 0; i < simulation::kEncoderStage - simulation::kReadingStage; ++i) {
     stages.push_back(simulation::kReadingStage + i);

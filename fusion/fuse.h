@@ -75,7 +75,7 @@ struct FuseReport {
   double widened = 1.0;              // all uncertainties for it, by its Birge ratio
   Suspect suspect = Suspect::kNone;  // of that contradiction
   std::vector<double> follows = {};  // of each run: correlation of its residuals from row to row
-  // Of each run: the axis whose positions scatter in it. The uncertainty of the map contains it.
+  // The axis whose positions scatter in each run; the uncertainty of the map contains it.
   std::vector<PlaceScatter> scatter = {};
   std::vector<HeldOut> held_out = {};  // one for each run; empty when not asked for
   // What the runs tell of the parameters of the map's model, without a prior of these; empty where

@@ -78,6 +78,17 @@ estimation::Problem MakeMachineProblem(const machine::Machine& /*machine*/,
   return problem;
 }
 
+Eigen::VectorXd NominalValues(const std::vector<estimation::ParameterBlock>& blocks) {
+  Eigen::Index count = 0;
+  for (const auto& block : blocks) count += block.size();
+  Eigen::VectorXd values(count);
+  for (Eigen::Index first = 0; const auto& block : blocks) {
+    values.segment(first, block.size()) = block.Values();
+    first += block.size();
+  }
+  return values;
+}
+
 std::vector<int> ColumnsOf(const std::vector<std::string>& names,
                            const std::vector<ParameterBlock>& blocks) {
   std::vector<int> columns;

@@ -34,6 +34,9 @@ estimation::Problem MakeMachineProblem(const machine::Machine& machine,
 Eigen::VectorXd ValuesFound(const estimation::Result& fit,
                             const std::vector<estimation::ParameterBlock>& blocks);
 
+// Where all entries of these blocks begin, in their order.
+Eigen::VectorXd NominalValues(const std::vector<estimation::ParameterBlock>& blocks);
+
 // Where the entries of these blocks stand among the names of all columns.
 std::vector<int> ColumnsOf(const std::vector<std::string>& names,
                            const std::vector<estimation::ParameterBlock>& blocks);

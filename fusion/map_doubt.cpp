@@ -52,22 +52,4 @@ void AddDoubt(const Doubt& doubt, const machine::VolumetricModel& found,
   }
 }
 
-void AddScatter(int axis, double sd, const machine::VolumetricModel& found, MatrixXd& covariance) {
-  constexpr Index kStations = 101;
-  // The error counts from that at the reference, which is displaced likewise: twice the variance.
-  Index first = 0;
-  for (int error = 0; error < axis * machine::kMotions + axis; ++error) {
-    first += found.Function(error / machine::kMotions, error % machine::kMotions).size();
-  }
-  const auto& function = found.Function(axis, axis);
-  const auto& travel = found.travels()[axis];
-  VectorXd gradient(function.size());
-  double squares = 0.0;
-  for (const double x : VectorXd::LinSpaced(kStations, travel.first, travel.last)) {
-    function.Evaluate(x, nullptr, gradient.data());
-    squares += gradient.squaredNorm() / kStations;
-  }
-  covariance.diagonal().segment(first, function.size()).array() += 2.0 * sd * sd / squares;
-}
-
 }  // namespace abbe::fusion

@@ -26,9 +26,4 @@ struct Doubt {
 void AddDoubt(const Doubt& doubt, const machine::VolumetricModel& found,
               const Eigen::Vector3d& tool, Eigen::MatrixXd& covariance);
 
-// Widens that of the positioning error of `axis`, 0 to 2: a displacement of standard deviation `sd`,
-// m, which changes from place to place (place_scatter.h), rms over the travel.
-void AddScatter(int axis, double sd, const machine::VolumetricModel& found,
-                Eigen::MatrixXd& covariance);
-
 }  // namespace abbe::fusion

@@ -1,14 +1,14 @@
 #include "fusion/place_scatter.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <vector>
 
-#include "fusion/map_doubt.h"
+#include "fusion/machine_problem.h"
 #include "fusion/reversals.h"
 #include "simulation/disturbance.h"
 
@@ -19,12 +19,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kEncoders = 6;      // at most, that may be a rival
-constexpr double kNamed = 10.0;   // of the logarithm, over noise alone
-constexpr double kLeast = 1e-8;   // m: the search for sd begins here, and goes on in steps of
-constexpr double kFactor = 1.09;  // so large a factor
-constexpr int kTried = 110;       // up to 0.1 mm
-constexpr Index kFewPlaces = 20;  // too few to tell
+constexpr int kEncoders = 6;          // that may be rivals; a run without them shows nothing
+constexpr double kNamed = 10.0;       // of the logarithm, over noise alone
+constexpr double kLeast = 1e-8;       // m: the search for sd begins here, and goes on in steps of
+constexpr double kFactor = 1.09;      // so large a factor
+constexpr int kTried = 110;           // up to 0.1 mm
+constexpr Index kFewPlaces = 20;      // too few to tell
+constexpr double kFarOffPose = 25.0;  // of the median square
 constexpr Index kMostPlaces = 250;
 // m: correlation lengths l of a wave, the longest as a part of that of the error; sizes t, and
 // their prior.
@@ -38,21 +39,50 @@ struct Found {
   double gain = 0.0, noise = 0.0, sd = 0.0;  // of the logarithm; c; rho c, m
 };
 
-// `r`, `g`: rows of a pose x poses.
-Found Search(const MatrixXd& r, const MatrixXd& g) {
-  const Eigen::ArrayXd gg = g.colwise().squaredNorm().transpose();
-  const Eigen::ArrayXd gr = g.cwiseProduct(r).colwise().sum().transpose();
-  const auto n = static_cast<double>(r.size());
-  const double rr = r.squaredNorm();
+// What disturbances show in the rows of each pose: the squares of its singular values, and of the
+// rows along its left singular vectors; disturbances x poses.
+struct Directions {
+  Eigen::ArrayXXd sizes, along;
+};
+
+// `r`: rows of a pose x poses; `shown`: the same for each disturbance.
+Directions DirectionsOf(const MatrixXd& r, const std::vector<MatrixXd>& shown) {
+  const Index count = std::min<Index>(r.rows(), std::ssize(shown));
+  Directions directions{Eigen::ArrayXXd(count, r.cols()), Eigen::ArrayXXd(count, r.cols())};
+  MatrixXd G(r.rows(), std::ssize(shown));
+  for (Index pose = 0; pose < r.cols(); ++pose) {
+    for (Index column = 0; column < G.cols(); ++column) G.col(column) = shown[column].col(pose);
+    const Eigen::JacobiSVD<MatrixXd> svd(G, Eigen::ComputeThinU);
+    directions.sizes.col(pose) = svd.singularValues().cwiseAbs2();
+    directions.along.col(pose) = (svd.matrixU().transpose() * r.col(pose)).cwiseAbs2();
+  }
+  return directions;
+}
+
+// `n`, `rr`: how many rows, and the sum of their squares.
+Found Search(double n, double rr, const Directions& directions) {
   Found best;
   double rho = kLeast;
   for (int step = 0; step < kTried; ++step, rho *= kFactor) {
-    const Eigen::ArrayXd times = 1.0 + rho * rho * gg;
-    const double square = rr - rho * rho * (gr.square() / times).sum();
-    const double gain = -0.5 * n * std::log(square / rr) - 0.5 * times.log().sum();
+    const Eigen::ArrayXXd more = rho * rho * directions.sizes;
+    const double square = rr - (directions.along * more / (1.0 + more)).sum();
+    const double gain = -0.5 * n * std::log(square / rr) - 0.5 * (1.0 + more).log().sum();
     if (gain > best.gain) best = {gain, std::sqrt(square / n), rho * std::sqrt(square / n)};
   }
   return best;
+}
+
+// Poses without those that are far off all others: an outlier is no wave.
+std::vector<Index> UsualPoses(const MatrixXd& r) {
+  const VectorXd squares = r.colwise().squaredNorm();
+  std::vector<double> sorted(squares.begin(), squares.end());
+  const auto middle = sorted.begin() + std::ssize(sorted) / 2;
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  std::vector<Index> usual;
+  for (Index pose = 0; pose < r.cols(); ++pose) {
+    if (squares[pose] <= kFarOffPose * *middle) usual.push_back(pose);
+  }
+  return usual;
 }
 
 // The error of an axis at places: positions, errors and their noise, m.
@@ -104,7 +134,7 @@ double SizeOfWave(const Places& at, double alone, int axis, const machine::Volum
       }
     }
   }
-  if (logs.empty()) return 0.0;
+  if (logs.empty()) return alone;
   const double most = *std::max_element(logs.begin(), logs.end());
   double weights = 0.0, sum = 0.0;
   for (std::size_t i = 0; i < logs.size(); ++i) {
@@ -115,54 +145,67 @@ double SizeOfWave(const Places& at, double alone, int axis, const machine::Volum
   return std::sqrt(sum / weights);
 }
 
-VectorXd NominalOf(const simulation::SimulatedRun& run) {
-  std::vector<double> values;
-  for (const auto& block : run.blocks) {
-    if (IsReversal(block)) continue;
-    for (const auto& entry : block.entries) values.push_back(entry.value);
+// The variance of a positioning error whose coefficients have variance 1, rms over the travel.
+double SquaresOf(const machine::VolumetricModel& found, int axis) {
+  constexpr Index kStations = 101;
+  const auto& function = found.Function(axis, axis);
+  const auto& travel = found.travels()[axis];
+  VectorXd gradient(function.size());
+  double squares = 0.0;
+  for (const double x : VectorXd::LinSpaced(kStations, travel.first, travel.last)) {
+    function.Evaluate(x, nullptr, gradient.data());
+    squares += gradient.squaredNorm() / kStations;
   }
-  return Eigen::Map<const VectorXd>(values.data(), std::ssize(values));
+  return squares;
 }
 
 }  // namespace
 
 PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const VectorXd& left,
                               const machine::VolumetricModel& found, const MachinePrior& prior) {
-  if (!run.response) return {};
-  const auto response = run.response->At(NominalOf(run));
-  const Index poses = response->WeightsOf(0).size();
-  if (!response->RowsAreIndependent() || run.commanded.cols() != poses || poses < kFewPlaces ||
-      left.size() % poses != 0 || left.size() < 2 * poses) {
-    return {};
-  }
+  const Index poses = run.commanded.cols();
+  if (!run.response || poses < kFewPlaces || left.size() % poses != 0) return {};
   const Index rows = left.size() / poses;
-  const MatrixXd r = left.reshaped(rows, poses);
-  const auto shown = [&](Index stage, Index of_poses) {
-    simulation::Disturbance there(poses);
-    there.row(stage).head(of_poses).setOnes();
-    return VectorXd(response->Columns({there}).col(0));
+  if (rows < 2) return {};
+  std::vector<estimation::ParameterBlock> blocks = run.blocks;
+  std::erase_if(blocks, IsReversal);  // of which the response knows nothing
+  const auto response = run.response->At(NominalValues(blocks));
+  if (!response->RowsAreIndependent()) return {};
+  const MatrixXd all = left.reshaped(rows, poses);
+  const std::vector<Index> usual = UsualPoses(all);
+  const MatrixXd r = all(Eigen::all, usual);
+  const auto shown = [&](Index stage) {
+    simulation::Disturbance everywhere(poses);
+    everywhere.row(stage).setOnes();
+    return MatrixXd(response->Columns({everywhere}).reshaped(rows, poses)(Eigen::all, usual));
   };
-  const auto search = [&](Index stage) {
-    const bool one_after_the_other = shown(stage, 1).tail(left.size() - rows).isZero(0.0);
-    if (!one_after_the_other) return Found();
-    return Search(r, shown(stage, poses).reshaped(rows, poses));
+  const auto search = [&](const std::vector<MatrixXd>& stages) {
+    return Search(static_cast<double>(r.size()), r.squaredNorm(), DirectionsOf(r, stages));
   };
+  std::vector<MatrixXd> axes, encoders;
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    axes.push_back(shown(simulation::MotionStage(axis, axis)));
+  }
+  for (int encoder = 0; encoder < kEncoders; ++encoder) {
+    encoders.push_back(shown(simulation::kEncoderStage + encoder));
+  }
   PlaceScatter named;
   Found best{.gain = kNamed};
   for (int axis = 0; axis < machine::kAxes; ++axis) {
-    const Found one = search(simulation::MotionStage(axis, axis));
+    const Found one = search({axes[static_cast<std::size_t>(axis)]});
     if (!(one.gain > best.gain)) continue;
     best = one;
     named.axis = axis;
   }
   if (named.axis < 0) return {};
-  for (int encoder = 0; encoder < kEncoders; ++encoder) {
-    if (search(simulation::kEncoderStage + encoder).gain > best.gain) return {};
+  std::vector<std::vector<MatrixXd>> rivals{axes, encoders};
+  for (const MatrixXd& encoder : encoders) rivals.push_back({encoder});
+  for (const auto& rival : rivals) {
+    if (search(rival).gain > best.gain) return {};
   }
-  const MatrixXd g =
-      shown(simulation::MotionStage(named.axis, named.axis), poses).reshaped(rows, poses);
+  const MatrixXd& g = axes[static_cast<std::size_t>(named.axis)];
   const VectorXd gg = g.colwise().squaredNorm();
-  const VectorXd x = run.commanded.row(named.axis), e = g.cwiseProduct(r).colwise().sum();
+  const VectorXd x = run.commanded(named.axis, usual), e = g.cwiseProduct(r).colwise().sum();
   named.sd = SizeOfWave({x, e.cwiseQuotient(gg), best.noise * gg.cwiseSqrt().cwiseInverse()},
                         best.sd, named.axis, found, prior);
   return named;
@@ -176,7 +219,13 @@ void CountScatter(const std::vector<PlaceScatter>& scatter, const machine::Volum
       if (each.axis == axis) largest = std::max(largest, each.sd);
     }
     if (largest == 0.0) continue;
-    AddScatter(axis, largest, found, seen.covariance);
+    // The error counts from that at the reference, which is displaced likewise: twice the variance.
+    const double variance = 2.0 * largest * largest / SquaresOf(found, axis);
+    machine::VolumetricModel only = found;
+    only.SetParameters(VectorXd::Zero(found.ParameterCount()));
+    only.SetCoefficients(axis, axis,
+                         VectorXd::Constant(found.Function(axis, axis).size(), variance));
+    seen.covariance.diagonal() += only.Parameters();
     double& u = seen.functions[axis * machine::kMotions + axis].u;
     u = std::hypot(u, std::numbers::sqrt2 * largest);
   }

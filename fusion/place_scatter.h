@@ -6,17 +6,19 @@
 //
 // Such a wave (screw, gear, scale) looks like noise, but noise of the instrument goes in the
 // directions of its encoders, and the wave in that of one axis. With r the whitened rows of a pose
-// and g what they show of a metre along the axis, the hypotheses are
+// and G = U D V' what they show of a metre along an axis, or of a radian of encoders, the
+// hypotheses are
 //
-//   cov r = c^2 (I + rho^2 g g')      log L(rho) = -n log c - sum log(1 + rho^2 g'g) / 2
-//   c^2 = sum (r'r - rho^2 (g'r)^2 / (1 + rho^2 g'g)) / n
+//   cov r = c^2 (I + rho^2 G G')      log L(rho) = -n log c - sum log(1 + rho^2 D^2) / 2
+//   c^2 = sum (r'r - (U'r)^2 rho^2 D^2 / (1 + rho^2 D^2)) / n
 //
-// with n rows together, for each axis and, as rivals, for each encoder; rho = 0 is noise alone. An
-// axis is named where it gains ten over noise alone (22 000 : 1) and more than every encoder.
+// with n rows together; rho = 0 is noise alone. An axis is named where it gains ten over noise
+// alone (22 000 : 1) and more than its rivals: each encoder, all encoders, all axes together. Poses
+// far off all others (25 times the median square) are left out: an outlier is no wave.
 //
 // Places in clusters show only what changes within a cluster. So the size of the wave is that of a
 // second process beside the smooth one of the map: the error that was measured at the positions x,
-// e = E(x) + g'r / g'g, E that of the fit, has
+// e = E(x) + g'r / g'g, E that of the fit and g the G of the axis, has
 //
 //   cov e = c^2 diag(1 / g'g) + s^2 I + S V S' + t^2 exp(-(dx / l)^2 / 2)
 //

@@ -55,17 +55,6 @@ MatrixXd ColumnsOf(const SimulatedRun& run, const simulation::Response& response
   return response.Columns(halves);
 }
 
-VectorXd StartOf(const SimulatedRun& run) {
-  Index count = 0;
-  for (const ParameterBlock& block : run.blocks) count += block.size();
-  VectorXd x(count);
-  for (Index first = 0; const ParameterBlock& block : run.blocks) {
-    x.segment(first, block.size()) = block.Values();
-    first += block.size();
-  }
-  return x;
-}
-
 bool IsIn(const estimation::Result& fit, const std::string& block) {
   return std::ranges::any_of(fit.blocks, [&](const auto& each) { return each.name == block; });
 }
@@ -151,7 +140,7 @@ void WithReversals(const machine::Machine& machine, SimulatedRun& run) {
   std::vector<ParameterBlock> blocks;
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     if (!MovesBothWays(run, axis)) continue;
-    if (!response) response = run.response->At(StartOf(run));
+    if (!response) response = run.response->At(NominalValues(run.blocks));
     const MatrixXd own = ColumnsOf(run, *response, axis);
     columns.conservativeResize(own.rows(), columns.cols() + own.cols());
     columns.rightCols(own.cols()) = own;

@@ -66,6 +66,11 @@ function mapWarnings(result) {
       return `REVERSAL: ${each.error} forward minus backward ${value} \u00b1 ${U}\u00a0${
           each.unit.replace('u', '\u00b5')}; the map is the mean of both directions.`;
     }),
+    ...(result.scatter ?? []).map(
+        ({run, axis, sd_um: size}) => `SCATTER: the positions of ${axis} in ${
+            shortName(run)} scatter along ${axis} alone, as no smooth map can hold (screw, gear, scale, rounding, ` +
+            `lost motion that varies). U\u2089\u2085 of E${axis}${axis} contains ${
+                significant(size, 2)}\u00a0\u00b5m rms for it; circles, or places closer together, show it.`),
     isScaleOpen(result) ?
         'SCALE: PRIOR ONLY. No calibrated length went into this map: all lengths may be wrong in ' +
             `one proportion${

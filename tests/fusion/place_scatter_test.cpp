@@ -110,6 +110,15 @@ class PlaceScatterTest : public testing::Test {
     }
     return noise;
   }
+  // One for each pose, of deviation 1.
+  RowVectorXd Scatter(std::uint64_t seed, int stream) const {
+    const random::CounterRandom draw(seed, static_cast<std::uint64_t>(stream));
+    RowVectorXd scatter(places_.cols());
+    for (Index pose = 0; pose < scatter.size(); ++pose) {
+      scatter[pose] = draw.Normal(static_cast<std::uint64_t>(pose));
+    }
+    return scatter;
+  }
   // What is left with so much in a stage.
   VectorXd Left(std::uint64_t seed, Index stage, const RowVectorXd& values) const {
     simulation::Disturbance there(places_.cols());
@@ -162,18 +171,46 @@ TEST_F(PlaceScatterTest, SaysNothingOfNoise) {
   }
 }
 
-TEST_F(PlaceScatterTest, SaysNothingOfAnEncoder) {
+// One encoder, and all of them at once.
+TEST_F(PlaceScatterTest, SaysNothingOfEncoders) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     Place(seed);
-    const random::CounterRandom draw(seed, 4);
-    RowVectorXd angles(places_.cols());
-    for (Index pose = 0; pose < angles.size(); ++pose) {
-      angles[pose] = 10e-6 * draw.Normal(static_cast<std::uint64_t>(pose));
+    VectorXd all = Noise(seed, 1.0);
+    for (int encoder = 0; encoder < 3; ++encoder) {
+      const RowVectorXd angles = 10e-6 * Scatter(seed, 4 + encoder);
+      const VectorXd left = Left(seed, simulation::kEncoderStage + encoder, angles);
+      EXPECT_EQ(Find(left).axis, -1) << encoder;
+      all += left - Noise(seed, 1.0);
     }
-    EXPECT_EQ(
-        Find(Left(seed, simulation::kEncoderStage + static_cast<Index>(seed % 3), angles)).axis,
-        -1);
+    EXPECT_EQ(Find(all).axis, -1);
+  }
+}
+
+// A ball that is not seated, or a machine that comes back less well than stated.
+TEST_F(PlaceScatterTest, SaysNothingOfWhatGoesInAllDirections) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    Place(seed);
+    VectorXd all = Noise(seed, 1.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const RowVectorXd moved = 1e-6 * Scatter(seed, 4 + axis);
+      all += Left(seed, simulation::MotionStage(axis, axis), moved) - Noise(seed, 1.0);
+    }
+    EXPECT_EQ(Find(all).axis, -1);
+  }
+}
+
+// Two of 125 poses, 60 deviations off along an axis.
+TEST_F(PlaceScatterTest, SaysNothingOfOutliers) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE(seed);
+    Place(seed);
+    RowVectorXd moved = RowVectorXd::Zero(places_.cols());
+    moved[17] = 60.0 * kNoise;
+    moved[80] = -60.0 * kNoise;
+    const int axis = static_cast<int>(seed % 3);
+    EXPECT_EQ(Find(Left(seed, simulation::MotionStage(axis, axis), moved)).axis, -1);
   }
 }
 
@@ -182,7 +219,7 @@ TEST_F(PlaceScatterTest, AWaveWidensItsErrorFromTheReferenceOn) {
   seen.functions.resize(21);
   seen.covariance = MatrixXd::Zero(model_.ParameterCount(), model_.ParameterCount());
   CountScatter({{}, {.axis = 2, .sd = 1e-6}, {.axis = 2, .sd = 3e-6}}, model_, seen);
-  // Of two places that have nothing to do with each other, rms over the travel.
+  // The difference of two unrelated places, rms over the travel.
   const Index of_Z = 2 * machine::kMotions + 2;
   EXPECT_NEAR(seen.functions[of_Z].u, 3e-6 * std::numbers::sqrt2, 1e-12);
   double squares = 0.0;
