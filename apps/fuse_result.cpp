@@ -81,12 +81,15 @@ std::string ScatterLines(const fusion::FuseReport& report) {
     const auto& [axis, sd] = report.scatter[i];
     if (axis < 0) continue;
     const char name = "XYZ"[axis];
+    const bool others = report.contradicting >= 0 || Misfits(report).size() > 1;
     text += fmt::format(
-        "\nSCATTER: in {} the positions of {} scatter more than its noise, in the direction of {} "
-        "alone: a wave of its screw, gear or scale, shorter than the places are apart, positions that "
-        "were rounded, or lost motion that varies. U95 of E{}{} contains {:.2g} um (rms) for it; circles, or places closer "
-        "together, show it.\n",
-        report.fit.sources[i].name, name, name, name, name, sd / kMicro);
+        "\nSCATTER: the places of {} scatter along {} alone, more than its noise: a wave of the "
+        "screw, gear or scale of {}, shorter than the places are apart, rounded positions, lost "
+        "motion that varies, or a guide that bends as finely{}. U95 of E{}{} contains {:.2g} um "
+        "(rms) for it; circles, or places closer together, show it.\n",
+        report.fit.sources[i].name, name, name,
+        others ? "; or it comes from the runs that do not fit or contradict (below)" : "", name,
+        name, sd / kMicro);
   }
   return text;
 }
@@ -133,7 +136,7 @@ std::string RunTable(const fusion::FuseReport& report) {
     text += fmt::format(
         "\nDOES NOT FIT: {} is off by {:.1f} times its noise; {}.\n", report.runs[i].name,
         std::sqrt(ExcessOf(report, i)),
-        report.scatter[i].axis >= 0 ? "the positions of an axis scatter (above)"
+        report.scatter[i].axis >= 0 ? "its places scatter along one axis (above)"
         : report.follows[i] < kOneAfterTheOther
             ? "what is left scatters from row to row, so larger noise fits: state it"
             : "what is left goes on from row to row, so neither larger noise nor rougher errors "

@@ -49,8 +49,8 @@ std::vector<std::string> DoubtsOfResult(const Json& result) {
   if (scatter != result.end() && scatter->is_array()) {
     for (const Json& each : *scatter) {
       doubts.push_back(fmt::format(
-          "Scatter: the positions of {} scatter in {} as no smooth map can hold; U95 contains it",
-          TextAt(each, "axis"), TextAt(each, "run")));
+          "Scatter: the places of {} scatter along {} as no smooth map can hold; U95 contains it",
+          TextAt(each, "run"), TextAt(each, "axis")));
     }
   }
   if (const double excess = NumberAt(result, "residuals_over_noise", 0.0); excess > kFarOff) {

@@ -67,9 +67,9 @@ function mapWarnings(result) {
           each.unit.replace('u', '\u00b5')}; the map is the mean of both directions.`;
     }),
     ...(result.scatter ?? []).map(
-        ({run, axis, sd_um: size}) => `SCATTER: the positions of ${axis} in ${
-            shortName(run)} scatter along ${axis} alone, as no smooth map can hold (screw, gear, scale, rounding, ` +
-            `lost motion that varies). U\u2089\u2085 of E${axis}${axis} contains ${
+        ({run, axis, sd_um: size}) => `SCATTER: the places of ${shortName(run)} scatter along ${
+            axis} alone, as no smooth map can hold (a wave of screw, gear or scale, rounding, lost motion that ` +
+            `varies, a fine bend of a guide; or runs that do not fit or contradict). U\u2089\u2085 of E${axis}${axis} contains ${
                 significant(size, 2)}\u00a0\u00b5m rms for it; circles, or places closer together, show it.`),
     isScaleOpen(result) ?
         'SCALE: PRIOR ONLY. No calibrated length went into this map: all lengths may be wrong in ' +

@@ -23,7 +23,7 @@ TEST(Doubts, AreThoseOfTheResult) {
   EXPECT_EQ(doubts(R"({"misfits": ["a.csv", "b.csv"]})").size(), 2u);
   const auto scatter = doubts(R"({"scatter": [{"run": "a.csv", "axis": "Z", "sd_um": 2.9}]})");
   ASSERT_EQ(scatter.size(), 1u);
-  EXPECT_EQ(scatter[0].rfind("Scatter: the positions of Z scatter in a.csv", 0), 0u) << scatter[0];
+  EXPECT_EQ(scatter[0].rfind("Scatter: the places of a.csv scatter along Z", 0), 0u) << scatter[0];
   EXPECT_EQ(doubts(R"({"residuals_over_noise": 3.5})").size(), 1u);
   EXPECT_EQ(doubts(R"({"verdict": "ambiguous"})").size(), 1u);
   EXPECT_EQ(doubts(R"({"causes_taken_out": {"doubt": ["x"]}})").size(), 1u);
