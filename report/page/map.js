@@ -66,6 +66,10 @@ function mapWarnings(result) {
       return `REVERSAL: ${each.error} forward minus backward ${value} \u00b1 ${U}\u00a0${
           each.unit.replace('u', '\u00b5')}; the map is the mean of both directions.`;
     }),
+    ...(result.misfits ?? []).map(
+        (run) => `DOES NOT FIT: what is left of ${
+            shortName(run)} is more than three times its noise; abbe fuse says what it looks like. ` +
+            'Do not use the map before it is known why.'),
     ...(result.scatter ?? []).map(
         ({run, axis, sd_um: size}) => `SCATTER: the places of ${shortName(run)} scatter along ${
             axis} alone, as no smooth map can hold (a wave of screw, gear or scale, rounding, lost motion that ` +

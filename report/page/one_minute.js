@@ -115,6 +115,8 @@ function whatToDo(sections) {
   const contradiction = map?.result.contradictions?.[0];
   if (contradiction) {
     lines.push([linkTo(map, 'Error map'), `: look at the set-up of ${shortName(contradiction)}, which contradicts the other runs; do not use the map before`]);
+  } else if (map?.result.misfits?.length) {
+    lines.push([linkTo(map, 'Error map'), `: ${map.result.misfits.map(shortName).join(', ')} ${map.result.misfits.length > 1 ? 'do' : 'does'} not fit; do not use the map before it is known why`]);
   } else if (map && !lines.length) {
     lines.push([linkTo(map, 'Error map'), ': export it to the control, or correct programs with it']);
   }
@@ -135,6 +137,9 @@ function whatToMeasure(sections) {
   const map = latest(ofCommand(sections, 'fuse'));
   if (map && isScaleOpen(map.result)) {
     lines.push([linkTo(map, 'Error map'), ': one calibrated length, for the scale']);
+  }
+  for (const axis of new Set((map?.result.scatter ?? []).map((each) => each.axis))) {
+    lines.push([linkTo(map, 'Error map'), `: circles, or places closer together along ${axis}, where the places scatter`]);
   }
   const missing = sections.filter(
       ({result}) => result.command === 'history' && result.kind === 'check').flatMap(

@@ -383,6 +383,8 @@ test(
       assert.match(note, /CONTRADICTION: sweep_X\.csv .*chi-square 40\.2 of 12/);
       assert.match(note, /U\u2089\u2085 here is 1\.8 times as large/);
       assert.match(note, /REVERSAL: EBX forward minus backward \u221213\.21 \u00b1 0\.12\u00a0\u00b5rad/);
+      assert.match(note, /DOES NOT FIT: what is left of volume\.csv/);
+      assert.match(note, /SCATTER: the places of volume\.csv scatter along Z alone.*of EZZ contains 2\.9\u00a0\u00b5m rms/);
       assert.match(note, /SCALE: PRIOR ONLY\..*20.ppm/);
       assert.match(note, /no run determines ECX, ECY and ECZ/);
       const runs = section.locator('table', {hasText: 'does each fit'});

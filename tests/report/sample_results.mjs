@@ -439,6 +439,8 @@ export function fuseResult() {
     chi2: [run('a/sweep_X.csv', 'sweep', 1e-5), run('volume.csv', 'linkage', 0.4)],
     contradictions: ['a/sweep_X.csv'],
     widened: 1.83,
+    misfits: ['volume.csv'],
+    scatter: [{run: 'a/volume.csv', axis: 'Z', sd_um: 2.93}],
     reversals: [{error: 'EBX', value: -13.21, u: 0.06, unit: 'urad'}],
     parameters: [
       {
