@@ -71,7 +71,7 @@ class EncodersTest(unittest.TestCase):
         return rig
 
     def abbe(self, *arguments):
-        return subprocess.run([ABBE, *map(str, arguments)], capture_output=True, text=True, timeout=200)
+        return subprocess.run([ABBE, *map(str, arguments)], capture_output=True, text=True, timeout=400)
 
     def run_abbe(self, *arguments):
         done = self.abbe(*arguments)
@@ -79,9 +79,13 @@ class EncodersTest(unittest.TestCase):
         return done
 
     def circle(self, recording):
+        """None where the good rows are too few, or on a bit of the circle, which abbe refuses."""
         result = self.folder / "circle.json"
-        self.run_abbe("circle", recording, "--machine", self.machine, "--radius", 10, "--json", result,
-                      "--quiet")
+        done = self.abbe("circle", recording, "--machine", self.machine, "--radius", 10, "--json", result, "--quiet")
+        if done.returncode == 2 and "of 360 degrees" in done.stderr:
+            print(done.stderr, end="")
+            return None
+        self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(result.read_text())["circles"][0]
 
     def test_a_circle_is_recorded_and_evaluated_as_the_rig_ran_it(self):
@@ -97,8 +101,8 @@ class EncodersTest(unittest.TestCase):
             print(done.stdout, end="")
             self.assertIn("# simulated = true", recorded.read_text())
             good = [row for row in rows_of(recorded) if row["flags"] == 0]
-            if len(good) > 300:
-                measured = self.circle(recorded)
+            measured = self.circle(recorded) if len(good) > 300 else None
+            if measured:
                 gap = widest_gap(measured["runs"][0])
                 print(f"at {speed} of the speed the widest gap is {gap:.0f} degrees")
                 if gap < 12.0:

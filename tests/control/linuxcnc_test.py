@@ -503,10 +503,15 @@ class LinuxcncTest(unittest.TestCase):
 
     def test_a_probe_says_where_the_joints_are_so_the_offset_is_to_be_taken_out(self):
         probed, commanded, at, offset = np.loadtxt(self.simulation.folder / "probed.txt")
-        across = slice(1, 3)  # X went on after the contact
-        self.assertLess(np.abs(probed - at)[across].max(), 1e-5)  # halcmd prints seven digits
+        across = slice(1, 3)
+        # halcmd prints seven digits. X went on after the contact, longer on a busy computer, and the errors across change
+        # by less than 1 um on each millimetre of X.
+        went_on = abs(probed - at)[0]
+        self.assertLess(went_on, 1.0)
+        tolerance = 1e-5 + 1e-3 * went_on
+        self.assertLess(np.abs(probed - at)[across].max(), tolerance)
         self.assertGreater(np.abs(probed - commanded)[across].max(), 1e-3)
-        self.assertLess(np.abs(probed - offset - commanded)[across].max(), 1e-5)
+        self.assertLess(np.abs(probed - offset - commanded)[across].max(), tolerance)
 
     def test_switched_off_and_on_the_offset_begins_at_zero(self):
         run = self.runs["off"]
