@@ -10,6 +10,7 @@ namespace abbe::apps {
 std::vector<hal::PlausibleChannel> PlausibleChannels(const MachineFile& file) {
   using settings::kMicrometre;
   using settings::kMillimetre;
+  constexpr double kStill = 5e-6;  // m: above the noise of scales, below a move
   std::vector<hal::PlausibleChannel> channels;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const machine::Travel& travel = file.sweep_setup.machine.travels[axis];
@@ -19,7 +20,8 @@ std::vector<hal::PlausibleChannel> PlausibleChannels(const MachineFile& file) {
     channels.push_back({fmt::format("{}_mm", "xyz"[axis]), possible, possible,
                         exists ? fmt::format("the travel is {:.6g} to {:.6g} mm",
                                              travel.first / kMillimetre, travel.last / kMillimetre)
-                               : fmt::format("the machine has no axis {:c}", "XYZ"[axis])});
+                               : fmt::format("the machine has no axis {:c}", "XYZ"[axis]),
+                        0.0, 0.0, kStill / kMillimetre});
   }
   for (std::size_t probe = 0; probe < probes::kProbes; ++probe) {
     constexpr double kNextToNothing = 1 / 500.0;

@@ -101,6 +101,9 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
       columns, path);
   GrowingSweep growing(view, plan, file.sweep_setup, path);
 
+  const auto warn = [&source] {
+    for (const std::string& each : source.TakeWarnings()) fmt::print(stderr, "abbe: {}\n", each);
+  };
   Progress progress(fmt::format("sweep {}", plan.axis), options.quiet || operator_asks);
   hal::SweepOptions sweep;
   sweep.rate = file.devices.rate;
@@ -108,6 +111,7 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
   sweep.progress = [&](const hal::SweepProgress& at) {
     progress.Show(at.visits_done, at.visits_total, NoteOf(plan, at));
     growing.VisitsDone(at.visits_done);
+    warn();
     if (view != nullptr) {
       view->Show({at.visits_done, at.visits_total, at.elapsed_s / options.clock_speed,
                   NoteOf(plan, at), at.fault});
@@ -121,7 +125,9 @@ hal::SweepOutcome Record(const SweepCommand& options, const MachineFile& file,
   } else if (!options.quiet) {
     fmt::print("start the machine's program for {} now\n", plan.axis);
   }
-  return hal::RecordSweep(source, plan, clock, *writer, sweep);
+  const hal::SweepOutcome outcome = hal::RecordSweep(source, plan, clock, *writer, sweep);
+  warn();
+  return outcome;
 }
 
 // Reports why the sweep ended early and what to do; the recording is kept in any case.

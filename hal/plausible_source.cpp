@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "failure/failure.h"
 #include "hal/pace.h"
@@ -12,27 +13,31 @@ namespace abbe::hal {
 namespace {
 
 constexpr double kOtherUnit = 100.0;
+constexpr double kGrown = 10.0;   // of the stated noise
+constexpr double kFewest = 10.0;  // readings that show a noise
+constexpr int kSetsOfStay = 20;   // that are judged together: their deviation is known to 16 %
+constexpr int kSettling = -20;    // sets after a move
 
 }  // namespace
 
-struct PlausibleSource::First {
-  const PlausibleChannel* channel = nullptr;
-  double count = 0.0, mean = 0.0, squares = 0.0;
-  double lowest = 0.0, highest = 0.0;
+void PlausibleSource::Few::Add(double value) {
+  lowest = count == 0.0 ? value : std::min(lowest, value);
+  highest = count == 0.0 ? value : std::max(highest, value);
+  const double from_mean = value - mean;
+  mean += from_mean / ++count;
+  squares += from_mean * (value - mean);
+}
 
-  void Add(double value) {
-    lowest = count == 0.0 ? value : std::min(lowest, value);
-    highest = count == 0.0 ? value : std::max(highest, value);
-    const double from_mean = value - mean;
-    mean += from_mean / ++count;
-    squares += from_mean * (value - mean);
-  }
-  double Deviation() const { return count < 2.0 ? 0.0 : std::sqrt(squares / (count - 1.0)); }
-};
+double PlausibleSource::Few::Deviation() const {
+  return count < 2.0 ? 0.0 : std::sqrt(squares / (count - 1.0));
+}
 
 PlausibleSource::PlausibleSource(SampleSource& source,
                                  const std::vector<PlausibleChannel>& channels)
-    : source_(source), of_channel_(source.channels().size()) {
+    : source_(source),
+      of_channel_(source.channels().size()),
+      stay_(source.channels().size()),
+      noisy_(source.channels().size()) {
   for (std::size_t i = 0; i < of_channel_.size(); ++i) {
     const auto found =
         std::ranges::find(channels, source.channels()[i].name, &PlausibleChannel::name);
@@ -62,8 +67,52 @@ SampleSet PlausibleSource::Read() {
     sample.age_s = read.age_s;
     sample.within_s = read.within_s;
   }
+  WatchStay(set);
   return set;
 }
+
+void PlausibleSource::WatchStay(const SampleSet& set) {
+  bool knows_place = false, moved = false;
+  for (std::size_t i = 0; i < set.samples.size(); ++i) {
+    const auto& channel = of_channel_[i];
+    if (!channel || !set.samples[i].good()) continue;
+    const Few& before = stay_[i];
+    const double value = set.samples[i].value;
+    knows_place = knows_place || channel->still > 0.0;
+    moved = moved || (channel->still > 0.0 && before.count > 0.0 &&
+                      std::abs(value - before.mean) > channel->still);
+  }
+  if (!knows_place || moved) {
+    std::ranges::fill(stay_, Few{});
+    in_stay_ = kSettling;
+  }
+  for (std::size_t i = 0; i < set.samples.size(); ++i) {
+    if (set.samples[i].good()) stay_[i].Add(set.samples[i].value);
+  }
+  ++in_stay_;
+  if (in_stay_ != 0 && in_stay_ < kSetsOfStay) return;
+  if (in_stay_ == kSetsOfStay) JudgeStay();
+  std::ranges::fill(stay_, Few{});
+  in_stay_ = 0;
+}
+
+void PlausibleSource::JudgeStay() {
+  for (std::size_t i = 0; i < stay_.size(); ++i) {
+    const auto& channel = of_channel_[i];
+    const double deviation = stay_[i].Deviation();
+    if (!channel || channel->noise <= 0.0 || noisy_[i] != 0 || stay_[i].count < kFewest ||
+        deviation < kGrown * channel->noise) {
+      continue;
+    }
+    noisy_[i] = 1;
+    warnings_.push_back(fmt::format(
+        "{}: a noise of {:.3g} while the machine stood, the machine file says {:.3g}: look for "
+        "vibration, a loose probe or cable, interference",
+        channel->name, deviation, channel->noise));
+  }
+}
+
+std::vector<std::string> PlausibleSource::TakeWarnings() { return std::exchange(warnings_, {}); }
 
 std::string PlausibleSource::Fault() const {
   const std::string fault = source_.Fault();
@@ -71,9 +120,9 @@ std::string PlausibleSource::Fault() const {
 }
 
 // For channels that cannot all be close to zero.
-void PlausibleSource::RefuseNothing(const std::vector<First>& first) const {
-  const First* any = nullptr;
-  for (const First& one : first) {
+void PlausibleSource::RefuseNothing(const std::vector<Few>& first) const {
+  const Few* any = nullptr;
+  for (const Few& one : first) {
     if (one.channel == nullptr || one.channel->least <= 0.0) continue;
     if (one.count == 0.0 || one.highest >= one.channel->least) return;
     any = &one;
@@ -86,7 +135,7 @@ void PlausibleSource::RefuseNothing(const std::vector<First>& first) const {
 }
 
 std::vector<std::string> PlausibleSource::Require(int count, Clock& clock, double rate) {
-  std::vector<First> first(of_channel_.size());
+  std::vector<Few> first(of_channel_.size());
   Pace pace(clock, rate);
   for (int i = 0; i < count && !Ended(); ++i) {
     pace.Await();
@@ -99,8 +148,8 @@ std::vector<std::string> PlausibleSource::Require(int count, Clock& clock, doubl
   }
   if (count > 1) RefuseNothing(first);
   std::vector<std::string> warnings;
-  for (const First& one : first) {
-    if (one.channel == nullptr || one.channel->noise <= 0.0 || one.count < 10.0) continue;
+  for (const Few& one : first) {
+    if (one.channel == nullptr || one.channel->noise <= 0.0 || one.count < kFewest) continue;
     const double deviation = one.Deviation();
     const std::string readings =
         fmt::format("{} in its first {:.0f} readings", one.channel->name, one.count);
@@ -109,6 +158,7 @@ std::vector<std::string> PlausibleSource::Require(int count, Clock& clock, doubl
           "{}: no noise at all, {:.6g} each time: is it frozen, or its scale or unit coarse?",
           readings, one.highest));
     } else if (std::abs(std::log(deviation / one.channel->noise)) > std::log(kOtherUnit)) {
+      noisy_[&one - first.data()] = 1;
       warnings.push_back(
           fmt::format("{}: a noise of {:.3g}, the machine file says {:.3g}: wrong units?", readings,
                       deviation, one.channel->noise));

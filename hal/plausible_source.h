@@ -4,18 +4,22 @@
 // A value outside `good` becomes bad (out of range) and is not recorded. A value outside `possible`
 // is no measurement but an error in the machine file (word order, type, scale, unit, another
 // register), which Fault() reports while it lasts. Require() checks the first readings before
-// anything is recorded.
+// anything is recorded, Read() the noise of stays while it goes on.
 //
 //   PlausibleSource source(*devices.source, ranges);
 //   for (const std::string& warning : source.Require(50, clock, rate)) {
 //     fmt::print(stderr, "{}\n", warning);
 //   }
+//   const SampleSet set = source.Read();  // by a recorder, again and again
+//   for (const std::string& noise : source.TakeWarnings()) fmt::print(stderr, "{}\n", noise);
 //
 // Units: those of the channels' names.
 // Failure: InputError from Require where the first readings show an error in the machine file.
-// Validity: intervals are wide: they find wrong words and units, not errors of a few per cent.
+// Validity: intervals are wide: they find wrong words and units, not errors of a few per cent. The
+// noise is judged in stays of 40 readings or more; the first 20 are left to the machine to settle.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +43,8 @@ struct PlausibleChannel {
   // First readings below `least` on all channels that have one are an error in the machine file.
   double least = 0.0;
   double noise = 0.0;  // standard deviation of a reading; 0: not known
+  // A position: the machine stands where all positions stay within this; 0: no position.
+  double still = 0.0;
 };
 
 class PlausibleSource : public SampleSource {
@@ -59,14 +65,33 @@ class PlausibleSource : public SampleSource {
   // noise, or with a hundred times the stated noise, or a hundredth.
   std::vector<std::string> Require(int count, Clock& clock, double rate);
 
+  // Since the last call: a warning for each channel whose noise at standstill came to ten times the
+  // stated one, once for each channel.
+  std::vector<std::string> TakeWarnings();
+
  private:
-  struct First;  // the first readings of one channel
+  // Readings of one channel, one after the other.
+  struct Few {
+    const PlausibleChannel* channel = nullptr;
+    double count = 0.0, mean = 0.0, squares = 0.0;
+    double lowest = 0.0, highest = 0.0;
+
+    void Add(double value);
+    double Deviation() const;
+  };
   std::string RefusalOf(const PlausibleChannel& channel, double value) const;
-  void RefuseNothing(const std::vector<First>& first) const;
+  void RefuseNothing(const std::vector<Few>& first) const;
+  // Begins again where the machine moved.
+  void WatchStay(const SampleSet& set);
+  void JudgeStay();
 
   SampleSource& source_;
   std::vector<std::optional<PlausibleChannel>> of_channel_;
   std::string slip_;
+  std::vector<Few> stay_;
+  int in_stay_ = 0;                  // sets; below 0: settling
+  std::vector<std::uint8_t> noisy_;  // by channel, told already
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace abbe::hal

@@ -8,6 +8,7 @@
 
 #include "failure/failure.h"
 #include "hal/modbus/fake_source.h"
+#include "random/counter_random.h"
 
 namespace abbe::hal {
 namespace plausible_source_test {
@@ -35,7 +36,8 @@ class Readings {
       plausible_.push_back(
           {name, {0.0, 200.0}, {-200.0, 400.0}, "the probe's range is 0 to 200 um", 0.4, 0.02});
     }
-    plausible_.push_back({"x_mm", {-16.0, 76.0}, {-16.0, 76.0}, "the travel is 0 to 60 mm"});
+    plausible_.push_back(
+        {"x_mm", {-16.0, 76.0}, {-16.0, 76.0}, "the travel is 0 to 60 mm", 0.0, 0.0, 0.005});
   }
   std::vector<std::string> Require() {
     FakeSource source(channels_, truth, 1.0, clock_);
@@ -125,6 +127,54 @@ TEST(PlausibleSource, FlagsWhatIsImpossibleWhileItGoesOn) {
     EXPECT_TRUE(set.samples[2].good());
     EXPECT_EQ(plausible.Fault().substr(0, 10), far ? "x_mm reads" : "");
   }
+}
+
+// A sweep of stays of 0.5 s with moves of 0.1 s between, 200 readings a second. `noise`: what probe b adds at a time, um.
+std::vector<std::string> WarningsOfASweep(Readings& readings,
+                                          const std::function<double(double)>& noise) {
+  const random::CounterRandom normal(3, 1);
+  const auto place = [](double t) {
+    const double stays = std::floor(t / 0.6), moving = t - 0.6 * stays - 0.5;
+    return 10.0 + stays + std::max(0.0, 10.0 * moving);
+  };
+  readings.truth = [&](const std::string& name, double t) {
+    const double x = place(t);
+    if (name == "x_mm") return x;
+    const auto tick = static_cast<std::uint64_t>(std::llround(1e4 * t));
+    const double white = 0.02 * normal.Normal(2 * tick + (name == "probe_b_um" ? 1 : 0));
+    // 1 mrad of tilt: 10 um/s in a move.
+    return 100.0 + x + white * (name == "probe_b_um" ? noise(t) / 0.02 : 1.0);
+  };
+  FakeSource source(readings.channels_, readings.truth, 1.0, readings.clock_);
+  PlausibleSource plausible(source, readings.plausible_);
+  plausible.Require(kCount, readings.clock_, kRate);
+  std::vector<std::string> warnings;
+  for (int i = 0; i < 4000; ++i) {
+    readings.clock_.Advance(1.0 / kRate);
+    plausible.Read();
+    for (std::string& each : plausible.TakeWarnings()) warnings.push_back(std::move(each));
+  }
+  return warnings;
+}
+
+TEST(PlausibleSource, TellsANoiseThatGrowsWhileItGoesOn) {
+  Readings readings;
+  const auto warnings = WarningsOfASweep(readings, [](double t) { return t < 10.0 ? 0.02 : 0.3; });
+  ASSERT_EQ(warnings.size(), 1u);  // once, of this probe
+  EXPECT_THAT(warnings[0], HasSubstr("probe_b_um: a noise of 0."));
+  EXPECT_THAT(warnings[0], HasSubstr("the machine file says 0.02"));
+}
+
+TEST(PlausibleSource, TellsNoNoiseOfMovesAndOfWhatIsThreeTimesTheStated) {
+  Readings readings;
+  EXPECT_THAT(WarningsOfASweep(readings, [](double) { return 0.06; }), testing::IsEmpty());
+  // Vibration while it moves and for 90 ms after.
+  EXPECT_THAT(WarningsOfASweep(readings,
+                               [](double t) {
+                                 const double in_stay = t - 0.6 * std::floor(t / 0.6);
+                                 return in_stay > 0.5 || in_stay < 0.09 ? 5.0 : 0.02;
+                               }),
+              testing::IsEmpty());
 }
 
 }  // namespace plausible_source_test
