@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <hdf5.h>
 
 #include <array>
@@ -57,8 +58,10 @@ struct StoredValues {
   std::map<std::string, std::vector<double>> numbers;
 };
 
-void SendNumbers(hid_t file, const std::string& name, int rank, const std::string& file_name,
-                 const recording::Hdf5Sender& sender) {
+using Shape = std::vector<hsize_t>;
+
+Shape SendNumbers(hid_t file, const std::string& name, int rank, const std::string& file_name,
+                  const recording::Hdf5Sender& sender) {
   const recording::Hdf5Numbers data(file, name, rank, file_name);
   data.RequireStorage(file_name);
   std::vector<double> values(data.count());
@@ -66,6 +69,18 @@ void SendNumbers(hid_t file, const std::string& name, int rank, const std::strin
        file_name);
   sender.Send('N', name);
   sender.Send('V', std::span<const double>(values));
+  const Handle space(H5Dget_space(data.id()), H5Sclose);
+  Shape shape(rank);
+  H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr);
+  return shape;
+}
+
+// InputError unless these are numbers for each point of the grid.
+void RequireShape(const std::string& name, const Shape& shape, const Shape& grid,
+                  const std::string& file_name) {
+  if (shape == grid) return;
+  throw InputError(fmt::format("{}: {}: is of {}, the positions are of {} (z, y, x, 3)", file_name,
+                               name, fmt::join(shape, " x "), fmt::join(grid, " x ")));
 }
 
 // Runs in the child: sends each name and then its numbers or its text.
@@ -79,12 +94,17 @@ void SendAll(const std::string& file_name, const recording::Hdf5Sender& sender) 
     sender.Send('T', name);
     sender.Send('t', text);
   }
-  for (const char* name : {"tool_mm", "temperature_c", kGridAxes[0], kGridAxes[1], kGridAxes[2]}) {
+  for (const char* name : {"tool_mm", "temperature_c"}) {
     SendNumbers(file.id(), name, 1, file_name, sender);
   }
-  SendNumbers(file.id(), "error_um", 4, file_name, sender);
-  if (H5Lexists(file.id(), "u95_um", H5P_DEFAULT) > 0) {
-    SendNumbers(file.id(), "u95_um", 4, file_name, sender);
+  Shape grid{3};
+  for (const char* name : kGridAxes) {
+    grid.insert(grid.begin(), SendNumbers(file.id(), name, 1, file_name, sender)[0]);
+  }
+  for (const char* name : {"error_um", "u95_um"}) {
+    const bool may_lack = std::string_view(name) == "u95_um";
+    if (may_lack && H5Lexists(file.id(), name, H5P_DEFAULT) <= 0) continue;
+    RequireShape(name, SendNumbers(file.id(), name, 4, file_name, sender), grid, file_name);
   }
 }
 
