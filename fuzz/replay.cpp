@@ -1,6 +1,8 @@
 // Feeds files to a fuzzing target, without a fuzzer:
 //
-//   fuzz_replay TARGET FILE_OR_FOLDER...     every file, in the order of the names
+//   fuzz_replay TARGET FILE_OR_FOLDER...             every file, in the order of the names
+//   fuzz_replay TARGET --cuts 400 FILE_OR_FOLDER...  every file, cut at every byte; larger ones at
+//                                                    so many places, evenly
 //
 // Ends with 0 when each was read or refused as it should be, with 2 when there is no such target or
 // no file. A broken promise, a crash, a file that takes over a minute ends it by a signal; the file
@@ -10,9 +12,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,22 +66,38 @@ int Refuse(const std::string& name) {
   return 2;
 }
 
+// The file whole, or its beginnings: `cuts` at most.
+std::size_t Replay(const Target& target, const std::vector<char>& bytes, std::size_t cuts) {
+  const std::span all(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  alarm(kSeconds);
+  if (cuts == 0) {
+    abbe::fuzz::HoldContract(target.read, all);
+    return 1;
+  }
+  const std::size_t count = std::min(cuts, bytes.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    abbe::fuzz::HoldContract(target.read, all.first(i * bytes.size() / count));
+  }
+  return count;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
   const std::string name = count > 1 ? words[1] : "";
+  const bool is_cut = count > 3 && std::string(words[2]) == "--cuts";
+  const std::size_t cuts = is_cut ? std::strtoul(words[3], nullptr, 10) : 0;
+  const int first = is_cut ? 4 : 2;
   const auto target =
       std::ranges::find_if(kTargets, [&](const Target& each) { return each.name == name; });
-  const auto files = FilesOf(std::max(0, count - 2), words + 2);
-  if (target == kTargets.end() || files.empty()) return Refuse(name);
+  const auto files = FilesOf(std::max(0, count - first), words + first);
+  if (target == kTargets.end() || files.empty() || (is_cut && cuts == 0)) return Refuse(name);
+  std::size_t inputs = 0;
   for (const fs::path& file : files) {
     std::fprintf(stderr, "%s\n", file.c_str());
     std::ifstream stream(file, std::ios::binary);
-    const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
-    alarm(kSeconds);
-    abbe::fuzz::HoldContract(target->read,
-                             {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    inputs += Replay(*target, {std::istreambuf_iterator<char>(stream), {}}, cuts);
   }
-  std::printf("%zu files read or refused\n", files.size());
+  std::printf("%zu %s read or refused\n", inputs, is_cut ? "beginnings of files" : "files");
   return 0;
 }

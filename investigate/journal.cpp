@@ -54,11 +54,14 @@ Json ReadJson(const fs::path& path) {
   std::ifstream file(path);
   try {
     return Json::parse(file);
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const Json::parse_error& error) {
     throw InputError(
-        fmt::format("{}: is no journal of an investigation ({}); choose another "
-                    "folder",
-                    path.string(), error.what()));
+        fmt::format("{}: is no journal of an investigation: not valid JSON at byte {}; "
+                    "choose another folder",
+                    path.string(), error.byte));
+  } catch (const Json::out_of_range&) {
+    throw InputError(
+        fmt::format("{}: contains a number beyond 1e308; choose another folder", path.string()));
   }
 }
 
@@ -140,6 +143,12 @@ Journal Journal::In(const fs::path& folder, const About& about) {
     return journal;
   }
   Journal journal(folder, ReadJson(path));
+  if (!journal.IsWhole()) {
+    throw InputError(fmt::format(
+        "{}: is no journal of an investigation: a step lacks what it must state; choose "
+        "another folder",
+        path.string()));
+  }
   const auto refuse = [&](const char* key, const std::string& wanted, const char* what) {
     const std::string found = journal.data_.value(key, "");
     if (found == wanted) return;
@@ -152,6 +161,26 @@ Journal Journal::In(const fs::path& folder, const About& about) {
   refuse("machine", about.machine, "the machine");
   refuse("recorder", about.recorder, "the recorder");
   return journal;
+}
+
+// Reads all that the functions below read.
+bool Journal::IsWhole() const {
+  try {
+    for (const char* key : {"command", "machine", "recorder"}) data_.at(key).get<std::string>();
+    std::size_t number = 0;
+    for (const Json& step : data_.at("steps").get_ref<const Json::array_t&>()) {
+      if (step.at("number") != ++number) return false;
+      step.at("path").get<std::string>();
+    }
+    started();
+    recordings();
+    outcomes();
+    stalled();
+    Text();
+    return true;
+  } catch (const Json::exception&) {
+    return false;
+  }
 }
 
 double Journal::started() const {

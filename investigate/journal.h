@@ -90,6 +90,7 @@ class Journal {
 
  private:
   Journal(std::filesystem::path folder, nlohmann::ordered_json data);
+  bool IsWhole() const;
   void Write() const;
   const nlohmann::ordered_json& last() const;
 
