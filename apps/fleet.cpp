@@ -1,6 +1,7 @@
 // abbe fleet: what the machines of one type have in common, and which of them is odd.
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -103,7 +104,9 @@ std::vector<double> LowerTriangle(const Eigen::MatrixXd& full) {
   return values;
 }
 
+// InputError where they are not those of an n x n matrix.
 Eigen::MatrixXd FromLowerTriangle(const std::vector<double>& values, Index n) {
+  if (std::ssize(values) != n * (n + 1) / 2) throw InputError("information of another size");
   Eigen::MatrixXd full(n, n);
   auto at = values.begin();
   for (Index i = 0; i < n; ++i) {
@@ -139,13 +142,20 @@ class Gathering : public study::Study {
   std::map<std::uint64_t, Given> campaigns_;
 };
 
-fleet::Campaign CampaignOf(const study::Row& row) {
-  const auto vector = row.at("vector").get<std::vector<double>>();
-  const Index n = std::ssize(vector);
-  return {row.at("machine"),
-          row.at("campaign"),
-          {FromLowerTriangle(row.at("information").get<std::vector<double>>(), n),
-           Eigen::Map<const Eigen::VectorXd>(vector.data(), n)}};
+// Of a model of n parameters.
+fleet::Campaign CampaignOf(const study::Row& row, Index n) {
+  const std::vector<double> vector = study::NumbersOf(row, "vector", n);
+  fleet::Campaign campaign{row.at("machine"),
+                           row.at("campaign"),
+                           {FromLowerTriangle(row.at("information").get<std::vector<double>>(), n),
+                            Eigen::Map<const Eigen::VectorXd>(vector.data(), n)}};
+  const Eigen::MatrixXd& information = campaign.seen.information;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> values(information, Eigen::EigenvaluesOnly);
+  constexpr double kRounding = 1e-9;
+  if (!(values.eigenvalues()[0] >= -kRounding * values.eigenvalues()[n - 1])) {
+    throw InputError("information that is none: it is not positive");
+  }
+  return campaign;
 }
 
 // "2.13 (1.98 to 2.29)": with U95.
@@ -240,7 +250,7 @@ nlohmann::ordered_json FitJson(const fleet::PopulationFit& fit,
 }
 
 // The rows of the campaigns that were given, or all of the store.
-std::vector<fleet::Campaign> CampaignsOf(const study::Rows& rows,
+std::vector<fleet::Campaign> CampaignsOf(const study::Rows& rows, Index parameters,
                                          const std::map<std::uint64_t, Given>& given) {
   std::vector<fleet::Campaign> campaigns;
   for (const auto& [number, row] : rows) {
@@ -249,13 +259,29 @@ std::vector<fleet::Campaign> CampaignsOf(const study::Rows& rows,
       fmt::print(stderr, "abbe: a campaign is left out: {}\n", row.at("failed").get<std::string>());
       continue;
     }
-    campaigns.push_back(CampaignOf(row));
+    campaigns.push_back(CampaignOf(row, parameters));
     if (row.at("contradiction").get<bool>()) {
       fmt::print(stderr, "abbe: {}: its runs contradict each other; look at it by abbe fuse\n",
                  campaigns.back().name);
     }
   }
   return campaigns;
+}
+
+// The same; InputError with the name of the store where there is none, or one is damaged.
+std::vector<fleet::Campaign> ReadCampaigns(const fs::path& store, const study::Rows& rows,
+                                           Index parameters,
+                                           const std::map<std::uint64_t, Given>& given) {
+  try {
+    std::vector<fleet::Campaign> campaigns = CampaignsOf(rows, parameters, given);
+    if (!campaigns.empty()) return campaigns;
+    throw InputError("a fleet needs a campaign of a machine; give one");
+  } catch (const study::Row::exception&) {
+    throw InputError(
+        fmt::format("{}: a row lacks what abbe fleet writes; make the store anew", store.string()));
+  } catch (const InputError& failure) {
+    throw InputError(fmt::format("{}: {}", store.string(), failure.what()));
+  }
 }
 
 int FitFleet(const FleetOptions& options) {
@@ -290,8 +316,9 @@ int FitFleet(const FleetOptions& options) {
   if (!FillStore(gathering, numbers, "fleet", options.fill, ranks, store,
                  [&](std::uint64_t number) { return given.at(number).folder.string(); }))
     return kRequirementNotMet;
-  const std::vector<fleet::Campaign> campaigns = CampaignsOf(store.rows(), given);
   const machine::VolumetricModel model = fusion::UnknownMachine(machine, fleet::KnotsOf(machine));
+  const std::vector<fleet::Campaign> campaigns =
+      ReadCampaigns(options.store, store.rows(), model.ParameterCount(), given);
   const fleet::PopulationFit fit(machine, model, campaigns);
   const auto errors = fleet::OddErrors(fit);
   const auto identities = fleet::OddIdentities(fit, campaigns, options.identity);

@@ -24,6 +24,12 @@ constexpr double kSettled = 1e-3;                    // of the logarithm to be g
 constexpr double kOwnSize = 0.4, kOwnLength = 0.25;  // deviations of delta
 constexpr int kSteps = 100, kHalves = 12;
 
+[[noreturn]] void RefuseUnsettled() {
+  throw NumericalError(
+      "the population of the fleet does not settle; look at the lines of [population], which "
+      "should be right to a factor of five");
+}
+
 }  // namespace
 
 PopulationFit::PopulationFit(const machine::Machine& machine, const machine::VolumetricModel& model,
@@ -100,6 +106,7 @@ void PopulationFit::Solve() {
       score += part.score;
     }
     const VectorXd phi_step = information_.ldlt().solve(score);
+    if (!phi_step.allFinite()) RefuseUnsettled();
     double longest = phi_step.cwiseAbs().maxCoeff();
     std::vector<VectorXd> eta_step;
     for (const Part& part : parts_) {
@@ -123,9 +130,7 @@ void PopulationFit::Solve() {
     eta_ = at.eta;
     if (gain < kSettled) return;
   }
-  throw NumericalError(
-      "the population of the fleet does not settle; look at the lines of [population], which "
-      "should be right to a factor of five");
+  RefuseUnsettled();
 }
 
 PopulationFit::Expected PopulationFit::ExpectedWithout(std::size_t machine) const {

@@ -18,6 +18,22 @@ const std::vector<StudyKind>& StudyKinds() {
   return kinds;
 }
 
+std::vector<double> NumbersOf(const Row& row, const char* key, std::size_t count) {
+  auto numbers = row.at(key).get<std::vector<double>>();
+  if (numbers.size() == count) return numbers;
+  throw InputError(
+      fmt::format("a row has {} numbers of \"{}\", not {}", numbers.size(), key, count));
+}
+
+Rate RateOf(const Row& row, const char* worlds, const char* met) {
+  const Row &all = row.at(worlds), &some = row.at(met);
+  constexpr std::uint64_t kMost = 1'000'000'000;
+  if (!all.is_number_unsigned() || !some.is_number_unsigned() || all > kMost || some > all) {
+    throw InputError(fmt::format("a row has no rate of \"{}\" among \"{}\"", met, worlds));
+  }
+  return {all.get<int>(), some.get<int>()};
+}
+
 const StudyKind& StudyNamed(std::string_view name) {
   const auto& kinds = StudyKinds();
   const auto at = std::ranges::find(kinds, name, &StudyKind::name);

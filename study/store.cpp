@@ -30,7 +30,8 @@ std::string ReadAll(const fs::path& path) {
 Row ParseLine(const std::string& line, const fs::path& path, std::size_t number) {
   Row row = Row::parse(line, nullptr, false);
   const char* key = number == 1 ? "abbe_study" : "seed";
-  if (!row.is_object() || !row.contains(key)) {
+  // A byte order mark is taken by the parser, and not by who reads on.
+  if (!line.starts_with('{') || !row.is_object() || !row.contains(key)) {
     throw InputError(
         fmt::format("{}:{}: no line of a study (its key \"{}\" is missing); give a "
                     "file that abbe study wrote",

@@ -40,6 +40,11 @@ class Study {
   virtual Row World(std::uint64_t seed) const = 0;
 };
 
+// What a store's row says, which a damaged store may say otherwise: InputError where `key` is not
+// `count` numbers, or no rate of `met` among `worlds`.
+std::vector<double> NumbersOf(const Row& row, const char* key, std::size_t count);
+Rate RateOf(const Row& row, const char* worlds, const char* met);
+
 struct StudyKind {
   std::string_view name, what;  // "head", one line of help
   std::vector<std::string_view> variants;

@@ -75,7 +75,7 @@ class CircleStudy : public Study {
     Rate inside, others;
     double squares = 0.0;
     for (const Row& row : rows) {
-      others.Add({row.at("others"), row.at("others_beyond")});
+      others.Add(RateOf(row, "others", "others_beyond"));
       if (!row.contains("found_um")) continue;
       const double pull = (row.at("found_um").get<double>() - row.at("width_um").get<double>()) /
                           row.at("u_um").get<double>();

@@ -145,7 +145,7 @@ std::unique_ptr<const Study> MakeHeadStudy(const Question& question) {
 Eigen::MatrixXd ColumnsOf(const std::vector<Row>& rows, const char* key) {
   Eigen::MatrixXd columns(5 * kStations, std::ssize(rows));
   for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-    const auto values = rows[i].at(key).get<std::vector<double>>();
+    const std::vector<double> values = NumbersOf(rows[i], key, 5 * kStations);
     columns.col(i) = Eigen::Map<const Eigen::VectorXd>(values.data(), columns.rows());
   }
   return columns;
@@ -165,7 +165,7 @@ std::string BandsText(const std::vector<Row>& rows, const Eigen::MatrixXd& world
       "What 95 % of heads stay within, angles in urad, straightness in um:\n\n| d, mm |";
   for (const char* component : kComponents) text += fmt::format(" {} |", component);
   text += "\n|---|---|---|---|---|---|\n";
-  const auto stations = rows.front().at("stations_m").get<std::vector<double>>();
+  const std::vector<double> stations = NumbersOf(rows.front(), "stations_m", kStations);
   for (int station = 0; station < kStations; ++station) {
     text += fmt::format("| {:.4g} |", 1e3 * stations[station]);
     for (int c = 0; c < 5; ++c)
@@ -178,7 +178,7 @@ std::string BandsText(const std::vector<Row>& rows, const Eigen::MatrixXd& world
 // The indices of one component, all its stations together.
 estimation::SobolResult SharesOf(const std::vector<Row>& rows, int component) {
   const auto at_stations = [&](const Row& row, const char* key) {
-    const auto all = row.at(key).get<std::vector<double>>();
+    const std::vector<double> all = NumbersOf(row, key, 5 * kStations);
     std::vector<double> values;
     for (int station = 0; station < kStations; ++station) {
       values.push_back(all[5 * station + component]);

@@ -25,7 +25,7 @@ class RateTable {
     if (beside > kSeen) {
       named_first_.Add(first);
       alone_.Add(row.at("is_alone").get<bool>());
-      inside_.Add({row.at("sizes"), row.at("sizes_inside")});
+      inside_.Add(RateOf(row, "sizes", "sizes_inside"));
       ++named_[cause][row.at("named").get<std::string>()];
     }
     if (row.at("largest").get<double>() < kSeen) listed_.Add(row.at("is_listed").get<bool>());

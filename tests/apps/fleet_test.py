@@ -53,6 +53,15 @@ class Fleet(ProgramCase):
         self.assertFalse((self.path / "fleet.jsonl").exists())
         self.refuse(*options, saying=["fleet needs a campaign"])
         self.refuse(f"M1={folder}", *options, saying=["exists already", "--resume"])
+        # A store that was damaged: numbers that are missing, and information that is none.
+        self.done(f"M1={folder}", "--machine", MACHINE, "--store", self.path / "one.jsonl", "--quiet")
+        lines = (self.path / "one.jsonl").read_text().splitlines()
+        for key, change in (("information", lambda numbers: numbers[:-1]), ("vector", lambda numbers: numbers + [1.0]),
+                            ("information", lambda numbers: [-1.0, *numbers[1:]]), ("campaign", lambda name: 7)):
+            row = json.loads(lines[1])
+            row[key] = change(row[key])
+            (self.path / "one.jsonl").write_text(lines[0] + "\n" + json.dumps(row) + "\n")
+            self.refuse("--machine", MACHINE, "--store", self.path / "one.jsonl", "--resume", saying=["one.jsonl: "])
         (self.path / "other.toml").write_text(
             pathlib.Path(MACHINE).read_text().replace("smoothness_mm = 15.0", "smoothness_mm = 20.0"))
         self.refuse(f"M1={folder}", "--machine", self.path / "other.toml", "--store", self.path / "fleet.jsonl",

@@ -82,6 +82,17 @@ class StudyOfTheHead(ProgramCase):
         self.study("less.jsonl", worlds=50)
         self.assertEqual(self.study("less.jsonl", "--resume"), self.study("whole.jsonl"))
 
+    def test_a_store_that_was_damaged_is_refused(self):
+        lines = self.study("head.jsonl", worlds=3).decode().splitlines()
+        row = json.loads(lines[1])
+        for key, value in (("one", row["one"][:-1]), ("gains", []), ("stations_m", row["stations_m"][:3]), ("other", "a"),
+                           ("motion", None)):
+            damaged = json.dumps({**row, key: value})
+            (self.path / "damaged.jsonl").write_text("\n".join([lines[0], damaged, *lines[2:]]) + "\n")
+            run = self.run_program(self.path / "damaged.jsonl", command="study show")
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertRegex(run.stderr, r"^abbe: .*damaged.jsonl: a row (has \d+ numbers of|lacks what)[^\n]*\n$")
+
     def test_noise_reaches_the_angles_as_in_closed_form(self):
         # Roll (B - C) / 2l, pitch ((B + C) / 2 - A) / l, yaw (E - D) / l of readings with the noise of five passes of
         # 2 x 0.5 s x 200 Hz, 20 nm white and 30 nm of drift, l = 10 mm; relative to the first station.
