@@ -50,6 +50,12 @@ void ReadLinuxcncIni(const std::filesystem::path& path, MachineDescription& mach
       return unit * result;
     };
     axis.travel_mm = {number("MIN_LIMIT"), number("MAX_LIMIT")};
+    if (!(axis.travel_mm.first < axis.travel_mm.second)) {
+      throw InputError(
+          fmt::format("{}: [AXIS_{}] goes from {:g} to {:g} mm; correct MIN_LIMIT or "
+                      "MAX_LIMIT",
+                      path.string(), axis.letter, axis.travel_mm.first, axis.travel_mm.second));
+    }
     axis.limit_mm = axis.travel_mm;
   }
 }

@@ -79,8 +79,12 @@ std::string UsageOf(const CLI::App& program, const CLI::ParseError& error, int a
   return fmt::format("{}; see {} --help", wrong.substr(0, wrong.find('\n')), active.typed);
 }
 
+// What a message quotes of a file may be meant for a terminal.
 int Report(const std::exception& failure, int exit_code) {
-  fmt::print(stderr, "abbe: {}\n", failure.what());
+  std::string text = failure.what();
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  fmt::print(stderr, "abbe: {}\n", text);
   return exit_code;
 }
 

@@ -142,6 +142,8 @@ double CircleDeviation(const Matrix3Xd& path) {
     return largest < kNoCircle * circle.radius ? largest : kNoDistance;
   } catch (const NumericalError&) {
     return kNoDistance;  // so far from a circle that the fit does not converge
+  } catch (const InputError&) {
+    return kNoDistance;  // a line
   }
 }
 

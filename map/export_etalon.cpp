@@ -79,6 +79,9 @@ class EtalonReader {
     const auto numbers = NumbersOf(content, lines_.Where());
     if (numbers.size() != 2) throw Refused("expected a position and a value");
     ErrorTable& table = tables_.errors[error_];
+    if (!table.positions.empty() && !(numbers[0] * kMillimetre > table.positions.back())) {
+      throw Refused("the position is not above the one before it");
+    }
     table.positions.push_back(numbers[0] * kMillimetre);
     table.values.push_back(numbers[1] * TableUnit(error_));
   }

@@ -84,6 +84,16 @@ InPlane Project(const Eigen::Matrix3Xd& p, const CirclePlane& plane) {
   return {{a.begin(), a.end()}, {b.begin(), b.end()}};
 }
 
+// The circle of least squares. InputError with the recording where there is none.
+standards::Circle CircleOf(const InPlane& path, const std::string& recording) {
+  try {
+    return standards::ReferenceCircle(standards::CircleKind::kLeastSquares, path.first,
+                                      path.second);
+  } catch (const InputError& failure) {
+    throw InputError(fmt::format("{}: {}", recording, failure.what()));
+  }
+}
+
 // The commanded circle, and the poses on it.
 struct Nominal {
   standards::Circle circle;
@@ -119,8 +129,7 @@ Nominal CommandedCircle(const MeasuredPath& path, const CirclePlane& plane) {
       kept.second.push_back(all.second[i]);
     }
     const double before = nominal.circle.radius;
-    nominal.circle =
-        standards::ReferenceCircle(standards::CircleKind::kLeastSquares, kept.first, kept.second);
+    nominal.circle = CircleOf(kept, path.recording);
     if (limit <= kOffCircle * nominal.circle.radius &&
         std::abs(nominal.circle.radius - before) < 1e-9) {
       return nominal;
@@ -270,8 +279,7 @@ void CentreArc(CircleRun& run) {
 // centred as an arc.
 void FillAngles(CircleRun& run) {
   const InPlane all = Coordinates(run, 0);
-  const standards::Circle circle =
-      standards::ReferenceCircle(standards::CircleKind::kLeastSquares, all.first, all.second);
+  const standards::Circle circle = CircleOf(all, run.recordings.front());
   SetMiddle(run, {circle.x, circle.y});
   if (run.Partial()) CentreArc(run);
 }
@@ -333,8 +341,7 @@ CircleRun Filtered(const CircleRun& run, double cutoff) {
   for (const int sense : {1, -1}) {
     const InPlane path = Coordinates(run, sense);
     if (path.first.empty()) continue;
-    const standards::Circle circle =
-        standards::ReferenceCircle(standards::CircleKind::kLeastSquares, path.first, path.second);
+    const standards::Circle circle = CircleOf(path, run.recordings.front());
     std::vector<double> angles;
     for (std::size_t i = 0; i < path.first.size(); ++i) {
       angles.push_back(std::atan2(path.second[i] - circle.y, path.first[i] - circle.x));

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "failure/failure.h"
 #include "machine/direction.h"
+#include "probes/head_inversion.h"
 
 namespace abbe::probes {
 namespace {
@@ -98,6 +100,11 @@ HeadSettings ReadHeadSettings(const Table& root) {
   head.electrode = {
       .radius = table.Quantity("electrode_radius_mm", {.fallback = 0.0, .at_least = 0.0}),
       .stray = table.Quantity("stray_per_mm", {.fallback = 0.0, .at_least = 0.0})};
+  try {
+    const SimplifiedInversion separates(head.layout, MovingBody::kHead);
+  } catch (const InputError& failure) {
+    throw table.Error("", failure.what());
+  }
   head.tolerance = ReadTolerance(table.Child("tolerance"));
   head.installation = ReadInstallation(table.Child("installation"));
   for (int axis = 0; axis < 3; ++axis) {

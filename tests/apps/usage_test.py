@@ -46,6 +46,13 @@ class UsageTest(ProgramCase):
             self.assertEqual(run.returncode, 2, run.stderr)
             self.assertIn(f"{place}: cannot be created: Permission denied; choose a folder", run.stderr)
 
+    def test_a_message_brings_no_control_characters_of_a_file(self):
+        (self.path / "a.dat").write_bytes(b"CYCLES=2\x1b[31m\x07\x0b\n")
+        run = self.run_program(self.path / "a.dat", self.path / "b.csv", command="convert")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("a.dat:1: ", run.stderr)
+        self.assertTrue(run.stderr.rstrip("\n").isprintable(), repr(run.stderr))
+
     def test_missing_option(self):
         self.refuse("a.h5", saying=["--machine is required", "abbe diagnose --help"])
 

@@ -102,6 +102,8 @@ TEST(HeadSettings, RefuseWithLineAndKey) {
   names(Refusal("[head.probe_d]\nunit = \"top\""), "head.probe_d.unit: must be \"side\"");
   names(Refusal("[head.probe_d]\nzero_gap_um = 300.0"), "above range_um");
   names(Refusal("[head.tolerance]\ngain_ppm = -1.0"), "at least");
+  names(Refusal("[head.probe_c]\nposition_mm = [20.0, -10.0]"), "probe head: the top probes A, B");
+  names(Refusal("[head.probe_c]\nposition_mm = [20.0, -10.0]"), "mill.toml:");
 }
 
 }  // namespace head_settings_test
