@@ -142,7 +142,7 @@ class Gathering : public study::Study {
   std::map<std::uint64_t, Given> campaigns_;
 };
 
-// Of a model of n parameters.
+// The model has n parameters.
 fleet::Campaign CampaignOf(const study::Row& row, Index n) {
   const std::vector<double> vector = study::NumbersOf(row, "vector", n);
   fleet::Campaign campaign{row.at("machine"),

@@ -129,7 +129,8 @@ TEST(PlausibleSource, FlagsWhatIsImpossibleWhileItGoesOn) {
   }
 }
 
-// A sweep of stays of 0.5 s with moves of 0.1 s between, 200 readings a second. `noise`: what probe b adds at a time, um.
+// A sweep of stays of 0.5 s with moves of 0.1 s between, 200 readings a second. `noise`: what probe b
+// adds at a time, um.
 std::vector<std::string> WarningsOfASweep(Readings& readings,
                                           const std::function<double(double)>& noise) {
   const random::CounterRandom normal(3, 1);
