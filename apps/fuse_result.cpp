@@ -78,18 +78,18 @@ std::string MachineFileNotes(const fusion::FuseReport& report) {
 std::string ScatterLines(const fusion::FuseReport& report) {
   std::string text;
   for (std::size_t i = 0; i < report.scatter.size(); ++i) {
-    const auto& [axis, sd] = report.scatter[i];
+    const auto& [axis, sd, held] = report.scatter[i];
     if (axis < 0) continue;
     const char name = "XYZ"[axis];
     const bool others = report.contradicting >= 0 || Misfits(report).size() > 1;
     text += fmt::format(
         "\nSCATTER: the places of {} scatter along {} alone, more than its noise: a wave of the "
         "screw, gear or scale of {}, shorter than the places are apart, rounded positions, lost "
-        "motion that varies, or a guide that bends as finely{}. U95 of E{}{} contains {:.2g} um "
-        "(rms) for it; circles, or places closer together, show it.\n",
+        "motion that varies, or a guide that bends as finely{}. U95 of E{}{} contains it, {:.2g} um "
+        "(rms) where no place is near; circles, or places closer together, show it.\n",
         report.fit.sources[i].name, name, name,
         others ? "; or it comes from the runs that do not fit or contradict (below)" : "", name,
-        name, sd / kMicro);
+        name, std::hypot(sd, held) / kMicro);
   }
   return text;
 }
@@ -205,11 +205,11 @@ ordered_json FuseJson(const fusion::FuseReport& report) {
   }
   json["scatter"] = ordered_json::array();
   for (std::size_t i = 0; i < report.scatter.size(); ++i) {
-    const auto& [axis, sd] = report.scatter[i];
+    const auto& [axis, sd, held] = report.scatter[i];
     if (axis < 0) continue;
     json["scatter"].push_back({{"run", report.fit.sources[i].name},
                                {"axis", std::string(1, "XYZ"[axis])},
-                               {"sd_um", sd / kMicro}});
+                               {"sd_um", std::hypot(sd, held) / kMicro}});
   }
   for (const auto& function : report.functions) {
     json["observability"][function.name] = {

@@ -45,6 +45,12 @@ double BirgeRatio(const RunConsistency& run) {
   return std::sqrt(std::max(1.0, run.statistic / static_cast<double>(run.directions)));
 }
 
+// Whether a run has places enough, of known positions, to show waves of the positioning.
+bool ShowsWaves(const SimulatedRun& run) {
+  constexpr Index kFewPlaces = 20;
+  return run.response && run.commanded.cols() >= kFewPlaces;
+}
+
 void Widen(double times, SeenErrors& seen) {
   seen.covariance *= times * times;
   for (FunctionSeen& function : seen.functions) function.u *= times;
@@ -198,13 +204,25 @@ class FuseJob {
     return std::abs(std::log(holes_ / before)) > kNoiseSettled;
   }
 
-  // Finer knots where a function needs them; false where none does.
+  // Waves where a run can show them, then finer knots where a function needs them; false where none
+  // does.
   bool Refine() {
     if (!options_.runs_on) return false;
-    const auto finer = KnotsFor(machine_, population_, knots_);
-    if (finer == knots_) return false;
-    knots_ = finer;
+    if (!waves_ && std::any_of(runs_.begin(), runs_.end(), ShowsWaves)) {
+      waves_ = true;
+      const PopulationEvidence evidence(machine_, WithWaves(model_));
+      VectorXd usual = VectorXd::Zero(evidence.count());  // the waves
+      usual.head(theta_.size()) = theta_;
+      theta_ = std::move(usual);
+      population_ = evidence.PopulationAt(theta_);
+    } else {
+      const auto finer = KnotsFor(machine_, population_, knots_);
+      if (finer == knots_) return false;
+      knots_ = finer;
+    }
     model_ = UnknownMachine(machine_, knots_);
+    if (waves_) model_ = WithWaves(model_);
+    noise_.assign(noise_.size(), 1.0);  // more of it may have been what the model could not follow
     runs_ = options_.runs_on(model_);
     SetPlateForm(holes_, 1.0, runs_);
     AllowFormAndReversals();
@@ -372,7 +390,8 @@ class FuseJob {
   std::array<double, machine::kAxes> knots_;  // m apart, of model_
   machine::VolumetricModel model_;
   ErrorPopulation population_;
-  VectorXd theta_;  // population_estimate.h
+  bool waves_ = false;  // the model holds waves
+  VectorXd theta_;      // population_estimate.h
   std::vector<double> noise_;
   double form_ = 1.0;   // of the target, over what the file states
   double holes_ = 1.0;  // of the form of a plate, the same

@@ -11,7 +11,7 @@
 // file. How large and how smooth the errors are, how noisy each run is and by how much the two
 // directions of an axis differ is estimated too (population_estimate.h, reversals.h); where a
 // function is rougher than the knots of its spline can follow, the runs are simulated on finer
-// ones.
+// ones; so they are where a run of places can show waves of the positioning errors.
 //
 // Frames: those of map/error_map.h. Shapes: lists in the order of the runs or of the 21 errors.
 // Source: Rasmussen and Williams (2006), 5.4.1 for the marginal likelihood; Birge, Phys. Rev. 40

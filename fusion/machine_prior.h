@@ -9,15 +9,20 @@
 // random slope (scale) besides. It is projected on a quintic B-spline; with knots half a
 // correlation length apart that represents it to 0.02 % of sd (rms). The gauge of
 // machine/error_function.h then removes the value at the reference and the slope of a straightness.
+//
+// A positioning error may have waves besides, of screw, gear or scale, shorter than the smooth
+// error: a second process of the same kind, on knots of 0.5 mm (or 160 coefficients, on a long
+// axis). What runs leave open between their places is then as uncertain as such waves are large.
 // Units: SI. Shapes: covariance n x n of the coefficients of a function.
 // Failure: InputError for a correlation length that is not above 0.
 // Source: Rasmussen and Williams, Gaussian Processes (2006), 2.2 and 4.2.
 // Validity: errors that vary alike along the travel; a step or a period in an error is improbable
-// under it and shows in a diagnosis.
+// under it and shows in a diagnosis. Waves below a millimetre look like noise of the places.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 
 #include "estimation/problem.h"
 #include "machine/machine.h"
@@ -33,6 +38,9 @@ struct ErrorPopulation {
   OfFunctions length;     // m
   double squareness;      // rad
   double scale;           // relative
+  // Of waves of the positioning errors that are shorter, m: sizes and correlation lengths.
+  Eigen::Array3d wave = Eigen::Array3d::Zero();
+  Eigen::Array3d wave_length = Eigen::Array3d::Ones();
 };
 
 // As the machine file says.
@@ -43,6 +51,11 @@ ErrorPopulation PopulationOf(const machine::Machine& machine);
 machine::VolumetricModel UnknownMachine(const machine::Machine& machine);
 machine::VolumetricModel UnknownMachine(const machine::Machine& machine,
                                         const std::array<double, machine::kAxes>& knots);
+// The same with finer knots of the positioning errors, so that these hold waves.
+machine::VolumetricModel WithWaves(machine::VolumetricModel model);
+bool HoldsWaves(const machine::VolumetricModel& model, int axis);
+// The sizes and lengths of waves that are usual, m.
+inline constexpr double kUsualWave = 1e-6, kUsualWaveLength = 1e-3;
 
 // As far apart as the shortest correlation length of each axis asks for, m, but not finer than a
 // twelfth of that of the machine file; `knots` where these do.
@@ -60,6 +73,9 @@ class MachinePrior {
   MachinePrior(const machine::Machine& machine, const machine::VolumetricModel& model,
                double smoothness);
 
+  // The same of another population.
+  MachinePrior With(const ErrorPopulation& population) const;
+
   const ErrorPopulation& population() const { return population_; }
   // The covariance of a function of deviation 1 without its slope, and its derivative by the
   // logarithm of the correlation length.
@@ -68,6 +84,11 @@ class MachinePrior {
   };
   // `motion` 0 to 5 of `axis` 0 to 2.
   Unit UnitCovariance(int axis, int motion) const;
+  // The same of a wave.
+  Unit UnitWave(int axis) const;
+  // The part of the coefficients of a positioning error that is its wave: their best estimate is M
+  // times the coefficients. Empty where the function holds none.
+  Eigen::MatrixXd PartOfWave(int axis) const;
   // That of a random slope of standard deviation 1.
   Eigen::MatrixXd UnitSlope(int axis) const;
 
@@ -91,7 +112,11 @@ class MachinePrior {
     Eigen::VectorXd line;  // coefficients of a slope of 1
   };
 
-  std::array<Projected, machine::kAxes> axes_;
+  const Projected& On(int axis, int motion) const { return (*axes_)[axis][motion == axis]; }
+  Unit UnitOf(const Projected& on, double length) const;
+
+  using OfAxes = std::array<std::array<Projected, 2>, machine::kAxes>;  // positioning second
+  std::shared_ptr<const OfAxes> axes_;
   ErrorPopulation population_;
 };
 

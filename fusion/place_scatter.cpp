@@ -98,6 +98,21 @@ struct Places {
   }
 };
 
+// What the positioning errors of the map hold of waves at places (3 x n).
+simulation::Disturbance WavesHeld(const machine::VolumetricModel& found, const MachinePrior& prior,
+                                  const MatrixXd& places) {
+  simulation::Disturbance held(places.cols());
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    if (prior.population().wave[axis] == 0.0) continue;
+    machine::ErrorFunction wave = found.Function(axis, axis);
+    wave.SetCoefficients(prior.PartOfWave(axis) * wave.coefficients());
+    for (Index i = 0; i < places.cols(); ++i) {
+      held.row(simulation::MotionStage(axis, axis))[i] = wave.Evaluate(places(axis, i));
+    }
+  }
+  return held;
+}
+
 // The root of the mean of s^2 + t^2; `alone`: m, s where there is no wave.
 double SizeOfWave(const Places& at, double alone, int axis, const machine::VolumetricModel& found,
                   const MachinePrior& prior) {
@@ -171,13 +186,16 @@ PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const VectorX
   std::erase_if(blocks, IsReversal);  // of which the response knows nothing
   const auto response = run.response->At(NominalValues(blocks));
   if (!response->RowsAreIndependent()) return {};
-  const MatrixXd all = left.reshaped(rows, poses);
-  const std::vector<Index> usual = UsualPoses(all);
-  const MatrixXd r = all(Eigen::all, usual);
+  const VectorXd waves = left + response->Columns({WavesHeld(found, prior, run.commanded)});
+  const std::vector<Index> usual = UsualPoses(waves.reshaped(rows, poses));
+  const auto of_usual = [&](const VectorXd& column) {
+    return MatrixXd(column.reshaped(rows, poses)(Eigen::all, usual));
+  };
+  const MatrixXd r = of_usual(waves);
   const auto shown = [&](Index stage) {
     simulation::Disturbance everywhere(poses);
     everywhere.row(stage).setOnes();
-    return MatrixXd(response->Columns({everywhere}).reshaped(rows, poses)(Eigen::all, usual));
+    return of_usual(response->Columns({everywhere}));
   };
   const auto search = [&](const std::vector<MatrixXd>& stages) {
     return Search(static_cast<double>(r.size()), r.squaredNorm(), DirectionsOf(r, stages));
@@ -205,9 +223,11 @@ PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const VectorX
   }
   const MatrixXd& g = axes[static_cast<std::size_t>(named.axis)];
   const VectorXd gg = g.colwise().squaredNorm();
-  const VectorXd x = run.commanded(named.axis, usual), e = g.cwiseProduct(r).colwise().sum();
+  const VectorXd x = run.commanded(named.axis, usual),
+                 e = g.cwiseProduct(of_usual(left)).colwise().sum();
   named.sd = SizeOfWave({x, e.cwiseQuotient(gg), best.noise * gg.cwiseSqrt().cwiseInverse()},
                         best.sd, named.axis, found, prior);
+  named.held = prior.population().wave[named.axis];
   return named;
 }
 

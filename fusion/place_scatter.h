@@ -1,5 +1,5 @@
-// Waves of a positioning error that are shorter than the places of a run are apart: what a smooth
-// map cannot hold.
+// Waves of a positioning error that are shorter than the places of a run are apart: are they there,
+// along which axis, and what of them can a map not hold?
 //
 //   const PlaceScatter found = FindPlaceScatter(run, left, model, prior);
 //   const double um = 1e6 * found.sd;  // along X, Y or Z by found.axis, where that is not -1
@@ -14,11 +14,12 @@
 //
 // with n rows together; rho = 0 is noise alone. An axis is named where it gains ten over noise
 // alone (22 000 : 1) and more than its rivals: each encoder, all encoders, all axes together. Poses
-// far off all others (25 times the median square) are left out: an outlier is no wave.
+// far off all others (25 times the median square) are left out: an outlier is no wave. What the map
+// holds of waves (machine_prior.h) is added to r first.
 //
-// Places in clusters show only what changes within a cluster. So the size of the wave is that of a
-// second process beside the smooth one of the map: the error that was measured at the positions x,
-// e = E(x) + g'r / g'g, E that of the fit and g the G of the axis, has
+// Places in clusters show only what changes within a cluster. So the size of what the map does not
+// hold is that of another process beside those of the map: the error that was measured at the
+// positions x, e = E(x) + g'r / g'g, E that of the fit and g the G of the axis, has
 //
 //   cov e = c^2 diag(1 / g'g) + s^2 I + S V S' + t^2 exp(-(dx / l)^2 / 2)
 //
@@ -43,8 +44,9 @@
 namespace abbe::fusion {
 
 struct PlaceScatter {
-  int axis = -1;    // 0 to 2; -1: none
-  double sd = 0.0;  // m, anywhere on the axis
+  int axis = -1;      // 0 to 2; -1: none
+  double sd = 0.0;    // m, anywhere on the axis
+  double held = 0.0;  // m, the same of the waves that the map holds
 };
 
 // `found`: the model of the fit; `prior`: of its functions.

@@ -1,6 +1,7 @@
 #include "fusion/population_estimate.h"
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -51,10 +52,12 @@ class Estimate {
     seen.seen = of_machine_;
     for (Index i = 0; i < theta_.size(); ++i) {
       const auto [line, axis, motion] = evidence_.knobs()[i];
-      if (axis < 0 || line == kSmoothness) continue;
+      if (axis < 0 || line == kSmoothness || line == kWaveLength) continue;
       // The share of the variance of a size of nu degrees of freedom: 1 / (2 nu) by the data.
       const double by_data = highest_.local.fisher(i, i) * C(i, i) * C(i, i);
-      seen.population.deviation(axis, motion) *= std::exp(2.0 * by_data);
+      double& size =
+          line == kWave ? seen.population.wave[axis] : seen.population.deviation(axis, motion);
+      size *= std::exp(2.0 * by_data);
     }
     return seen;
   }
@@ -149,24 +152,26 @@ class Estimate {
     const Index n = all.vector.size();
     MatrixXd S = MatrixXd::Identity(n, n);
     S(runs_.machine, runs_.machine) = L;
-    MatrixXd B = S.transpose() * all.information * S;
+    const Eigen::SparseMatrix<double> by_prior = S.sparseView();
+    MatrixXd B = by_prior.transpose() * MatrixXd(all.information * by_prior);
     for (const int column : runs_.machine) B(column, column) += 1.0;
     VectorXd scale = B.diagonal().cwiseSqrt();
     for (double& each : scale) each = each > 0.0 ? 1.0 / each : 1.0;
     MatrixXd scaled = scale.asDiagonal() * B * scale.asDiagonal();
     scaled.diagonal().array() += 1e-12;
-    const MatrixXd root = S * scale.asDiagonal();
+    const MatrixXd root = scale.asDiagonal() * S.transpose();
     const Eigen::LLT<MatrixXd> factor(scaled);
-    const VectorXd found = root * factor.solve(root.transpose() * all.vector);
+    const MatrixXd half = factor.matrixL().solve(root);
+    const MatrixXd C = half.transpose() * half;
+    const VectorXd found = C * all.vector;
     VectorXd off = found;  // from x
     off(runs_.machine) -= runs_.values;
     off(runs_.form) -= runs_.form_values;
     std::vector<double> set(noise_.size());
     estimation::InParallel(set.size(), [&](std::size_t r) {
       const auto& run = runs_.runs[r];
-      const MatrixXd seen = root.transpose() * run.information * root;
       const double before = std::pow(noise_[r] / runs_.noise[r], 2);  // over that of the sums
-      const double redundancy = runs_.rows[r] - factor.solve(seen).trace() / before;
+      const double redundancy = runs_.rows[r] - run.information.cwiseProduct(C).sum() / before;
       const double chi_square =
           run.chi_square + 2.0 * run.gradient.dot(off) + off.dot(run.information * off);
       const double square = std::pow(runs_.noise[r], 2) * (chi_square + kRowsOfPrior) /

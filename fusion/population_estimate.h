@@ -9,7 +9,9 @@
 // The logarithms of all sizes and lengths against those of the machine file are theta; their
 // prior is normal around 0 with a standard deviation of 0.7 (a factor of two; of four at two
 // standard deviations), half of its variance common to the whole machine: where the runs tell
-// nothing of an error, it follows those that they tell of. theta maximises
+// nothing of an error, it follows those that they tell of. Where the model holds waves of the
+// positioning errors (machine_prior.h), theta has their sizes and lengths too, against 1 um and
+// 1 mm, with standard deviations of log 4 and log 2 (own choice). theta maximises
 //
 //   log Z(theta) - theta' Pi theta / 2
 //   log Z = (h' L (1 + L'HL)^-1 L'h - log det(1 + L' H L)) / 2
@@ -26,7 +28,7 @@
 // prior of ln k normal with ln(form_known_to) as standard deviation; its posterior, taken as normal
 // too (mean m, variance v), gives the root mean square exp(m + v), but no less than 1: 1.62 where
 // the runs tell nothing of a form that is known to a factor of two (probes/sweep_uncertainty.h).
-// Units: SI. Shapes: theta: a size and a length of each function, then squareness and scale.
+// Units: SI. Shapes: theta: a size and a length of each function, squareness and scale, waves.
 // Failure: none.
 // Source: Rasmussen and Williams (2006), 5.4; Bates et al., "Fitting linear mixed-effects models"
 // (2015), for the idea.

@@ -21,6 +21,7 @@ using Eigen::VectorXd;
 // own.
 constexpr double kCommonSize = 0.57, kOwnSize = 0.4;
 constexpr double kCommonLength = 0.65, kOwnLength = 0.25;
+constexpr double kWaveSize = 1.4, kWaveTo = 0.7;  // of waves
 constexpr double kHardlyMoves = 4e-4;  // deviation, of the largest of a function: taken as 0
 constexpr std::array kCommonLengths{0.25, 0.35, 0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0};
 constexpr double kLongestStep = 0.7;
@@ -84,7 +85,7 @@ Quadratic Marginalised(const Quadratic& all, const std::vector<int>& of_machine)
 
 PopulationEvidence::PopulationEvidence(const machine::Machine& machine,
                                        const machine::VolumetricModel& model)
-    : machine_(machine), model_(model) {
+    : machine_(machine), model_(model), stated_(machine, model, PopulationOf(machine)) {
   Index first = 0;
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     for (int motion = 0; motion < machine::kMotions; ++motion) {
@@ -98,9 +99,19 @@ PopulationEvidence::PopulationEvidence(const machine::Machine& machine,
   squareness_ = first;
   knobs_.push_back({kSquareness, -1, -1});
   knobs_.push_back({kScale, -1, -1});
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    if (!HoldsWaves(model, axis)) continue;
+    knobs_.push_back({kWave, axis, axis});
+    knobs_.push_back({kWaveLength, axis, axis});
+    waves_ += 2;
+  }
   MatrixXd cov = MatrixXd::Zero(count(), count());
   for (Index i = 0; i < count(); ++i) {
-    for (Index j = 0; j < count(); ++j) {
+    if (knobs_[i].line == kWave || knobs_[i].line == kWaveLength) {
+      cov(i, i) = std::pow(knobs_[i].line == kWave ? kWaveSize : kWaveTo, 2);
+      continue;
+    }
+    for (Index j = 0; j < count() - waves_; ++j) {
       const bool length = IsLength(i);
       if (length == IsLength(j)) cov(i, j) = std::pow(length ? kCommonLength : kCommonSize, 2);
     }
@@ -116,6 +127,10 @@ ErrorPopulation PopulationEvidence::PopulationAt(const VectorXd& theta) const {
     const double factor = std::exp(theta[i]);
     if (line == kSquareness)
       population.squareness *= factor;
+    else if (line == kWave)
+      population.wave[axis] = kUsualWave * factor;
+    else if (line == kWaveLength)
+      population.wave_length[axis] = kUsualWaveLength * factor;
     else if (line == kScale)
       population.scale *= factor;
     else if (line == kSmoothness)
@@ -128,7 +143,7 @@ ErrorPopulation PopulationEvidence::PopulationAt(const VectorXd& theta) const {
 
 MatrixXd PopulationEvidence::FactorAt(const VectorXd& theta) const {
   const ErrorPopulation population = PopulationAt(theta);
-  const MachinePrior prior(machine_, model_, population);
+  const MachinePrior prior = stated_.With(population);
   const Index n = squareness_ + 3;
   MatrixXd L = MatrixXd::Zero(n, n);
   estimation::InParallel(machine::kAxes * machine::kMotions, [&](std::size_t function) {
@@ -147,28 +162,52 @@ MatrixXd PopulationEvidence::FactorAt(const VectorXd& theta) const {
 
 PopulationEvidence::Evidence PopulationEvidence::At(const Quadratic& of_machine,
                                                     const VectorXd& theta) const {
-  const MatrixXd all = FactorAt(theta);
-  std::vector<Index> allowed;
-  for (Index column = 0; column < all.cols(); ++column) {
-    if (!all.col(column).isZero(0.0)) allowed.push_back(column);
-  }
-  const MatrixXd L = all(Eigen::all, allowed);
-  const MatrixXd LH = L.transpose() * of_machine.information;
-  MatrixXd B = LH * L;
+  const MatrixXd L = FactorAt(theta);
+  MatrixXd HL(L.rows(), L.cols()), B(L.cols(), L.cols());
+  EachBlock([&](Index at, Index size) {
+    HL.middleCols(at, size).noalias() =
+        of_machine.information.middleCols(at, size) * L.block(at, at, size, size);
+  });
+  EachBlock([&](Index at, Index size) {
+    B.middleRows(at, size).noalias() =
+        L.block(at, at, size, size).transpose() * HL.middleRows(at, size);
+  });
   B.diagonal().array() += 1.0;
-  const Eigen::LLT<MatrixXd> factor(B);
-  const VectorXd w = factor.matrixL().solve(L.transpose() * of_machine.vector);
-  const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  std::vector<Index> allowed;
+  for (Index column = 0; column < L.cols(); ++column) {
+    if (!L.col(column).isZero(0.0)) allowed.push_back(column);
+  }
   Evidence evidence;
+  evidence.HL = HL(Eigen::all, allowed);
+  const MatrixXd of_allowed = B(allowed, allowed);
+  evidence.factor.compute(of_allowed);
+  const VectorXd h = L.transpose() * of_machine.vector;
+  const VectorXd w = evidence.factor.matrixL().solve(VectorXd(h(allowed)));
+  const double log_determinant = 2.0 * evidence.factor.matrixLLT().diagonal().array().log().sum();
   evidence.log = 0.5 * (w.squaredNorm() - log_determinant - theta.dot(pi_ * theta));
-  evidence.half = factor.matrixL().solve(LH);
-  evidence.b = of_machine.vector - evidence.half.transpose() * w;
+  evidence.b = of_machine.vector - evidence.HL * evidence.factor.matrixU().solve(w);
   return evidence;
+}
+
+MatrixXd PopulationEvidence::Evidence::A(const MatrixXd& H) const {
+  const MatrixXd LH = HL.transpose();
+  const MatrixXd half = factor.matrixL().solve(LH);
+  return H - half.transpose() * half;
+}
+
+void PopulationEvidence::EachBlock(const std::function<void(Index, Index)>& of_block) const {
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    for (int motion = 0; motion < machine::kMotions; ++motion) {
+      const Index size = model_.Function(axis, motion).size();
+      if (size > 0) of_block(first_[axis][motion], size);
+    }
+  }
+  of_block(squareness_, 3);
 }
 
 std::vector<PopulationEvidence::Part> PopulationEvidence::Parts(const VectorXd& theta) const {
   const ErrorPopulation population = PopulationAt(theta);
-  const MachinePrior prior(machine_, model_, population);
+  const MachinePrior prior = stated_.With(population);
   std::vector<Part> parts;
   for (Index i = 0; i < count(); i += 2) {
     const auto [line, axis, motion] = knobs_[i];
@@ -179,10 +218,17 @@ std::vector<PopulationEvidence::Part> PopulationEvidence::Parts(const VectorXd& 
     parts.push_back({i, at, 2.0 * variance * unit.covariance});
     parts.push_back({i + 1, at, variance * unit.by_length});
     if (line != kPositioning) continue;
-    parts.push_back(
-        {count() - 1, at, 2.0 * population.scale * population.scale * prior.UnitSlope(axis)});
+    parts.push_back({of_functions() + 1, at,
+                     2.0 * population.scale * population.scale * prior.UnitSlope(axis)});
   }
-  parts.push_back({count() - 2, squareness_,
+  for (Index i = of_functions() + 2; i < count(); i += 2) {
+    const int axis = knobs_[i].axis;
+    const auto unit = prior.UnitWave(axis);
+    const double variance = std::pow(population.wave[axis], 2);
+    parts.push_back({i, first_[axis][axis], 2.0 * variance * unit.covariance});
+    parts.push_back({i + 1, first_[axis][axis], variance * unit.by_length});
+  }
+  parts.push_back({of_functions(), squareness_,
                    2.0 * std::pow(population.squareness, 2) * MatrixXd::Identity(3, 3)});
   return parts;
 }
@@ -191,7 +237,7 @@ PopulationEvidence::Slopes PopulationEvidence::SlopesAt(const Quadratic& of_mach
                                                         const VectorXd& theta,
                                                         const Evidence& evidence) const {
   const std::vector<Part> parts = Parts(theta);
-  const MatrixXd A = of_machine.information - evidence.half.transpose() * evidence.half;
+  const MatrixXd A = evidence.A(of_machine.information);
   Slopes local{VectorXd::Zero(count()), MatrixXd::Zero(count(), count())};
   for (const Part& one : parts) {
     const Index n = one.slope.rows();
@@ -271,7 +317,7 @@ std::vector<Statement> PopulationEvidence::Statements(const Maximum& at) const {
         {.key = line.key, .unit = line.unit, .stated = machine_.population.*line.value});
   }
   MatrixXd X = MatrixXd::Zero(count(), kLines);
-  for (Index i = 0; i < count(); ++i) X(i, knobs_[i].line) = 1.0;
+  for (Index i = 0; i < count() - waves_; ++i) X(i, knobs_[i].line) = 1.0;
   MatrixXd information = X.transpose() * at.local.fisher * X;
   information.diagonal().array() += 1e-9;
   const MatrixXd C = information.inverse();
@@ -287,7 +333,7 @@ std::vector<Statement> PopulationEvidence::Statements(const Maximum& at) const {
 MatrixXd PopulationEvidence::MovedByTheta(const Quadratic& of_machine, const VectorXd& theta,
                                           const MatrixXd& cov) const {
   const Evidence evidence = At(of_machine, theta);
-  const MatrixXd A = of_machine.information - evidence.half.transpose() * evidence.half;
+  const MatrixXd A = evidence.A(of_machine.information);
   const MatrixXd L = FactorAt(theta);
   MatrixXd moved = MatrixXd::Zero(evidence.b.size(), theta.size());
   for (const Part& part : Parts(theta)) {

@@ -5,14 +5,17 @@
 //   const auto now = evidence.At(of_machine, theta);
 //   const auto local = evidence.SlopesAt(of_machine, theta, now);
 //
-// theta: logarithms over what the machine file says.
+// theta: logarithms over what the machine file says, of waves over what is usual.
 // Units: SI. Shapes: theta: of each function its size, then its length; then of the squarenesses
-// and of the slopes of the positioning errors. Failure: none.
+// and of the slopes of the positioning errors; where the model holds waves, their size and length
+// for each axis, over what is usual. Failure: none.
 // Source: Rasmussen and Williams (2006), 5.4.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -43,7 +46,10 @@ enum Line {
   kSquareness,
   kScale,
   kSmoothness,
-  kLines
+  kLines,
+  // Of no line of the machine file.
+  kWave = kLines,
+  kWaveLength
 };
 
 // How the machine file states a line.
@@ -88,11 +94,14 @@ class PopulationEvidence {
   Eigen::MatrixXd FactorAt(const Eigen::VectorXd& theta) const;
 
   struct Evidence {
-    double log = 0.0;      // log Z with the prior of theta
-    Eigen::MatrixXd half;  // (1 + L' H L)^-1/2 L' H
+    double log = 0.0;  // log Z with the prior of theta
+    Eigen::MatrixXd HL;
+    Eigen::LLT<Eigen::MatrixXd> factor;  // of 1 + L' H L
     Eigen::VectorXd b;
+    // A = (V + H^-1)^-1 = H - H L (1 + L' H L)^-1 L' H
+    Eigen::MatrixXd A(const Eigen::MatrixXd& H) const;
   };
-  // At theta; `b`: h - H C h.
+  // At theta, with those columns of L that are not zero; `b`: h - H C h.
   Evidence At(const Quadratic& of_machine, const Eigen::VectorXd& theta) const;
 
   struct Slopes {
@@ -104,7 +113,7 @@ class PopulationEvidence {
                   const Evidence& evidence) const;
 
   // Knobs of functions; those of the squarenesses and of the slopes follow.
-  Eigen::Index of_functions() const { return count() - 2; }
+  Eigen::Index of_functions() const { return count() - 2 - waves_; }
   struct Maximum {
     Eigen::VectorXd theta;
     double log = 0.0;  // log Z with the prior of theta
@@ -130,12 +139,16 @@ class PopulationEvidence {
     Eigen::MatrixXd slope;
   };
   std::vector<Part> Parts(const Eigen::VectorXd& theta) const;
+  // Of each function, and of the squarenesses: where it begins, and its size.
+  void EachBlock(const std::function<void(Eigen::Index, Eigen::Index)>& of_block) const;
 
   const machine::Machine& machine_;
   const machine::VolumetricModel& model_;
+  const MachinePrior stated_;
   std::vector<Knob> knobs_;
   std::array<std::array<Eigen::Index, machine::kMotions>, machine::kAxes> first_{};
   Eigen::Index squareness_ = 0;
+  Eigen::Index waves_ = 0;  // knobs of waves, the last ones
   Eigen::MatrixXd pi_;
 };
 

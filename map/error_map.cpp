@@ -100,7 +100,13 @@ Eigen::Matrix3d ErrorMap::Covariance(const Eigen::Vector3d& position,
                      " has no uncertainty; fuse the runs again to get one");
   }
   const Eigen::Matrix3Xd J = model_.Linearize(position, p_TQ).J_error_parameters;
-  return J * cov_pp_ * J.transpose();
+  std::vector<Eigen::Index> touched;  // of splines few at any place
+  for (Eigen::Index i = 0; i < J.cols(); ++i) {
+    if (!J.col(i).isZero(0.0)) touched.push_back(i);
+  }
+  const Eigen::Matrix3Xd some = J(Eigen::all, touched);
+  const Eigen::MatrixXd of_touched = cov_pp_(touched, touched);
+  return some * of_touched * some.transpose();
 }
 
 Eigen::Vector3d ErrorMap::StandardUncertainty(const Eigen::Vector3d& position,

@@ -34,6 +34,7 @@ from world import World, changes
 HERE = pathlib.Path(__file__).resolve().parent
 MACHINE = HERE.parents[1] / "machines" / "demo_mill.toml"
 MAPPED = ("sweep", "space", "length")  # names of the runs of which a map is made
+SLOW_CIRCLES = ("_120",)
 
 
 def abbe(program, *arguments, limit=900):
@@ -58,9 +59,9 @@ def diagnosed(program, world, folder):
     return {**judge.diagnosis(result, world.effect), "seconds": seconds}
 
 
-def map_of(program, world, folder, *options):
-    """A map of sweeps, stays in space and lengths, and how well its statements hold."""
-    files = [f for f in world.write_all(folder) if any(word in f.name for word in MAPPED)]
+def map_of(program, world, folder, *options, names=MAPPED):
+    """A map of the runs of these names, and how well its statements hold."""
+    files = [f for f in world.write_all(folder) if any(word in f.name for word in names)]
     result, message, code, seconds = abbe(program, "fuse", *files, "--machine", MACHINE,
                                           "-o", folder / "map.toml", "--force", *options)
     if result is None:
@@ -74,8 +75,8 @@ def map_of(program, world, folder, *options):
             "seconds": seconds}
 
 
-def mapped(program, world, folder):
-    found = map_of(program, world, folder)
+def mapped(program, world, folder, names=MAPPED):
+    found = map_of(program, world, folder, names=names)
     found["sweeps"] = {}
     for run in world.runs:
         if run.kind == "sweep":
@@ -133,6 +134,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--out", type=pathlib.Path, help="lines are added to it")
     parser.add_argument("--map", action="store_true", help="coverage of fuse and reduce")
+    parser.add_argument("--circles", action="store_true", help="the slow circles are in the map too")
     parser.add_argument("--apply", action="store_true", help="fuse with the causes of a diagnosis")
     parser.add_argument("--table", type=pathlib.Path, help="only print the table of such a file")
     given = parser.parse_args()
@@ -140,7 +142,8 @@ def main():
         return print(table.of([json.loads(line) for line in given.table.read_text().splitlines()]))
     if not given.abbe:
         parser.error("--abbe is required")
-    task = mapped if given.map else applied if given.apply else diagnosed
+    of_map = functools.partial(mapped, names=MAPPED + SLOW_CIRCLES) if given.circles else mapped
+    task = of_map if given.map else applied if given.apply else diagnosed
     lines = []
     with multiprocessing.Pool(given.jobs) as pool:
         work = functools.partial(one, program=given.abbe, task=task, wide=given.wide)
