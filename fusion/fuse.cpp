@@ -45,10 +45,14 @@ double BirgeRatio(const RunConsistency& run) {
   return std::sqrt(std::max(1.0, run.statistic / static_cast<double>(run.directions)));
 }
 
-// Whether a run has places enough, of known positions, to show waves of the positioning.
-bool ShowsWaves(const SimulatedRun& run) {
-  constexpr Index kFewPlaces = 20;
-  return run.response && run.commanded.cols() >= kFewPlaces;
+// Whether the places of a run tell a wave of an axis from a smooth error: they need enough of
+// different positions. On the few planes of a grid the two are alike.
+bool ShowsWaves(const SimulatedRun& run, int axis) {
+  constexpr std::size_t kFewPositions = 20;
+  constexpr double kAlike = 1e-4;  // m
+  std::set<long> positions;
+  for (const double x : run.commanded.row(axis)) positions.insert(std::lround(x / kAlike));
+  return run.response && positions.size() >= kFewPositions;
 }
 
 void Widen(double times, SeenErrors& seen) {
@@ -208,9 +212,8 @@ class FuseJob {
   // does.
   bool Refine() {
     if (!options_.runs_on) return false;
-    if (!waves_ && std::any_of(runs_.begin(), runs_.end(), ShowsWaves)) {
-      waves_ = true;
-      const PopulationEvidence evidence(machine_, WithWaves(model_));
+    if (!HoldsAnyWaves() && SetWaves()) {
+      const PopulationEvidence evidence(machine_, WithWaves(model_, waves_));
       VectorXd usual = VectorXd::Zero(evidence.count());  // the waves
       usual.head(theta_.size()) = theta_;
       theta_ = std::move(usual);
@@ -220,13 +223,33 @@ class FuseJob {
       if (finer == knots_) return false;
       knots_ = finer;
     }
-    model_ = UnknownMachine(machine_, knots_);
-    if (waves_) model_ = WithWaves(model_);
+    model_ = WithWaves(UnknownMachine(machine_, knots_), waves_);
     noise_.assign(noise_.size(), 1.0);  // more of it may have been what the model could not follow
     runs_ = options_.runs_on(model_);
     SetPlateForm(holes_, 1.0, runs_);
     AllowFormAndReversals();
     return true;
+  }
+
+  bool HoldsAnyWaves() const { return std::ranges::find(waves_, true) != waves_.end(); }
+  // False where no run shows any.
+  bool SetWaves() {
+    for (int axis = 0; axis < machine::kAxes; ++axis) {
+      if (model_.Function(axis, axis).size() == 0) continue;
+      waves_[axis] = std::ranges::any_of(
+          runs_, [&](const SimulatedRun& run) { return ShowsWaves(run, axis); });
+    }
+    return HoldsAnyWaves();
+  }
+  // Of which the runs tell that they are there.
+  std::array<bool, machine::kAxes> EvidentWaves() const {
+    std::array<bool, machine::kAxes> evident{};
+    if (!HoldsAnyWaves()) return evident;
+    const PopulationEvidence evidence(machine_, model_);
+    for (int axis = 0; axis < machine::kAxes; ++axis) {
+      evident[axis] = evidence.GainOfWaves(seen_, theta_, axis) >= kEvident;
+    }
+    return evident;
   }
 
   FuseReport Report(Fitted now) {
@@ -242,12 +265,13 @@ class FuseJob {
     if (by_theta_.size() > 0) seen.covariance += by_theta_ * by_theta_.transpose();
     AddDoubt(options_.doubt, found, -machine_.reference, seen.covariance);
     const MachinePrior prior = Prior();
+    const auto evident = EvidentWaves();
     std::vector<PlaceScatter> scatter;
     std::vector<double> follows;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       const VectorXd left = Left(now, r);
       follows.push_back(CorrelationIn(left));
-      scatter.push_back(FindPlaceScatter(runs_[r], noise_[r] * left, found, prior));
+      scatter.push_back(FindPlaceScatter(runs_[r], noise_[r] * left, found, prior, evident));
     }
     CountScatter(scatter, found, seen);
     FuseReport report{.map = MapOf(found, seen, StateOf(now, seen.covariance))};
@@ -390,8 +414,8 @@ class FuseJob {
   std::array<double, machine::kAxes> knots_;  // m apart, of model_
   machine::VolumetricModel model_;
   ErrorPopulation population_;
-  bool waves_ = false;  // the model holds waves
-  VectorXd theta_;      // population_estimate.h
+  std::array<bool, machine::kAxes> waves_{};  // which axes have in model_
+  VectorXd theta_;                            // population_estimate.h
   std::vector<double> noise_;
   double form_ = 1.0;   // of the target, over what the file states
   double holes_ = 1.0;  // of the form of a plate, the same

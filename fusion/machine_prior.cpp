@@ -105,8 +105,10 @@ machine::VolumetricModel UnknownMachine(const machine::Machine& machine,
   return model;
 }
 
-machine::VolumetricModel WithWaves(machine::VolumetricModel model) {
+machine::VolumetricModel WithWaves(machine::VolumetricModel model,
+                                   const std::array<bool, machine::kAxes>& axes) {
   for (int axis = 0; axis < machine::kAxes; ++axis) {
+    if (!axes[axis]) continue;
     const machine::Travel& travel = model.travels()[axis];
     const int size = model.Function(axis, axis).size();
     const int finer = std::min(

@@ -51,8 +51,9 @@ ErrorPopulation PopulationOf(const machine::Machine& machine);
 machine::VolumetricModel UnknownMachine(const machine::Machine& machine);
 machine::VolumetricModel UnknownMachine(const machine::Machine& machine,
                                         const std::array<double, machine::kAxes>& knots);
-// The same with finer knots of the positioning errors, so that these hold waves.
-machine::VolumetricModel WithWaves(machine::VolumetricModel model);
+// The same with finer knots of the positioning errors of these axes, so that they hold waves.
+machine::VolumetricModel WithWaves(machine::VolumetricModel model,
+                                   const std::array<bool, machine::kAxes>& axes);
 bool HoldsWaves(const machine::VolumetricModel& model, int axis);
 // The sizes and lengths of waves that are usual, m.
 inline constexpr double kUsualWave = 1e-6, kUsualWaveLength = 1e-3;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fusion/machine_problem.h"
+#include "fusion/population_evidence.h"
 #include "fusion/reversals.h"
 #include "simulation/disturbance.h"
 
@@ -20,7 +21,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kEncoders = 6;          // that may be rivals; a run without them shows nothing
-constexpr double kNamed = 10.0;       // of the logarithm, over noise alone
 constexpr double kLeast = 1e-8;       // m: the search for sd begins here, and goes on in steps of
 constexpr double kFactor = 1.09;      // so large a factor
 constexpr int kTried = 110;           // up to 0.1 mm
@@ -98,12 +98,13 @@ struct Places {
   }
 };
 
-// What the positioning errors of the map hold of waves at places (3 x n).
+// What the positioning errors of the map hold of evident waves at places (3 x n).
 simulation::Disturbance WavesHeld(const machine::VolumetricModel& found, const MachinePrior& prior,
+                                  const std::array<bool, machine::kAxes>& evident,
                                   const MatrixXd& places) {
   simulation::Disturbance held(places.cols());
   for (int axis = 0; axis < machine::kAxes; ++axis) {
-    if (prior.population().wave[axis] == 0.0) continue;
+    if (!evident[axis]) continue;
     machine::ErrorFunction wave = found.Function(axis, axis);
     wave.SetCoefficients(prior.PartOfWave(axis) * wave.coefficients());
     for (Index i = 0; i < places.cols(); ++i) {
@@ -177,7 +178,8 @@ double SquaresOf(const machine::VolumetricModel& found, int axis) {
 }  // namespace
 
 PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const VectorXd& left,
-                              const machine::VolumetricModel& found, const MachinePrior& prior) {
+                              const machine::VolumetricModel& found, const MachinePrior& prior,
+                              const std::array<bool, machine::kAxes>& evident) {
   const Index poses = run.commanded.cols();
   if (!run.response || poses < kFewPlaces || left.size() % poses != 0) return {};
   const Index rows = left.size() / poses;
@@ -186,7 +188,8 @@ PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const VectorX
   std::erase_if(blocks, IsReversal);  // of which the response knows nothing
   const auto response = run.response->At(NominalValues(blocks));
   if (!response->RowsAreIndependent()) return {};
-  const VectorXd waves = left + response->Columns({WavesHeld(found, prior, run.commanded)});
+  const VectorXd waves =
+      left + response->Columns({WavesHeld(found, prior, evident, run.commanded)});
   const std::vector<Index> usual = UsualPoses(waves.reshaped(rows, poses));
   const auto of_usual = [&](const VectorXd& column) {
     return MatrixXd(column.reshaped(rows, poses)(Eigen::all, usual));
@@ -208,7 +211,7 @@ PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const VectorX
     encoders.push_back(shown(simulation::kEncoderStage + encoder));
   }
   PlaceScatter named;
-  Found best{.gain = kNamed};
+  Found best{.gain = kEvident};
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     const Found one = search({axes[static_cast<std::size_t>(axis)]});
     if (!(one.gain > best.gain)) continue;
@@ -227,7 +230,7 @@ PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const VectorX
                  e = g.cwiseProduct(of_usual(left)).colwise().sum();
   named.sd = SizeOfWave({x, e.cwiseQuotient(gg), best.noise * gg.cwiseSqrt().cwiseInverse()},
                         best.sd, named.axis, found, prior);
-  named.held = prior.population().wave[named.axis];
+  if (evident[named.axis]) named.held = prior.population().wave[named.axis];
   return named;
 }
 

@@ -15,7 +15,8 @@
 // with n rows together; rho = 0 is noise alone. An axis is named where it gains ten over noise
 // alone (22 000 : 1) and more than its rivals: each encoder, all encoders, all axes together. Poses
 // far off all others (25 times the median square) are left out: an outlier is no wave. What the map
-// holds of waves (machine_prior.h) is added to r first.
+// holds of waves (machine_prior.h) is added to r first where these are evident: at places on the
+// planes of a grid smooth errors may be taken for waves.
 //
 // Places in clusters show only what changes within a cluster. So the size of what the map does not
 // hold is that of another process beside those of the map: the error that was measured at the
@@ -34,6 +35,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "fusion/machine_prior.h"
@@ -49,9 +51,11 @@ struct PlaceScatter {
   double held = 0.0;  // m, the same of the waves that the map holds
 };
 
-// `found`: the model of the fit; `prior`: of its functions.
+// `found`: the model of the fit; `prior`: of its functions; `evident`: the axes whose waves in it
+// are.
 PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const Eigen::VectorXd& left,
-                              const machine::VolumetricModel& found, const MachinePrior& prior);
+                              const machine::VolumetricModel& found, const MachinePrior& prior,
+                              const std::array<bool, machine::kAxes>& evident = {});
 
 // Widens the positioning errors of `found` by the largest scatter of each axis.
 void CountScatter(const std::vector<PlaceScatter>& scatter, const machine::VolumetricModel& found,

@@ -1,6 +1,7 @@
 #include "fusion/population_evidence.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -22,6 +23,7 @@ using Eigen::VectorXd;
 constexpr double kCommonSize = 0.57, kOwnSize = 0.4;
 constexpr double kCommonLength = 0.65, kOwnLength = 0.25;
 constexpr double kWaveSize = 1.4, kWaveTo = 0.7;  // of waves
+constexpr double kNoWave = 1e-3;                  // of a usual one
 constexpr double kHardlyMoves = 4e-4;  // deviation, of the largest of a function: taken as 0
 constexpr std::array kCommonLengths{0.25, 0.35, 0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0};
 constexpr double kLongestStep = 0.7;
@@ -308,6 +310,22 @@ PopulationEvidence::Maximum PopulationEvidence::Maximise(const Quadratic& of_mac
   }
   highest.log = now.log;
   return highest;
+}
+
+double PopulationEvidence::GainOfWaves(const Quadratic& of_machine, const VectorXd& theta,
+                                       int axis) const {
+  const auto found = std::ranges::find_if(
+      knobs_, [&](const Knob& knob) { return knob.line == kWave && knob.axis == axis; });
+  if (found == knobs_.end()) return 0.0;
+  const Index wave = found - knobs_.begin();
+  VectorXd without = theta;
+  without[wave] = std::log(kNoWave);
+  // Without the prior of the size.
+  const double with = At(of_machine, theta).log + 0.5 * pi_(wave, wave) * std::pow(theta[wave], 2);
+  const double of_size = 0.5 * pi_(wave, wave) * std::pow(without[wave], 2);
+  const double at_most = with - At(of_machine, without).log - of_size;
+  if (at_most < kEvident) return at_most;
+  return with - Maximise(of_machine, without, of_functions() + 2).log - of_size;
 }
 
 std::vector<Statement> PopulationEvidence::Statements(const Maximum& at) const {

@@ -77,6 +77,9 @@ struct Quadratic {
 // H and h of the columns `of_machine`, marginalised over all others that have any information.
 Quadratic Marginalised(const Quadratic& all, const std::vector<int>& of_machine);
 
+// Of the logarithm of the evidence: what is named needs so much (22 000 : 1).
+inline constexpr double kEvident = 10.0;
+
 class PopulationEvidence {
  public:
   PopulationEvidence(const machine::Machine& machine, const machine::VolumetricModel& model);
@@ -122,6 +125,9 @@ class PopulationEvidence {
   // From `theta` on, of which the first `free` are free and the others stay.
   Maximum Maximise(const Quadratic& of_machine, const Eigen::VectorXd& theta,
                    Eigen::Index free) const;
+  // By how much the logarithm of the evidence falls without the waves of an axis, all sizes and
+  // lengths of the smooth errors chosen anew; 0 where the model has none.
+  double GainOfWaves(const Quadratic& of_machine, const Eigen::VectorXd& theta, int axis) const;
   // The most probable of several common lengths, all sizes as stated.
   Eigen::VectorXd AtBestLength(const Quadratic& of_machine) const;
   // Each line that its errors share, with all lines free: each weighted by what the runs tell.

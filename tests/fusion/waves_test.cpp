@@ -31,7 +31,7 @@ class Waves : public testing::Test {
             machine::ReadMachine(settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) /
                                                           "machines/demo_mill.toml")
                                      .Root())),
-        model_(WithWaves(UnknownMachine(machine_))) {}
+        model_(WithWaves(UnknownMachine(machine_), {true, true, true})) {}
 
   // Of EYY.
   ErrorPopulation Population() const {
