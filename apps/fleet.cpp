@@ -1,7 +1,7 @@
 // abbe fleet: what the machines of one type have in common, and which of them is odd.
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -149,10 +149,10 @@ fleet::Campaign CampaignOf(const study::Row& row, Index n) {
                            row.at("campaign"),
                            {FromLowerTriangle(row.at("information").get<std::vector<double>>(), n),
                             Eigen::Map<const Eigen::VectorXd>(vector.data(), n)}};
-  const Eigen::MatrixXd& information = campaign.seen.information;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> values(information, Eigen::EigenvaluesOnly);
   constexpr double kRounding = 1e-9;
-  if (!(values.eigenvalues()[0] >= -kRounding * values.eigenvalues()[n - 1])) {
+  Eigen::MatrixXd positive = campaign.seen.information;
+  positive.diagonal().array() += kRounding * positive.diagonal().maxCoeff();
+  if (!positive.allFinite() || Eigen::LLT<Eigen::MatrixXd>(positive).info() != Eigen::Success) {
     throw InputError("information that is none: it is not positive");
   }
   return campaign;
