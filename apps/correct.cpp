@@ -25,6 +25,7 @@
 #include "compensation/corrected_table.h"
 #include "compensation/nc_correction.h"
 #include "failure/failure.h"
+#include "failure/located.h"
 #include "map/text_file.h"
 #include "recording/whole_file.h"
 
@@ -129,16 +130,6 @@ class ProgramLines {
   std::size_t lines_ = 0;
 };
 
-// Runs a step of the correction and adds the file to its failures.
-template <typename Step>
-void InFile(const CorrectCommand& options, Step step) {
-  try {
-    step();
-  } catch (const InputError& failure) {
-    throw InputError(fmt::format("{}: {}", options.from.string(), failure.what()));
-  }
-}
-
 std::string ReadProgram(const CorrectCommand& options) {
   ProgramLines lines(options.from);
   std::string text;
@@ -159,7 +150,7 @@ compensation::NcCounts StreamProgram(const CorrectCommand& options,
   std::string text = ReadProgram(options);
   recording::WholeFile out(OutOf(options));
   compensation::NcCounts counts;
-  InFile(options, [&] {
+  Located(options.from.string(), [&] {
     compensation::NcSource source("", std::move(text));
     source.SearchIn(options.from.parent_path());
     for (const auto& folder : options.subroutines) source.SearchIn(folder);

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "failure/failure.h"
+#include "failure/located.h"
 #include "study/deal.h"
 #include "study/store.h"
 
@@ -21,5 +24,18 @@ struct FillOptions {
 bool FillStore(const study::Study& study, const std::vector<std::uint64_t>& seeds,
                const std::string& title, const FillOptions& options, study::Ranks& ranks,
                study::Store& store, const std::function<std::string(std::uint64_t)>& name);
+
+// What `read` makes of the rows of a store; InputError with its name where they do not say what
+// abbe writes.
+template <typename Read>
+auto ReadRows(const std::filesystem::path& store, const Read& read) {
+  return Located(store.string(), [&] {
+    try {
+      return read();
+    } catch (const study::Row::exception&) {
+      throw InputError("a row lacks what abbe writes; make the store anew");
+    }
+  });
+}
 
 }  // namespace abbe::apps

@@ -106,7 +106,8 @@ std::vector<double> LowerTriangle(const Eigen::MatrixXd& full) {
 
 // InputError where they are not those of an n x n matrix.
 Eigen::MatrixXd FromLowerTriangle(const std::vector<double>& values, Index n) {
-  if (std::ssize(values) != n * (n + 1) / 2) throw InputError("information of another size");
+  if (std::ssize(values) != n * (n + 1) / 2)
+    throw InputError("a row has information of another size; make the store anew");
   Eigen::MatrixXd full(n, n);
   auto at = values.begin();
   for (Index i = 0; i < n; ++i) {
@@ -153,7 +154,7 @@ fleet::Campaign CampaignOf(const study::Row& row, Index n) {
   Eigen::MatrixXd positive = campaign.seen.information;
   positive.diagonal().array() += kRounding * positive.diagonal().maxCoeff();
   if (!positive.allFinite() || Eigen::LLT<Eigen::MatrixXd>(positive).info() != Eigen::Success) {
-    throw InputError("information that is none: it is not positive");
+    throw InputError("a row has information that is not positive; make the store anew");
   }
   return campaign;
 }
@@ -268,22 +269,6 @@ std::vector<fleet::Campaign> CampaignsOf(const study::Rows& rows, Index paramete
   return campaigns;
 }
 
-// The same; InputError with the name of the store where there is none, or one is damaged.
-std::vector<fleet::Campaign> ReadCampaigns(const fs::path& store, const study::Rows& rows,
-                                           Index parameters,
-                                           const std::map<std::uint64_t, Given>& given) {
-  try {
-    std::vector<fleet::Campaign> campaigns = CampaignsOf(rows, parameters, given);
-    if (!campaigns.empty()) return campaigns;
-    throw InputError("a fleet needs a campaign of a machine; give one");
-  } catch (const study::Row::exception&) {
-    throw InputError(
-        fmt::format("{}: a row lacks what abbe fleet writes; make the store anew", store.string()));
-  } catch (const InputError& failure) {
-    throw InputError(fmt::format("{}: {}", store.string(), failure.what()));
-  }
-}
-
 int FitFleet(const FleetOptions& options) {
   study::Ranks ranks;
   simulation::Instruments instruments = ReadInstruments(options.machine);
@@ -317,8 +302,11 @@ int FitFleet(const FleetOptions& options) {
                  [&](std::uint64_t number) { return given.at(number).folder.string(); }))
     return kRequirementNotMet;
   const machine::VolumetricModel model = fusion::UnknownMachine(machine, fleet::KnotsOf(machine));
-  const std::vector<fleet::Campaign> campaigns =
-      ReadCampaigns(options.store, store.rows(), model.ParameterCount(), given);
+  const std::vector<fleet::Campaign> campaigns = ReadRows(options.store, [&] {
+    auto rows = CampaignsOf(store.rows(), model.ParameterCount(), given);
+    if (rows.empty()) throw InputError("a fleet needs a campaign of a machine; give one");
+    return rows;
+  });
   const fleet::PopulationFit fit(machine, model, campaigns);
   const auto errors = fleet::OddErrors(fit);
   const auto identities = fleet::OddIdentities(fit, campaigns, options.identity);

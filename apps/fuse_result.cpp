@@ -78,7 +78,7 @@ std::string MachineFileNotes(const fusion::FuseReport& report) {
 std::string ScatterLines(const fusion::FuseReport& report) {
   std::string text;
   for (std::size_t i = 0; i < report.scatter.size(); ++i) {
-    const auto& [axis, sd, held] = report.scatter[i];
+    const int axis = report.scatter[i].axis;
     if (axis < 0) continue;
     const char name = "XYZ"[axis];
     const bool others = report.contradicting >= 0 || Misfits(report).size() > 1;
@@ -89,7 +89,7 @@ std::string ScatterLines(const fusion::FuseReport& report) {
         "(rms) where no place is near; circles, or places closer together, show it.\n",
         report.fit.sources[i].name, name, name,
         others ? "; or it comes from the runs that do not fit or contradict (below)" : "", name,
-        name, std::hypot(sd, held) / kMicro);
+        name, report.scatter[i].size() / kMicro);
   }
   return text;
 }
@@ -205,11 +205,11 @@ ordered_json FuseJson(const fusion::FuseReport& report) {
   }
   json["scatter"] = ordered_json::array();
   for (std::size_t i = 0; i < report.scatter.size(); ++i) {
-    const auto& [axis, sd, held] = report.scatter[i];
+    const int axis = report.scatter[i].axis;
     if (axis < 0) continue;
     json["scatter"].push_back({{"run", report.fit.sources[i].name},
                                {"axis", std::string(1, "XYZ"[axis])},
-                               {"sd_um", std::hypot(sd, held) / kMicro}});
+                               {"sd_um", report.scatter[i].size() / kMicro}});
   }
   for (const auto& function : report.functions) {
     json["observability"][function.name] = {

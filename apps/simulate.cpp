@@ -14,6 +14,7 @@
 #include "apps/result_file.h"
 #include "compensation/performance.h"
 #include "failure/failure.h"
+#include "failure/located.h"
 
 namespace abbe::apps {
 namespace {
@@ -48,17 +49,6 @@ void Print(const std::vector<Figure>& before, const std::vector<Figure>& after) 
   }
 }
 
-// What the machine makes of a path; InputError with its file where it leaves the travels.
-Eigen::Matrix3Xd MadeOn(const map::ErrorMap& map, const Eigen::Vector3d& tool,
-                        const Eigen::Matrix3Xd& wanted, const std::filesystem::path& path) {
-  try {
-    return compensation::MadeBy(map.model(), tool, wanted);
-  } catch (const InputError& failure) {
-    if (path.empty()) throw;
-    throw InputError(fmt::format("{}: {}", path.string(), failure.what()));
-  }
-}
-
 int Simulate(const SimulateCommand& options) {
   const map::ErrorMap map = options.map.Read();
   const Eigen::Vector3d tool = options.map.Tool(map);
@@ -71,7 +61,9 @@ int Simulate(const SimulateCommand& options) {
     test.evaluate = [evaluate = test.evaluate, beside = causes.Beside(test.wanted)](
                         const Eigen::Matrix3Xd& made) { return evaluate(made + beside); };
   }
-  const auto before = test.evaluate(MadeOn(map, tool, test.wanted, options.path));
+  const std::string where = options.path.empty() ? "the test" : options.path.string();
+  const auto before = test.evaluate(
+      Located(where, [&] { return compensation::MadeBy(map.model(), tool, test.wanted); }));
   std::vector<Figure> after;
   if (options.corrected) {
     after = compensation::AfterCorrection(map, tool, test, options.draws, options.seed);

@@ -69,7 +69,7 @@ std::vector<std::uint64_t> SeedsOf(const StudyOptions& options, const Shard& sha
 }
 
 // Prints it; false where a bound is refuted.
-bool ShowRows(const study::Row& question, const study::Stored& stored) {
+bool Show(const study::Row& question, const study::Stored& stored) {
   const study::StudyKind& kind = study::StudyNamed(question.at("abbe_study").get<std::string>());
   const std::string variant = question.value("variant", "");
   const std::vector<study::Row> good = stored.Good();
@@ -102,18 +102,6 @@ bool ShowRows(const study::Row& question, const study::Stored& stored) {
   return is_met;
 }
 
-// The same; InputError with the name of the store where a row says not what rows of its study say.
-bool Show(const study::Row& question, const study::Stored& stored, const fs::path& store) {
-  try {
-    return ShowRows(question, stored);
-  } catch (const study::Row::exception&) {
-    throw InputError(
-        fmt::format("{}: a row lacks what the study writes; make the store anew", store.string()));
-  } catch (const InputError& failure) {
-    throw InputError(fmt::format("{}: {}; make the store anew", store.string(), failure.what()));
-  }
-}
-
 int RunStudy(const study::StudyKind& kind, const StudyOptions& options) {
   study::Ranks ranks;
   const std::unique_ptr<const study::Study> asked = kind.make(options.question);
@@ -130,7 +118,9 @@ int RunStudy(const study::StudyKind& kind, const StudyOptions& options) {
                  ranks, store, [](std::uint64_t seed) { return fmt::format("seed {}", seed); })) {
     return kRequirementNotMet;
   }
-  const bool is_met = Show(question, {question, store.rows()}, options.store);
+  const bool is_met = ReadRows(options.store, [&] {
+    return Show(question, {question, store.rows()});
+  });
   fmt::print("\nRows: {}\n", options.store.string());
   return is_met ? kDone : kRequirementNotMet;
 }
@@ -184,7 +174,8 @@ void AddShow(CLI::App& studies, int& exit_code) {
     if (stored.rows.empty()) {
       throw InputError(fmt::format("{}: no world is in it yet", stores->front().string()));
     }
-    exit_code = Show(stored.question, stored, stores->front()) ? kDone : kRequirementNotMet;
+    const bool is_met = ReadRows(stores->front(), [&] { return Show(stored.question, stored); });
+    exit_code = is_met ? kDone : kRequirementNotMet;
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include "compensation/position_table.h"
 #include "failure/failure.h"
+#include "failure/located.h"
 
 namespace abbe::compensation {
 
@@ -18,12 +19,7 @@ CorrectedTable CorrectTable(std::string_view text, const std::string& file,
       corrected.text += table.line();
       continue;
     }
-    Eigen::Vector3d made;
-    try {
-      made = corrector.Made(table.Position());
-    } catch (const InputError& failure) {
-      throw InputError(fmt::format("{}: {}", table.Where(), failure.what()));
-    }
+    Eigen::Vector3d made = Located(table.Where(), [&] { return corrector.Made(table.Position()); });
     if (beside.size() > 0) made += beside.col(corrected.rows);
     corrected.largest = std::max(corrected.largest, (made - table.Position()).norm());
     ++corrected.rows;

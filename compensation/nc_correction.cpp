@@ -13,6 +13,7 @@
 #include "compensation/nc_setup.h"
 #include "compensation/nc_state.h"
 #include "failure/failure.h"
+#include "failure/located.h"
 
 namespace abbe::compensation {
 namespace {
@@ -39,11 +40,7 @@ class ProgramCorrection : public NcHost {
     if (!options_.tables.parameters) state_.wanted.systems[0] = options_.work_offset;
     state_.control = state_.wanted;
     if (!options_.start) return;
-    try {
-      moves_.MustReach(*options_.start);
-    } catch (const InputError& failure) {
-      throw InputError(fmt::format("--start: {}", failure.what()));
-    }
+    Located("--start", [&] { moves_.MustReach(*options_.start); });
     state_.place = *options_.start;
     writer_.StandAt(state_.wanted.ToMachine(state_.place));
     state_.is_known.fill(true);

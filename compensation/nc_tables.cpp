@@ -13,6 +13,7 @@
 #include "compensation/nc_block.h"
 #include "compensation/nc_expression.h"
 #include "failure/failure.h"
+#include "failure/located.h"
 #include "map/text_file.h"
 #include "settings/ini_text.h"
 
@@ -35,11 +36,7 @@ void EachTableLine(const std::filesystem::path& path, const UseLine& use) {
     rest.remove_prefix(std::min(end + 1, rest.size()));
     line = line.substr(0, line.find(';'));
     if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-    try {
-      use(line, number);
-    } catch (const InputError& failure) {
-      throw InputError(fmt::format("{}: {}", path.string(), failure.what()));
-    }
+    Located(path.string(), [&] { use(line, number); });
   }
 }
 

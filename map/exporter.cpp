@@ -6,6 +6,7 @@
 #include <string>
 
 #include "failure/failure.h"
+#include "failure/located.h"
 #include "map/export_axis_comp.h"
 #include "map/export_grid.h"
 #include "map/export_linuxcnc_hal.h"
@@ -76,11 +77,7 @@ ErrorMap ReadAnyMap(const std::filesystem::path& path, std::string_view chain,
   if (!chain.empty()) tables.header.chain = chain;
   if (!positive.empty()) tables.header.positive = positive;
   if (tables.header.machine.empty()) tables.header.machine = path.stem().string();
-  try {
-    return MapOfTables(tables);
-  } catch (const InputError& failure) {
-    throw InputError(fmt::format("{}: {}", path.string(), failure.what()));
-  }
+  return Located(path.string(), [&] { return MapOfTables(tables); });
 }
 
 }  // namespace abbe::map

@@ -134,7 +134,7 @@ MapOrigin ReadOrigin(const Table& root) {
 
 // The result of `make`; its InputError gets the place in the file.
 template <typename Make>
-auto Located(const Table& table, const char* key, const Make& make) {
+auto AtKey(const Table& table, const char* key, const Make& make) {
   try {
     return make();
   } catch (const InputError& failure) {
@@ -159,8 +159,8 @@ std::array<machine::Travel, machine::kAxes> ReadTravels(const Table& table,
 
 machine::VolumetricModel ReadFrame(const Table& root) {
   machine::Chain chain =
-      Located(root, "chain", [&] { return machine::Chain::Parse(root.Text("chain")); });
-  Located(root, "positive", [&] {
+      AtKey(root, "chain", [&] { return machine::Chain::Parse(root.Text("chain")); });
+  AtKey(root, "positive", [&] {
     chain.ReadPositive(root.Text("positive", ""), "write positive = \"...\" of X, Y and Z");
     return 0;
   });
@@ -180,15 +180,15 @@ void ReadFunction(const Table& table, machine::VolumetricModel& model, MapOrigin
   const int axis = error / machine::kMotions, motion = error % machine::kMotions;
   const std::string form = table.Text("form");
   FormShape shape;
-  for (const std::string& key : Located(table, "form", [&] { return machine::ShapeNames(form); })) {
+  for (const std::string& key : AtKey(table, "form", [&] { return machine::ShapeNames(form); })) {
     shape[key] = table.Quantities(key, 0);
   }
-  const auto made = Located(table, "form", [&] { return machine::FormOf(form, shape); });
+  const auto made = AtKey(table, "form", [&] { return machine::FormOf(form, shape); });
   // Checked before memory is allocated for the size in the shape.
   const auto c = table.Quantities("coefficients", made->size());
   const bool bare = table.Choice("gauge", {"zero at start", "none"}) == "none";
   const auto gauge = bare ? machine::Gauge::kNone : machine::Gauge::kZeroAtStart;
-  Located(table, "form", [&] { return model.SetForm(axis, motion, made, gauge); });
+  AtKey(table, "form", [&] { return model.SetForm(axis, motion, made, gauge); });
   model.SetCoefficients(axis, motion, Eigen::Map<const Eigen::VectorXd>(c.data(), c.size()));
   table.RefuseUnknown();
 }
@@ -284,7 +284,7 @@ ErrorMap ReadMap(const std::filesystem::path& path) {
   }
   root.RefuseUnknown();
   if (!state) return {std::move(origin), std::move(model), std::move(cov)};
-  return Located(root, "state", [&] {
+  return AtKey(root, "state", [&] {
     return ErrorMap(std::move(origin), std::move(model), std::move(cov), std::move(state));
   });
 }

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "failure/failure.h"
+#include "failure/located.h"
 #include "standards/circle.h"
 #include "standards/closed_profile_filter.h"
 
@@ -86,12 +87,10 @@ InPlane Project(const Eigen::Matrix3Xd& p, const CirclePlane& plane) {
 
 // The circle of least squares. InputError with the recording where there is none.
 standards::Circle CircleOf(const InPlane& path, const std::string& recording) {
-  try {
+  return Located(recording, [&] {
     return standards::ReferenceCircle(standards::CircleKind::kLeastSquares, path.first,
                                       path.second);
-  } catch (const InputError& failure) {
-    throw InputError(fmt::format("{}: {}", recording, failure.what()));
-  }
+  });
 }
 
 // The commanded circle, and the poses on it.

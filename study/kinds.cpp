@@ -21,15 +21,16 @@ const std::vector<StudyKind>& StudyKinds() {
 std::vector<double> NumbersOf(const Row& row, const char* key, std::size_t count) {
   auto numbers = row.at(key).get<std::vector<double>>();
   if (numbers.size() == count) return numbers;
-  throw InputError(
-      fmt::format("a row has {} numbers of \"{}\", not {}", numbers.size(), key, count));
+  throw InputError(fmt::format("a row has {} numbers of \"{}\", not {}; make the store anew",
+                               numbers.size(), key, count));
 }
 
 Rate RateOf(const Row& row, const char* worlds, const char* met) {
   const Row &all = row.at(worlds), &some = row.at(met);
   constexpr std::uint64_t kMost = 1'000'000'000;
   if (!all.is_number_unsigned() || !some.is_number_unsigned() || all > kMost || some > all) {
-    throw InputError(fmt::format("a row has no rate of \"{}\" among \"{}\"", met, worlds));
+    throw InputError(
+        fmt::format("a row has no rate of \"{}\" among \"{}\"; make the store anew", met, worlds));
   }
   return {all.get<int>(), some.get<int>()};
 }
