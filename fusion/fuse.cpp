@@ -45,16 +45,6 @@ double BirgeRatio(const RunConsistency& run) {
   return std::sqrt(std::max(1.0, run.statistic / static_cast<double>(run.directions)));
 }
 
-// Whether the places of a run tell a wave of an axis from a smooth error: they need enough of
-// different positions. On the few planes of a grid the two are alike.
-bool ShowsWaves(const SimulatedRun& run, int axis) {
-  constexpr std::size_t kFewPositions = 20;
-  constexpr double kAlike = 1e-4;  // m
-  std::set<long> positions;
-  for (const double x : run.commanded.row(axis)) positions.insert(std::lround(x / kAlike));
-  return run.response && positions.size() >= kFewPositions;
-}
-
 void Widen(double times, SeenErrors& seen) {
   seen.covariance *= times * times;
   for (FunctionSeen& function : seen.functions) function.u *= times;
@@ -212,7 +202,8 @@ class FuseJob {
   // does.
   bool Refine() {
     if (!options_.runs_on) return false;
-    if (!HoldsAnyWaves() && SetWaves()) {
+    if (const auto may_show = ThatMayShowWaves(runs_); waves_ != may_show) {
+      waves_ = may_show;
       const PopulationEvidence evidence(machine_, WithWaves(model_, waves_));
       VectorXd usual = VectorXd::Zero(evidence.count());  // the waves
       usual.head(theta_.size()) = theta_;
@@ -231,27 +222,6 @@ class FuseJob {
     return true;
   }
 
-  bool HoldsAnyWaves() const { return std::ranges::find(waves_, true) != waves_.end(); }
-  // False where no run shows any.
-  bool SetWaves() {
-    for (int axis = 0; axis < machine::kAxes; ++axis) {
-      if (model_.Function(axis, axis).size() == 0) continue;
-      waves_[axis] = std::ranges::any_of(
-          runs_, [&](const SimulatedRun& run) { return ShowsWaves(run, axis); });
-    }
-    return HoldsAnyWaves();
-  }
-  // Of which the runs tell that they are there.
-  std::array<bool, machine::kAxes> EvidentWaves() const {
-    std::array<bool, machine::kAxes> evident{};
-    if (!HoldsAnyWaves()) return evident;
-    const PopulationEvidence evidence(machine_, model_);
-    for (int axis = 0; axis < machine::kAxes; ++axis) {
-      evident[axis] = evidence.GainOfWaves(seen_, theta_, axis) >= kEvident;
-    }
-    return evident;
-  }
-
   FuseReport Report(Fitted now) {
     machine::VolumetricModel found = model_;
     found.SetParameters(ValuesFound(now.fit, model_.Blocks()));
@@ -265,7 +235,9 @@ class FuseJob {
     if (by_theta_.size() > 0) seen.covariance += by_theta_ * by_theta_.transpose();
     AddDoubt(options_.doubt, found, -machine_.reference, seen.covariance);
     const MachinePrior prior = Prior();
-    const auto evident = EvidentWaves();
+    const auto evident = theta_.size() > 0
+                             ? PopulationEvidence(machine_, model_).EvidentWaves(seen_, theta_)
+                             : std::array<bool, machine::kAxes>{};
     std::vector<PlaceScatter> scatter;
     std::vector<double> follows;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
@@ -414,7 +386,7 @@ class FuseJob {
   std::array<double, machine::kAxes> knots_;  // m apart, of model_
   machine::VolumetricModel model_;
   ErrorPopulation population_;
-  std::array<bool, machine::kAxes> waves_{};  // which axes have in model_
+  std::array<bool, machine::kAxes> waves_{};  // the axes that have any in model_
   VectorXd theta_;                            // population_estimate.h
   std::vector<double> noise_;
   double form_ = 1.0;   // of the target, over what the file states

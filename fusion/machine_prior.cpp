@@ -44,6 +44,9 @@ MatrixXd Kernel(const VectorXd& x, double length) {
   return K;
 }
 
+// Any motion of an axis but its positioning.
+constexpr int OtherThanPositioning(int axis) { return (axis + 1) % machine::kMotions; }
+
 ErrorPopulation WithLength(ErrorPopulation population, double smoothness) {
   population.length = smoothness;
   return population;
@@ -123,7 +126,7 @@ machine::VolumetricModel WithWaves(machine::VolumetricModel model,
 
 bool HoldsWaves(const machine::VolumetricModel& model, int axis) {
   return model.Function(axis, axis).size() >
-         model.Function(axis, (axis + 1) % machine::kMotions).size();
+         model.Function(axis, OtherThanPositioning(axis)).size();
 }
 
 MachinePrior::MachinePrior(const machine::Machine& machine, const machine::VolumetricModel& model,
@@ -133,8 +136,7 @@ MachinePrior::MachinePrior(const machine::Machine& machine, const machine::Volum
   const auto axes = std::make_shared<OfAxes>();
   for (int axis = 0; axis < machine::kAxes; ++axis) {
     for (const bool positioning : {false, true}) {
-      const int size =
-          model.Function(axis, positioning ? axis : (axis + 1) % machine::kMotions).size();
+      const int size = model.Function(axis, positioning ? axis : OtherThanPositioning(axis)).size();
       if (size == 0) continue;
       const machine::Travel& travel = machine.travels[axis];
       const auto basis = BSplineBasis::Uniform(kDegree, travel.first, travel.last, size);

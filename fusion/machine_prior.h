@@ -38,7 +38,7 @@ struct ErrorPopulation {
   OfFunctions length;     // m
   double squareness;      // rad
   double scale;           // relative
-  // Of waves of the positioning errors that are shorter, m: sizes and correlation lengths.
+  // Waves of the positioning errors, which are shorter: sizes and correlation lengths, m.
   Eigen::Array3d wave = Eigen::Array3d::Zero();
   Eigen::Array3d wave_length = Eigen::Array3d::Ones();
 };

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <vector>
 
 #include "fusion/machine_problem.h"
@@ -25,6 +26,7 @@ constexpr double kLeast = 1e-8;       // m: the search for sd begins here, and g
 constexpr double kFactor = 1.09;      // so large a factor
 constexpr int kTried = 110;           // up to 0.1 mm
 constexpr Index kFewPlaces = 20;      // too few to tell
+constexpr double kAlike = 1e-4;       // m: positions
 constexpr double kFarOffPose = 25.0;  // of the median square
 constexpr Index kMostPlaces = 250;
 // m: correlation lengths l of a wave, the longest as a part of that of the error; sizes t, and
@@ -176,6 +178,20 @@ double SquaresOf(const machine::VolumetricModel& found, int axis) {
 }
 
 }  // namespace
+
+std::array<bool, machine::kAxes> ThatMayShowWaves(
+    const std::vector<simulation::SimulatedRun>& runs) {
+  std::array<bool, machine::kAxes> axes{};
+  for (const simulation::SimulatedRun& run : runs) {
+    if (!run.response) continue;
+    for (int axis = 0; axis < machine::kAxes; ++axis) {
+      std::set<long> positions;
+      for (const double x : run.commanded.row(axis)) positions.insert(std::lround(x / kAlike));
+      axes[axis] = axes[axis] || std::ssize(positions) >= kFewPlaces;
+    }
+  }
+  return axes;
+}
 
 PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const VectorXd& left,
                               const machine::VolumetricModel& found, const MachinePrior& prior,

@@ -36,6 +36,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "fusion/machine_prior.h"
@@ -47,12 +48,18 @@ namespace abbe::fusion {
 
 struct PlaceScatter {
   int axis = -1;      // 0 to 2; -1: none
-  double sd = 0.0;    // m, anywhere on the axis
+  double sd = 0.0;    // m, anywhere on the axis, of what the map does not hold
   double held = 0.0;  // m, the same of the waves that the map holds
+  double size() const { return std::hypot(sd, held); }
 };
 
-// `found`: the model of the fit; `prior`: of its functions; `evident`: the axes whose waves in it
-// are.
+// The axes of which a run has places at twenty positions or more, 0.1 mm apart: such places tell a
+// wave from a smooth error; on the few planes of a grid the two are alike.
+std::array<bool, machine::kAxes> ThatMayShowWaves(
+    const std::vector<simulation::SimulatedRun>& runs);
+
+// `found`: the model of the fit; `prior`: of its functions; `evident`: the axes whose waves in the
+// model are sure to be there (PopulationEvidence::EvidentWaves).
 PlaceScatter FindPlaceScatter(const simulation::SimulatedRun& run, const Eigen::VectorXd& left,
                               const machine::VolumetricModel& found, const MachinePrior& prior,
                               const std::array<bool, machine::kAxes>& evident = {});

@@ -109,7 +109,7 @@ PopulationEvidence::PopulationEvidence(const machine::Machine& machine,
   }
   MatrixXd cov = MatrixXd::Zero(count(), count());
   for (Index i = 0; i < count(); ++i) {
-    if (knobs_[i].line == kWave || knobs_[i].line == kWaveLength) {
+    if (i >= count() - waves_) {
       cov(i, i) = std::pow(knobs_[i].line == kWave ? kWaveSize : kWaveTo, 2);
       continue;
     }
@@ -312,20 +312,27 @@ PopulationEvidence::Maximum PopulationEvidence::Maximise(const Quadratic& of_mac
   return highest;
 }
 
-double PopulationEvidence::GainOfWaves(const Quadratic& of_machine, const VectorXd& theta,
-                                       int axis) const {
-  const auto found = std::ranges::find_if(
-      knobs_, [&](const Knob& knob) { return knob.line == kWave && knob.axis == axis; });
-  if (found == knobs_.end()) return 0.0;
-  const Index wave = found - knobs_.begin();
+bool PopulationEvidence::IsEvident(const Quadratic& of_machine, const VectorXd& theta,
+                                   Index wave) const {
   VectorXd without = theta;
   without[wave] = std::log(kNoWave);
-  // Without the prior of the size.
-  const double with = At(of_machine, theta).log + 0.5 * pi_(wave, wave) * std::pow(theta[wave], 2);
-  const double of_size = 0.5 * pi_(wave, wave) * std::pow(without[wave], 2);
-  const double at_most = with - At(of_machine, without).log - of_size;
-  if (at_most < kEvident) return at_most;
-  return with - Maximise(of_machine, without, of_functions() + 2).log - of_size;
+  // All without the prior of the size.
+  const auto prior = [&](const VectorXd& at) {
+    return 0.5 * pi_(wave, wave) * at[wave] * at[wave];
+  };
+  const double needed = At(of_machine, theta).log + prior(theta) - prior(without) - kEvident;
+  return At(of_machine, without).log <= needed &&
+         Maximise(of_machine, without, of_functions() + 2).log <= needed;
+}
+
+std::array<bool, machine::kAxes> PopulationEvidence::EvidentWaves(const Quadratic& of_machine,
+                                                                  const VectorXd& theta) const {
+  std::array<bool, machine::kAxes> evident{};
+  for (Index knob = 0; knob < count(); ++knob) {
+    const auto [line, axis, motion] = knobs_[knob];
+    if (line == kWave) evident[axis] = IsEvident(of_machine, theta, knob);
+  }
+  return evident;
 }
 
 std::vector<Statement> PopulationEvidence::Statements(const Maximum& at) const {

@@ -47,7 +47,7 @@ enum Line {
   kScale,
   kSmoothness,
   kLines,
-  // Of no line of the machine file.
+  // Waves have no line in the machine file.
   kWave = kLines,
   kWaveLength
 };
@@ -77,7 +77,7 @@ struct Quadratic {
 // H and h of the columns `of_machine`, marginalised over all others that have any information.
 Quadratic Marginalised(const Quadratic& all, const std::vector<int>& of_machine);
 
-// Of the logarithm of the evidence: what is named needs so much (22 000 : 1).
+// A finding is named where the logarithm of the evidence gains so much: odds of 22 000 : 1.
 inline constexpr double kEvident = 10.0;
 
 class PopulationEvidence {
@@ -125,9 +125,10 @@ class PopulationEvidence {
   // From `theta` on, of which the first `free` are free and the others stay.
   Maximum Maximise(const Quadratic& of_machine, const Eigen::VectorXd& theta,
                    Eigen::Index free) const;
-  // By how much the logarithm of the evidence falls without the waves of an axis, all sizes and
-  // lengths of the smooth errors chosen anew; 0 where the model has none.
-  double GainOfWaves(const Quadratic& of_machine, const Eigen::VectorXd& theta, int axis) const;
+  // The axes without whose waves the logarithm of the evidence falls by kEvident or more, the sizes
+  // and lengths of the smooth errors chosen anew.
+  std::array<bool, machine::kAxes> EvidentWaves(const Quadratic& of_machine,
+                                                const Eigen::VectorXd& theta) const;
   // The most probable of several common lengths, all sizes as stated.
   Eigen::VectorXd AtBestLength(const Quadratic& of_machine) const;
   // Each line that its errors share, with all lines free: each weighted by what the runs tell.
@@ -145,7 +146,10 @@ class PopulationEvidence {
     Eigen::MatrixXd slope;
   };
   std::vector<Part> Parts(const Eigen::VectorXd& theta) const;
-  // Of each function, and of the squarenesses: where it begins, and its size.
+  // `wave`: the knob of its size.
+  bool IsEvident(const Quadratic& of_machine, const Eigen::VectorXd& theta,
+                 Eigen::Index wave) const;
+  // Calls it with the first column and the size of each function, then of the squarenesses.
   void EachBlock(const std::function<void(Eigen::Index, Eigen::Index)>& of_block) const;
 
   const machine::Machine& machine_;
