@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
 #include <string>
 
+#include "folders.h"
 #include "settings/document.h"
 
 namespace abbe::tests {
@@ -16,7 +16,7 @@ namespace abbe::tests {
 // The demonstration machine with another chain. Counted as the tool goes, an axis that carries the
 // workpiece shows minus where its carriage stands, and its travel is -60 to 0.
 inline settings::Document MachineOf(const std::string& chain, bool as_tool) {
-  std::ifstream file(std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml");
+  std::ifstream file(DemoMillFile());
   std::string text{std::istreambuf_iterator<char>(file), {}};
   const auto replace = [&](const std::string& from, const std::string& to) {
     text = std::regex_replace(text, std::regex(from), to);

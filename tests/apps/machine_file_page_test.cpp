@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 
+#include "../folders.h"
 #include "apps/machine_file.h"
 
 namespace abbe::apps {
@@ -40,7 +41,7 @@ struct Row {
 
 // The rows "| `key` | unit | default | meaning |" of the page.
 std::map<std::string, Row> RowsOfPage() {
-  std::ifstream page(std::string(ABBE_SOURCE_DIR) + "/docs/machine-file.md");
+  std::ifstream page(SourceFolder() / "docs/machine-file.md");
   EXPECT_TRUE(page) << "docs/machine-file.md cannot be read";
   std::map<std::string, Row> rows;
   const std::regex row(R"(\| `([^`]+)` \| ([^|]*?) *\| ([^|]*?) *\| [^|]+\|)");
@@ -86,7 +87,7 @@ node = [{ id = 1, name = "pivot_9_rad", counts_per_turn = 4096, serial = 7 }]
 )";
 
 std::string Demo() {
-  std::ifstream demo(std::string(ABBE_SOURCE_DIR) + "/machines/demo_mill.toml");
+  std::ifstream demo(DemoMillFile());
   std::string text{std::istreambuf_iterator<char>(demo), {}};
   const std::string probe = "[head.probe_a]\n";
   text.insert(text.find(probe) + probe.size(), "zero_gap_um = 100.0\n");

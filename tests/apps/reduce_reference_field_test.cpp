@@ -18,11 +18,11 @@
 //           abs(p - q).max(), (p - q).mean())))
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <ostream>
 #include <string>
 
+#include "../folders.h"
 #include "apps/reduce_reference.h"
 #include "recording/target_table.h"
 
@@ -41,9 +41,7 @@ class PositioningField : public testing::TestWithParam<Computed> {};
 
 TEST_P(PositioningField, AgreesWithNumPy) {
   const Computed& numpy = GetParam();
-  const char* folder = std::getenv("ABBE_FIELD_DATA");
-  const auto path = std::filesystem::path(folder ? folder : ABBE_SOURCE_DIR "/../shared/data") /
-                    "ess-target-iso230" / (std::string(numpy.file) + ".dat");
+  const auto path = FieldData() / "ess-target-iso230" / (std::string(numpy.file) + ".dat");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: field data not found";
   const auto result = ReduceReference(recording::ReadTargetTable(path, numpy.axis));
   const auto& figures = result["iso230_2"];

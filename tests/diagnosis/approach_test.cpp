@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "../folders.h"
 #include "diagnosis/diagnose.h"
 #include "rig/campaign_machine.h"
 #include "rig/record_lengths.h"
@@ -19,8 +19,7 @@ namespace approach_test {
 constexpr double kWidth = 3e-6;  // m
 
 const settings::Document& Demo() {
-  static const settings::Document document =
-      settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml");
+  static const settings::Document document = settings::Document::Read(DemoMillFile());
   return document;
 }
 

@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 
+#include "../folders.h"
 #include "diagnosis/diagnose.h"
 #include "diagnosis/hold_out.h"
 #include "machine/machine.h"
@@ -27,9 +28,7 @@ class RealArm : public testing::Test {
  protected:
   // `joints`: "l" or "r", the prefix of the columns. Skips without the data.
   void Read(const std::string& file, const std::string& joints) {
-    const char* folder = std::getenv("ABBE_FIELD_DATA");
-    const auto path = std::filesystem::path(folder ? folder : ABBE_SOURCE_DIR "/../shared/data") /
-                      "motoman-leica" / (file + "_dataset_poses.csv");
+    const auto path = FieldData() / "motoman-leica" / (file + "_dataset_poses.csv");
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: field data not found";
     recording::CsvTableOptions table{{}, {{"arm", joints == "l" ? "2" : "1"}}, "linkage"};
     constexpr std::string_view kJoints = "SLURBT";
@@ -105,7 +104,7 @@ class RealArm : public testing::Test {
  private:
   // The machine file that comes with abbe, its first row for either arm.
   static simulation::Instruments ArmSetup(const std::string& alpha) {
-    std::ifstream in(ABBE_SOURCE_DIR "/machines/motoman_left.toml");
+    std::ifstream in(SourceFolder() / "machines/motoman_left.toml");
     std::string text{std::istreambuf_iterator<char>(in), {}};
     const std::string left = "alpha_deg = -15.0";
     text.replace(text.find(left), left.size(), "alpha_deg = " + alpha);

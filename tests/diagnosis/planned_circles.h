@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "../folders.h"
 #include "diagnosis/campaign.h"
 #include "recording/recording.h"
 #include "settings/document.h"
@@ -14,8 +14,7 @@
 namespace abbe::diagnosis {
 
 inline simulation::Instruments DemoInstruments() {
-  const auto document =
-      settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml");
+  const auto document = settings::Document::Read(DemoMillFile());
   const auto& root = document.Root();
   return {machine::ReadMachine(root), probes::ReadHeadSettings(root),
           probes::ReadTargetSettings(root), probes::ReadProbeNoise(root),

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
+#include "../folders.h"
 #include "diagnosis/diagnose.h"
 #include "rig/record_plate.h"
 #include "rig/rig_settings.h"
@@ -18,8 +18,7 @@ constexpr double kHoleEvery = 20.0, kTimeConstant = 300.0;  // s
 constexpr std::uint64_t kSeeds = 5;
 
 const settings::Document& Demo() {
-  static const settings::Document document =
-      settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml");
+  static const settings::Document document = settings::Document::Read(DemoMillFile());
   return document;
 }
 

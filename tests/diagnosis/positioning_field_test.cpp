@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 
+#include "../folders.h"
 #include "diagnosis/diagnose.h"
 #include "recording/target_table.h"
 #include "settings/document.h"
@@ -44,9 +45,7 @@ class RealAxis : public testing::Test {
  protected:
   // Skips without the data.
   void Read(const std::string& file) {
-    const char* folder = std::getenv("ABBE_FIELD_DATA");
-    const auto path = std::filesystem::path(folder ? folder : ABBE_SOURCE_DIR "/../shared/data") /
-                      "ess-target-iso230" / file;
+    const auto path = FieldData() / "ess-target-iso230" / file;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: field data not found";
     campaign_.Add(recording::ReadTargetTable(path));
     diagnosis_ = Diagnose(campaign_);

@@ -5,10 +5,10 @@
 // alone (no head, no linkage) and the recording.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "../folders.h"
 #include "diagnosis/diagnose.h"
 #include "machine/machine.h"
 #include "random/counter_random.h"
@@ -27,8 +27,7 @@ struct PositioningPlan {
 class PositioningWorlds {
  public:
   PositioningWorlds()
-      : document_(settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) /
-                                           "machines/demo_mill.toml")),
+      : document_(settings::Document::Read(DemoMillFile())),
         machine_(rig::ReadCampaignMachine(document_.Root())),
         linkage_(rig::ReadLinkage(document_.Root())) {}
 

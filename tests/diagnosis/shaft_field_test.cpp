@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "../folders.h"
 #include "recording/monitor_log.h"
 #include "tests/diagnosis/shaft_world.h"
 
@@ -21,9 +21,7 @@ class RealWheel : public testing::Test {
  protected:
   // Skips without the data.
   void Read(const std::vector<std::string>& files) {
-    const char* folder = std::getenv("ABBE_FIELD_DATA");
-    const auto data = std::filesystem::path(folder ? folder : ABBE_SOURCE_DIR "/../shared/data") /
-                      "ess-target-wobble";
+    const auto data = FieldData() / "ess-target-wobble";
     for (const std::string& file : files) {
       if (!std::filesystem::exists(data / file)) GTEST_SKIP() << "skipped: field data not found";
       campaign_.Add(recording::ReadMonitorLog(data / file,

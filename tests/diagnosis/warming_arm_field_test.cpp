@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "../folders.h"
 #include "diagnosis/diagnose.h"
 #include "diagnosis/hold_out.h"
 #include "machine/machine.h"
@@ -103,9 +104,7 @@ struct Found {
 class RealRobot : public testing::Test {
  protected:
   void SetUp() override {
-    const char* folder = std::getenv("ABBE_FIELD_DATA");
-    data_ = std::filesystem::path(folder ? folder : ABBE_SOURCE_DIR "/../shared/data") /
-            "abb-irb120-faro";
+    data_ = FieldData() / "abb-irb120-faro";
     if (!std::filesystem::exists(data_)) GTEST_SKIP() << "skipped: field data not found";
     recording_.name = "robot";
     recording_.header = "kind = \"linkage\"\ntime = \"order\"\n";

@@ -1,7 +1,6 @@
 // A tolerance of zero takes no cause away.
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <regex>
 #include <set>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../folders.h"
 #include "diagnosis/evidence.h"
 #include "diagnosis/extended_run.h"
 #include "rig/campaign.h"
@@ -39,7 +39,7 @@ TEST(ZeroTolerance, LeavesTheCausesThatWidenIt) {
 }
 
 std::string DemoMill() {
-  std::ifstream file(std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml");
+  std::ifstream file(DemoMillFile());
   std::stringstream text;
   text << file.rdbuf();
   return text.str();

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "../folders.h"
 #include "failure/failure.h"
 #include "fleet/odd_machines.h"
 #include "fleet/population_fit.h"
@@ -29,8 +30,8 @@ constexpr double kNoise = 0.02;  // of the size of a function
 const std::vector<double> kTrue{2.0, 0.5, 1.0, 2.5, 0.6, 1.8, 1.0, 1.3};
 
 const machine::Machine& Mill() {
-  static const machine::Machine mill = machine::ReadMachine(
-      settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml").Root());
+  static const machine::Machine mill =
+      machine::ReadMachine(settings::Document::Read(DemoMillFile()).Root());
   return mill;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "../folders.h"
 #include "fusion/circle_causes.h"
 #include "machine/machine.h"
 #include "rig/record_course.h"
@@ -21,7 +22,7 @@ constexpr double kBacklash = 5e-6;
 constexpr double kCoverage = 2.0;
 
 const settings::Document& MachineFile() {
-  static const auto document = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
+  static const auto document = settings::Document::Read(DemoMillFile());
   return document;
 }
 

@@ -4,12 +4,12 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <utility>
 #include <vector>
 
+#include "../folders.h"
 #include "fusion/machine_prior.h"
 #include "machine/machine.h"
 #include "random/counter_random.h"
@@ -82,10 +82,7 @@ class OneResponse : public simulation::Responsive {
 class PlaceScatterTest : public testing::Test {
  protected:
   explicit PlaceScatterTest()
-      : machine_(
-            machine::ReadMachine(settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) /
-                                                          "machines/demo_mill.toml")
-                                     .Root())),
+      : machine_(machine::ReadMachine(settings::Document::Read(DemoMillFile()).Root())),
         model_(UnknownMachine(machine_)),
         prior_(machine_, model_, PopulationOf(machine_)) {}
 

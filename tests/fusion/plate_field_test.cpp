@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
+#include "../folders.h"
 #include "fusion/fuse.h"
 #include "fusion/interpolators.h"
 #include "fusion/plate_diagonals.h"
@@ -43,9 +43,7 @@ smoothness_mm = 100.0
 class PlugPlate : public testing::Test {
  protected:
   void SetUp() override {
-    const char* given = std::getenv("ABBE_FIELD_DATA");
-    const std::filesystem::path data =
-        given != nullptr ? given : std::filesystem::path(ABBE_SOURCE_DIR) / "../shared/data";
+    const std::filesystem::path data = FieldData();
     const auto path = data / "sdss-plugplate-cmm/D1597A_redrilled_meas_2011.txt";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
     setups_ = simulation::ReadPlate(recording::ReadHoleTable(path, 3.0));

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 
+#include "../folders.h"
 #include "fusion/model_comparison.h"
 #include "linkage_world.h"
 #include "rig/record_course.h"
@@ -31,7 +32,7 @@ std::vector<Vector3d> OtherPlaces() {
 
 // Largest 3D distance at the other places, by the name of the row, one a seed.
 std::map<std::string, std::vector<double>> LargestByModel() {
-  const auto document = settings::Document::Read(ABBE_SOURCE_DIR "/machines/relm_2006.toml");
+  const auto document = settings::Document::Read(SourceFolder() / "machines/relm_2006.toml");
   const auto linkage = relm::ReadLinkageSettings(document.Root());
   std::map<std::string, std::vector<double>> largest;
   const Seeds seeds = SeedsFromEnvironment();

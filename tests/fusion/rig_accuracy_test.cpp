@@ -9,6 +9,7 @@
 #include <map>
 #include <string>
 
+#include "../folders.h"
 #include "fusion/calibrate.h"
 #include "linkage_world.h"
 #include "random/counter_random.h"
@@ -29,9 +30,7 @@ using Eigen::VectorXd;
 constexpr int kPlaces = 40;
 constexpr double kCoverage = 1.96;
 
-settings::Document Mill() {
-  return settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
-}
+settings::Document Mill() { return settings::Document::Read(DemoMillFile()); }
 
 Matrix3Xd PlacesAt(const Matrix3Xd& positions) {
   Matrix3Xd p_MT = positions;  // [w X Y b Z t]

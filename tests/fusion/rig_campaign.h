@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
 #include <string>
 #include <vector>
 
+#include "../folders.h"
 #include "fusion/fuse.h"
 #include "hal/device_settings.h"
 #include "machine/machine.h"
@@ -29,7 +29,7 @@ namespace abbe::fusion {
 // The demonstration machine with other values: "step_mm = 1.0" -> "step_mm = 5.0".
 inline settings::Document CampaignMachine(
     const std::vector<std::pair<std::string, std::string>>& changes = {}) {
-  std::ifstream file(std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml");
+  std::ifstream file(DemoMillFile());
   std::string text{std::istreambuf_iterator<char>(file), {}};
   text = std::regex_replace(text, std::regex("step_mm = 1.0"), "step_mm = 4.0");
   text = std::regex_replace(text, std::regex("passes = 5"), "passes = 2");

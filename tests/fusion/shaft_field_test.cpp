@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <span>
 
+#include "../folders.h"
 #include "fusion/bearing_harmonics.h"
 #include "paths/shaft_readings.h"
 #include "recording/monitor_log.h"
@@ -21,9 +22,7 @@ struct Probe {
 };
 
 TEST(ShaftField, TwoHarmonicsTakeTheEccentricityOut) {
-  const char* folder = std::getenv("ABBE_FIELD_DATA");
-  const auto path = std::filesystem::path(folder ? folder : ABBE_SOURCE_DIR "/../shared/data") /
-                    "ess-target-wobble" / "test_03.log";
+  const auto path = FieldData() / "ess-target-wobble" / "test_03.log";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: field data not found";
   for (const Probe& probe :
        {Probe{"AI01", 453.1, 12.02}, Probe{"AI02", 728.6, 26.75}, Probe{"AI03", 597.9, 25.59}}) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "../folders.h"
 #include "fusion/calibrate.h"
 #include "settings/document.h"
 #include "tests/relm/arm_rows.h"
@@ -106,9 +107,7 @@ double GapRms(const Matrix3Xd& tips, const LinkageRun& run) {
 // another program, 252 and 240 um without one; the requirement is 85 um.
 TEST_P(RobotArm, GeometryReachesTheFigureOfAnotherProgram) {
   const Arm& arm = GetParam();
-  const char* folder = std::getenv("ABBE_FIELD_DATA");
-  const auto path = std::filesystem::path(folder ? folder : ABBE_SOURCE_DIR "/../shared/data") /
-                    "motoman-leica" /
+  const auto path = FieldData() / "motoman-leica" /
                     (std::string("leica_") + arm.name + "_hand_6x6x6_dataset_poses.csv");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: field data not found";
   const ArmPoses poses = ReadArm(path, arm.first);

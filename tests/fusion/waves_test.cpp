@@ -1,12 +1,15 @@
 // Waves of the positioning errors that are shorter than the smooth ones: their prior, the slopes of
-// their evidence, and what they are worth in a map.
+// their evidence, and which runs show them.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
-#include <filesystem>
+#include <memory>
 
+#include "../folders.h"
 #include "fusion/machine_prior.h"
+#include "fusion/place_scatter.h"
 #include "fusion/population_evidence.h"
 #include "geometry/b_spline.h"
 #include "machine/machine.h"
@@ -24,16 +27,20 @@ constexpr int kDegree = 5;
 constexpr double kSmooth = 5e-6, kWave = 2e-6;               // m: sizes
 constexpr double kSmoothLength = 20e-3, kWaveLength = 2e-3;  // m
 
+class NoResponse : public simulation::Responsive {
+ public:
+  Index Rows() const override { return 0; }
+  void Evaluate(const VectorXd&, VectorXd&, estimation::RowMatrix*) const override {}
+  std::shared_ptr<const simulation::Response> At(const VectorXd&) const override { return {}; }
+};
+
 class Waves : public testing::Test {
  protected:
   Waves()
-      : machine_(
-            machine::ReadMachine(settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) /
-                                                          "machines/demo_mill.toml")
-                                     .Root())),
+      : machine_(machine::ReadMachine(settings::Document::Read(DemoMillFile()).Root())),
         model_(WithWaves(UnknownMachine(machine_), {true, true, true})) {}
 
-  // Of EYY.
+  // With waves in EYY alone.
   ErrorPopulation Population() const {
     ErrorPopulation population = PopulationOf(machine_);
     population.deviation(1, 1) = kSmooth;
@@ -133,6 +140,55 @@ TEST_F(Waves, HaveTheSlopesOfTheirEvidence) {
     const double expected = (log(theta + step) - log(theta - step)) / (2.0 * kStep);
     EXPECT_NEAR(slopes.gradient[i], expected, 0.02 * std::abs(expected) + 2e-3) << i;
   }
+}
+
+// EYY read at five clusters of 25 places with a noise of 0.1 um; with a wave of 2 um, and without.
+TEST_F(Waves, AreEvidentWhereTheyAreThere) {
+  const PopulationEvidence evidence(machine_, model_);
+  const Index n = evidence.squareness() + 3, rows = 125;
+  constexpr double kNoise = 1e-7;
+  VectorXd y(rows);
+  const random::CounterRandom draw(7, 20);
+  for (Index i = 0; i < rows; ++i) {
+    const double cluster = 2e-3 + 14e-3 * static_cast<double>(i % 5);
+    y[i] = cluster + draw.Uniform(static_cast<std::uint64_t>(i), -1e-3, 1e-3);
+  }
+  Index first = 0;
+  for (int motion = 0; motion < machine::kMotions; ++motion) {
+    first += model_.Function(0, motion).size();
+  }
+  MatrixXd J = MatrixXd::Zero(rows, n);
+  const Index at = first + model_.Function(1, 0).size();
+  J.middleCols(at, model_.Function(1, 1).size()) = Basis(y) / kNoise;
+  const VectorXd smooth = 3e-6 * (y.array() / 12e-3).sin(), noise = kNoise * Normal(21, rows);
+  const VectorXd wave = 2e-6 * (y.array() / 0.8e-3).sin();
+  const auto evident = [&](const VectorXd& read) {
+    const Quadratic seen{J.transpose() * J, J.transpose() * (read / kNoise)};
+    const VectorXd theta =
+        evidence.Maximise(seen, evidence.AtBestLength(seen), evidence.count()).theta;
+    return evidence.EvidentWaves(seen, theta);
+  };
+  using OfAxes = std::array<bool, machine::kAxes>;
+  EXPECT_EQ(evident(smooth + wave + noise), (OfAxes{false, true, false}));
+  EXPECT_EQ(evident(smooth + noise), (OfAxes{false, false, false}));
+}
+
+// 125 places on the planes of a grid, and up to a millimetre off them.
+TEST_F(Waves, MayBeShownByPlacesThatAreNotOnFewPlanes) {
+  simulation::SimulatedRun run{"space", "linkage", {}, nullptr};
+  run.response = std::make_shared<NoResponse>();
+  run.commanded.resize(3, 125);
+  const random::CounterRandom draw(7, 30);
+  for (Index i = 0; i < 125; ++i) {
+    run.commanded.col(i) =
+        14e-3 * Eigen::Vector3d(static_cast<double>(i % 5), static_cast<double>(i / 5 % 5),
+                                static_cast<double>(i / 25));
+    run.commanded(1, i) += draw.Uniform(static_cast<std::uint64_t>(i), -1e-3, 1e-3);
+  }
+  using OfAxes = std::array<bool, machine::kAxes>;
+  EXPECT_EQ(ThatMayShowWaves({run}), (OfAxes{false, true, false}));
+  run.response = nullptr;
+  EXPECT_EQ(ThatMayShowWaves({run}), (OfAxes{false, false, false}));
 }
 
 }  // namespace waves_test

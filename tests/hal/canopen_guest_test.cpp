@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "../folders.h"
 #include "can_guest.h"
 #include "hal/can/canopen_device.h"
 #include "hal/can/canopen_source.h"
@@ -36,11 +37,11 @@ CanopenSettings Linkage() {
 
 // Programs that are encoders: can_encoders.py or npm_encoders/encoders.js.
 std::vector<std::string> OnPython() {
-  return {"/usr/bin/python3", ABBE_SOURCE_DIR "/tests/hal/can_encoders.py"};
+  return {"/usr/bin/python3", SourceFolder() / "tests/hal/can_encoders.py"};
 }
 std::vector<std::string> OnNpm() {
   return {"env", "NODE_PATH=" ABBE_NPM_ENCODERS, ABBE_NODE,
-          ABBE_SOURCE_DIR "/tests/hal/npm_encoders/encoders.js"};
+          SourceFolder() / "tests/hal/npm_encoders/encoders.js"};
 }
 
 class Encoders {

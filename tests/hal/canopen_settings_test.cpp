@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../folders.h"
 #include "hal/can/canopen_device.h"
 #include "hal/device_settings.h"
 
@@ -30,7 +31,7 @@ std::string Refusal(const std::string& node) {
 }
 
 TEST(CanopenSettings, ReadsTheDemonstrationMachine) {
-  const auto file = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
+  const auto file = settings::Document::Read(DemoMillFile());
   const auto all = Read(file);
   ASSERT_EQ(all.size(), 1u);
   const CanopenSettings& linkage = all[0];

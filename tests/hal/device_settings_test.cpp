@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "../folders.h"
 #include "hal/modbus/modbus_device.h"
 
 namespace abbe::hal {
@@ -30,7 +31,7 @@ std::string WithBlock(const std::string& block) {
 }
 
 TEST(DeviceSettings, ReadsTheDemonstrationMachine) {
-  const auto file = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
+  const auto file = settings::Document::Read(DemoMillFile());
   const DevicesSettings all = ReadDevices(file.Root().Child("devices"));
   EXPECT_EQ(all.rate, 200.0);
   EXPECT_DOUBLE_EQ(all.max_skew, 0.02);
@@ -55,7 +56,7 @@ TEST(DeviceSettings, ReadsTheDemonstrationMachine) {
 }
 
 TEST(DeviceSettings, KeepsTheOrderOfTheFileAndLeavesEncodersOut) {
-  const auto file = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
+  const auto file = settings::Document::Read(DemoMillFile());
   const DevicesSettings all = ReadDevices(file.Root().Child("devices"));
   const auto names = [](const DevicesSettings& devices) {
     std::vector<std::string> list;

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "../folders.h"
 #include "hal/can/canopen_device.h"
 #include "hal/device_settings.h"
 #include "hal/modbus/channel_judge.h"
@@ -17,7 +18,7 @@ namespace abbe::hal {
 namespace devices_page_test {
 
 std::string Page() {
-  std::ifstream file(ABBE_SOURCE_DIR "/docs/devices.md");
+  std::ifstream file(SourceFolder() / "docs/devices.md");
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "../folders.h"
 #include "child_process.h"
 #include "hal/combined_source.h"
 #include "hal/modbus/modbus_server.h"
@@ -34,7 +35,7 @@ TEST(ModbusPeers, ReadsEveryTypeAndOrderFromPymodbus) {
   if (!Succeeds(std::string(kPython) + " -c 'import pymodbus'")) {
     GTEST_SKIP() << "skipped: python3-pymodbus is not installed";
   }
-  ChildProcess server({kPython, ABBE_SOURCE_DIR "/tests/hal/pymodbus_server.py"});
+  ChildProcess server({kPython, SourceFolder() / "tests/hal/pymodbus_server.py"});
   const std::string place = "host = '127.0.0.1'\nport = " + server.Line() + "\n";
   std::string channels;
   int at = 0;

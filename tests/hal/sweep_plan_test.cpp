@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "../folders.h"
+
 namespace abbe::hal {
 namespace sweep_plan_test {
 
@@ -21,7 +23,7 @@ std::string Refusal(const std::string& text) {
 }
 
 TEST(SweepPlan, ReadsTheDemonstrationMachine) {
-  const auto file = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
+  const auto file = settings::Document::Read(DemoMillFile());
   for (const char axis : {'X', 'Y', 'Z'}) {
     const SweepPlan plan = ReadSweepPlan(file.Root().Child("sweep"), axis);
     ASSERT_EQ(plan.stations.size(), 61u);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "../folders.h"
 #include "apps/causes_option.h"
 #include "diagnosis/found_model.h"
 #include "fusion/fuse.h"
@@ -25,8 +26,7 @@ namespace corrected_map_test {
 
 using Eigen::Vector3d;
 
-const std::filesystem::path kMachine =
-    std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml";
+const std::filesystem::path kMachine = DemoMillFile();
 constexpr int kPoints = 5;  // along each travel
 
 // Deviation of a map from the machine and its U95, three components at each point, m.

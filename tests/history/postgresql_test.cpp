@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "../folders.h"
 #include "schema_contract.h"
 #include "store_contract.h"
 
@@ -43,7 +44,7 @@ class Server {
 
  private:
   std::string Command(const std::string& action) const {
-    return std::string(ABBE_SOURCE_DIR) + "/tests/history/postgresql_server " + action + " " +
+    return (SourceFolder() / "tests/history/postgresql_server").string() + " " + action + " " +
            (scratch_ / "server").string();
   }
 

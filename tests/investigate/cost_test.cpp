@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../folders.h"
 #include "failure/failure.h"
 #include "simulation/planned_paths.h"
 
@@ -14,8 +15,7 @@ using investigate::Place;
 
 simulation::Instruments OnlyLinkage() {
   simulation::Instruments on{};
-  const auto demo =
-      settings::Document::Read(std::string(ABBE_SOURCE_DIR) + "/machines/demo_mill.toml");
+  const auto demo = settings::Document::Read(DemoMillFile());
   on.linkage = relm::ReadLinkageSettings(demo.Root());
   return on;
 }

@@ -122,7 +122,7 @@ TEST(Investigate, WorldsWithOneEffect) {
 // The demonstration machine, rougher, with larger errors and noise than its file says.
 settings::Document UnlikeTheFile() {
   std::ostringstream read;
-  read << std::ifstream(DemoFile()).rdbuf();
+  read << std::ifstream(DemoMillFile()).rdbuf();
   std::string text = read.str();
   const std::vector<std::pair<std::string, std::string>> changes{
       {"smoothness_mm = 15.0", "smoothness_mm = 8.0"},

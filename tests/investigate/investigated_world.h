@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "../folders.h"
 #include "investigate/investigation.h"
 #include "machine/machine.h"
 #include "probes/head_settings.h"
@@ -26,17 +27,13 @@ inline std::filesystem::path EmptyFolder(const std::string& name) {
   return folder;
 }
 
-inline std::filesystem::path DemoFile() {
-  return std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml";
-}
-
 // The demonstration machine, its ball without drag in the cap: that drag is a cause. The world is
 // as the machine file says, or as `world` does.
 class InvestigatedMachine {
  public:
-  InvestigatedMachine() : InvestigatedMachine(settings::Document::Read(DemoFile())) {}
+  InvestigatedMachine() : InvestigatedMachine(settings::Document::Read(DemoMillFile())) {}
   explicit InvestigatedMachine(const settings::Document& world)
-      : document_(settings::Document::Read(DemoFile())),
+      : document_(settings::Document::Read(DemoMillFile())),
         rig_(rig::ReadCampaignMachine(world.Root())) {
     rig_.rig.cap = 0.0;
     subject_.instruments = {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "../folders.h"
 #include "failure/failure.h"
 
 namespace abbe::machine {
@@ -105,8 +106,7 @@ TEST(Machine, HasSoftLimitsAroundItsTravels) {
 }
 
 TEST(Machine, TheDemonstrationMachineIsRead) {
-  const Machine machine = ReadMachine(
-      settings::Document::Read(std::string(ABBE_SOURCE_DIR) + "/machines/demo_mill.toml").Root());
+  const Machine machine = ReadMachine(settings::Document::Read(DemoMillFile()).Root());
   EXPECT_EQ(machine.name, "demo-mill");
   EXPECT_TRUE(machine.chain.CarriesTarget('X'));
   EXPECT_FALSE(machine.chain.CarriesTarget('Z'));

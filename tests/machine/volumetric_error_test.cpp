@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../folders.h"
 #include "failure/failure.h"
 #include "machine/configurations.h"
 #include "published_volumetric_errors.h"
@@ -88,7 +89,7 @@ TEST(VolumetricError, APitchingRamSwingsTheStylusSidewaysWhichEquation19AsPrinte
 // The rig multiplies its own poses, with other rotations: the two differ by products of two angles
 // (population of 20 urad, 4 sd: 6e-9 at most) times arms of at most 0.3 m.
 TEST(VolumetricError, IsWhatTheRigsPosesShow) {
-  const auto document = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
+  const auto document = settings::Document::Read(DemoMillFile());
   const Vector3d p_MQ(0.02, 0.03, 0.1), reference(0.01, -0.02, 0.05);
   for (const Chain& chain : AllCounts()) {
     rig::RigSettings settings = rig::ReadRigSettings(document.Root());

@@ -7,14 +7,14 @@
 #include <set>
 #include <string>
 
+#include "../folders.h"
 #include "failure/failure.h"
 #include "map/export_grid.h"
 
 namespace abbe::map {
 namespace damaged_grid_test {
 
-const std::filesystem::path kDamagedGrids =
-    std::filesystem::path(ABBE_SOURCE_DIR) / "fuzz/crashes/map_hdf5";
+const std::filesystem::path kDamagedGrids = SourceFolder() / "fuzz/crashes/map_hdf5";
 
 struct LyingGrid {
   const char *file, *says;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "../folders.h"
 #include "failure/failure.h"
 #include "machine/machine.h"
 #include "probes/head_alignment.h"
@@ -18,9 +19,7 @@
 
 namespace abbe::probes {
 
-inline settings::Document DemoMill() {
-  return settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
-}
+inline settings::Document DemoMill() { return settings::Document::Read(DemoMillFile()); }
 
 // The target tilted by up to 2 mrad about each axis, the gaps set to the middle within 25 um.
 inline rig::RigSettings BadlyMounted() {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <filesystem>
 #include <string>
 
+#include "../folders.h"
 #include "failure/failure.h"
 
 namespace abbe::probes {
@@ -25,8 +25,7 @@ std::string Refusal(const std::string& text) {
 }
 
 TEST(HeadSettings, ReadsTheDemonstrationMachine) {
-  const auto document = settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) /
-                                                 "machines" / "demo_mill.toml");
+  const auto document = settings::Document::Read(DemoMillFile());
   const HeadSettings head = ReadHeadSettings(document.Root());
   EXPECT_DOUBLE_EQ(head.layout.top[2].s, -10e-3);
   EXPECT_DOUBLE_EQ(head.layout.side[1].n, 20e-3);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "../folders.h"
 #include "probes/sweep_reduction.h"
 #include "random/counter_random.h"
 #include "rig/record_sweep.h"
@@ -70,7 +71,7 @@ struct Found {
 class Sweeps {
  public:
   Sweeps()
-      : document_(settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml")),
+      : document_(settings::Document::Read(DemoMillFile())),
         channels_(rig::ChannelsOf(hal::ReadDevices(document_.Root().Child("devices")))) {}
 
   // With a head and a target without errors: nothing but noise.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "../folders.h"
 #include "hal/modbus/modbus_device.h"
 #include "probes/sweep_reduction.h"
 #include "random/counter_random.h"
@@ -44,7 +45,7 @@ class Campaign {
  public:
   Campaign(int axis, Head head)
       : axis_(axis),
-        document_(settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml")),
+        document_(settings::Document::Read(DemoMillFile())),
         devices_(hal::ReadDevices(document_.Root().Child("devices"))),
         setup_(ReadSweepSetup(document_.Root())),
         rig_(rig::ReadRigSettings(document_.Root())) {

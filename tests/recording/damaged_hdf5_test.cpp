@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "../folders.h"
 #include "failure/sanitized.h"
 #include "recording/hdf5_child.h"
 #include "recording/recording_file.h"
@@ -20,8 +21,7 @@
 namespace abbe::recording {
 namespace damaged_hdf5_test {
 
-const std::filesystem::path kDamaged =
-    std::filesystem::path(ABBE_SOURCE_DIR) / "tests/recording/damaged";
+const std::filesystem::path kDamaged = SourceFolder() / "tests/recording/damaged";
 
 std::string RefusalOfDamaged(const std::string& name) {
   return MessageOf<InputError>([&] { Read(kDamaged / name); });

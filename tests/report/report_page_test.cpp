@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "../folders.h"
 #include "report/page_template.h"
 
 namespace abbe::report {
@@ -19,7 +20,7 @@ class ReportPage : public testing::Test {
  protected:
   void SetUp() override {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(ABBE_BINARY_DIR) / "tests/report/unit" / test->name();
+    folder_ = BuildFolder() / "tests/report/unit" / test->name();
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     page_ = folder_ / "report.html";

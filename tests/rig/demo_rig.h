@@ -1,14 +1,13 @@
 // The demonstration machine for the rig's tests, with or without everything that is drawn.
 #pragma once
 
+#include "../folders.h"
 #include "rig/rig_settings.h"
 #include "settings/document.h"
 
 namespace abbe::rig {
 
-inline settings::Document DemoMill() {
-  return settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
-}
+inline settings::Document DemoMill() { return settings::Document::Read(DemoMillFile()); }
 
 inline RigSettings DemoRig() { return ReadRigSettings(DemoMill().Root()); }
 

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <string>
 
+#include "../folders.h"
 #include "failure/failure.h"
 #include "fusion/machine_prior.h"
 #include "machine/machine.h"
@@ -49,9 +50,8 @@ Recording CircleOf(const Radius& radius, const std::string& header = kCentreLine
 
 class Ballbar : public testing::Test {
  protected:
-  const machine::Machine mill = machine::ReadMachine(
-      settings::Document::Read(std::filesystem::path(ABBE_SOURCE_DIR) / "machines/demo_mill.toml")
-          .Root());
+  const machine::Machine mill =
+      machine::ReadMachine(settings::Document::Read(DemoMillFile()).Root());
   const machine::VolumetricModel model = fusion::UnknownMachine(mill);
 
   VectorXd Residual(const Recording& recording, const VectorXd& x) const {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../folders.h"
 #include "settings/document.h"
 
 namespace abbe::simulation {
@@ -23,7 +24,7 @@ recording::Recording Repeats(const std::string& header) {
 }
 
 Eigen::Index PosesOf(const std::string& header) {
-  const auto demo = settings::Document::Read(ABBE_SOURCE_DIR "/machines/demo_mill.toml");
+  const auto demo = settings::Document::Read(DemoMillFile());
   const auto settings = relm::ReadLinkageSettings(demo.Root());
   return MeansOfStays(ReadLinkageRun(Repeats(header), settings)).poses();
 }

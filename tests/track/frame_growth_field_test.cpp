@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "../folders.h"
 #include "failure/failure.h"
 #include "track/series.h"
 
@@ -26,11 +27,7 @@ using Eigen::Index;
 
 constexpr double kMicrostep = 2.5;  // um
 
-std::filesystem::path Folder() {
-  const char* folder = std::getenv("ABBE_FIELD_DATA");
-  return std::filesystem::path(folder ? folder : ABBE_SOURCE_DIR "/../shared/data") /
-         "voron-frame-expansion";
-}
+std::filesystem::path Folder() { return FieldData() / "voron-frame-expansion"; }
 
 std::vector<std::string> Cells(const std::string& line) {
   std::vector<std::string> cells;
