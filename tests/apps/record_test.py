@@ -97,6 +97,33 @@ class RecordTest(unittest.TestCase):
         for row in good:
             self.assertIn(tuple(counts_of(row)), logged)
 
+    def test_setting_the_calendar_changes_no_time_and_no_reading(self):
+        """As a service that keeps the computer's time does, or an operator: an hour on, two hours back."""
+        self.serve_encoders()
+        recording = self.folder / "all.csv"
+        began, calendar = time.monotonic(), time.time()
+        recorder = self.start(ABBE, "record", self.machine, "--seconds", 6, "-o", recording, "--quiet")
+        while not recording.exists() and time.monotonic() < began + 60:
+            time.sleep(0.05)
+        for seconds in (3600, -7200):
+            time.sleep(2)
+            time.clock_settime(time.CLOCK_REALTIME, time.time() + seconds)
+        recorder.wait(timeout=100)
+        took = time.monotonic() - began
+        self.assertLess(time.time() - calendar, -3000)  # it was set
+        self.assertEqual(recorder.returncode, 0)
+
+        header, rows = rows_of(recording)
+        times = [float(row["time_s"]) for row in rows]
+        self.assertEqual(times, sorted(times))
+        self.assertGreater(times[-1] - times[0], 5.0)
+        self.assertLess(times[-1] - times[0], min(took, 7.0))
+        good = [row for row in rows if row["flags"] == "0"]
+        self.assertGreater(len(good), 0.8 * len(rows))
+        for row in good:
+            self.assertEqual(len({(count - 1000 * node) / 7 for node, count in enumerate(counts_of(row), 1)}), 1, row)
+            self.assertLess(float(row["skew_ms"]), 1000.0)
+
     def test_canplayer_sends_a_recording_again(self):
         recording = self.folder / "angles.csv"
         angles = [(20 * i, -30 * i, 7 * i) for i in range(50)]
