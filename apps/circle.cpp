@@ -29,7 +29,8 @@ struct CircleCommand {
   bool quiet = false;
 };
 
-constexpr double kSameRadius = 0.01;  // of the radius: lag reduces a fast circle
+constexpr double kNotCalibrated = 1e-3;  // m: of the length of a ballbar
+constexpr double kSameRadius = 0.01;     // of the radius: lag reduces a fast circle
 
 fusion::CauseOptions CausesOf(const CircleCommand& command) {
   fusion::CauseOptions options;
@@ -103,8 +104,22 @@ Circle Evaluate(Runs runs, const std::vector<const Runs*>& shifted, const Measur
     all.push_back(&run);
   }
   if (!all.front()->plane.Inclined()) circle.causes = fusion::FitCircleCauses(all, options);
-  if (!shifted.empty() && paths.unexplained > 0.0) AddUnexplained(paths.unexplained, circle);
+  if (circle.runs.front().instrument == paths::kByLinkage && paths.unexplained > 0.0) {
+    AddUnexplained(paths.unexplained, circle);
+  }
   return circle;
+}
+
+// The runs by a ballbar that is longer by one standard deviation.
+Runs LongerBar(Runs runs) {
+  for (paths::CircleRun& run : runs) {
+    const double times = 1.0 + run.u_length.value_or(kNotCalibrated) / run.radius;
+    for (paths::CirclePoint& point : run.points) {
+      point.first *= times;
+      point.second *= times;
+    }
+  }
+  return runs;
 }
 
 std::vector<Circle> Circles(const MeasuredPaths& paths, const CircleCommand& command) {
@@ -120,6 +135,9 @@ std::vector<Circle> Circles(const MeasuredPaths& paths, const CircleCommand& com
     if (group.front().instrument == paths::kByLinkage) {
       for (const auto& one : shifted) others.push_back(&one[circles.size()]);
     }
+    Runs longer;
+    if (group.front().instrument == paths::kByBallbar)
+      others.push_back(&(longer = LongerBar(group)));
     circles.push_back(Evaluate(std::move(group), others, paths, command));
   }
   return circles;
@@ -130,6 +148,13 @@ std::vector<std::string> NotesOf(const MeasuredPaths& paths, const std::vector<C
   std::vector<std::string> notes = paths.notes;
   for (const Circle& circle : circles) {
     const paths::CircleRun& run = circle.runs.front();
+    if (run.instrument == paths::kByBallbar && !run.u_length) {
+      notes.push_back(fmt::format(
+          "{}: the ballbar is not calibrated, so its length, and with it D, F max, F min and the "
+          "mean of both scales, is taken as unknown to {:.0f} um: write u_length_um into its "
+          "header if it is (abbe convert --u-length-um)",
+          run.recordings.front(), kNotCalibrated / settings::kMicrometre));
+    }
     if (run.is_programmed) continue;
     notes.push_back(fmt::format(
         "{}: does not state the programmed radius, so there are no F max, F min and D of ISO "

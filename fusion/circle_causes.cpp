@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numbers>
 
 #include "estimation/problem.h"
 #include "failure/failure.h"
 #include "standards/circle_signatures.h"
+#include "standards/student_coverage.h"
 
 namespace abbe::fusion {
 namespace {
@@ -24,8 +26,11 @@ constexpr std::size_t kSectors = 36;  // their means show the correlation of nei
 // m: the first guess of the noise, below that of any instrument of a machine shop and so small that
 // the priors have no effect.
 constexpr double kLeastRadialNoise = 10e-9;
-constexpr double kSameRadius = 0.01;  // of the radius: lag makes a fast circle smaller
-constexpr double kLargePart = 0.3;    // of a weak direction of length 1
+constexpr double kSameRadius = 0.01;      // of the radius: lag makes a fast circle smaller
+constexpr double kLargePart = 0.3;        // of a weak direction of length 1
+constexpr double kRowsOfParameter = 1.5;  // at least
+constexpr double kLeastFreedom = 3.0;     // rows beyond the causes and centres
+constexpr double kMany = 1e6;
 
 bool IsCentre(const Signature& signature) { return signature.cause == "centre"; }
 
@@ -207,6 +212,29 @@ Fit Solve(const std::vector<Equations>& equations, const std::vector<Signature>&
   return fit;
 }
 
+Eigen::Index Rows(const std::vector<const CircleRun*>& runs) {
+  Eigen::Index rows = 0;
+  for (const CircleRun* run : runs) rows += std::ssize(run->points);
+  return rows;
+}
+
+// The orders of smooth errors that so many points can show beside the causes and the centres.
+void LimitOrders(const std::vector<const CircleRun*>& runs, std::size_t causes,
+                 std::vector<double>& smooth) {
+  const double rows = static_cast<double>(Rows(runs));
+  const double named = static_cast<double>(causes + 2 * runs.size());
+  if (rows < named + kLeastFreedom) {
+    throw InputError(
+        fmt::format("{}: {} points for the {} causes and centres of a circle; measure {} at least, "
+                    "better a point every few degrees",
+                    runs.front()->recordings.front(), rows, named, named + kLeastFreedom));
+  }
+  while (!smooth.empty() &&
+         rows < kRowsOfParameter * (named + 2.0 * static_cast<double>(smooth.size()))) {
+    smooth.pop_back();
+  }
+}
+
 double Rms(const std::vector<Eigen::VectorXd>& residuals) {
   double squares = 0.0, n = 0.0;
   for (const Eigen::VectorXd& one : residuals) {
@@ -214,6 +242,11 @@ double Rms(const std::vector<Eigen::VectorXd>& residuals) {
     n += one.size();
   }
   return std::sqrt(squares / n);
+}
+
+// Rows less the parameters that the data determine: 1 at least.
+double FreedomOf(const Fit& fit, double rows) {
+  return std::clamp(fit.result.redundancy, 1.0, rows);
 }
 
 // The factor by which the means of sectors scatter more than those of independent rows: at least 1.
@@ -273,12 +306,16 @@ CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptio
   }
   found.rms_before = Rms(before);
   const Fit first = Solve(equations, table, options, kLeastRadialNoise);
-  const double rms = std::max(Rms(first.noise), kLeastRadialNoise);
+  const double rows = static_cast<double>(Rows(runs));
+  const double rms =
+      std::max(Rms(first.noise) * std::sqrt(rows / FreedomOf(first, rows)), kLeastRadialNoise);
   found.correlated = Correlated(runs, first.noise, rms);
   const Fit fit = Solve(equations, table, options, rms * found.correlated);
   found.rms_smooth = Rms(fit.smooth);
   found.rms_after = Rms(fit.noise);
   found.covariance = fit.result.Covariance("cause", "cause");
+  const double independent = rows / (found.correlated * found.correlated);
+  found.freedom = std::max(independent - (rows - FreedomOf(fit, rows)), 1.0);
   for (std::size_t i = 0; i < table.size(); ++i) {
     const std::string name = "cause." + Name(table[i]);
     CauseEstimate estimate{table[i].cause, table[i].object, table[i].unit, fit.result.Value(name),
@@ -340,14 +377,14 @@ Eigen::VectorXd ValuesOf(const CircleCauses& fit) {
 
 }  // namespace
 
-CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs,
-                             const CauseOptions& options) {
+CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs, CauseOptions options) {
   CheckCircles(runs);
+  LimitOrders(
+      runs, std::ranges::count_if(SignaturesOf(*runs.front(), options, {}), std::not_fn(IsCentre)),
+      options.smooth);
   std::vector<CircleCauses> fits = FitWithAll(runs, options);
   CircleCauses& best = *std::ranges::min_element(fits, {}, &CircleCauses::rms_after);
-  double rows = 0.0;
-  for (const auto& one : best.residuals) rows += static_cast<double>(one.size());
-  rows /= best.correlated * best.correlated;
+  const double rows = static_cast<double>(Rows(runs)) / (best.correlated * best.correlated);
   const double most = LogLikelihood(best, rows);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(std::ssize(best.causes));
   double sum = 0.0;
@@ -363,6 +400,9 @@ CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs,
     const double weight = std::exp(LogLikelihood(fit, rows) - most) / sum;
     covariance += weight * (fit.covariance + off * off.transpose());
   }
+  // The noise is known to so many degrees of freedom: 2 u is a U95 for all.
+  const double t = standards::StudentCoverage(best.freedom) / standards::StudentCoverage(kMany);
+  covariance *= t * t;
   for (Eigen::Index i = 0; i < mean.size(); ++i) {
     CauseEstimate& one = best.causes[i];
     if (one.value != 0.0) one.effect *= std::abs(mean[i] / one.value);

@@ -18,12 +18,15 @@
 // these fits by their likelihood, and their spread is in u (Bayesian model averaging: Hoeting et
 // al., Statistical Science 14 (1999)).
 // Units: SI; `effect` is the largest radial deviation of a cause in m, without sign.
-// Noise: estimated from the residuals, and enlarged for the correlation of neighbouring rows by the
+// Noise: estimated from the residuals and their degrees of freedom, whose Student's t is in u (2 u is
+// a U95), and enlarged for the correlation of neighbouring rows by the
 // factor by which the means of 10 degrees scatter more than those of independent rows. Deviations
 // that no cause explains therefore enlarge the uncertainties. `seen` is false where the prior (the
 // `usual` amount of a machine tool) determines the value more than the data: one sense cannot
 // separate squareness from servo mismatch, nor one feed scale from lag.
-// Failure: InputError for no run or runs of different circles; NumericalError from the fit.
+// So that enough degrees of freedom are left, sparse points have fewer harmonics.
+// Failure: InputError for no run, runs of different circles, or fewer points than parameters;
+// NumericalError from the fit.
 // Source: linear least squares (estimation/problem.h). Validity: errors small against the radius;
 // an error of the instrument that is not in `shifted` is attributed to the machine.
 #pragma once
@@ -61,11 +64,12 @@ struct CircleCauses {
   double rms_smooth = 0.0;     // m: of the fitted smooth errors and errors of the instrument
   double rms_after = 0.0;      // m: of the residuals
   double correlated = 1.0;     // the factor on the standard deviation
+  double freedom = 0.0;        // degrees of freedom of the noise, of independent rows
   Eigen::MatrixXd covariance;  // of `causes`, in their order
   std::vector<std::vector<double>> residuals;  // m, [run][point]: without the causes
 };
 
 CircleCauses FitCircleCauses(const std::vector<const paths::CircleRun*>& runs,
-                             const CauseOptions& options = {});
+                             CauseOptions options = {});
 
 }  // namespace abbe::fusion

@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <bitset>
 #include <cmath>
 #include <numbers>
 
@@ -30,6 +29,10 @@ constexpr double kSameFeed = 0.01;
 // Parts of a turn: below kWhole it is an arc, below kLeastCovered too short to evaluate.
 constexpr double kWhole = 0.95;
 constexpr double kLeastCovered = 0.25;
+// Between points: so many times as wide as usual is a gap, above the least and up to the most, rad.
+constexpr double kWideGap = 2.5;
+constexpr double kLeastGap = 0.1;
+constexpr double kMostGap = 0.6;
 
 CirclePlane NamedPlane(const std::string& name, const std::string& recording) {
   const auto axis = [&](std::size_t i) {
@@ -209,6 +212,7 @@ std::vector<CircleRun> RunsOf(const MeasuredPath& path, const CircleOptions& opt
   proto.radius = proto.is_programmed ? programmed : nominal.circle.radius;
   proto.centre = plane.first * nominal.circle.x + plane.second * nominal.circle.y +
                  plane.third * plane.third.dot(Eigen::Vector3d(on.commanded.rowwise().mean()));
+  proto.u_length = path.u_length;
   proto.third_seen = path.seen[0] && path.seen[1] && path.seen[2];
   std::vector<CircleRun> runs;
   std::size_t used = 0;
@@ -283,13 +287,31 @@ void FillAngles(CircleRun& run) {
   if (run.Partial()) CentreArc(run);
 }
 
+// A ballbar measures from its fixed ball, from where the commanded centre is seen at `middle`: not
+// in the commanded direction u but in that of R u + middle. The difference is the square of the
+// offset over the radius.
+void TurnToFixedBall(CircleRun& run) {
+  constexpr int kRounds = 3;  // the offset is known to a share of itself over the radius each time
+  const std::vector<CirclePoint> read = run.points;
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      const Eigen::Vector2d at(read[i].first, read[i].second);
+      const Eigen::Vector2d seen =
+          at.norm() * (run.radius * at.normalized() + run.middle).normalized();
+      run.points[i].first = seen.x();
+      run.points[i].second = seen.y();
+    }
+    FillAngles(run);
+  }
+}
+
 void RefuseBit(const CircleRun& run) {
   for (const int sense : {1, -1}) {
     const double covered = run.Covered(sense);
     if (!run.Has(sense) || covered >= kLeastCovered * kTurn) continue;
     throw InputError(fmt::format(
-        "{}: {} points {} are on {:.0f} of 360 degrees, counted in steps of 5; measure a quarter "
-        "turn at least, better whole turns, with a point every few degrees",
+        "{}: {} points {} are on {:.0f} of 360 degrees; measure a quarter turn at least, better "
+        "whole turns, with a point every few degrees",
         run.recordings.front(), std::ranges::count(run.points, sense, &CirclePoint::sense),
         sense > 0 ? "counter-clockwise" : "clockwise", covered * 360.0 / kTurn));
   }
@@ -307,14 +329,25 @@ bool CircleRun::Partial() const {
 }
 
 double CircleRun::Covered(int sense) const {
-  constexpr std::size_t kBins = 72;
-  std::bitset<kBins> covered;
+  std::vector<double> angles;
   for (const CirclePoint& point : points) {
-    if (point.sense != sense) continue;
-    const double part = point.angle / kTurn - std::floor(point.angle / kTurn);
-    covered.set(std::min(kBins - 1, static_cast<std::size_t>(part * kBins)));
+    if (point.sense == sense)
+      angles.push_back(point.angle - kTurn * std::floor(point.angle / kTurn));
   }
-  return kTurn * covered.count() / kBins;
+  if (angles.size() < 2) return 0.0;
+  std::ranges::sort(angles);
+  std::vector<double> gaps{angles.front() + kTurn - angles.back()};
+  for (std::size_t i = 1; i < angles.size(); ++i) gaps.push_back(angles[i] - angles[i - 1]);
+  std::ranges::sort(gaps);
+  // Points of several passes stand close together: the usual gap is one of the wider ones.
+  const double usual = gaps[gaps.size() - 1 - gaps.size() / 4];
+  if (usual > kMostGap) return 0.0;
+  const double wide = std::clamp(kWideGap * usual, kLeastGap, kMostGap);
+  double covered = kTurn;
+  for (const double gap : gaps) {
+    if (gap > wide) covered -= gap - usual;  // the points beside it stand for half of one each
+  }
+  return covered;
 }
 
 std::vector<CircleRun> CircleRuns(const std::vector<MeasuredPath>& paths,
@@ -329,6 +362,7 @@ std::vector<CircleRun> CircleRuns(const std::vector<MeasuredPath>& paths,
   }
   for (CircleRun& run : runs) {
     FillAngles(run);
+    if (run.instrument == kByBallbar) TurnToFixedBall(run);
     RefuseBit(run);
   }
   return runs;
@@ -379,8 +413,10 @@ CircleFigures EvaluateCircle(const CircleRun& run, const FigureOptions& options)
     for (std::size_t i = 0; i < path.first.size(); ++i) {
       angles.push_back(std::atan2(path.second[i] - circle.y, path.first[i] - circle.x));
     }
+    const int shown = (static_cast<int>(angles.size()) - 1) / 2;
     (sense < 0 ? figures.cw : figures.ccw) = standards::FitHarmonics(
-        angles, standards::RadialDeviations(circle, path.first, path.second), options.harmonics);
+        angles, standards::RadialDeviations(circle, path.first, path.second),
+        std::min(options.harmonics, shown));
   }
   if (run.third_seen) {
     const auto [low, high] = std::ranges::minmax_element(run.points, {}, &CirclePoint::third);

@@ -51,9 +51,10 @@ struct CircleRun {
   std::vector<std::string> recordings;
   std::string instrument;
   CirclePlane plane;
-  double radius = 0.0;     // m, nominal
-  Eigen::Vector3d centre;  // m, axis coordinates
-  double feed = 0.0;       // m/s
+  double radius = 0.0;                  // m, nominal
+  Eigen::Vector3d centre;               // m, axis coordinates
+  double feed = 0.0;                    // m/s
+  std::optional<double> u_length = {};  // m: of a calibrated ballbar
   bool third_seen = false;
   bool is_programmed = false;       // the nominal radius; else it is that of the recorded positions
   std::vector<CirclePoint> points;  // in the order of time, recording after recording
@@ -62,7 +63,8 @@ struct CircleRun {
   // circle that of a circle with the nominal radius.
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
 
-  double Covered(int sense) const;  // rad of the circle that has points, counted in steps of 5 deg
+  // rad: the turn without gaps between points that are much wider than the others are.
+  double Covered(int sense) const;
   bool Has(int sense) const;
   bool Partial() const;  // a measured sense is not a whole turn
 };

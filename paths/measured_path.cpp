@@ -110,6 +110,9 @@ MeasuredPath ReferencePath(const Recording& recording) {
 MeasuredPath BallbarPath(const Recording& recording) {
   MeasuredPath path = Commanded(recording, recording::GoodRows(recording));
   path.instrument = kByBallbar;
+  if (const auto u = recording.HeaderNumber("u_length_um")) {
+    path.u_length = *u * settings::kMicrometre;
+  }
   for (int axis = 0; axis < 3; ++axis) {
     path.seen[axis] = recording.Find(PositionName(axis)).has_value();
   }

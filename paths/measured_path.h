@@ -15,6 +15,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,12 +31,13 @@ struct MeasuredPath {
   static constexpr int kDirectionNotStated = 2;  // the column has -1, 0 and 1
 
   std::string recording;
-  std::string instrument;         // kByLinkage, kByBallbar, "reference"
-  std::string plane;              // of the header, may be empty
-  double radius = 0.0;            // m: programmed radius of a circle, of the header; 0: not stated
-  std::vector<std::size_t> rows;  // of the recording
-  std::size_t flagged = 0;        // rows left out
-  std::array<bool, 3> seen{};     // coordinates that were measured; the others are commanded ones
+  std::string instrument;          // kByLinkage, kByBallbar, "reference"
+  std::string plane;               // of the header, may be empty
+  double radius = 0.0;             // m: programmed radius of a circle, of the header; 0: not stated
+  std::optional<double> u_length;  // m: of the calibrated length of a ballbar; none: not calibrated
+  std::vector<std::size_t> rows;   // of the recording
+  std::size_t flagged = 0;         // rows left out
+  std::array<bool, 3> seen{};      // coordinates that were measured; the others are commanded ones
   Eigen::Matrix3Xd commanded, measured;
   Eigen::VectorXd time;       // row numbers where the recording has no time
   Eigen::VectorXd feed;       // 0: not stated
@@ -51,8 +53,8 @@ MeasuredPath LinkagePath(const recording::Recording& recording, const machine::C
 
 MeasuredPath ReferencePath(const recording::Recording& recording);
 
-// A ballbar knows the distance from its centre, at 0 of the positions: the measured point lies in
-// the commanded direction. What moves along the circle is not seen.
+// A ballbar knows the distance from its fixed ball, here taken at 0 of the positions: the measured
+// point lies in the commanded direction. What moves along the circle is not seen.
 MeasuredPath BallbarPath(const recording::Recording& recording);
 
 // Whether the recording has radii of a ballbar.

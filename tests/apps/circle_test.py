@@ -238,9 +238,9 @@ class Circle(ProgramCase):
                     saying=["line.csv", "no circle"])
         bit = linkage_runs.write(self.path / "bit.csv", rows[:144] + rows[720:])
         self.refuse(bit, "--machine", MACHINE,
-                    saying=["bit.csv", "144 points counter-clockwise", "75 of 360", "a quarter turn"])
+                    saying=["bit.csv", "144 points counter-clockwise", "72 of 360", "a quarter turn"])
         few = linkage_runs.write(self.path / "few.csv", circle(perfect, points=8))
-        self.refuse(few, "--machine", MACHINE, saying=["few.csv", "8 points", "40 of 360"])
+        self.refuse(few, "--machine", MACHINE, saying=["few.csv", "8 points", " 0 of 360"])
         self.refuse(recording, "--machine", MACHINE, "--plane", "YZ",
                     saying=["good.csv", "commanded path in YZ", "no circle"])
         other = pathlib.Path(recording).read_text().replace('"demo-mill"', '"another"')

@@ -39,6 +39,72 @@ def circle(world, plane, moved=lambda q, way: q, feed=1000.0):
     return np.stack([degrees, (reading - RADIUS) * 1e6], axis=1)
 
 
+def whole(draw, points, radius, centre, longer, noise, square=8e-6, senses=(1, -1)):
+    """Rows x, y, pass, direction, radius (mm) of a machine that is out of square and nothing else: the distance of the
+    tool from a fixed ball at `centre` (m), by a bar that is `longer`."""
+    rows = []
+    for number, sense in enumerate(senses, 1):
+        t = sense * (np.arange(points) + 0.3) * 2 * np.pi / points
+        place = radius * np.stack([np.cos(t) - square * np.sin(t), np.sin(t)], axis=1)
+        read = np.linalg.norm(place - centre, axis=1) - longer + noise * draw.normal(size=points)
+        rows.append(np.stack([1e3 * radius * np.cos(t), 1e3 * radius * np.sin(t), np.full(points, number),
+                              np.full(points, sense), 1e3 * read], axis=1))
+    return np.concatenate(rows)
+
+
+class CirclesByABallbar(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def evaluated(self, radius, rows, header=""):
+        table, out = self.folder / "circle.csv", self.folder / "circle.json"
+        names = f'# abbe-recording = 1\n# kind = "ballbar"\n# radius_mm = {1e3 * radius}\n{header}x_mm,y_mm,pass,direction,ref_radius_mm'
+        np.savetxt(table, rows, "%.9f", ",", header=names, comments="")
+        done = subprocess.run([PROGRAM, "circle", table, "--json", out, "--force", "--quiet"], capture_output=True,
+                              text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(out.read_text())
+        return found, {(c["cause"], c["object"]): c for c in found["causes"]}
+
+    def test_a_bar_beside_the_centre_shows_the_same_squareness(self):
+        """50 um beside it at 50 mm: the square of the offset over the radius is 50 nm, or 2 urad."""
+        for seed in range(8):
+            draw = np.random.default_rng(seed)
+            _, causes = self.evaluated(0.05, whole(draw, 720, 0.05, 50e-6 * np.array([1, 1]), 0, 2e-8))
+            found = causes["squareness", "XY"]
+            self.assertLess(abs(abs(found["value"]) - 8e-6), 3.5 * found["u"], seed)
+            self.assertLess(found["u"], 1e-6)
+
+    def test_a_length_that_nobody_calibrated_is_no_scale(self):
+        rows = whole(np.random.default_rng(1), 360, 0.15, np.zeros(2), 0.5e-6, 1e-7)
+        found, causes = self.evaluated(0.15, rows)
+        self.assertFalse(causes["scale", "X"]["seen"])
+        self.assertGreater(2 * found["u"]["D_um"], 100)
+        self.assertIn("not calibrated", " ".join(found["notes"]))
+        found, causes = self.evaluated(0.15, rows, "# u_length_um = 0.3\n")
+        self.assertLess(abs(found["D_um"]), 2 * found["u"]["D_um"])
+        self.assertLess(found["u"]["D_um"], 0.4)
+        self.assertLess(abs(causes["scale", "X"]["value"]), 2 * causes["scale", "X"]["u"])
+
+    def test_few_points_name_no_cause_that_is_not_there(self):
+        """White noise alone. Whole circles, however sparse."""
+        for points, senses in ((36, (1, -1)), (36, (1,)), (24, (1, -1)), (18, (1,))):
+            named = of = 0
+            for seed in range(30):
+                draw = np.random.default_rng(seed)
+                found, causes = self.evaluated(0.15, whole(draw, points, 0.15, draw.normal(size=2) * 2e-5, 0, 1e-7, 0.0,
+                                                           senses), "# u_length_um = 0.1\n")
+                self.assertFalse(found["partial"])
+                for cause in causes.values():
+                    if cause["seen"]:
+                        of += 1
+                        named += abs(cause["value"]) > 2 * cause["u"]
+            print(f"{points} points, {len(senses)} senses: {named} of {of} beyond their U95")
+            self.assertLess(named, 0.1 * of + 3)
+
+
 class BallbarOfStrangers(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
