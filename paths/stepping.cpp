@@ -9,6 +9,7 @@
 
 #include "failure/failure.h"
 #include "paths/stays.h"
+#include "standards/student_coverage.h"
 
 namespace abbe::paths {
 namespace {
@@ -29,9 +30,24 @@ std::optional<int> AxisOfMove(const Stay& from, const Stay& to) {
 
 struct Visits {
   Eigen::Vector3d commanded = Eigen::Vector3d::Zero(), measured = Eigen::Vector3d::Zero();
-  double variance = 0.0;  // of the mean of one coordinate
+  double squares = 0.0;   // of all measured coordinates
+  double variance = 0.0;  // of one coordinate within a visit, summed over them
   int count = 0;
 };
+
+// The variance of one coordinate of a visit, as the visits to the same stops differ, and as wide as
+// Student's t for so few of them; 0 where none is visited twice.
+double BetweenVisits(const std::map<long long, Visits>& places) {
+  constexpr double kMany = 1e6;
+  double squares = 0.0, freedom = 0.0;
+  for (const auto& [place, visits] : places) {
+    squares += visits.squares - visits.measured.squaredNorm() / visits.count;
+    freedom += 3.0 * (visits.count - 1);
+  }
+  if (freedom == 0.0) return 0.0;
+  const double t = standards::StudentCoverage(freedom) / standards::StudentCoverage(kMany);
+  return std::max(squares, 0.0) / freedom * t * t;
+}
 
 SteppingLine LineOf(int axis, const std::vector<Stay>& stays) {
   std::map<long long, Visits> places;
@@ -39,18 +55,23 @@ SteppingLine LineOf(int axis, const std::vector<Stay>& stays) {
     const double along = stay.commanded[axis] - stays.front().commanded[axis];
     Visits& visits = places[std::llround(along / kSamePlace)];
     visits.commanded += stay.commanded;
-    visits.measured += stay.measured;
+    const Eigen::Vector3d measured = stay.measured - stays.front().measured;
+    visits.measured += measured;
+    visits.squares += measured.squaredNorm();
     visits.variance += stay.scatter.squaredNorm() / 3.0 / stay.rows;
     ++visits.count;
   }
   const Visits& start = places.at(0);
+  const double between = BetweenVisits(places);
+  const auto variance_of = [between](const Visits& visits) {
+    return std::max(visits.variance / visits.count, between) / visits.count;
+  };
   SteppingLine line{"XYZ" [axis], {}};
   for (const auto& [place, visits] : places) {
     const Eigen::Vector3d commanded =
         visits.commanded / visits.count - start.commanded / start.count;
     const Eigen::Vector3d measured = visits.measured / visits.count - start.measured / start.count;
-    const double variance = visits.variance / (visits.count * visits.count) +
-                            (place == 0 ? 0.0 : start.variance / (start.count * start.count));
+    const double variance = variance_of(visits) + (place == 0 ? 0.0 : variance_of(start));
     const Eigen::Vector3d deviation = measured - commanded;
     line.stops.push_back({commanded[axis], deviation, std::sqrt(variance), visits.count});
     line.largest_along = std::max(line.largest_along, std::abs(deviation[axis]));

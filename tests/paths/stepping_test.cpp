@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+
 #include "failure/failure.h"
+#include "random/counter_random.h"
 #include "tests/paths/hand_made_path.h"
 
 namespace abbe::paths {
@@ -46,6 +50,36 @@ TEST(SteppingTest, AScaleErrorGrowsWithTheStepsAndAnOffsetDoesNotMatter) {
   }
   EXPECT_NEAR(line.largest_along, 2.5e-6, kRounding);
   EXPECT_NEAR(line.largest, 25e-3 * std::hypot(1e-4, 2e-5), kRounding);
+}
+
+// Three times to and fro; each visit stands 0.3 um off, at random.
+TEST(SteppingTest, WhatVisitsDifferByIsInTheUncertainty) {
+  constexpr double kRepeats = 0.3e-6;
+  double squares = 0.0, count = 0.0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const random::CounterRandom draw(seed, 1);
+    std::vector<Vector3d> path;
+    for (int time = 0; time < 3; ++time) {
+      const auto line = Line(0, Vector3d::Constant(0.01));
+      path.insert(path.end(), line.begin(), line.end());
+    }
+    std::uint64_t visit = 0;
+    Vector3d last = Vector3d::Zero();
+    const auto lines = EvaluateStepping(HandMade(path, [&](const Vector3d& p) -> Vector3d {
+      if (p != last) ++visit;
+      last = p;
+      return p + kRepeats * Vector3d(draw.Normal(3 * visit), draw.Normal(3 * visit + 1),
+                                     draw.Normal(3 * visit + 2));
+    }));
+    ASSERT_EQ(lines.size(), 1U);
+    for (const SteppingStop& stop : lines.front().stops) {
+      if (stop.commanded == 0.0) continue;
+      for (const int axis : {1, 2}) squares += std::pow(stop.deviation[axis] / stop.u, 2);
+      count += 2.0;
+    }
+  }
+  // The mean of 500 squares of normal numbers; the five stops of a line share their first one.
+  EXPECT_NEAR(squares / count, 0.95, 0.25);
 }
 
 TEST(SteppingTest, EachAxisHasItsLine) {
