@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -42,11 +43,62 @@ std::vector<double> ToList(const Eigen::VectorXd& values) {
 // Whether passes show the noise.
 bool Checked(const StationMeans& means) { return means.noise.dof > 0.0; }
 
+// How much more the means of the halves of the passes scatter than the noise of single dwells makes
+// them, as a factor on the standard deviation of the mean reversal, and its degrees of freedom. What
+// is another in each half, as a drift or the way a carriage settles, averages out over the stations
+// of none and looks like a reversal.
+struct HalfScatter {
+  double times = 1.0;
+  double freedom = 0.0;  // 0: too few passes to tell
+};
+
+HalfScatter ScatterOfHalves(const StationMeans& means) {
+  using Half = std::pair<int, int>;  // direction, pass
+  std::map<Half, std::pair<Eigen::Matrix<double, kProbes, 1>, int>> halves;
+  for (std::size_t i = 0; i < means.dwells.size(); ++i) {
+    const Dwell& dwell = means.dwells[i];
+    auto& [sum, count] = halves
+                             .try_emplace({dwell.direction, dwell.pass},
+                                          Eigen::Matrix<double, kProbes, 1>::Zero(), 0)
+                             .first->second;
+    sum += means.residual.col(static_cast<Eigen::Index>(i));
+    ++count;
+  }
+  std::map<int, int> passes;
+  for (const auto& [half, sums] : halves) ++passes[half.first];
+  HalfScatter scatter;
+  Eigen::Matrix<double, kProbes, 1> variance = Eigen::Matrix<double, kProbes, 1>::Zero();
+  for (const auto& [direction, count] : passes) {
+    if (count < 2) return {};
+    scatter.freedom += 0.5 * kProbes * (count - 1);  // the probes see one machine
+    for (const auto& [half, sums] : halves) {
+      if (half.first != direction) continue;
+      variance += (sums.first / sums.second).cwiseAbs2() / ((count - 1.0) * count);
+    }
+  }
+  const Eigen::Index stations = std::ssize(means.stations),
+                     directions = std::ssize(means.directions);
+  Eigen::VectorXd split(means.groups());
+  for (Eigen::Index i = 0; i < split.size(); ++i) {
+    split[i] = (i % directions == 0 ? 1.0 : -1.0) / static_cast<double>(stations);
+  }
+  double times = 0.0;
+  for (std::size_t probe = 0; probe < kProbes; ++probe) {
+    const double model = split.dot(means.covariance[probe] * split);
+    times += variance[static_cast<Eigen::Index>(probe)] / model / kProbes;
+  }
+  scatter.times = std::sqrt(std::max(times, 1.0));
+  return scatter;
+}
+
 // Turns the errors and covariances of groups into the results of one component.
 class ComponentEvaluation {
  public:
   ComponentEvaluation(const StationMeans& means, const SweepGauge& gauge)
-      : means_(means), gauge_(gauge), directions_(std::ssize(means.directions)) {}
+      : means_(means),
+        gauge_(gauge),
+        directions_(std::ssize(means.directions)),
+        halves_(ScatterOfHalves(means)) {}
 
   ComponentResult operator()(const Component& component, const Eigen::VectorXd& at_reference,
                              const Sources& reference_sources, const Eigen::VectorXd& at_target,
@@ -79,9 +131,12 @@ class ComponentEvaluation {
     result.coverage = standards::StudentQuantile(0.975, dof);
     if (result.reversal) {
       const Uncertain& mean = result.reversal->mean;
-      const double beyond = Checked(means_)
-                                ? standards::StudentQuantile(1.0 - kFalseAlarm / 2.0, dof)
-                                : kBeyondUnchecked;
+      double beyond = Checked(means_) ? standards::StudentQuantile(1.0 - kFalseAlarm / 2.0, dof)
+                                      : kBeyondUnchecked;
+      if (halves_.times > 1.0) {
+        const double t = standards::StudentQuantile(1.0 - kFalseAlarm / 2.0, halves_.freedom);
+        beyond = std::max(beyond, t * halves_.times);
+      }
       result.reversal->seen = std::abs(mean.value) > beyond * mean.u;
     }
     return result;
@@ -154,6 +209,7 @@ class ComponentEvaluation {
   const StationMeans& means_;
   const SweepGauge& gauge_;
   Eigen::Index directions_;
+  HalfScatter halves_;
 };
 
 int PassesOf(const std::vector<Dwell>& dwells) {

@@ -54,6 +54,21 @@ Extra Memory(double time) {
   };
 }
 
+// Each half of a pass at another place and tilt, as a head that settles or warms.
+Extra EachHalf(std::size_t passes) {
+  return [=](const CounterRandom& random, std::size_t rows) {
+    const std::size_t halves = 2 * passes;
+    std::vector<double> noise(rows);
+    for (std::size_t i = 0; i < rows; ++i) {
+      const std::size_t half = i * halves / rows;
+      const double along = static_cast<double>(i * halves % rows) / static_cast<double>(rows);
+      noise[i] =
+          100.0 * kNano * (random.Normal(2 * half) + (along - 0.5) * random.Normal(2 * half + 1));
+    }
+    return noise;
+  };
+}
+
 struct Row {
   std::string name;
   Change change = {};
@@ -179,6 +194,7 @@ TEST(SweepOfAnotherWorld, FollowsTheNoise) {
       {.name = "memory of 1 s", .extra = Memory(1.0), .note = scatter},
       {.name = "memory of 10 s", .extra = Memory(10.0), .note = scatter},
       {.name = "memory of 60 s", .extra = Memory(60.0), .note = scatter},
+      {.name = "each half of a pass another", .extra = EachHalf(2), .passes = 2, .note = scatter},
       {.name = "drift x 3, one pass",
        .change = drift(3.0),
        .passes = 1,
