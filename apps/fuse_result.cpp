@@ -85,7 +85,7 @@ std::string ScatterLines(const fusion::FuseReport& report) {
     text += fmt::format(
         "\nSCATTER: the places of {} scatter along {} alone, more than its noise: a wave of the "
         "screw, gear or scale of {}, shorter than the places are apart, rounded positions, lost "
-        "motion that varies, or a guide that bends as finely{}. U95 of E{}{} contains it, {:.2g} um "
+        "motion that varies, a drift between the places, or a part that bends as finely{}. U95 of E{}{} contains it, {:.2g} um "
         "(rms) where no place is near; circles, or places closer together, show it.\n",
         report.fit.sources[i].name, name, name,
         others ? "; or it comes from the runs that do not fit or contradict (below)" : "", name,

@@ -57,7 +57,8 @@ Shares ScaleShares(const Json& result, double u_ppm) {
   for (const Json& parameter : ObjectAt(result, "parameters")) {
     const std::string name = TextAt(parameter, "name");
     const auto prior = NumberAt(parameter, "prior");
-    if (prior && (name.starts_with("length_scale ") || name.starts_with("plate_scale "))) {
+    if (prior && (name.starts_with("length_scale ") || name.starts_with("reference_scale ") ||
+                  name.starts_with("plate_scale "))) {
       certificates.push_back(*prior);
     }
   }

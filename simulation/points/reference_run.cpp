@@ -35,6 +35,7 @@ void ReadPlaces(const Recording& recording, ReferenceRun& run) {
 }
 
 void ReadStatedNoise(const Recording& recording, ReferenceRun& run) {
+  run.u_scale = 1e-6 * recording.HeaderNumber("u_scale_ppm", 0.0).value_or(0.0);
   run.sd = Eigen::Matrix3Xd::Zero(3, run.rows());
   const auto stated = recording.HeaderNumber(kStatedKey);
   const bool by_row = recording.Find(kStatedColumn).has_value();

@@ -36,6 +36,7 @@ struct ReferenceRun {
   Eigen::VectorXd time;
   std::vector<int> pass, direction;
   char tested = ' ';
+  double u_scale = 0.0;  // relative uncertainty that all places share
   bool timed = true;
 
   Eigen::Index rows() const { return points.count(); }

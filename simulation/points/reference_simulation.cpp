@@ -34,6 +34,20 @@ std::vector<Index> AxesShown(const ReferenceRun& run) {
   return shown;
 }
 
+// A line along the direction that a laser shows: a turn of it acts by its cosine alone, which the
+// data could not tell from a scale, nor one side from the other. Lasers that return their beam over
+// a line are aligned to fractions of a milliradian, below 0.1 ppm.
+bool IsLineOfSight(const ReferenceRun& run) {
+  constexpr double kOneLine = 1e-3;  // m
+  const std::vector<Index> shown = AxesShown(run);
+  if (shown.size() != 1) return false;
+  for (Index axis = 0; axis < 3; ++axis) {
+    const auto across = run.points.axes.row(axis);
+    if (axis != shown.front() && across.maxCoeff() - across.minCoeff() > kOneLine) return false;
+  }
+  return true;
+}
+
 // In M, from axis coordinates.
 Matrix3Xd PlacesInMachine(const machine::Chain& chain, const ReferenceRun& run) {
   return chain.ToolSenses().asDiagonal() * run.place;
@@ -55,7 +69,7 @@ class PlaceResponse : public StageResponse {
   MatrixXd places_, sd_;
 };
 
-// x: place, turn, machine. Rows: the directions shown of the first point, of the next, ...
+// x: place, turn, machine, and the scale where the header states how well it is known. Rows: the directions shown of the first point, of the next, ...
 class ReferenceResidual : public Responsive {
  public:
   ReferenceResidual(const machine::VolumetricModel& model, const Vector3d& reference,
@@ -63,22 +77,23 @@ class ReferenceResidual : public Responsive {
       : points_(model, reference, run.points),
         shown_(AxesShown(run)),
         place_(PlacesInMachine(model.chain(), run)),
-        sd_(run.sd) {}
+        sd_(run.sd),
+        scaled_(run.u_scale > 0.0) {}
 
   Index Rows() const override { return shown_.size() * points_.points().count(); }
 
   void Evaluate(const VectorXd& x, VectorXd& values,
                 estimation::RowMatrix* jacobian) const override {
     std::vector<Matrix3Xd> J;
-    const Matrix3Xd p =
-        points_.Places(x.tail(points_.parameters()), jacobian == nullptr ? nullptr : &J);
+    const Matrix3Xd p = points_.Places(Machine(x), jacobian == nullptr ? nullptr : &J);
+    const double scale = scaled_ ? x[kSetup + points_.parameters()] : 0.0;
     const Vector3d turn = x.segment<3>(3);
     const Matrix3d R = geometry::ExpRotation<double>(turn);
     const Matrix3d by_turn = geometry::ExpRotationJacobian(turn);
     Index row = 0;
     for (Index i = 0; i < p.cols(); ++i) {
       const Vector3d turned = R * p.col(i);
-      const Vector3d left = place_.col(i) - x.head<3>() - turned;
+      const Vector3d left = place_.col(i) - x.head<3>() - (1.0 + scale) * turned;
       const Matrix3d J_turn = geometry::Skew(turned) * by_turn;
       for (const Index axis : shown_) {
         values[row] = left[axis] / sd_(axis, i);
@@ -86,7 +101,8 @@ class ReferenceResidual : public Responsive {
           auto out = jacobian->row(row);
           out.head<3>() = -Eigen::RowVector3d::Unit(axis);
           out.segment<3>(3) = J_turn.row(axis);
-          out.tail(points_.parameters()) = -R.row(axis) * J[i];
+          out.segment(kSetup, points_.parameters()) = -R.row(axis) * J[i];
+          if (scaled_) out[kSetup + points_.parameters()] = -turned[axis];
           out /= sd_(axis, i);
         }
         ++row;
@@ -96,7 +112,7 @@ class ReferenceResidual : public Responsive {
 
   std::shared_ptr<const Response> At(const VectorXd& x) const override {
     const Matrix3d R = geometry::ExpRotation<double>(Vector3d(x.segment<3>(3)));
-    const MatrixXd by_motions = points_.ByMotions(x.tail(points_.parameters()));
+    const MatrixXd by_motions = points_.ByMotions(Machine(x));
     MatrixXd by_stage(Rows(), kToolStage);
     Index row = 0;
     for (Index i = 0; i < points_.points().count(); ++i) {
@@ -109,9 +125,13 @@ class ReferenceResidual : public Responsive {
   }
 
  private:
+  static constexpr Index kSetup = 6;  // place and turn
+  VectorXd Machine(const VectorXd& x) const { return x.segment(kSetup, points_.parameters()); }
+
   PointsOnMachine points_;
   std::vector<Index> shown_;
   Matrix3Xd place_, sd_;
+  bool scaled_;
 };
 
 void RefuseNoNoise(const ReferenceRun& run) {
@@ -144,7 +164,13 @@ SimulatedRun SimulateReference(const machine::VolumetricModel& model, const Vect
   for (std::size_t axis = 0; axis < run.shown.size(); ++axis) {
     simulated.blocks[0].entries[axis].held = !run.shown[axis];
   }
+  if (IsLineOfSight(run)) simulated.blocks[1].Hold();
   for (auto& block : model.Blocks()) simulated.blocks.push_back(std::move(block));
+  if (run.u_scale > 0.0) {
+    simulated.blocks.push_back({"reference_scale " + run.points.name,
+                                {"ppm", 1e-6},
+                                {{.name = "scale", .prior_sd = run.u_scale}}});
+  }
   const auto residual = std::make_shared<ReferenceResidual>(model, reference, run);
   simulated.residual = simulated.response = residual;
   simulated.heading = HeadingsOf(run.points.axes);
