@@ -14,7 +14,8 @@ CorrectedTable CorrectTable(std::string_view text, const std::string& file,
                             const Corrector& corrector, const Eigen::Matrix3Xd& beside) {
   CorrectedTable corrected;
   corrected.text.reserve(text.size());
-  for (PositionTable table(text, file); table.Next(); corrected.text += '\n') {
+  const std::array<bool, 3> needed{corrector.Has(0), corrector.Has(1), corrector.Has(2)};
+  for (PositionTable table(text, file, needed); table.Next(); corrected.text += '\n') {
     if (!table.IsRow()) {
       corrected.text += table.line();
       continue;

@@ -54,9 +54,10 @@ Vector3d Corrector::Command(const Vector3d& wanted) const {
   for (int axis = 0; axis < 3; ++axis) {
     machine::InTravel(travels_[axis], axis, wanted[axis]);
   }
-  Vector3d command = wanted - Offset(wanted);
+  const Vector3d has = Vector3d(Has(0), Has(1), Has(2));
+  Vector3d command = wanted - has.cwiseProduct(Offset(wanted));
   for (int step = 0; step < kMostSteps; ++step) {
-    const Vector3d next = wanted - Offset(command);
+    const Vector3d next = wanted - has.cwiseProduct(Offset(command));
     const double change = (next - command).cwiseAbs().maxCoeff();
     command = next;
     if (change >= kSettled) continue;

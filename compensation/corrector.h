@@ -48,6 +48,8 @@ class Corrector {
   void SetTool(const Eigen::Vector3d& p_TQ) { p_TQ_ = p_TQ; }
   // S.
   const Eigen::Vector3d& signs() const { return signs_; }
+  // Whether the machine has the axis: a lathe has no Y, and what it errs by there stays.
+  bool Has(int axis) const { return travels_[axis].last > travels_[axis].first; }
 
   Eigen::Vector3d Made(const Eigen::Vector3d& position) const {
     return position + Offset(position);

@@ -39,6 +39,7 @@ class ProgramCorrection : public NcHost {
     state_.wanted = OffsetsOf(options_.tables);
     if (!options_.tables.parameters) state_.wanted.systems[0] = options_.work_offset;
     state_.control = state_.wanted;
+    for (int axis = 0; axis < 3; ++axis) state_.is_known[axis] = !corrector_.Has(axis);
     if (!options_.start) return;
     Located("--start", [&] { moves_.MustReach(*options_.start); });
     state_.place = *options_.start;

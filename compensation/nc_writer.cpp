@@ -106,8 +106,9 @@ void NcWriter::Position(const Eigen::Vector3d& machine, bool is_g53) {
                                    ? offsets.ToProgram(at_)
                                    : Eigen::Vector3d(Eigen::Vector3d::Zero());
   const int decimals = state_.is_inch ? 7 : 6;
-  Eigen::Vector3d written;
+  Eigen::Vector3d written = to;
   for (int k = 0; k < 3; ++k) {
+    if (!corrector_.Has(k)) continue;
     const double factor = k == 0 && state_.is_diameter ? 2.0 : 1.0;
     const double unit = state_.Unit() * (state_.is_inch ? 1e-7 : 1e-6) / factor;
     const std::int64_t units = std::llround((to[k] - from[k]) / unit);

@@ -26,8 +26,9 @@ std::vector<std::string> Unquoted(const std::vector<std::string_view>& cells) {
 
 }  // namespace
 
-PositionTable::PositionTable(std::string_view text, const std::string& file)
-    : lines_(text, file), file_(file) {}
+PositionTable::PositionTable(std::string_view text, const std::string& file,
+                             const std::array<bool, 3>& needed)
+    : lines_(text, file), file_(file), needed_(needed) {}
 
 bool PositionTable::Next() {
   row_ = false;
@@ -58,6 +59,8 @@ void PositionTable::TakeNames(std::string_view names) {
     const auto found = std::ranges::find_if(columns, [&](const std::string& column) {
       return Names(settings::ColumnNameOf(column).quantity, axis);
     });
+    columns_[k] = kNone;
+    if (found == columns.end() && !needed_[k]) continue;
     if (found == columns.end()) {
       throw InputError(fmt::format(
           "{}: there is no column {}_mm among {}; a table of positions has x_mm, y_mm and z_mm, or "
@@ -81,6 +84,7 @@ void PositionTable::TakeRow() {
     throw InputError(fmt::format("{}: {} values under {} columns", Where(), words_.size(), width_));
   }
   for (std::size_t k = 0; k < 3; ++k) {
+    if (columns_[k] == kNone) continue;
     const std::string number =
         settings::WithDecimalPoint(settings::Unquoted(words_[columns_[k]]), separator_);
     position_[k] = si_[k] * map::NumberOf(number, Where());

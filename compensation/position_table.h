@@ -24,8 +24,10 @@ namespace abbe::compensation {
 
 class PositionTable {
  public:
-  // The text must outlive the table.
-  PositionTable(std::string_view text, const std::string& file);
+  // The text must outlive the table. Only the axes that are `needed` must have a column; another
+  // without one stands at 0.
+  PositionTable(std::string_view text, const std::string& file,
+                const std::array<bool, 3>& needed = {true, true, true});
 
   // Goes to the next line; false after the last. InputError if there was no line of names.
   bool Next();
@@ -41,6 +43,8 @@ class PositionTable {
   std::string Where() const { return lines_.Where(); }
 
  private:
+  static constexpr std::size_t kNone = -1;
+
   void TakeNames(std::string_view names);
   void TakeRow();
 
@@ -50,10 +54,11 @@ class PositionTable {
   bool row_ = false, named_ = false;
   char separator_ = ',';
   std::size_t width_ = 0;
-  std::array<std::size_t, 3> columns_{};
+  std::array<bool, 3> needed_;
+  std::array<std::size_t, 3> columns_{};  // kNone: there is none
   std::array<double, 3> si_{};
   std::vector<std::string_view> words_;
-  Eigen::Vector3d position_;
+  Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace abbe::compensation

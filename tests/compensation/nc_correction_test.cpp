@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compensation/corrected_table.h"
 #include "compensation/nc_block.h"
 #include "failure/failure.h"
 #include "map/words.h"
@@ -65,6 +66,21 @@ TEST(NcCorrection, WritesMovesInFullAndModalWordsOnce) {
   EXPECT_EQ(Corrected("N1 g0 x1 Y-2 Z.5 (over)\nN2 G1 Z-1.25 F100 M8\nX3\nG0 X0 M30 ; done\n"),
             "N1 (over) G0 X1 Y-2 Z0.5\nN2 F100 M8 G1 X1 Y-2 Z-1.25\nX3 Y-2 Z-1.25\n"
             "G0 X0 Y-2 Z-1.25 M30 ; done\n");
+}
+
+// A lathe whose X is 10 ppm too long, and which errs in Y, where it has no axis.
+TEST(NcCorrection, AnAxisThatIsNotThereIsNeitherAskedForNorWritten) {
+  machine::VolumetricModel lathe(machine::Chain::Parse("[w b Z X t]"),
+                                 {{{0.0, 0.2}, {0.0, 0.0}, {0.0, 0.5}}});
+  const auto line = machine::MakePolynomialForm(1, 0.0, 0.2);
+  for (const int motion : {0, 1}) lathe.SetForm(0, motion, line);
+  lathe.SetCoefficients(0, 0, Eigen::Vector2d(0.0, 1e-5 * 0.1));
+  lathe.SetCoefficients(0, 1, Eigen::Vector2d(0.0, 2e-5 * 0.1));
+  const Corrector corrector(lathe, Vector3d::Zero());
+  EXPECT_EQ(Corrected("G21 G90 G18\nG0 X100 Z5\nG1 Z50 F200\nM2\n", corrector),
+            "G21 G90 G18\nG0 X99.999 Z5\nF200 G1 X99.999 Z50\nM2\n");
+  const auto table = CorrectTable("x_mm,z_mm\n100,5\n", "points.csv", corrector);
+  EXPECT_EQ(table.text, "x_mm,z_mm\n100.001,5\n");
 }
 
 TEST(NcCorrection, KeepsUnitsAndIncrements) {
