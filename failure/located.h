@@ -4,7 +4,7 @@
 //   const map::ErrorMap found = Located(file, [&] { return map::MapOfTables(tables); });
 //   // "maps/mill.isg: the table of an axis counts backwards"
 //
-// Units: none. Shapes: none.
+// Frames, units, shapes: none.
 // Failure: an InputError of `make` gets `where` and a colon before its words; others pass.
 // Source: own. Validity: for makers that do not name the place themselves.
 #pragma once

@@ -142,17 +142,14 @@ TEST_F(Waves, HaveTheSlopesOfTheirEvidence) {
   }
 }
 
-// EYY read at five clusters of 25 places with a noise of 0.1 um; with a wave of 2 um, and without.
+// EYY read at 200 places with a noise of 0.1 um: 10 um of a smooth error, with a wave of 1 um and without.
 TEST_F(Waves, AreEvidentWhereTheyAreThere) {
   const PopulationEvidence evidence(machine_, model_);
-  const Index n = evidence.squareness() + 3, rows = 125;
+  const Index n = evidence.squareness() + 3, rows = 200;
   constexpr double kNoise = 1e-7;
   VectorXd y(rows);
   const random::CounterRandom draw(7, 20);
-  for (Index i = 0; i < rows; ++i) {
-    const double cluster = 2e-3 + 14e-3 * static_cast<double>(i % 5);
-    y[i] = cluster + draw.Uniform(static_cast<std::uint64_t>(i), -1e-3, 1e-3);
-  }
+  for (Index i = 0; i < rows; ++i) y[i] = draw.Uniform(static_cast<std::uint64_t>(i), 0.0, 60e-3);
   Index first = 0;
   for (int motion = 0; motion < machine::kMotions; ++motion) {
     first += model_.Function(0, motion).size();
@@ -160,8 +157,8 @@ TEST_F(Waves, AreEvidentWhereTheyAreThere) {
   MatrixXd J = MatrixXd::Zero(rows, n);
   const Index at = first + model_.Function(1, 0).size();
   J.middleCols(at, model_.Function(1, 1).size()) = Basis(y) / kNoise;
-  const VectorXd smooth = 3e-6 * (y.array() / 12e-3).sin(), noise = kNoise * Normal(21, rows);
-  const VectorXd wave = 2e-6 * (y.array() / 0.8e-3).sin();
+  const VectorXd smooth = 10e-6 * (y.array() / 8e-3).sin(), noise = kNoise * Normal(21, rows);
+  const VectorXd wave = 1e-6 * (y.array() / 0.8e-3).sin();
   const auto evident = [&](const VectorXd& read) {
     const Quadratic seen{J.transpose() * J, J.transpose() * (read / kNoise)};
     const VectorXd theta =

@@ -65,6 +65,7 @@ async function startRig(name, ...more) {
 async function open(url, options = {}) {
   const context = await browser.newContext({viewport: DESKTOP, ...options});
   const page = await context.newPage();
+  page.setDefaultTimeout(100000);  // on a computer that does other work
   page.complaints = [];
   page.on('console', (message) => {
     if (['error', 'warning'].includes(message.type())) page.complaints.push(message.text());
@@ -106,7 +107,7 @@ test('a sweep, seen by two browsers from its first row to its report', async () 
   const [wide, phone] = await Promise.all([open(url), open(url, {viewport: PHONE, hasTouch: true, isMobile: true, colorScheme: 'dark'})]);
   await wide.waitForSelector('.strip canvas');
   assert.equal(await wide.locator('meter').count(), 5);
-  for (const page of [wide, phone]) await page.waitForSelector('section.result .note:has-text("So far")', {timeout: 40000});
+  for (const page of [wide, phone]) await page.waitForSelector('section.result .note:has-text("So far")');
   const facts = await wide.locator('#live-facts').textContent();
   for (const name of ['Time', 'Left', 'Done', 'Rows', 'Feed', 'Temperature, column']) assert.ok(facts.includes(name), facts);
   const gap = Number(await wide.locator('#live-gaps tbody td').first().textContent());
@@ -127,7 +128,7 @@ test('a sweep, seen by two browsers from its first row to its report', async () 
   await phone.screenshot({path: join(screenshots, 'live_phone_dark.png'), fullPage: true});
   assert.deepEqual(await tooWide(phone), []);
 
-  for (const page of [wide, phone]) await page.waitForSelector('html[data-live="ended"]', {timeout: 60000});
+  for (const page of [wide, phone]) await page.waitForSelector('html[data-live="ended"]');
   assert.equal(await sweep.done, 0, sweep.said);
   const rows = readFileSync(join(out, 'sweep_X.csv'), 'utf8').split('\n').filter((line) => /^\d/.test(line)).length;
   for (const page of [wide, phone]) {
