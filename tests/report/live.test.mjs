@@ -49,7 +49,7 @@ async function startRig(name, ...more) {
   const folder = join(work, name);
   rmSync(folder, {recursive: true, force: true});
   mkdirSync(folder, {recursive: true});
-  const sweep = '[sweep]\npasses = 1\ndwell_s = 0.25\nsettle_s = 0.1\n[sweep.X]\nfirst_mm = 0.0\n' +
+  const sweep = '[sweep]\npasses = 1\ndwell_s = 0.9\nsettle_s = 0.1\n[sweep.X]\nfirst_mm = 0.0\n' +
       'last_mm = 60.0\nstep_mm = 5.0\n\n';
   const text = readFileSync(process.argv[3], 'utf8').replace(/^\[sweep\]\n[^]*?(?=^# The linkage)/m, sweep)
                    .replace(/^max_skew_ms = .*/m, 'max_skew_ms = 2000.0')
