@@ -30,7 +30,6 @@ constexpr double kSameRadius = 0.01;      // of the radius: lag makes a fast cir
 constexpr double kLargePart = 0.3;        // of a weak direction of length 1
 constexpr double kRowsOfParameter = 1.5;  // at least
 constexpr double kLeastFreedom = 3.0;     // rows beyond the causes and centres
-constexpr double kMany = 1e6;
 
 bool IsCentre(const Signature& signature) { return signature.cause == "centre"; }
 
@@ -401,7 +400,7 @@ CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs, CauseOpt
     covariance += weight * (fit.covariance + off * off.transpose());
   }
   // The noise is known to so many degrees of freedom: 2 u is a U95 for all.
-  const double t = standards::StudentCoverage(best.freedom) / standards::StudentCoverage(kMany);
+  const double t = standards::StudentWidening(best.freedom);
   covariance *= t * t;
   for (Eigen::Index i = 0; i < mean.size(); ++i) {
     CauseEstimate& one = best.causes[i];

@@ -29,6 +29,7 @@ VectorXd StepToSolution(const MatrixXd& all, const VectorXd& gradient) {
   scaled.diagonal().array() += kRounding;
   const VectorXd right = -scale.cwiseProduct(gradient);
   const Eigen::LLT<MatrixXd> factor(scaled);
+  if (factor.info() != Eigen::Success) return VectorXd::Zero(gradient.size());
   const VectorXd step = factor.solve(right);
   return scale.cwiseProduct(step);
 }

@@ -38,14 +38,13 @@ struct Visits {
 // The variance of one coordinate of a visit, as the visits to the same stops differ, and as wide as
 // Student's t for so few of them; 0 where none is visited twice.
 double BetweenVisits(const std::map<long long, Visits>& places) {
-  constexpr double kMany = 1e6;
   double squares = 0.0, freedom = 0.0;
   for (const auto& [place, visits] : places) {
     squares += visits.squares - visits.measured.squaredNorm() / visits.count;
     freedom += 3.0 * (visits.count - 1);
   }
   if (freedom == 0.0) return 0.0;
-  const double t = standards::StudentCoverage(freedom) / standards::StudentCoverage(kMany);
+  const double t = standards::StudentWidening(freedom);
   return std::max(squares, 0.0) / freedom * t * t;
 }
 

@@ -44,9 +44,9 @@ std::vector<double> ToList(const Eigen::VectorXd& values) {
 bool Checked(const StationMeans& means) { return means.noise.dof > 0.0; }
 
 // How much more the means of the halves of the passes scatter than the noise of single dwells makes
-// them, as a factor on the standard deviation of the mean reversal, and its degrees of freedom. What
-// is another in each half, as a drift or the way a carriage settles, averages out over the stations
-// of none and looks like a reversal.
+// them, as a factor on the standard deviation of the mean reversal, and its degrees of freedom. A
+// drift, or a carriage that settles another way each time, shifts all stations of a half alike: it
+// does not average out, and looks like a reversal.
 struct HalfScatter {
   double times = 1.0;
   double freedom = 0.0;  // 0: too few passes to tell

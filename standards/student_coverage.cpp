@@ -14,6 +14,11 @@ double StudentCoverage(double degrees_of_freedom) {
   return StudentQuantile(0.975, degrees_of_freedom);
 }
 
+double StudentWidening(double degrees_of_freedom) {
+  return StudentCoverage(degrees_of_freedom) /
+         StudentCoverage(std::numeric_limits<double>::infinity());
+}
+
 double StudentQuantile(double share, double degrees_of_freedom) {
   constexpr double kMany = 1e6;
   if (degrees_of_freedom > kMany) return boost::math::quantile(boost::math::normal(), share);

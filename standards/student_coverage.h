@@ -10,6 +10,10 @@ namespace abbe::standards {
 
 double StudentCoverage(double degrees_of_freedom);
 
+// By how much wider that is than for infinite degrees of freedom: of a standard uncertainty times
+// it, the factor of normal errors gives the U95.
+double StudentWidening(double degrees_of_freedom);
+
 // The value that Student's t exceeds with the probability 1 - `share`, which lies between 0 and 1.
 double StudentQuantile(double share, double degrees_of_freedom);
 
