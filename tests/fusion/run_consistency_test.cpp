@@ -21,8 +21,8 @@ using Eigen::VectorXd;
 class TwoRuns : public testing::Test {
  protected:
   TwoRuns() {
-    const auto input = problem_.Add(
-        {"length", {"m", 1.0}, {{"a", 1.0, 1e6, 0.0}, {"b", 1.0, 1e6, 0.0}}});
+    const auto input =
+        problem_.Add({"length", {"m", 1.0}, {{"a", 1.0, 1e6, 0.0}, {"b", 1.0, 1e6, 0.0}}});
     const std::vector<estimation::Input> inputs{input};
     const auto read = [](double at) {
       return std::make_shared<estimation::LinearResidual>(MatrixXd::Identity(2, 2),
