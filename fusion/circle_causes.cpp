@@ -310,7 +310,9 @@ CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptio
       std::max(Rms(first.noise) * std::sqrt(rows / FreedomOf(first, rows)), kLeastRadialNoise);
   found.correlated = Correlated(runs, first.noise, rms);
   const Fit fit = Solve(equations, table, options, rms * found.correlated);
-  found.rms_smooth = Rms(fit.smooth);
+  std::vector<Eigen::VectorXd> smooth;
+  for (const Eigen::VectorXd& one : fit.smooth) smooth.emplace_back(one.array() - one.mean());
+  found.rms_smooth = Rms(smooth);  // a longer ballbar is no error of the machine
   found.rms_after = Rms(fit.noise);
   found.covariance = fit.result.Covariance("cause", "cause");
   const double independent = rows / (found.correlated * found.correlated);

@@ -111,6 +111,12 @@ MeasuredPath BallbarPath(const Recording& recording) {
   MeasuredPath path = Commanded(recording, recording::GoodRows(recording));
   path.instrument = kByBallbar;
   if (const auto u = recording.HeaderNumber("u_length_um")) {
+    if (!(*u > 0.0)) {
+      throw InputError(fmt::format(
+          "{}: u_length_um = {} in the header: write the standard uncertainty of the ballbar's "
+          "length, above 0, or leave it out",
+          recording.name, *u));
+    }
     path.u_length = *u * settings::kMicrometre;
   }
   for (int axis = 0; axis < 3; ++axis) {

@@ -35,7 +35,14 @@ void ReadPlaces(const Recording& recording, ReferenceRun& run) {
 }
 
 void ReadStatedNoise(const Recording& recording, ReferenceRun& run) {
-  run.u_scale = 1e-6 * recording.HeaderNumber("u_scale_ppm", 0.0).value_or(0.0);
+  const double u_scale = recording.HeaderNumber("u_scale_ppm", 0.0).value_or(0.0);
+  if (!(u_scale >= 0.0)) {
+    throw InputError(fmt::format(
+        "{}: u_scale_ppm = {} in the header: write how well the scale of the reference is known, 0 "
+        "or above",
+        recording.name, u_scale));
+  }
+  run.u_scale = 1e-6 * u_scale;
   run.sd = Eigen::Matrix3Xd::Zero(3, run.rows());
   const auto stated = recording.HeaderNumber(kStatedKey);
   const bool by_row = recording.Find(kStatedColumn).has_value();

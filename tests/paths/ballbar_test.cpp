@@ -88,6 +88,16 @@ TEST(Ballbar, RadiiInsteadOfDeviationsAreTaken) {
   EXPECT_NEAR(*EvaluateCircle(runs[0]).iso.D, 5e-6, 1e-9);
 }
 
+TEST(Ballbar, ItsLengthIsAsWellKnownAsTheHeaderSays) {
+  Recording ballbar = BallbarOf(Table([](double, int) { return 0.0; }), {.radius_mm = 100.0});
+  EXPECT_FALSE(CircleRuns({BallbarPath(ballbar)}).front().u_length);
+  const std::string header = ballbar.header;
+  ballbar.header = "u_length_um = 0.5\n" + header;
+  EXPECT_NEAR(*CircleRuns({BallbarPath(ballbar)}).front().u_length, 0.5e-6, 1e-15);
+  ballbar.header = "u_length_um = -0.5\n" + header;
+  EXPECT_THROW(BallbarPath(ballbar), InputError);
+}
+
 TEST(Ballbar, WhatIsNoCircleIsRefused) {
   Recording table = Table([](double, int) { return 0.0; });
   EXPECT_THAT(Refusal(table, {.radius_mm = 0.0}), HasSubstr("give the programmed radius"));

@@ -91,6 +91,9 @@ TEST(ReferenceRun, TakesTheNoiseThatIsStated) {
   SetNoise(Eigen::Vector3d::Constant(kMicro), stated);
   EXPECT_DOUBLE_EQ(stated.sd(0, 3), 0.5 * kMicro);
   EXPECT_THROW(RunOf(TestOf(none, "u_reference_um = 0\n")), InputError);
+  EXPECT_DOUBLE_EQ(stated.u_scale, 0.0);
+  EXPECT_DOUBLE_EQ(RunOf(TestOf(none, "u_scale_ppm = 5\n")).u_scale, 5e-6);
+  EXPECT_THROW(RunOf(TestOf(none, "u_scale_ppm = -5\n")), InputError);
 }
 
 TEST(ReferenceRun, KnowsTheTestedAxisAndItsTime) {
