@@ -87,8 +87,10 @@ const NcTool& NcSetup::ToolOf(double number) {
   if (!options_.tables.tools) {
     Refuse("length and radius of a tool are in the tool table; name it with --tools tool.tbl");
   }
-  const auto found = options_.tables.tools->find(static_cast<int>(number));
-  if (number != std::round(number) || found == options_.tables.tools->end()) {
+  const auto& tools = *options_.tables.tools;
+  const auto found = std::find_if(tools.begin(), tools.end(),
+                                  [&](const auto& tool) { return tool.first == number; });
+  if (found == tools.end()) {
     Refuse(fmt::format("tool {:.9g} is not in the tool table; add it", number));
   }
   return found->second;
