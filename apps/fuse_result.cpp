@@ -94,6 +94,21 @@ std::string ScatterLines(const fusion::FuseReport& report) {
   return text;
 }
 
+std::string DriftLines(const fusion::FuseReport& report) {
+  std::string text;
+  for (std::size_t i = 0; i < report.memory.size(); ++i) {
+    const auto& memory = report.memory[i];
+    if (!memory) continue;
+    text += fmt::format(
+        "\nDRIFT: what {} reads goes on from row to row, {:.2g} times its stated noise (rms) and fading within "
+        "{:.2g} s: an instrument or machine that drifts or warms up, a wave along the path, or, if nothing drifts so "
+        "far, a chain, [head] or [linkage] that are not those of the recording. U95 contains it as a drift; places in "
+        "another order, or one place again and again between them, tell it from the errors of the axes.\n",
+        report.fit.sources[i].name, memory->slow, memory->time);
+  }
+  return text;
+}
+
 std::string ReversalLines(const fusion::FuseReport& report) {
   std::string text;
   for (const auto& each : report.reversals) {
@@ -176,7 +191,8 @@ std::string RunsText(const fusion::FuseReport& report) {
   return ScaleText(report.scale) +
          fmt::format("Correlation length of the error functions: {:.1f} mm\n",
                      1e3 * report.chosen_smoothness) +
-         ReversalLines(report) + ScatterLines(report) + MachineFileNotes(report) + RunTable(report);
+         ReversalLines(report) + DriftLines(report) + ScatterLines(report) +
+         MachineFileNotes(report) + RunTable(report);
 }
 
 ordered_json FuseJson(const fusion::FuseReport& report) {
@@ -210,6 +226,14 @@ ordered_json FuseJson(const fusion::FuseReport& report) {
     json["scatter"].push_back({{"run", report.fit.sources[i].name},
                                {"axis", std::string(1, "XYZ"[axis])},
                                {"sd_um", report.scatter[i].size() / kMicro}});
+  }
+  json["drifts"] = ordered_json::array();
+  for (std::size_t i = 0; i < report.memory.size(); ++i) {
+    const auto& memory = report.memory[i];
+    if (!memory) continue;
+    json["drifts"].push_back({{"run", report.fit.sources[i].name},
+                              {"over_noise", memory->slow},
+                              {"time_s", memory->time}});
   }
   for (const auto& function : report.functions) {
     json["observability"][function.name] = {

@@ -5,19 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <numbers>
 
-#include "estimation/problem.h"
 #include "failure/failure.h"
+#include "fusion/circle_fit.h"
 #include "standards/circle_signatures.h"
 #include "standards/student_coverage.h"
 
 namespace abbe::fusion {
 namespace {
 
-using estimation::Problem;
 using paths::CirclePoint;
 using paths::CircleRun;
 using standards::Signature;
@@ -30,10 +27,6 @@ constexpr double kSameRadius = 0.01;      // of the radius: lag makes a fast cir
 constexpr double kLargePart = 0.3;        // of a weak direction of length 1
 constexpr double kRowsOfParameter = 1.5;  // at least
 constexpr double kLeastFreedom = 3.0;     // rows beyond the causes and centres
-
-bool IsCentre(const Signature& signature) { return signature.cause == "centre"; }
-
-std::string Name(const Signature& signature) { return signature.cause + "." + signature.object; }
 
 void CheckCircles(const std::vector<const CircleRun*>& runs) {
   if (runs.empty()) throw InputError("no circle to find the causes of");
@@ -51,164 +44,6 @@ void CheckCircles(const std::vector<const CircleRun*>& runs) {
                       runs.front()->recordings.front(), run->recordings.front()));
     }
   }
-}
-
-// How backlash is taken up, and on which way of the first and the second axis, m.
-struct BacklashForm {
-  standards::TakenUp how = standards::TakenUp::kAtOnce;
-  std::array<double, 2> way{};
-};
-
-std::vector<Signature> SignaturesOf(const CircleRun& run, const CauseOptions& options,
-                                    const BacklashForm& form) {
-  return standards::CircleSignatures({.first = run.plane.name[0],
-                                      .second = run.plane.name[1],
-                                      .first_centre = run.plane.first.dot(run.centre),
-                                      .second_centre = run.plane.second.dot(run.centre),
-                                      .pitch = options.pitch,
-                                      .spike_width = options.spike_width,
-                                      .taken_up = form.how,
-                                      .way = form.way});
-}
-
-double Radial(const CirclePoint& point, double radius) {
-  return std::hypot(point.first, point.second) - radius;
-}
-
-// Radial deviations of a run, and their derivatives with respect to the centre, each cause, the
-// harmonics of smooth errors and the errors of the instrument.
-struct Equations {
-  Eigen::MatrixXd centre, causes, smooth, instrument;
-  Eigen::VectorXd radial;
-};
-
-// cos, sin of each order, the same in both senses and at any feed.
-Eigen::MatrixXd Waves(const CircleRun& run, std::size_t orders) {
-  Eigen::MatrixXd waves(run.points.size(), 2 * orders);
-  for (Eigen::Index i = 0; i < waves.rows(); ++i) {
-    const double t = run.points[i].angle;
-    for (Eigen::Index k = 0; k < waves.cols(); k += 2) {
-      const Eigen::Index order = kFirstHarmonic + k / 2;
-      const double phase = order * t;
-      waves(i, k) = std::cos(phase);
-      waves(i, k + 1) = std::sin(phase);
-    }
-  }
-  return waves;
-}
-
-Equations EquationsOf(const CircleRun& run, const CauseOptions& options, const BacklashForm& form) {
-  const std::vector<Signature> table = SignaturesOf(run, options, form);
-  const Eigen::Index n = run.points.size();
-  const auto centres = std::ranges::count_if(table, IsCentre);
-  Equations equations{Eigen::MatrixXd(n, centres), Eigen::MatrixXd(n, table.size() - centres),
-                      Waves(run, options.smooth.size()), Eigen::MatrixXd(n, options.shifted.size()),
-                      Eigen::VectorXd(n)};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const CirclePoint& point = run.points[i];
-    const standards::CirclePoint at{point.angle, static_cast<double>(point.sense), run.radius,
-                                    run.feed};
-    Eigen::Index centre = 0, cause = 0;
-    for (const Signature& signature : table) {
-      (IsCentre(signature) ? equations.centre(i, centre++) : equations.causes(i, cause++)) =
-          signature.radial(at);
-    }
-    // The distance to the set-up centre; the square of the centre's offset in it is no deviation of
-    // the path.
-    equations.radial[i] = Radial(point, run.radius);
-  }
-  return equations;
-}
-
-// The run about `middle` instead of the set-up centre, so that the square of the centre's offset is
-// negligible.
-CircleRun About(const Eigen::Vector2d& middle, const CircleRun& run) {
-  CircleRun centred = run;
-  for (CirclePoint& point : centred.points) {
-    point.first -= middle.x();
-    point.second -= middle.y();
-  }
-  return centred;
-}
-
-// The equations of run number `at`, about its middle.
-Equations CentredEquations(const std::vector<const CircleRun*>& runs, std::size_t at,
-                           const CauseOptions& options, const BacklashForm& form) {
-  const Eigen::Vector2d middle = runs[at]->middle;
-  Equations equations = EquationsOf(About(middle, *runs[at]), options, form);
-  for (std::size_t k = 0; k < options.shifted.size(); ++k) {
-    const CircleRun shifted = About(middle, *options.shifted[k][at]);
-    for (Eigen::Index i = 0; i < equations.radial.size(); ++i) {
-      equations.instrument(i, k) = Radial(shifted.points[i], shifted.radius) - equations.radial[i];
-    }
-  }
-  return equations;
-}
-
-struct Fit {
-  estimation::Result result;
-  // For each run: the deviations without the causes, their fitted smooth part (with the errors of
-  // the instrument), and the residuals.
-  std::vector<Eigen::VectorXd> unexplained, smooth, noise;
-};
-
-estimation::ParameterBlock SmoothBlock(const std::vector<double>& deviations) {
-  estimation::ParameterBlock block{"smooth", {"um", 1e-6}, {}};
-  for (std::size_t k = 0; k < deviations.size(); ++k) {
-    const std::size_t order = kFirstHarmonic + k;
-    block.entries.push_back({fmt::format("cos_{}", order), 0.0, deviations[k], 0.0});
-    block.entries.push_back({fmt::format("sin_{}", order), 0.0, deviations[k], 0.0});
-  }
-  return block;
-}
-
-// The errors of the instrument, each in units of its standard deviation.
-estimation::ParameterBlock InstrumentBlock(std::size_t directions) {
-  estimation::ParameterBlock block{"instrument", {"", 1.0}, {}};
-  for (std::size_t k = 0; k < directions; ++k) {
-    block.entries.push_back({fmt::format("error_{}", k + 1), 0.0, 1.0, 0.0});
-  }
-  return block;
-}
-
-Fit Solve(const std::vector<Equations>& equations, const std::vector<Signature>& causes,
-          const CauseOptions& options, double deviation) {
-  Problem problem;
-  estimation::ParameterBlock named{"cause", {"", 1.0}, {}};
-  for (const Signature& cause : causes) {
-    named.entries.push_back({Name(cause), 0.0, cause.usual, 0.0});
-  }
-  std::vector<estimation::Input> shared{problem.Add(std::move(named))};
-  if (!options.smooth.empty()) shared.emplace_back(problem.Add(SmoothBlock(options.smooth)));
-  if (!options.shifted.empty()) {
-    shared.emplace_back(problem.Add(InstrumentBlock(options.shifted.size())));
-  }
-  for (std::size_t run = 0; run < equations.size(); ++run) {
-    const Equations& one = equations[run];
-    std::vector<estimation::Input> inputs = shared;
-    inputs.emplace_back(
-        problem.Add({fmt::format("centre_{}", run), {"um", 1e-6}, {{"first"}, {"second"}}}));
-    Eigen::MatrixXd A(one.radial.size(), one.causes.cols() + one.smooth.cols() +
-                                             one.instrument.cols() + one.centre.cols());
-    A << one.causes, one.smooth, one.instrument, one.centre;
-    problem.Add(problem.AddSource(fmt::format("run {}", run + 1)),
-                std::make_shared<estimation::LinearResidual>(std::move(A), one.radial), inputs,
-                deviation);
-  }
-  Fit fit{problem.Solve(), {}, {}, {}};
-  if (!fit.result.Usable()) throw NumericalError(fit.result.WhyNotUsable());
-  const auto part = [&fit](const Eigen::MatrixXd& columns, const std::string& block) {
-    return columns.cols() == 0 ? Eigen::VectorXd::Zero(columns.rows()).eval()
-                               : (columns * fit.result.Block(block).Values()).eval();
-  };
-  for (std::size_t run = 0; run < equations.size(); ++run) {
-    const Equations& one = equations[run];
-    fit.unexplained.emplace_back(one.radial - part(one.causes, "cause") -
-                                 part(one.centre, fmt::format("centre_{}", run)));
-    fit.smooth.emplace_back(part(one.smooth, "smooth") + part(one.instrument, "instrument"));
-    fit.noise.emplace_back(fit.unexplained.back() - fit.smooth.back());
-  }
-  return fit;
 }
 
 Eigen::Index Rows(const std::vector<const CircleRun*>& runs) {
@@ -244,7 +79,7 @@ double Rms(const std::vector<Eigen::VectorXd>& residuals) {
 }
 
 // Rows less the parameters that the data determine: 1 at least.
-double FreedomOf(const Fit& fit, double rows) {
+double FreedomOf(const CircleFit& fit, double rows) {
   return std::clamp(fit.result.redundancy, 1.0, rows);
 }
 
@@ -292,10 +127,9 @@ bool IsOfCauses(const estimation::Result& result, const estimation::WeakDirectio
 }
 
 CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
-                     const BacklashForm& form) {
-  std::vector<Signature> table = SignaturesOf(*runs.front(), options, form);
-  std::erase_if(table, IsCentre);
-  std::vector<Equations> equations;
+                     const ReversalForm& form) {
+  const std::vector<Signature> table = CausesOf(*runs.front(), options, form);
+  std::vector<CircleEquations> equations;
   CircleCauses found;
   std::vector<Eigen::VectorXd> before;
   for (std::size_t run = 0; run < runs.size(); ++run) {
@@ -304,12 +138,12 @@ CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptio
     before.emplace_back(radial.array() - radial.mean());
   }
   found.rms_before = Rms(before);
-  const Fit first = Solve(equations, table, options, kLeastRadialNoise);
+  const CircleFit first = SolveCircles(equations, table, options, kLeastRadialNoise);
   const double rows = static_cast<double>(Rows(runs));
   const double rms =
       std::max(Rms(first.noise) * std::sqrt(rows / FreedomOf(first, rows)), kLeastRadialNoise);
   found.correlated = Correlated(runs, first.noise, rms);
-  const Fit fit = Solve(equations, table, options, rms * found.correlated);
+  const CircleFit fit = SolveCircles(equations, table, options, rms * found.correlated);
   std::vector<Eigen::VectorXd> smooth;
   for (const Eigen::VectorXd& one : fit.smooth) smooth.emplace_back(one.array() - one.mean());
   found.rms_smooth = Rms(smooth);  // a longer ballbar is no error of the machine
@@ -318,10 +152,10 @@ CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptio
   const double independent = rows / (found.correlated * found.correlated);
   found.freedom = std::max(independent - (rows - FreedomOf(fit, rows)), 1.0);
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const std::string name = "cause." + Name(table[i]);
+    const std::string name = "cause." + CauseName(table[i]);
     CauseEstimate estimate{table[i].cause, table[i].object, table[i].unit, fit.result.Value(name),
                            fit.result.Uncertainty(name)};
-    for (const Equations& one : equations) {
+    for (const CircleEquations& one : equations) {
       estimate.effect = std::max(
           estimate.effect, std::abs(estimate.value) * one.causes.col(i).cwiseAbs().maxCoeff());
     }
@@ -346,22 +180,32 @@ std::array<double, 2> BacklashOf(const CircleCauses& found) {
   return backlash;
 }
 
+// A fit and the form it was made with.
+struct CircleTrial {
+  ReversalForm form;
+  CircleCauses found;
+};
+
 // The fits with all ways in which backlash may be taken up.
-std::vector<CircleCauses> FitWithAll(const std::vector<const CircleRun*>& runs,
-                                     const CauseOptions& options) {
+void FitTakenUp(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
+                double spike_width, std::vector<CircleTrial>& trials) {
   constexpr int kRounds = 4;  // each brings the way closer to the play by a factor of five
   constexpr std::array kWays{0.5e-6, 1e-6,  2e-6,   5e-6,   10e-6,
                              20e-6,  50e-6, 100e-6, 200e-6, 500e-6};  // m
-  std::vector<CircleCauses> fits{FitWith(runs, options, {})};
-  CircleCauses with_play = fits.front();
+  const auto fitted = [&](const ReversalForm& form) { return FitWith(runs, options, form); };
+  const ReversalForm at_once{.spike_width = spike_width};
+  trials.push_back({at_once, fitted(at_once)});
+  CircleTrial with_play = trials.back();
+  with_play.form.how = standards::TakenUp::kWithPlay;
   for (int round = 0; round < kRounds; ++round) {
-    with_play = FitWith(runs, options, {standards::TakenUp::kWithPlay, BacklashOf(with_play)});
+    with_play.form.way = BacklashOf(with_play.found);
+    with_play.found = fitted(with_play.form);
   }
-  fits.push_back(std::move(with_play));
+  trials.push_back(std::move(with_play));
   for (const double way : kWays) {
-    fits.push_back(FitWith(runs, options, {standards::TakenUp::kByWindUp, {way, way}}));
+    const ReversalForm wound_up{standards::TakenUp::kByWindUp, {way, way}, spike_width};
+    trials.push_back({wound_up, fitted(wound_up)});
   }
-  return fits;
 }
 
 // The logarithm of the marginal likelihood of a fit, up to what is the same for all. `rows`:
@@ -370,36 +214,86 @@ double LogLikelihood(const CircleCauses& fit, double rows) {
   return -rows * std::log(std::max(fit.rms_after, kLeastRadialNoise));
 }
 
+double IndependentRows(const std::vector<const CircleRun*>& runs, const CircleCauses& fit) {
+  return static_cast<double>(Rows(runs)) / (fit.correlated * fit.correlated);
+}
+
 Eigen::VectorXd ValuesOf(const CircleCauses& fit) {
   Eigen::VectorXd values(fit.causes.size());
   for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = fit.causes[i].value;
   return values;
 }
 
+// The sizes of the spikes that are far beyond chance: of smaller ones the form does not matter.
+std::array<double, 2> SpikesOf(const CircleCauses& found) {
+  constexpr double kFarBeyond = 5.0;
+  std::array<double, 2> sizes{};
+  std::size_t axis = 0;
+  for (const CauseEstimate& one : found.causes) {
+    if (one.cause != "reversal_spike") continue;
+    if (std::abs(one.value) > kFarBeyond * one.u) sizes[axis] = std::abs(one.value);
+    ++axis;
+  }
+  return sizes;
+}
+
+const CircleTrial& MostLikely(const std::vector<CircleTrial>& trials) {
+  return *std::ranges::min_element(trials, {},
+                                   [](const CircleTrial& one) { return one.found.rms_after; });
+}
+
+// Fits with all forms that a reversal may have: first spikes of the width of the options, then of
+// others, where there are spikes; and these last not quite of the form of the table.
+std::vector<CircleTrial> FitWithAll(const std::vector<const CircleRun*>& runs,
+                                    const CauseOptions& options) {
+  constexpr std::array kWidths{0.2, 0.3, 0.45, 0.67, 1.5, 2.2, 3.3, 5.0};  // of that stated
+  constexpr double kLikely = 12.0;  // logarithm of the odds against the most likely
+  std::vector<CircleTrial> trials;
+  FitTakenUp(runs, options, options.spike_width, trials);
+  const std::array<double, 2> none{};
+  if (SpikesOf(MostLikely(trials).found) == none) return trials;
+  ReversalForm form = MostLikely(trials).form;
+  for (const double times : kWidths) {
+    form.spike_width = times * options.spike_width;
+    trials.push_back({form, FitWith(runs, options, form)});
+  }
+  if (const double width = MostLikely(trials).form.spike_width; width != options.spike_width) {
+    FitTakenUp(runs, options, width, trials);
+  }
+  const CircleCauses best = MostLikely(trials).found;
+  const double rows = IndependentRows(runs, best);
+  std::vector<CircleTrial> formed;
+  for (const CircleTrial& trial : trials) {
+    if (LogLikelihood(trial.found, rows) < LogLikelihood(best, rows) - kLikely) continue;
+    CircleTrial& own = formed.emplace_back(trial);
+    own.form.spike_size = SpikesOf(trial.found);
+    if (own.form.spike_size != none) own.found = FitWith(runs, options, own.form);
+  }
+  return formed;
+}
+
 }  // namespace
 
 CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs, CauseOptions options) {
   CheckCircles(runs);
-  LimitOrders(
-      runs, std::ranges::count_if(SignaturesOf(*runs.front(), options, {}), std::not_fn(IsCentre)),
-      options.smooth);
-  std::vector<CircleCauses> fits = FitWithAll(runs, options);
-  CircleCauses& best = *std::ranges::min_element(fits, {}, &CircleCauses::rms_after);
-  const double rows = static_cast<double>(Rows(runs)) / (best.correlated * best.correlated);
+  LimitOrders(runs, CausesOf(*runs.front(), options, {}).size(), options.smooth);
+  const std::vector<CircleTrial> trials = FitWithAll(runs, options);
+  CircleCauses best = MostLikely(trials).found;
+  const double rows = IndependentRows(runs, best);
   const double most = LogLikelihood(best, rows);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(std::ssize(best.causes));
   double sum = 0.0;
-  for (const CircleCauses& fit : fits) {
-    const double weight = std::exp(LogLikelihood(fit, rows) - most);
-    mean += weight * ValuesOf(fit);
+  for (const CircleTrial& trial : trials) {
+    const double weight = std::exp(LogLikelihood(trial.found, rows) - most);
+    mean += weight * ValuesOf(trial.found);
     sum += weight;
   }
   mean /= sum;
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(mean.size(), mean.size());
-  for (const CircleCauses& fit : fits) {
-    const Eigen::VectorXd off = ValuesOf(fit) - mean;
-    const double weight = std::exp(LogLikelihood(fit, rows) - most) / sum;
-    covariance += weight * (fit.covariance + off * off.transpose());
+  for (const CircleTrial& trial : trials) {
+    const Eigen::VectorXd off = ValuesOf(trial.found) - mean;
+    const double weight = std::exp(LogLikelihood(trial.found, rows) - most) / sum;
+    covariance += weight * (trial.found.covariance + off * off.transpose());
   }
   // The noise is known to so many degrees of freedom: 2 u is a U95 for all.
   const double t = standards::StudentWidening(best.freedom);
@@ -411,7 +305,7 @@ CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs, CauseOpt
     one.u = std::sqrt(covariance(i, i));
   }
   best.covariance = std::move(covariance);
-  return std::move(best);
+  return best;
 }
 
 }  // namespace abbe::fusion

@@ -17,9 +17,11 @@
 #include "fusion/marginal.h"
 #include "fusion/plate_form.h"
 #include "fusion/reversals.h"
+#include "fusion/row_memory.h"
 #include "fusion/target_form.h"
 #include "settings/unit.h"
 #include "simulation/linkage/linkage_problem.h"
+#include "simulation/remembered_noise.h"
 
 namespace abbe::fusion {
 namespace {
@@ -36,6 +38,7 @@ constexpr std::array kMounted{"target_tilt", "head_turn", "head_place", "base"};
 constexpr double kUnknown = std::numeric_limits<double>::infinity();  // of an uncertainty
 constexpr int kFits = 5;                // at most, until noise and knots have settled
 constexpr double kNoiseSettled = 0.05;  // of its logarithm
+constexpr double kMemorySettled = 0.2;  // the same of a slow part
 // Standard uncertainties from the solution: of the last fit, and of those before it, whose priors
 // and knots may be wrong.
 constexpr double kSettled = 1e-4, kFirstLook = 0.03, kTolerated = 3.0;
@@ -68,7 +71,8 @@ class FuseJob {
         knots_(options.knots.value_or(KnotsOf(machine))),
         model_(UnknownMachine(machine, knots_)),
         population_(PopulationOf(machine)),
-        noise_(runs_.size(), 1.0) {
+        noise_(runs_.size(), 1.0),
+        memory_(runs_.size()) {
     AllowFormAndReversals();
   }
 
@@ -79,7 +83,10 @@ class FuseJob {
     for (int fits = 1; fits < kFits; ++fits) {
       const Judged reversals = JudgeReversals(machine_, now.fit, runs_);
       Change change = reversals == Judged::kOtherSize ? Change::kNoise : Change::kNone;
-      if (options_.choose_smoothness) change = std::max(change, Estimate(now, fits + 1 < kFits));
+      if (options_.choose_smoothness) {
+        if (Remember(now)) change = Change::kNoise;
+        change = std::max(change, Estimate(now, fits + 1 < kFits));
+      }
       // Runs on new knots have nothing to be replaced by yet.
       const bool condensed = change != Change::kKnots && Condense(now.fit);
       if (!options_.choose_smoothness && !condensed && reversals == Judged::kAsBefore) break;
@@ -95,7 +102,7 @@ class FuseJob {
  private:
   // Starts at the values of `start` where they are of the same size, else at the nominal ones.
   Fitted Fit(const std::vector<estimation::ParameterBlock>& start, bool first_look) const {
-    Fitted fitted{MakeMachineProblem(machine_, model_, Prior(), runs_, noise_)};
+    Fitted fitted{MakeProblem(runs_)};
     for (const auto& known : fitted.problem.blocks()) {
       const auto from = std::find_if(start.begin(), start.end(), [&](const auto& block) {
         return block.name == known.name && block.size() == known.size();
@@ -109,9 +116,54 @@ class FuseJob {
     fitted.fit =
         simulation::SolveLinkage(fitted.problem, options_.threads, false,
                                  first_look ? kFirstLook : kSettled, first_look ? kTolerated : 0.0);
-    fitted.at = estimation::Linearize(fitted.problem, estimation::Layout(fitted.problem),
-                                      ValuesFound(fitted.fit, fitted.fit.blocks), options_.threads);
+    fitted.at = SumsAt(fitted.fit, fitted.problem);
     return fitted;
+  }
+
+  Linearization SumsAt(const Result& fit, const Problem& problem) const {
+    return estimation::Linearize(problem, estimation::Layout(problem), ValuesFound(fit, fit.blocks),
+                                 options_.threads);
+  }
+
+  // With the noise and the memory of each run.
+  Problem MakeProblem(std::vector<SimulatedRun> runs) const {
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      if (!memory_[r]) continue;
+      runs[r].residual = simulation::WithMemory(runs[r].residual, runs[r].times, *memory_[r]);
+    }
+    return MakeMachineProblem(machine_, model_, Prior(), runs, noise_);
+  }
+
+  // What goes on from row to row in each run, beside what a fit says; false where nothing changes.
+  bool Remember(Fitted& now) {
+    const Problem plain = MakeMachineProblem(machine_, model_, Prior(), runs_);
+    const estimation::Layout layout(now.problem);  // reversals may be held since
+    const VectorXd x = ValuesFound(now.fit, now.fit.blocks);
+    bool changed = false;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      changed |= SetMemory(r, FindRowMemory(plain, layout, x, now.at, r, runs_[r].times));
+    }
+    if (!changed) return false;
+    now.problem = MakeProblem(runs_);
+    now.at = SumsAt(now.fit, now.problem);
+    return true;
+  }
+
+  bool SetMemory(std::size_t run, const RowMemory& found) {
+    auto& memory = memory_[run];
+    if (!(found.gain > kRemembers)) {
+      if (memory) noise_[run] = memory->white;
+      return std::exchange(memory, std::nullopt).has_value();
+    }
+    const auto apart = [](double a, double b) { return std::abs(std::log(a / b)); };
+    if (memory &&
+        apart(found.noise.white * noise_[run], memory->white * noise_[run]) < kNoiseSettled &&
+        apart(found.noise.slow, memory->slow) < kMemorySettled) {
+      return false;
+    }
+    memory = found.noise;
+    noise_[run] = 1.0;  // it is in the white part
+    return true;
   }
 
   void AllowFormAndReversals() {
@@ -215,7 +267,9 @@ class FuseJob {
       knots_ = finer;
     }
     model_ = WithWaves(UnknownMachine(machine_, knots_), waves_);
-    noise_.assign(noise_.size(), 1.0);  // more of it may have been what the model could not follow
+    // More of it may have been what the model could not follow.
+    noise_.assign(noise_.size(), 1.0);
+    memory_.assign(memory_.size(), std::nullopt);
     runs_ = options_.runs_on(model_);
     SetPlateForm(holes_, 1.0, runs_);
     AllowFormAndReversals();
@@ -241,9 +295,8 @@ class FuseJob {
     std::vector<PlaceScatter> scatter;
     std::vector<double> follows;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
-      const VectorXd left = Left(now, r);
-      follows.push_back(CorrelationIn(left));
-      scatter.push_back(FindPlaceScatter(runs_[r], noise_[r] * left, found, prior, evident));
+      follows.push_back(CorrelationIn(Left(now, r)));
+      scatter.push_back(FindPlaceScatter(runs_[r], AsStated(now, r), found, prior, evident));
     }
     CountScatter(scatter, found, seen);
     FuseReport report{.map = MapOf(found, seen, StateOf(now, seen.covariance))};
@@ -253,6 +306,10 @@ class FuseJob {
     report.statements = std::move(statements_);
     report.seen = std::move(seen_);
     report.noise = noise_;
+    report.memory = memory_;
+    for (std::size_t r = 0; r < memory_.size(); ++r) {
+      if (memory_[r]) report.noise[r] *= memory_[r]->white;
+    }
     report.reversals = ReversalsOf(now.fit, widened);
     for (const SimulatedRun& run : runs_) report.kinds.push_back(run.kind);
     report.runs = std::move(consistency);
@@ -264,9 +321,8 @@ class FuseJob {
     if (options_.holdout > 0) {
       Steps steps(1);
       steps.Begin("blocks of rows held out");
-      report.held_out = HoldOut(options_.holdout, runs_, [&](const auto& runs) {
-        return MakeMachineProblem(machine_, model_, Prior(), runs, noise_);
-      });
+      report.held_out =
+          HoldOut(options_.holdout, runs_, [&](const auto& runs) { return MakeProblem(runs); });
     }
     report.fit = std::move(now.fit);
     return report;
@@ -325,6 +381,13 @@ class FuseJob {
       left.conservativeResize(left.size() + found->r.size());
       left.tail(found->r.size()) = found->r;
     }
+    return left;
+  }
+
+  // The same, whitened as the noise is stated.
+  VectorXd AsStated(const Fitted& now, std::size_t run) const {
+    VectorXd left(runs_[run].residual->Rows());
+    runs_[run].residual->Evaluate(ValuesFound(now.fit, runs_[run].blocks), left, nullptr);
     return left;
   }
 
@@ -389,6 +452,7 @@ class FuseJob {
   std::array<bool, machine::kAxes> waves_{};  // the axes that have any in model_
   VectorXd theta_;                            // population_estimate.h
   std::vector<double> noise_;
+  std::vector<std::optional<estimation::NoiseMemory>> memory_;  // of each run, over what is stated
   double form_ = 1.0;   // of the target, over what the file states
   double holes_ = 1.0;  // of the form of a plate, the same
   std::vector<Statement> statements_;

@@ -27,6 +27,7 @@
 #include <string>
 #include <vector>
 
+#include "estimation/noise_memory.h"
 #include "estimation/result.h"
 #include "fusion/holdout.h"
 #include "fusion/machine_problem.h"
@@ -66,10 +67,12 @@ struct FuseReport {
   std::vector<FunctionSeen> functions = {};
   ScaleSeen scale = {};
   std::vector<Statement> statements = {};  // of the machine file; empty where they are not judged
-  std::vector<double> noise = {};          // of each run: its noise over the stated one
-  std::vector<Reversal> reversals = {};    // the map is the mean of both directions
-  double chosen_smoothness = 0.0;          // m: of all functions together
-  std::vector<std::string> kinds = {};     // of each run
+  std::vector<double> noise = {};          // of each run: its white noise over the stated one
+  // Of each run: what goes on from row to row, over the stated noise (row_memory.h).
+  std::vector<std::optional<estimation::NoiseMemory>> memory = {};
+  std::vector<Reversal> reversals = {};  // the map is the mean of both directions
+  double chosen_smoothness = 0.0;        // m: of all functions together
+  std::vector<std::string> kinds = {};   // of each run
   std::vector<RunConsistency> runs = {};
   int contradicting = -1;            // index into `runs`; -1: none
   double widened = 1.0;              // all uncertainties for it, by its Birge ratio

@@ -79,9 +79,11 @@ class RememberingResponse : public Response {
   std::shared_ptr<const Whitener> noise_;
 };
 
-class RememberingResidual : public Responsive {
+// `Base`: estimation::Residual or Responsive.
+template <typename Base>
+class Remembering : public Base {
  public:
-  RememberingResidual(std::shared_ptr<const Responsive> run, std::shared_ptr<const Whitener> noise)
+  Remembering(std::shared_ptr<const Base> run, std::shared_ptr<const Whitener> noise)
       : run_(std::move(run)), noise_(std::move(noise)) {}
 
   Index Rows() const override { return run_->Rows(); }
@@ -91,25 +93,42 @@ class RememberingResidual : public Responsive {
     noise_->Whiten(values);
     if (jacobian != nullptr) noise_->Whiten(*jacobian);
   }
+
+ protected:
+  std::shared_ptr<const Base> run_;
+  std::shared_ptr<const Whitener> noise_;
+};
+
+class RememberingRun : public Remembering<Responsive> {
+ public:
+  using Remembering::Remembering;
   std::shared_ptr<const Response> At(const VectorXd& x) const override {
     return std::make_shared<RememberingResponse>(run_->At(x), noise_);
   }
-
- private:
-  std::shared_ptr<const Responsive> run_;
-  std::shared_ptr<const Whitener> noise_;
 };
+
+std::shared_ptr<const Whitener> WhitenerOf(Index rows, const VectorXd& times,
+                                           const estimation::NoiseMemory& noise) {
+  return std::make_shared<const Whitener>(times, rows / times.size(), noise);
+}
 
 }  // namespace
 
 SimulatedRun WithMemory(const SimulatedRun& run, const VectorXd& times,
                         const estimation::NoiseMemory& noise) {
   SimulatedRun remembers = run;
-  const Index channels = run.residual->Rows() / times.size();
-  const auto residual = std::make_shared<RememberingResidual>(
-      run.response, std::make_shared<const Whitener>(times, channels, noise));
+  const auto residual = std::make_shared<RememberingRun>(
+      run.response, WhitenerOf(run.residual->Rows(), times, noise));
   remembers.residual = remembers.response = residual;
   return remembers;
+}
+
+std::shared_ptr<const estimation::Residual> WithMemory(
+    std::shared_ptr<const estimation::Residual> residual, const VectorXd& times,
+    const estimation::NoiseMemory& noise) {
+  const Index rows = residual->Rows();
+  return std::make_shared<Remembering<estimation::Residual>>(std::move(residual),
+                                                             WhitenerOf(rows, times, noise));
 }
 
 std::vector<estimation::Stay> ChannelsOf(const VectorXd& left, const VectorXd& times) {

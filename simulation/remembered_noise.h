@@ -15,8 +15,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <vector>
 
 #include "estimation/noise_memory.h"
+#include "estimation/residual.h"
 #include "simulation/simulated_run.h"
 
 namespace abbe::simulation {
@@ -24,6 +27,11 @@ namespace abbe::simulation {
 // Chi-square then counts independent noise.
 SimulatedRun WithMemory(const SimulatedRun& run, const Eigen::VectorXd& times,
                         const estimation::NoiseMemory& noise);
+
+// A residual alone.
+std::shared_ptr<const estimation::Residual> WithMemory(
+    std::shared_ptr<const estimation::Residual> residual, const Eigen::VectorXd& times,
+    const estimation::NoiseMemory& noise);
 
 // What is left of a run, for estimation::FitMemory: each channel for itself.
 std::vector<estimation::Stay> ChannelsOf(const Eigen::VectorXd& left, const Eigen::VectorXd& times);

@@ -84,6 +84,9 @@ struct SimulatedRun {
   Eigen::Matrix3Xd heading = {};
   // Positions of the axes, m, 3 x rows of the run. Empty: not known.
   Eigen::Matrix3Xd commanded = {};
+  // s, of the instants of the run in their order, each with as many rows of the residual. Empty:
+  // they have no order.
+  Eigen::VectorXd times = {};
   std::function<std::shared_ptr<const estimation::Residual>(const Eigen::VectorXd& x)> condense =
       {};
   // With the form of the target beside the noise, which else contains as much of it as the machine

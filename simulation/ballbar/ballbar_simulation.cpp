@@ -116,6 +116,7 @@ SimulatedRun SimulateBallbar(const machine::VolumetricModel& model, const Vector
   const auto residual = std::make_shared<RadiusResidual>(model, reference, run);
   simulated.residual = simulated.response = residual;
   simulated.heading = HeadingsOf(run.points.axes);
+  simulated.times = run.time;
   return simulated;
 }
 

@@ -256,6 +256,7 @@ SimulatedRun SimulateLinkage(const machine::VolumetricModel& model, const Vector
   if (all == fitted.poses()) {
     simulated.heading = HeadingsOf(fitted.commanded);
     simulated.commanded = fitted.commanded;
+    if (!fitted.one_by_one) simulated.times = fitted.time;
   }
   simulated.condense = [=, gathers = all > fitted.poses()](const VectorXd& x) {
     if (gathers) return Gather(model, -reference, linkage, parts, seated, x);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -171,7 +172,11 @@ SimulatedRun SimulateLengths(const machine::VolumetricModel& model, const Vector
                                 {"ppm", 1e-6},
                                 {{.name = "scale", .prior_sd = u_scale}}});
   }
-  simulated.heading = TraceOf(recording, points).heading;
+  const Trace trace = TraceOf(recording, points);
+  simulated.heading = trace.heading;
+  simulated.times.resize(std::ssize(lengths));
+  std::transform(lengths.begin(), lengths.end(), simulated.times.begin(),
+                 [&](const Length& length) { return trace.time[length.to]; });
   const auto residual = std::make_shared<LengthResidual>(model, reference, std::move(points),
                                                          std::move(lengths), u_scale > 0.0);
   simulated.residual = simulated.response = residual;

@@ -18,8 +18,10 @@ class PlateRuns : public RunKind {
   std::vector<SimulatedRun> ForMap(const RunSource& source, const machine::VolumetricModel& model,
                                    const Instruments& on) const override {
     std::vector<SimulatedRun> runs;
-    for (const PlateSetup& setup : ReadPlate(source.whole())) {
+    const Recording recording = source.whole();
+    for (const PlateSetup& setup : ReadPlate(recording)) {
       runs.push_back(SimulatePlate(model, on.machine.reference, setup));
+      runs.back().times = TraceOf(recording, setup.points).time;
     }
     return runs;
   }

@@ -175,6 +175,7 @@ SimulatedRun SimulateReference(const machine::VolumetricModel& model, const Vect
   simulated.residual = simulated.response = residual;
   simulated.heading = HeadingsOf(run.points.axes);
   simulated.commanded = run.points.axes;
+  simulated.times = run.time;
   if (run.tested != ' ') simulated.heading.row(run.tested - 'X') = ApproachOf(run.direction);
   return simulated;
 }

@@ -58,9 +58,9 @@ class CirclesByABallbar(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def evaluated(self, radius, rows, header=""):
+    def evaluated(self, radius, rows, header="", more=""):
         table, out = self.folder / "circle.csv", self.folder / "circle.json"
-        names = f'# abbe-recording = 1\n# kind = "ballbar"\n# radius_mm = {1e3 * radius}\n{header}x_mm,y_mm,pass,direction,ref_radius_mm'
+        names = f'# abbe-recording = 1\n# kind = "ballbar"\n# radius_mm = {1e3 * radius}\n{header}x_mm,y_mm,pass,direction,ref_radius_mm{more}'
         np.savetxt(table, rows, "%.9f", ",", header=names, comments="")
         done = subprocess.run([PROGRAM, "circle", table, "--json", out, "--force", "--quiet"], capture_output=True,
                               text=True, check=False)
@@ -87,6 +87,35 @@ class CirclesByABallbar(unittest.TestCase):
         self.assertLess(abs(found["D_um"]), 2 * found["u"]["D_um"])
         self.assertLess(found["u"]["D_um"], 0.4)
         self.assertLess(abs(causes["scale", "X"]["value"]), 2 * causes["scale", "X"]["u"])
+
+    def test_a_spike_of_another_form_is_no_backlash(self):
+        """Half sines of 6 um after each turn of X, or at one end only, half as high in a second run: X has 4 um of play or
+        none. Of 0.1 um noise."""
+        def rows(draw, width, ends, play):
+            size, out = draw.choice([-1, 1]) * 6e-6, []
+            for number, (sense, feed, high) in enumerate(((1, 1000, 1.0), (-1, 1000, 1.0), (1, 250, 0.5), (-1, 250, 0.5)), 1):
+                t = sense * (np.arange(720) + 0.3) * np.pi / 360
+                gone = np.mod(sense * t, np.pi)
+                end = np.mod(np.round((sense * t - gone) / np.pi), 2)
+                read = 0.1 + 0.1 * 5e-6 * np.sin(2 * t) + 1e-7 * draw.normal(size=720)
+                read += np.where((gone < width) & np.isin(end, ends), high * size * np.sin(np.pi * gone / width), 0.0)
+                read += 0.5 * play * np.sign(np.sin(t)) * sense * np.cos(t)
+                out.append(np.stack([100 * np.cos(t), 100 * np.sin(t), np.full(720, number), np.full(720, sense),
+                                     1e3 * read, np.full(720, feed)], axis=1))
+            return np.concatenate(out)
+
+        inside = of = 0
+        for degrees, ends, play in ((1.5, (0, 1), 0), (12, (0, 1), 0), (4, (0,), 0), (12, (1,), 4e-6)):
+            for seed in range(3):
+                table = rows(np.random.default_rng(seed), np.radians(degrees), ends, play)
+                _, causes = self.evaluated(0.1, table, "# u_length_um = 0.3\n", ",feed_mm_min")
+                found = causes["backlash", "X"]
+                self.assertLess(abs(abs(found["value"]) - play), 0.15e-6)  # a quarter to 1.2 um before
+                self.assertGreater(abs(causes["reversal_spike", "X"]["value"]), 2 * causes["reversal_spike", "X"]["u"])
+                inside += abs(abs(found["value"]) - play) <= 2 * found["u"]
+                of += 1
+        print(f"backlash beside spikes of other forms: {inside} of {of} inside U95")
+        self.assertGreater(inside, 0.7 * of)
 
     def test_few_points_name_no_cause_that_is_not_there(self):
         """White noise alone. Whole circles, however sparse."""

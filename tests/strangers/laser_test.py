@@ -76,7 +76,7 @@ class LaserOfStrangers(unittest.TestCase):
         for seed in range(4):
             for scale in (2e-5, -2e-5):
                 off, u, result = self.fused(seed, scale)
-                says = bool(result["contradictions"] + result["misfits"] + result["scatter"])
+                says = bool(result["contradictions"] + result["misfits"] + result["scatter"] + result["drifts"])
                 print(f"seed {seed}, {1e6 * scale:+.0f} ppm: off {np.abs(off).max():.2f} um, U95 {2 * u.max():.2f}, told: {says}")
                 self.assertGreater(np.mean(np.abs(off) <= 2 * u + 0.05), 0.85)
                 self.assertTrue(says or np.abs(off).max() < 1.0)

@@ -1,0 +1,66 @@
+// The equations of circles in one form of their reversals, and their solution: what
+// fusion/circle_causes.h averages over forms.
+//
+//   const std::vector<standards::Signature> table = CausesOf(run, options, form);
+//   const CircleFit fit = SolveCircles({CentredEquations(runs, 0, options, form)}, table, options, 1e-7);
+//
+// Units: SI. Shapes: a row for each point of a run.
+// Failure: NumericalError where the fit fails.
+// Source: fusion/circle_causes.h. For use within fusion/ only.
+// Validity: errors small against the radius.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "estimation/result.h"
+#include "fusion/circle_causes.h"
+#include "paths/circle_run.h"
+#include "standards/circle_signatures.h"
+
+namespace abbe::fusion {
+
+// What may happen at a reversal: how backlash is taken up, and on which way of the first and the
+// second axis, m; how wide spikes are, rad; how large those are whose form is not that of the
+// table, m.
+struct ReversalForm {
+  standards::TakenUp how = standards::TakenUp::kAtOnce;
+  std::array<double, 2> way{};
+  double spike_width = 0.0;
+  std::array<double, 2> spike_size{};
+};
+
+std::string CauseName(const standards::Signature& cause);  // "backlash.X"
+// The table of signatures without the centre of the set-up.
+std::vector<standards::Signature> CausesOf(const paths::CircleRun& run, const CauseOptions& options,
+                                           const ReversalForm& form);
+
+// Radial deviations of a run, and their derivatives with respect to the centre, each cause, the
+// harmonics of smooth errors, the errors of the instrument, what spikes do beside their form, and by
+// how much they differ between the runs.
+struct CircleEquations {
+  Eigen::MatrixXd centre, causes, smooth, instrument, shapes, between;
+  Eigen::VectorXd radial;
+};
+
+// Of run number `at`, about its middle, so that the square of the offset of the centre is
+// negligible.
+CircleEquations CentredEquations(const std::vector<const paths::CircleRun*>& runs, std::size_t at,
+                                 const CauseOptions& options, const ReversalForm& form);
+
+struct CircleFit {
+  estimation::Result result;
+  // For each run: the deviations without the causes, their fitted smooth part (with the errors of
+  // the instrument), and the residuals.
+  std::vector<Eigen::VectorXd> unexplained, smooth, noise;
+};
+
+// `deviation`: m, of the rows.
+CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
+                       const std::vector<standards::Signature>& causes, const CauseOptions& options,
+                       double deviation);
+
+}  // namespace abbe::fusion
