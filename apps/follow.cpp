@@ -97,15 +97,23 @@ int Follow(const FollowArguments& arguments) {
       {"abbe", ABBE_VERSION},        {"command", "follow"},
       {"recording", series.name},    {"value", arguments.value},
       {"rows", series.value.size()}, {"sensors", nlohmann::ordered_json::array()}};
-  std::string text = fmt::format("{} follows\n{:<16}{:>20}{:>12}\n", arguments.value, "sensor",
-                                 "for each kelvin", "lag, s");
+  std::string text = fmt::format("{} follows\n{:<16}{:>20}{:>12}{:>18}\n", arguments.value,
+                                 "sensor", "for each kelvin", "lag, s", "95 %");
   for (const track::SeriesSensor& each : response.sensors) {
     const double U = standards::kCoverage * each.u_gain;
-    text += fmt::format("{:<16}{:>20}{:>12.0f}\n", each.sensor, PlusMinus(each.gain, U), each.lag);
+    text += fmt::format("{:<16}{:>20}{:>12.0f}{:>18}\n", each.sensor, PlusMinus(each.gain, U),
+                        each.lag, fmt::format("{:.0f} to {:.0f}", each.shortest, each.longest));
+    if (!each.lag_seen) {
+      text += fmt::format(
+          "{:<16}its lag is as long or short as was sought: the recording does not tell it\n", "");
+    }
     json["sensors"].push_back({{"sensor", each.sensor},
                                {"gain_per_c", each.gain},
                                {"U95_per_c", U},
-                               {"lag_s", each.lag}});
+                               {"lag_s", each.lag},
+                               {"lag_from_s", each.shortest},
+                               {"lag_to_s", each.longest},
+                               {"lag_seen", each.lag_seen}});
   }
   text += fmt::format(
       "beside that it wanders by {:.3g} in an hour, and each row scatters by {:.3g}\n"

@@ -113,9 +113,10 @@ std::string ReversalLines(const fusion::FuseReport& report) {
   std::string text;
   for (const auto& each : report.reversals) {
     text += fmt::format(
-        "\nREVERSAL: {} forward minus backward {} {} (95 %); the map is the mean of both directions\n",
+        "\nREVERSAL: {} forward minus backward {} {} (95 %); the map is the mean of both directions{}\n",
         each.name, PlusMinus(each.value / settings::kMicro, 2.0 * each.u / settings::kMicro),
-        each.rotates ? "urad" : "um");
+        each.rotates ? "urad" : "um",
+        report.contradicting < 0 ? "" : ", unless it comes from the run that contradicts (below)");
   }
   return text;
 }

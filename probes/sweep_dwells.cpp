@@ -11,6 +11,7 @@
 #include <span>
 #include <string_view>
 
+#include "estimation/reading_step.h"
 #include "estimation/robust_mean.h"
 #include "failure/failure.h"
 #include "recording/made_on.h"
@@ -84,8 +85,10 @@ class DwellFinder {
     last_time_ = time;
     time_ += time;
     position_ += position;
-    for (std::size_t probe = 0; probe < kProbes; ++probe)
+    for (std::size_t probe = 0; probe < kProbes; ++probe) {
       gaps_[probe].push_back(rows.gaps[probe][row]);
+      steps_[probe].Add(rows.gaps[probe][row]);
+    }
   }
 
   void Close() {
@@ -106,6 +109,13 @@ class DwellFinder {
 
   // The pooled scatter of all dwells closed so far.
   PerProbe<Scatter> Scatters() const;
+  PerProbe<> Steps() const {
+    PerProbe<> steps{};
+    for (std::size_t probe = 0; probe < kProbes; ++probe) {
+      steps[probe] = steps_[probe].Step() * kMicrometre;
+    }
+    return steps;
+  }
   // Readings that are outliers by the scatter of their dwell and by that of all dwells: of a few
   // readings the former is hardly known.
   std::size_t Outliers(const PerProbe<Scatter>& scatter) const;
@@ -135,6 +145,7 @@ class DwellFinder {
   double first_time_ = 0.0, last_time_ = 0.0;
   double position_ = 0.0;
   PerProbe<std::vector<double>> gaps_;  // um
+  PerProbe<estimation::ReadingStep> steps_;
   PerProbe<Sums> sums_;
   PerProbe<std::vector<double>> far_;  // m, deviations of the outliers of each dwell
 };
@@ -291,6 +302,7 @@ SweepDwells FindDwells(const recording::Recording& head, const recording::Blocks
   found.start = found.dwells.front().axes;
   found.start[found.axis - 'X'] = found.stations[found.dwells.front().station];
   found.scatter = finder.Scatters();
+  found.step = finder.Steps();
   found.counts.outliers = finder.Outliers(found.scatter);
   for (const Dwell& dwell : found.dwells) found.counts.used += dwell.samples;
   return found;

@@ -65,6 +65,7 @@ struct SweepDwells {
   Eigen::Vector3d start = Eigen::Vector3d::Zero();  // m: position [x y z] of the first dwell
   std::vector<Dwell> dwells;                        // in the order of time
   PerProbe<Scatter> scatter;
+  PerProbe<> step = {};  // m, of the readings (estimation/reading_step.h); 0: none
   SampleCounts counts;
 };
 

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "estimation/markov_noise.h"
+#include "estimation/reading_step.h"
 #include "failure/failure.h"
 #include "settings/unit.h"
 #include "standards/chi_squared.h"
@@ -279,6 +280,28 @@ void FillResidualsAndFigures(const SweepDwells& sweep, const DwellFit& fit, Stat
   }
 }
 
+// What readings in steps hide from every repetition.
+void AddUnseenSteps(const SweepDwells& sweep, StationMeans& means) {
+  constexpr double kMatters = 0.1;  // of the variance of a mean
+  const auto directions = static_cast<Eigen::Index>(means.directions.size());
+  for (std::size_t probe = 0; probe < kProbes; ++probe) {
+    const ProbeFigures& figures = means.noise.probes[probe];
+    const double moved = figures.white * figures.white + figures.drift * figures.drift;
+    const double unseen = estimation::ReadingStep::Unseen(sweep.step[probe], moved);
+    Eigen::MatrixXd& covariance = means.covariance[probe];
+    if (unseen > kMatters * covariance.diagonal().mean()) {
+      means.notes.push_back(fmt::format(
+          "probe {} reads in steps of {:.3g} um, which hide more than its noise: u contains them; "
+          "a finer range or converter shows more",
+          "abcde"[probe], sweep.step[probe] / settings::kMicrometre));
+    }
+    for (Eigen::Index station = 0; station < means.groups(); station += directions) {
+      covariance.block(station, station, directions, directions).array() += 0.5 * unseen;
+    }
+    covariance.diagonal().array() += 0.5 * unseen;
+  }
+}
+
 }  // namespace
 
 StationMeans FitStations(const std::string& name, const SweepDwells& sweep, const ProbeNoise& noise,
@@ -290,6 +313,7 @@ StationMeans FitStations(const std::string& name, const SweepDwells& sweep, cons
   const double chi2 = fit.Run(means.white, noise, means).chi2;
   CheckAgainstPasses(fit, noise, chi2, excess, means);
   FillResidualsAndFigures(sweep, fit, means);
+  AddUnseenSteps(sweep, means);
   return means;
 }
 

@@ -18,6 +18,10 @@
 // drift and its time are those that make the dwells most probable (restricted maximum likelihood,
 // each within a factor of two of what was said before, normal in its logarithm).
 //
+// A reading in steps that noise and drift do not average out errs alike in all passes: the variance
+// that no repetition shows (estimation/reading_step.h) is added for each station, half of it the
+// same in both directions.
+//
 // Groups are numbered station * directions + k, k in the order of `directions`.
 // Frames: none; gaps of the probes.
 // Units: m, s. Shapes: gaps 5 x groups, one covariance of groups x groups for each probe.

@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "failure/failure.h"
 #include "track/first_order_lag.h"
@@ -117,8 +119,10 @@ class SeriesFilter {
     }
     for (Index s = 0; s < sensors(); ++s) {
       const Step& last = steps.back();
-      response.sensors.push_back({series_.sensors[s], last.mean[1 + s],
-                                  std::sqrt(last.covariance(1 + s, 1 + s)), std::exp(theta[s])});
+      response.sensors.push_back({.sensor = series_.sensors[s],
+                                  .gain = last.mean[1 + s],
+                                  .u_gain = std::sqrt(last.covariance(1 + s, 1 + s)),
+                                  .lag = std::exp(theta[s])});
     }
     return response;
   }
@@ -179,6 +183,123 @@ class SeriesFilter {
   double usual_, loose_, loose_gain_;
 };
 
+// A maximum of the likelihood, and the principal axes of its curvature there, as long as a standard
+// deviation.
+struct Peak {
+  VectorXd theta;
+  double log;
+  MatrixXd axes;
+};
+
+// By second differences over the way on which the likelihood falls a little.
+Peak PeakAbout(const SeriesFilter& filter, const VectorXd& theta) {
+  constexpr double kFalls = 0.5;   // of the logarithm
+  constexpr double kWidest = 1.5;  // standard deviation, of a logarithm
+  const Index n = theta.size();
+  const double here = filter.LogLikelihood(theta);
+  VectorXd step = VectorXd::Constant(n, 0.2);
+  const auto log = [&](Index i, double by_i, Index j, double by_j) {
+    VectorXd at = theta;
+    at[i] += by_i * step[i];
+    at[j] += by_j * step[j];
+    return filter.LogLikelihood(at);
+  };
+  VectorXd slope(n);
+  MatrixXd curvature(n, n);  // both by `step`
+  for (Index i = 0; i < n; ++i) {
+    double above = log(i, 1.0, i, 0.0), below = log(i, -1.0, i, 0.0);
+    for (int halving = 0; halving < 8 && 2.0 * here - above - below > 2.0 * kFalls; ++halving) {
+      step[i] /= 2.0;
+      above = log(i, 1.0, i, 0.0);
+      below = log(i, -1.0, i, 0.0);
+    }
+    slope[i] = 0.5 * (above - below);
+    curvature(i, i) = 2.0 * here - above - below;
+    for (Index j = 0; j < i; ++j) {
+      const double mixed =
+          log(i, 1.0, j, 1.0) - log(i, 1.0, j, -1.0) - log(i, -1.0, j, 1.0) + log(i, -1.0, j, -1.0);
+      curvature(i, j) = curvature(j, i) = -0.25 * mixed;
+    }
+  }
+  const VectorXd scale = step.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(
+      MatrixXd(scale.asDiagonal() * curvature * scale.asDiagonal()));
+  const VectorXd lengths =
+      eigen.eigenvalues().cwiseMax(1.0 / (kWidest * kWidest)).cwiseSqrt().cwiseInverse();
+  Peak peak{theta, here, eigen.eigenvectors() * lengths.asDiagonal()};
+  const VectorXd way = peak.axes * (peak.axes.transpose() * scale.cwiseProduct(slope));
+  const VectorXd next = (theta + way).cwiseMax(filter.Low()).cwiseMin(filter.High());
+  if (const double log_next = filter.LogLikelihood(next); log_next > here) {
+    peak.theta = next;
+    peak.log = log_next;
+  }
+  return peak;
+}
+
+struct Weighted {
+  double weight;
+  VectorXd theta;
+  SeriesResponse response;
+};
+
+// The maximum, and points beside it whose weights have the variance of the likelihood.
+std::vector<Weighted> PointsAbout(const SeriesFilter& filter, const VectorXd& theta) {
+  constexpr int kNewtonSteps = 3;
+  Peak peak{theta, 0.0, {}};
+  for (int step = 0; step < kNewtonSteps; ++step) peak = PeakAbout(filter, peak.theta);
+  const double far = static_cast<double>(theta.size()) + 1.0;
+  std::vector<Weighted> points{{1.0 / far, peak.theta, filter.Smooth(peak.theta)}};
+  double sum = points.front().weight;
+  for (Index axis = 0; axis < peak.axes.cols(); ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const VectorXd at = (peak.theta + side * std::sqrt(far) * peak.axes.col(axis))
+                              .cwiseMax(filter.Low())
+                              .cwiseMin(filter.High());
+      // Of a normal one the exponent is 0.
+      const double off = filter.LogLikelihood(at) - peak.log + 0.5 * far;
+      points.push_back({0.5 / far * std::exp(std::clamp(off, -20.0, 2.0)), at, filter.Smooth(at)});
+      sum += points.back().weight;
+    }
+  }
+  for (Weighted& point : points) point.weight /= sum;
+  return points;
+}
+
+SeriesResponse MeanOf(const SeriesFilter& filter, const std::vector<Weighted>& points) {
+  constexpr double kAtBound = 0.05;  // of a logarithm
+  SeriesResponse mean = points.front().response;
+  // A quantity at each of the points: its mean, and its standard uncertainty in all.
+  const auto together = [&](const auto& value, const auto& u) {
+    double first = 0.0, squares = 0.0;
+    for (const Weighted& point : points) first += point.weight * value(point);
+    for (const Weighted& point : points) {
+      squares += point.weight * (std::pow(u(point), 2) + std::pow(value(point) - first, 2));
+    }
+    return std::pair(first, std::sqrt(squares));
+  };
+  for (Index row = 0; row < mean.value.size(); ++row) {
+    std::tie(mean.value[row], mean.u[row]) =
+        together([&](const Weighted& point) { return point.response.value[row]; },
+                 [&](const Weighted& point) { return point.response.u[row]; });
+  }
+  for (std::size_t s = 0; s < mean.sensors.size(); ++s) {
+    SeriesSensor& sensor = mean.sensors[s];
+    std::tie(sensor.gain, sensor.u_gain) =
+        together([&](const Weighted& point) { return point.response.sensors[s].gain; },
+                 [&](const Weighted& point) { return point.response.sensors[s].u_gain; });
+    const auto at = static_cast<Index>(s);
+    const auto [log_lag, u_log_lag] =
+        together([&](const Weighted& point) { return point.theta[at]; },
+                 [](const Weighted&) { return 0.0; });
+    const double most_probable = points.front().theta[at];
+    sensor.shortest = std::exp(std::min(log_lag - 2.0 * u_log_lag, most_probable));
+    sensor.longest = std::exp(std::max(log_lag + 2.0 * u_log_lag, most_probable));
+    sensor.lag_seen =
+        most_probable < filter.High()[at] - kAtBound && most_probable > filter.Low()[at] + kAtBound;
+  }
+  return mean;
+}
+
 }  // namespace
 
 SeriesResponse LearnResponse(const Series& series, const std::vector<bool>& held_out) {
@@ -186,7 +307,7 @@ SeriesResponse LearnResponse(const Series& series, const std::vector<bool>& held
   const SeriesFilter filter(series, held_out);
   const VectorXd theta = Maximum([&](const VectorXd& at) { return filter.LogLikelihood(at); },
                                  filter.Start(), filter.Low(), filter.High(), kSeriesRounds);
-  return filter.Smooth(theta);
+  return MeanOf(filter, PointsAbout(filter, theta));
 }
 
 }  // namespace abbe::track
