@@ -43,11 +43,15 @@ void EachTableLine(const std::filesystem::path& path, const UseLine& use) {
 const NcParameters kEmpty;
 
 double PlainNumber(NcCursor& cursor) {
+  const std::string_view rest = cursor.Rest();
+  const auto refuse = [&] {
+    cursor.Refuse(fmt::format("\"{}\" is not a number", rest.substr(0, 10)));
+  };
   const char first = cursor.Peek();
-  if (first == '#' || first == '[' || !cursor.IsAtValue()) {
-    cursor.Refuse(fmt::format("\"{}\" is not a number", cursor.Rest().substr(0, 10)));
-  }
-  return cursor.Value();
+  if (first == '#' || first == '[' || !cursor.IsAtValue()) refuse();
+  const double value = cursor.Value();
+  if (!std::isfinite(value)) refuse();  // -#2 is known only at the control
+  return value;
 }
 
 }  // namespace
