@@ -20,6 +20,7 @@ constexpr double kRowsOfStated = 20.0;  // n
 constexpr double kSeenInRows = 0.03;    // noise: what parameters leave open below it is nothing
 constexpr double kNoPrior = 1e-9;       // of its information by the rows, of a parameter of theirs
 constexpr Index kMostInstants = 600, kGroup = 10;
+constexpr double kMostSteps = 1e5;                  // of a run, of which a memory has some
 constexpr double kShortest = 2.0, kLongest = 10.0;  // steps; whole runs
 constexpr double kLeastRatio = 0.15, kMostRatio = 1000.0;
 
@@ -43,13 +44,15 @@ std::vector<Index> ChosenInstants(Index count) {
 class RowDensity {
  public:
   explicit RowDensity(const RowsInTime& rows) {
-    const std::vector<Index> instants = ChosenInstants(rows.times.size());
-    channels_ = rows.left.size() / rows.times.size();
-    times_ = rows.times(instants);
+    const Index instants = rows.times.size();
+    channels_ = rows.left.size() / instants;
+    times_ = rows.times;
     // The channels one after the other.
     std::vector<Index> order;
     for (Index channel = 0; channel < channels_; ++channel) {
-      for (const Index instant : instants) order.push_back(instant * channels_ + channel);
+      for (Index instant = 0; instant < instants; ++instant) {
+        order.push_back(instant * channels_ + channel);
+      }
     }
     // Parameters of the rows alone are as good as free.
     MatrixXd H = rows.priors;
@@ -75,7 +78,13 @@ class RowDensity {
     open_ = open * eigen.eigenvectors().rightCols(eigen.eigenvectors().cols() - few);
   }
 
-  double step() const { return (times_[times_.size() - 1] - times_[0]) / (times_.size() - 1.0); }
+  // The median, at least what the longest memory leaves to tell.
+  double step() const {
+    VectorXd steps = times_.tail(times_.size() - 1) - times_.head(times_.size() - 1);
+    const auto middle = steps.begin() + steps.size() / 2;
+    std::nth_element(steps.begin(), middle, steps.end());
+    return std::max(*middle, whole() / kMostSteps);
+  }
   double whole() const { return times_[times_.size() - 1] - times_[0]; }
 
   struct At {
@@ -214,10 +223,19 @@ RowMemory FindRowMemory(const estimation::Problem& problem, const estimation::La
   }
   estimation::RowEvaluator rows(problem, layout);
   const auto* found = rows.Evaluate(*of_run, x, true);
-  if (found == nullptr) return {};
-  MatrixXd J = MatrixXd::Zero(found->r.size(), layout.columns());
-  J(Eigen::all, found->columns) = found->jacobian;
-  return FindRowMemory({times, J, found->r, H, g});
+  if (found == nullptr || found->r.size() % times.size() != 0) return {};
+  const Index channels = found->r.size() / times.size();
+  const std::vector<Index> instants = ChosenInstants(times.size());
+  std::vector<Index> chosen;
+  for (const Index instant : instants) {
+    for (Index channel = 0; channel < channels; ++channel) {
+      chosen.push_back(instant * channels + channel);
+    }
+  }
+  MatrixXd J = MatrixXd::Zero(std::ssize(chosen), layout.columns());
+  J(Eigen::all, found->columns) = found->jacobian(chosen, Eigen::all);
+  const VectorXd times_chosen = times(instants), left = found->r(chosen);
+  return FindRowMemory({times_chosen, J, left, H, g});
 }
 
 }  // namespace abbe::fusion
