@@ -69,7 +69,7 @@ std::string OneOfText(const Finding& finding) {
   return fmt::format("  {:<28}one of these: {}\n", values.front().name, fmt::join(told, ", "));
 }
 
-// Of what is there or not: its channels are all that there is to say.
+// The channels of a cause that is there or not, and has no value.
 std::vector<std::string> ChannelsOf(const Candidate& candidate) {
   if (!candidate.cause->IsBinary()) return {};
   std::vector<std::string> channels;

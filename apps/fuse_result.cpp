@@ -121,6 +121,7 @@ std::string ReversalLines(const fusion::FuseReport& report) {
   return text;
 }
 
+// What of its own would make a run agree, and what to do.
 const char* WordsOf(fusion::Suspect suspect) {
   switch (suspect) {
     case fusion::Suspect::kMounting:
@@ -136,6 +137,32 @@ const char* WordsOf(fusion::Suspect suspect) {
          "nor another instrument explains it; look at its set-up, or leave it out and fuse again.";
 }
 
+std::vector<std::string> MayBeWrong(const fusion::FuseReport& report) {
+  std::vector<std::string> names;
+  for (const int run : report.may_be_wrong) names.push_back(report.runs[run].name);
+  return names;
+}
+
+std::string WhichIsWrong(const fusion::FuseReport& report) {
+  const std::string& named = report.runs[report.contradicting].name;
+  std::vector<std::string> others = MayBeWrong(report);
+  std::erase(others, named);
+  if (report.may_be_wrong.empty()) {
+    return ", and leaving out no single run makes the rest agree: the machine changed between the "
+           "runs, or has an error that no map holds, such as one of two positions or of the way it "
+           "came. abbe diagnose of all recordings looks for it.";
+  }
+  if (others.empty()) return fmt::format("; {}", WordsOf(report.suspect));
+  const char* own = report.suspect == fusion::Suspect::kMounting ? ", which agrees if mounted anew,"
+                    : report.suspect == fusion::Suspect::kInstrument
+                        ? ", which agrees with another instrument,"
+                        : "";
+  return fmt::format(
+      "; but without {} the rest agrees too, so the data do not tell which is wrong, or whether the "
+      "machine changed between them: look at {}{} and at all of these.",
+      fmt::join(others, ", or without "), named, own);
+}
+
 std::string RunTable(const fusion::FuseReport& report) {
   std::string text = fmt::format("\n{:<32}{:<11}{:>7}{:>13}{:>22}\n", "run", "kind", "rows",
                                  "chi2/redund.", "p of its agreement");
@@ -147,26 +174,40 @@ std::string RunTable(const fusion::FuseReport& report) {
                             ? "no other run sees it"
                             : fmt::format("{:.2g}", report.runs[i].probability));
   }
+  return text;
+}
+
+const char* WhatFits(const fusion::FuseReport& report, std::size_t run) {
+  if (report.scatter[run].axis >= 0) return "its places scatter along one axis (above)";
+  if (!(report.follows[run] < kOneAfterTheOther)) {
+    return "what is left goes on from row to row, so neither larger noise nor rougher errors nor a "
+           "less flat target fits; check that chain, [head] and [linkage] of the machine file are "
+           "those of the recording";
+  }
+  const bool axis = std::any_of(report.scatter.begin(), report.scatter.end(),
+                                [](const auto& each) { return each.axis >= 0; });
+  return axis ? "what is left scatters from row to row, as places do along an axis (above): it is "
+                "that axis, or larger noise"
+              : "what is left scatters from row to row, so larger noise fits: state it";
+}
+
+std::string MisfitLines(const fusion::FuseReport& report) {
+  std::string text;
   for (std::size_t i = 0; i < report.runs.size(); ++i) {
     if (!(ExcessOf(report, i) > kFarOff)) continue;
-    text += fmt::format(
-        "\nDOES NOT FIT: {} is off by {:.1f} times its noise; {}.\n", report.runs[i].name,
-        std::sqrt(ExcessOf(report, i)),
-        report.scatter[i].axis >= 0 ? "its places scatter along one axis (above)"
-        : report.follows[i] < kOneAfterTheOther
-            ? "what is left scatters from row to row, so larger noise fits: state it"
-            : "what is left goes on from row to row, so neither larger noise nor rougher errors "
-              "nor a less flat target fits; check that chain, [head] and [linkage] of the machine "
-              "file are those of the recording");
-  }
-  if (report.contradicting >= 0) {
-    const auto& run = report.runs[report.contradicting];
-    text += fmt::format(
-        "\nCONTRADICTION: {} disagrees with all other runs (chi-square {:.1f} of {}); {} Until then "
-        "every U95 of the map is stated {:.1f} times as large.\n",
-        run.name, run.statistic, run.directions, WordsOf(report.suspect), report.widened);
+    text += fmt::format("\nDOES NOT FIT: {} is off by {:.1f} times its noise; {}.\n",
+                        report.runs[i].name, std::sqrt(ExcessOf(report, i)), WhatFits(report, i));
   }
   return text;
+}
+
+std::string ContradictionLine(const fusion::FuseReport& report) {
+  if (report.contradicting < 0) return "";
+  const auto& run = report.runs[report.contradicting];
+  return fmt::format(
+      "\nCONTRADICTION: {} disagrees with all other runs (chi-square {:.1f} of {}){} Until then "
+      "every U95 of the map is stated {:.1f} times as large.\n",
+      run.name, run.statistic, run.directions, WhichIsWrong(report), report.widened);
 }
 
 std::string HoldoutTable(const fusion::FuseReport& report) {
@@ -193,7 +234,8 @@ std::string RunsText(const fusion::FuseReport& report) {
          fmt::format("Correlation length of the error functions: {:.1f} mm\n",
                      1e3 * report.chosen_smoothness) +
          ReversalLines(report) + DriftLines(report) + ScatterLines(report) +
-         MachineFileNotes(report) + RunTable(report);
+         MachineFileNotes(report) + RunTable(report) + MisfitLines(report) +
+         ContradictionLine(report);
 }
 
 ordered_json FuseJson(const fusion::FuseReport& report) {
@@ -266,6 +308,7 @@ ordered_json FuseJson(const fusion::FuseReport& report) {
   json["contradictions"] = ordered_json::array();
   if (report.contradicting >= 0) {
     json["contradictions"].push_back(report.runs[report.contradicting].name);
+    json["may_be_wrong"] = MayBeWrong(report);
     json["widened"] = report.widened;
   }
   json["parameters"] = ParametersJson(report.fit);

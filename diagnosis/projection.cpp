@@ -109,7 +109,7 @@ std::vector<Fit::Projection> Fit::Finish(const Products& products) const {
     }
     first += own.cols();
   }
-  // Of H = L L': B = L^-1 J'C.
+  // B = L^-1 J'C, with H = L L'.
   MatrixXd B = scale_.asDiagonal() * C_J(acting, Eigen::all).transpose();
   H_.matrixL().solveInPlace(B);
   const VectorXd slope = H_.matrixL().solve(scale_.cwiseProduct(gradient_));

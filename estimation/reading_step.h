@@ -10,7 +10,7 @@
 //
 //   u^2 = q^2 / 12 exp(-4 pi^2 s^2 / q^2)
 //
-// of a reading; noise of half a step averages it out. Of rounded readings whose variance is v,
+// for one reading; noise of half a step averages it out. Where rounded readings have the variance v,
 // s^2 = v - q^2 / 12, or 0.
 // Units: those of the readings. Shapes: single readings, of which 3000 different ones are kept.
 // Failure: none.
@@ -27,7 +27,7 @@ class ReadingStep {
  public:
   // In any order, all of one channel.
   void Add(double reading);
-  // Of all that were added; 0: fewer than four different ones, or none.
+  // 0: none, or fewer than four different readings.
   double Step() const;
 
   // `variance`: of rounded readings, noise and all else that moves them between repetitions.

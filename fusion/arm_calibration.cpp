@@ -203,7 +203,7 @@ class ArmJob {
     return nominal_.With(ArmOf(run).model().ChainAt(ModelPart(ParametersOf(fit, run))));
   }
 
-  // Of what is written, by its change with each free parameter.
+  // Standard uncertainties of what is written, by its change with each free parameter.
   VectorXd Uncertainties(ArmCalibration& found) const {
     constexpr double kStep = 1e-6;  // m, rad: curvature and rounding both stay below 1e-5
     constexpr double kRounding = 1e-13;

@@ -46,8 +46,8 @@ struct CircleEquations {
   Eigen::VectorXd radial;
 };
 
-// Of run number `at`, about its middle, so that the square of the offset of the centre is
-// negligible.
+// The equations of run number `at` about its middle, so that the square of the offset of the centre
+// is negligible.
 CircleEquations CentredEquations(const std::vector<const paths::CircleRun*>& runs, std::size_t at,
                                  const CauseOptions& options, const ReversalForm& form);
 

@@ -6,15 +6,12 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <optional>
-#include <set>
-#include <string>
 #include <utility>
 
 #include "estimation/linearization.h"
 #include "failure/progress.h"
-#include "fusion/marginal.h"
+#include "fusion/fused_state.h"
 #include "fusion/plate_form.h"
 #include "fusion/reversals.h"
 #include "fusion/row_memory.h"
@@ -34,11 +31,8 @@ using estimation::Problem;
 using estimation::Result;
 using simulation::SimulatedRun;
 
-constexpr std::array kMounted{"target_tilt", "head_turn", "head_place", "base"};
-constexpr double kUnknown = std::numeric_limits<double>::infinity();  // of an uncertainty
 constexpr int kFits = 5;                // at most, until noise and knots have settled
 constexpr double kNoiseSettled = 0.05;  // of its logarithm
-constexpr double kMemorySettled = 0.2;  // the same of a slow part
 // Standard uncertainties from the solution: of the last fit, and of those before it, whose priors
 // and knots may be wrong.
 constexpr double kSettled = 1e-4, kFirstLook = 0.03, kTolerated = 3.0;
@@ -141,28 +135,12 @@ class FuseJob {
     const VectorXd x = ValuesFound(now.fit, now.fit.blocks);
     bool changed = false;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
-      changed |= SetMemory(r, FindRowMemory(plain, layout, x, now.at, r, runs_[r].times));
+      const RowMemory found = FindRowMemory(plain, layout, x, now.at, r, runs_[r].times);
+      changed |= TakeUp(found, noise_[r], memory_[r]);
     }
     if (!changed) return false;
     now.problem = MakeProblem(runs_);
     now.at = SumsAt(now.fit, now.problem);
-    return true;
-  }
-
-  bool SetMemory(std::size_t run, const RowMemory& found) {
-    auto& memory = memory_[run];
-    if (!(found.gain > kRemembers)) {
-      if (memory) noise_[run] = memory->white;
-      return std::exchange(memory, std::nullopt).has_value();
-    }
-    const auto apart = [](double a, double b) { return std::abs(std::log(a / b)); };
-    if (memory &&
-        apart(found.noise.white * noise_[run], memory->white * noise_[run]) < kNoiseSettled &&
-        apart(found.noise.slow, memory->slow) < kMemorySettled) {
-      return false;
-    }
-    memory = found.noise;
-    noise_[run] = 1.0;  // it is in the white part
     return true;
   }
 
@@ -188,7 +166,7 @@ class FuseJob {
     return any;
   }
 
-  // What of a fit has to be settled by another, the least first.
+  // What another fit has to settle, the least first.
   enum class Change { kNone, kNoise, kKnots };
 
   // Sizes, smoothness and noise from a fit. After knots have changed all of it is estimated anew.
@@ -299,7 +277,7 @@ class FuseJob {
       scatter.push_back(FindPlaceScatter(runs_[r], AsStated(now, r), found, prior, evident));
     }
     CountScatter(scatter, found, seen);
-    FuseReport report{.map = MapOf(found, seen, StateOf(now, seen.covariance))};
+    FuseReport report{.map = MapOf(now, found, seen)};
     report.functions = std::move(seen.functions);
     report.scale = seen.scale;
     report.chosen_smoothness = SmoothnessSeen();
@@ -308,7 +286,9 @@ class FuseJob {
     report.noise = noise_;
     report.memory = memory_;
     for (std::size_t r = 0; r < memory_.size(); ++r) {
-      if (memory_[r]) report.noise[r] *= memory_[r]->white;
+      if (!memory_[r]) continue;
+      report.memory[r]->slow *= noise_[r];
+      report.noise[r] *= memory_[r]->white;
     }
     report.reversals = ReversalsOf(now.fit, widened);
     for (const SimulatedRun& run : runs_) report.kinds.push_back(run.kind);
@@ -317,7 +297,10 @@ class FuseJob {
     report.follows = std::move(follows);
     report.contradicting = contradicting;
     report.widened = widened;
-    if (contradicting >= 0) report.suspect = SuspectOf(contradicting, now.fit);
+    if (contradicting >= 0) {
+      report.suspect = SuspectOf(contradicting, now.fit);
+      report.may_be_wrong = MayBeWrong(now.problem, now.at);
+    }
     if (options_.holdout > 0) {
       Steps steps(1);
       steps.Begin("blocks of rows held out");
@@ -330,42 +313,18 @@ class FuseJob {
 
   // What, if the run had it of its own, would make it agree with the others.
   Suspect SuspectOf(std::size_t run, const Result& found) {
-    const std::vector<estimation::ParameterBlock> shared = runs_[run].blocks;
     const auto agrees = [&](Suspect suspect) {
-      bool any = false;
-      for (auto& block : runs_[run].blocks) {
-        const bool others = std::any_of(runs_.begin(), runs_.end(), [&](const SimulatedRun& other) {
-          return &other != &runs_[run] &&
-                 std::any_of(other.blocks.begin(), other.blocks.end(),
-                             [&](const auto& each) { return each.name == block.name; });
-        });
-        if (!others || !Belongs(block, suspect)) continue;
-        block.name += " of " + runs_[run].name;
-        any = true;
-      }
-      bool yes = false;
-      if (any) {
-        const Fitted apart = Fit(found.blocks, true);
-        yes = Contradicting(CheckRuns(apart.problem, apart.at)) != static_cast<int>(run);
-      }
-      runs_[run].blocks = shared;
-      return yes;
+      auto own = BlocksOfItsOwn(runs_, run, suspect, model_);
+      if (!own) return false;
+      std::swap(runs_[run].blocks, *own);
+      const Fitted apart = Fit(found.blocks, true);
+      std::swap(runs_[run].blocks, *own);
+      return Contradicting(CheckRuns(apart.problem, apart.at)) != static_cast<int>(run);
     };
     for (const Suspect suspect : {Suspect::kMounting, Suspect::kInstrument}) {
       if (agrees(suspect)) return suspect;
     }
     return Suspect::kNone;
-  }
-
-  bool Belongs(const estimation::ParameterBlock& block, Suspect suspect) const {
-    if (IsReversal(block)) return false;  // the machine's
-    for (const auto& of_machine : model_.Blocks()) {
-      if (of_machine.name == block.name) return false;
-    }
-    const bool mounting = std::any_of(kMounted.begin(), kMounted.end(), [&](const char* what) {
-      return block.name.starts_with(what);
-    });
-    return mounting == (suspect == Suspect::kMounting);
   }
 
   // What a fit leaves of a run, whitened.
@@ -398,38 +357,8 @@ class FuseJob {
     return machine_.population.smoothness;
   }
 
-  // The instruments and mountings, whose errors those of the map depend on.
-  std::optional<map::MapState> StateOf(const Fitted& now, const MatrixXd& of_map) const {
-    if (!(options_.measured > 0.0)) return {};
-    const estimation::Layout layout(now.problem);
-    map::MapState state{.time = options_.measured, .sensors = options_.sensors};
-    std::vector<double> values;
-    std::vector<int> columns = ColumnsOf(layout.names, model_.Blocks());
-    const std::set<int> machine(columns.begin(), columns.end());
-    for (const auto& block : now.fit.blocks) {
-      if (!OutlivesRuns(block, runs_)) continue;
-      for (std::size_t i = 0; i < block.entries.size(); ++i) {
-        const auto at = std::find(layout.names.begin(), layout.names.end(), block.FullName(i));
-        const int column = static_cast<int>(at - layout.names.begin());
-        const double u = block.entries[i].uncertainty;
-        if (at == layout.names.end() || machine.contains(column) || !(u > 0.0 && u < kUnknown))
-          continue;
-        columns.push_back(column);
-        state.names.push_back(*at);
-        values.push_back(block.entries[i].value);
-      }
-    }
-    MatrixXd all = now.at.prior.information;
-    for (const auto& source : now.at.sources) all += source.information;
-    state.values = Eigen::Map<const VectorXd>(values.data(), std::ssize(values));
-    state.covariance = MarginalCovariance(all, columns);
-    // Sizes that are not certain, and doubt, are in the part of the map alone.
-    state.covariance.topLeftCorner(of_map.rows(), of_map.cols()) = of_map;
-    return state;
-  }
-
-  map::ErrorMap MapOf(const machine::VolumetricModel& found, const SeenErrors& seen,
-                      std::optional<map::MapState> state) const {
+  map::ErrorMap MapOf(const Fitted& now, const machine::VolumetricModel& found,
+                      const SeenErrors& seen) const {
     map::MapOrigin origin;
     origin.machine = machine_.name;
     origin.reference = machine_.reference;
@@ -439,6 +368,13 @@ class FuseJob {
     for (std::size_t error = 0; error < seen.functions.size(); ++error) {
       const auto& by = seen.functions[error].determined_by;
       if (!by.empty()) origin.sources[error] = by.front();
+    }
+    std::optional<map::MapState> state;
+    if (options_.measured > 0.0) {
+      state = StateAfter(now.fit, estimation::Layout(now.problem), now.at, model_.Blocks(), runs_,
+                         seen.covariance);
+      state->time = options_.measured;
+      state->sensors = options_.sensors;
     }
     return {origin, found, seen.covariance, std::move(state)};
   }

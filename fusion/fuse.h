@@ -36,14 +36,11 @@
 #include "fusion/population_estimate.h"
 #include "fusion/reversals.h"
 #include "fusion/run_consistency.h"
+#include "fusion/run_suspect.h"
 #include "fusion/seen_errors.h"
 #include "map/error_map.h"
 
 namespace abbe::fusion {
-
-// Why a run contradicts the others: with a mounting, or an instrument, of its own it agrees with
-// them. kNone: neither helps.
-enum class Suspect { kNone, kMounting, kInstrument };
 
 struct FuseOptions {
   bool choose_smoothness = true;  // and sizes and noise; else those of the machine file
@@ -68,16 +65,17 @@ struct FuseReport {
   ScaleSeen scale = {};
   std::vector<Statement> statements = {};  // of the machine file; empty where they are not judged
   std::vector<double> noise = {};          // of each run: its white noise over the stated one
-  // Of each run: what goes on from row to row, over the stated noise (row_memory.h).
+  // What goes on from row to row in each run, over the stated noise (row_memory.h).
   std::vector<std::optional<estimation::NoiseMemory>> memory = {};
   std::vector<Reversal> reversals = {};  // the map is the mean of both directions
   double chosen_smoothness = 0.0;        // m: of all functions together
   std::vector<std::string> kinds = {};   // of each run
   std::vector<RunConsistency> runs = {};
-  int contradicting = -1;            // index into `runs`; -1: none
-  double widened = 1.0;              // all uncertainties for it, by its Birge ratio
-  Suspect suspect = Suspect::kNone;  // of that contradiction
-  std::vector<double> follows = {};  // of each run: correlation of its residuals from row to row
+  int contradicting = -1;              // index into `runs`; -1: none
+  double widened = 1.0;                // all uncertainties for it, by its Birge ratio
+  Suspect suspect = Suspect::kNone;    // of that contradiction
+  std::vector<int> may_be_wrong = {};  // runs (run_consistency.h)
+  std::vector<double> follows = {};    // of each run: correlation of its residuals from row to row
   // The axis whose positions scatter in each run; the uncertainty of the map contains it.
   std::vector<PlaceScatter> scatter = {};
   std::vector<HeldOut> held_out = {};  // one for each run; empty when not asked for

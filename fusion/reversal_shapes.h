@@ -4,7 +4,7 @@
 //
 //   const Eigen::MatrixXd own = ShapesOf(run, spikes, {.size = {6e-6, 0.0}, .width = 0.07});
 //
-// Of the first axis, then of the second, each in units of its standard deviation:
+// For the first axis, then for the second, each in units of its standard deviation:
 //   - the spike of the table with the sign of the end where the axis turned, twice `size`,
 //   - at each end five triangles over the angle since the reversal, whose knots are 0, 1/2, 1, 2,
 //     3.5 and 6 widths: a quarter of `size`. A half sine and an exponential pulse of one height and

@@ -22,6 +22,7 @@ constexpr double kNoPrior = 1e-9;       // of its information by the rows, of a 
 constexpr Index kMostInstants = 600, kGroup = 10;
 constexpr double kMostSteps = 1e5;                  // of a run, of which a memory has some
 constexpr double kShortest = 2.0, kLongest = 10.0;  // steps; whole runs
+constexpr double kWorthALook = 1.0;  // a gain on the grid: where it peaks at 5 it has 2.6
 constexpr double kLeastRatio = 0.15, kMostRatio = 1000.0;
 
 // A memory of ratio * white, over white noise of 1.
@@ -78,7 +79,7 @@ class RowDensity {
     open_ = open * eigen.eigenvectors().rightCols(eigen.eigenvectors().cols() - few);
   }
 
-  // The median, at least what the longest memory leaves to tell.
+  // Between instants: the median, but no less than a share of the whole that can be told.
   double step() const {
     VectorXd steps = times_.tail(times_.size() - 1) - times_.head(times_.size() - 1);
     const auto middle = steps.begin() + steps.size() / 2;
@@ -155,8 +156,9 @@ estimation::NoiseMemory MemoryOf(const MemoryForm& form) {
   return {1.0, std::exp(form.log_ratio), std::exp(form.log_time)};
 }
 
-// The best of a grid, then of its neighbours at half the distance, ...
-Trial HighestDensity(const RowDensity& density) {
+// The best of a grid, then, unless all of it is below `worth`, of its neighbours at half the
+// distance, ...
+Trial HighestDensity(const RowDensity& density, double worth) {
   const double shortest = std::log(kShortest * density.step());
   const double longest = std::log(kLongest * density.whole());
   const double least = std::log(kLeastRatio), most = std::log(kMostRatio);
@@ -174,6 +176,7 @@ Trial HighestDensity(const RowDensity& density) {
                              [](const Trial& a, const Trial& b) { return a.at.log < b.at.log; });
   };
   Trial best = best_of(tried);
+  if (!(best.at.log > worth)) return best;
   for (int halving = 0; halving < 3; ++halving) {
     step /= 2.0;
     std::vector<Trial> around{best};
@@ -198,7 +201,7 @@ RowMemory FindRowMemory(const RowsInTime& rows) {
   if (!(rows.times[instants - 1] > rows.times[0])) return found;
   const RowDensity density(rows);
   const RowDensity::At white = density.Highest({1.0, 0.0, density.whole()});
-  const Trial best = HighestDensity(density);
+  const Trial best = HighestDensity(density, white.log + kWorthALook);
   found.gain = best.at.log - white.log;
   found.noise = MemoryOf(best.form);
   found.noise.white *= best.at.white;
@@ -236,6 +239,24 @@ RowMemory FindRowMemory(const estimation::Problem& problem, const estimation::La
   J(Eigen::all, found->columns) = found->jacobian(chosen, Eigen::all);
   const VectorXd times_chosen = times(instants), left = found->r(chosen);
   return FindRowMemory({times_chosen, J, left, H, g});
+}
+
+bool TakeUp(const RowMemory& found, double& white, std::optional<estimation::NoiseMemory>& memory) {
+  constexpr double kWhiteSettled = 0.05, kSlowSettled = 0.2;  // of a logarithm
+  if (!(found.gain > kRemembers)) {
+    if (memory) white = memory->white;
+    return std::exchange(memory, std::nullopt).has_value();
+  }
+  const auto settled = [](double a, double b, double within) {
+    return std::abs(std::log(a / b)) < within;
+  };
+  if (memory && settled(found.noise.white, memory->white, kWhiteSettled) &&
+      settled(found.noise.slow, memory->slow, kSlowSettled)) {
+    return false;
+  }
+  memory = found.noise;
+  white = 1.0;
+  return true;
 }
 
 }  // namespace abbe::fusion

@@ -1,4 +1,4 @@
-// What of a run goes on from one row to the next: an instrument that drifts, a machine that warms
+// The noise of a run that goes on from one row to the next: an instrument that drifts, a machine that warms
 // up, an encoder's wave along a path. Rows that share it tell less than independent ones.
 //
 //   const RowMemory found = FindRowMemory(problem, layout, x, at, run, times);
@@ -23,6 +23,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 
 #include "estimation/linearization.h"
 #include "estimation/noise_memory.h"
@@ -48,10 +49,14 @@ struct RowMemory {
 
 RowMemory FindRowMemory(const RowsInTime& rows);
 
-// Of the first residual of source `run` of a problem whose noise is as stated. `x`: all its entries;
-// `at`: what its sources tell there, in the columns of `layout`.
+// The same for the first residual of source `run` of a problem whose noise is as stated. `x`: all
+// its entries; `at`: what its sources tell there, in the columns of `layout`.
 RowMemory FindRowMemory(const estimation::Problem& problem, const estimation::Layout& layout,
                         const Eigen::VectorXd& x, const estimation::Linearization& at,
                         std::size_t run, const Eigen::VectorXd& times);
+
+// The noise of a run by what was found: with a memory, which then has its white part too (`white` is
+// 1), or without. False where neither changes by more than 5 % and, of the slow part, 20 %.
+bool TakeUp(const RowMemory& found, double& white, std::optional<estimation::NoiseMemory>& memory);
 
 }  // namespace abbe::fusion

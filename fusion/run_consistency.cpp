@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "estimation/in_parallel.h"
 #include "fusion/marginal.h"
@@ -69,26 +70,60 @@ RunConsistency Check(const std::string& name, const estimation::SourceSums& run,
   return check;
 }
 
+// Sources that are runs.
+std::vector<std::size_t> RunsOf(const estimation::Problem& problem) {
+  std::vector<std::size_t> runs;
+  for (std::size_t s = 0; s < problem.sources().size(); ++s) {
+    if (!problem.sources()[s].options.is_prior) runs.push_back(s);
+  }
+  return runs;
+}
+
+// The information of all but these sources; a difference to all of them would be rounded.
+MatrixXd Without(const std::set<std::size_t>& excluded, const estimation::Linearization& sums) {
+  MatrixXd rest = sums.prior.information;
+  for (std::size_t s = 0; s < sums.sources.size(); ++s) {
+    if (!excluded.contains(s)) rest += sums.sources[s].information;
+  }
+  return rest;
+}
+
+// At the solution of all but the excluded ones.
+std::vector<RunConsistency> CheckAllBut(const std::set<std::size_t>& excluded,
+                                        const estimation::Problem& problem,
+                                        const estimation::Linearization& sums) {
+  VectorXd gradient = sums.Gradient();
+  for (const std::size_t s : excluded) gradient -= sums.sources[s].gradient;
+  const VectorXd left = StepToSolution(Without(excluded, sums), gradient);
+  std::vector<std::size_t> runs = RunsOf(problem);
+  std::erase_if(runs, [&](std::size_t run) { return excluded.contains(run); });
+  std::vector<RunConsistency> checks(runs.size());
+  estimation::InParallel(runs.size(), [&](std::size_t r) {
+    std::set<std::size_t> others = excluded;
+    others.insert(runs[r]);
+    checks[r] =
+        Check(problem.sources()[runs[r]].name, sums.sources[runs[r]], Without(others, sums), left);
+  });
+  return checks;
+}
+
 }  // namespace
 
 std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
                                       const estimation::Linearization& sums) {
-  MatrixXd all = sums.prior.information;
-  for (const auto& source : sums.sources) all += source.information;
-  const VectorXd left = StepToSolution(all, sums.Gradient());
-  std::vector<std::size_t> runs;
-  for (std::size_t s = 0; s < sums.sources.size(); ++s) {
-    if (!problem.sources()[s].options.is_prior) runs.push_back(s);
-  }
-  std::vector<RunConsistency> checks(runs.size());
-  estimation::InParallel(runs.size(), [&](std::size_t r) {
-    MatrixXd rest = sums.prior.information;  // a difference to all of them would be rounded
-    for (std::size_t s = 0; s < sums.sources.size(); ++s) {
-      if (s != runs[r]) rest += sums.sources[s].information;
+  return CheckAllBut({}, problem, sums);
+}
+
+std::vector<int> MayBeWrong(const estimation::Problem& problem,
+                            const estimation::Linearization& sums) {
+  const std::vector<std::size_t> runs = RunsOf(problem);
+  std::vector<int> may_be;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (Contradicting(CheckAllBut({runs[r]}, problem, sums)) < 0) {
+      may_be.push_back(static_cast<int>(r));
     }
-    checks[r] = Check(problem.sources()[runs[r]].name, sums.sources[runs[r]], rest, left);
-  });
-  return checks;
+  }
+  return may_be;
 }
 
 namespace {

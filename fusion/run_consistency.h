@@ -21,8 +21,8 @@
 // Failure: none; a run that shares nothing with the others has 0 directions.
 // Source: the predictive form of Baarda's test, e.g. Teunissen, "Testing Theory" (2006); own form.
 // Validity: to first order at the solution. A wrong run biases the prediction for all others: the
-// smallest probability names the wrong one when at least two others agree; two runs can only
-// contradict each other.
+// smallest probability names the wrong one when at least two others agree, which MayBeWrong tells;
+// two runs can only contradict each other.
 #pragma once
 
 #include <string>
@@ -48,6 +48,12 @@ std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
 // The index of the run that contradicts the others; -1: none at a significance of 1 % for the whole
 // set.
 int Contradicting(const std::vector<RunConsistency>& runs);
+
+// The runs that may be the wrong one: without any of them, none contradicts the others. Where there
+// are several, the data do not tell which; where there is none, no single run is wrong, but what
+// they all are taken to share: the machine as a chain of rigid bodies that stays as it is.
+std::vector<int> MayBeWrong(const estimation::Problem& problem,
+                            const estimation::Linearization& sums);
 
 // The largest correlation of whitened rows with those one or three after them: probes stand one
 // after the other, places in threes. White noise has nearly none; 0 for too few rows to tell.

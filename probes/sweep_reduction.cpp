@@ -203,7 +203,7 @@ class ComponentEvaluation {
 
   static constexpr double kKnown = 2e6;               // degrees of freedom as good as infinite
   static constexpr double kFalseAlarm = 0.01 / 15.0;  // of one reversal
-  // Of a normal number of lognormal size (UncheckedTimes(kKnownTo)) in its rms, two-sided.
+  // U95 of a normal number of lognormal size (UncheckedTimes(kKnownTo)) in its rms, two-sided.
   static constexpr double kBeyondUnchecked = 7.8;
 
   const StationMeans& means_;

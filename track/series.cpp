@@ -255,7 +255,7 @@ std::vector<Weighted> PointsAbout(const SeriesFilter& filter, const VectorXd& th
       const VectorXd at = (peak.theta + side * std::sqrt(far) * peak.axes.col(axis))
                               .cwiseMax(filter.Low())
                               .cwiseMin(filter.High());
-      // Of a normal one the exponent is 0.
+      // 0 for a normal density.
       const double off = filter.LogLikelihood(at) - peak.log + 0.5 * far;
       points.push_back({0.5 / far * std::exp(std::clamp(off, -20.0, 2.0)), at, filter.Smooth(at)});
       sum += points.back().weight;

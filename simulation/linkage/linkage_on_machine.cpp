@@ -103,7 +103,7 @@ class LinkageOnMachine : public Responsive {
   std::shared_ptr<const Response> At(const VectorXd& x) const override;
 
  private:
-  // Of the ball against the spindle, in M.
+  // The place of the ball against the spindle, in M.
   Vector3d SeatOf(const VectorXd& x) const {
     return seated_ ? Vector3d(x.segment<3>(linkage_.parameters())) : Vector3d::Zero();
   }

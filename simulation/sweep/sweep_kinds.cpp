@@ -336,7 +336,7 @@ class DwellRuns : public HeadKind {
  public:
   std::string_view name() const override { return "dwell"; }
 
-  // Of what it shows: the probes, the encoders or both.
+  // Runs of what it shows: the probes, the encoders or both.
   PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel& model,
                        const Instruments& on, const FactsByRun& known) const override {
     auto encoders = StandingLinkage(recording, model, on);

@@ -80,7 +80,7 @@ double VarianceOfMean(double span, double fades) {
   return x < kShort ? 1.0 - x / 3.0 : 2.0 * (x + std::expm1(-x)) / (x * x);
 }
 
-// Of the rows, each of which is a mean: n readings stand for the time of n steps.
+// Between rows that are means; n readings stand for the time of n steps.
 Eigen::MatrixXd MemoryCovariance(const SweepRun& run, double sd, double fades) {
   const Eigen::ArrayXd n = run.samples.array();
   const Eigen::ArrayXd spans = run.duration.array() * n / (n - 1.0).max(1.0);

@@ -1,10 +1,13 @@
-// Consistency of the runs: the statistic does not depend on how far an iteration came.
+// Consistency of the runs: the statistic does not depend on how far an iteration came; which run is
+// wrong is what leaving it out says.
 #include "fusion/run_consistency.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "estimation/linearization.h"
 #include "estimation/problem.h"
@@ -57,6 +60,34 @@ TEST_F(TwoRuns, DisagreeByThatWhereAnIterationStoppedToo) {
   for (const double off : {0.01, 1.0, 100.0}) {
     EXPECT_NEAR(Fine(off * kFine).statistic, Fine(0.0).statistic, 1e-3) << off;
   }
+}
+
+// Runs that each read one length to 1 m.
+std::vector<int> MayBeWrongOf(const std::vector<double>& readings) {
+  estimation::Problem problem;
+  const auto input = problem.Add({"length", {"m", 1.0}, {{"a", 0.0, 1e6, 0.0}}});
+  for (const double reading : readings) {
+    problem.Add(problem.AddSource(std::to_string(problem.sources().size())),
+                std::make_shared<estimation::LinearResidual>(MatrixXd::Identity(1, 1),
+                                                             VectorXd::Constant(1, reading)),
+                {input}, 1.0);
+  }
+  const estimation::Layout layout(problem);
+  return MayBeWrong(problem, estimation::Linearize(problem, layout, layout.start, 1));
+}
+
+TEST(MayBeWrong, IsTheOneThatTwoOthersDisagreeWith) {
+  EXPECT_EQ(MayBeWrongOf({0.0, 10.0, 0.3}), std::vector<int>{1});
+}
+
+TEST(MayBeWrong, IsEitherOfTwo) { EXPECT_EQ(MayBeWrongOf({0.0, 10.0}), (std::vector<int>{0, 1})); }
+
+TEST(MayBeWrong, IsNoneOfThreeThatAllDisagree) {
+  EXPECT_TRUE(MayBeWrongOf({0.0, 10.0, 20.0}).empty());
+}
+
+TEST(MayBeWrong, IsAnyWhereAllAgree) {
+  EXPECT_EQ(MayBeWrongOf({0.0, 0.3, -0.2}), (std::vector<int>{0, 1, 2}));
 }
 
 }  // namespace run_consistency_test

@@ -51,6 +51,11 @@ def warmth(runs, sensor):
     return all_of_it.mean(), all_of_it.std()
 
 
+def play_of(k):
+    """What play along an axis honestly is: how wide, that the width varies, and where the axis stands after it."""
+    return tuple((cause, AXES[k], {}) for cause in ("backlash", "varying-backlash", "standing-position"))
+
+
 # ---- the machine
 
 def angular_play(draw, runs):
@@ -72,7 +77,7 @@ def varying_play(draw, runs):
     width = lambda q: h * np.exp(-(((q - place) / 0.012) ** 2))
     return Effect({"travel": lambda r: np.eye(3)[k] * (width(r.q[:, k]) * r.sense[:, k] / 2)[:, None]},
                   f"{AXES[k]} has {h * 1e6:.2f} um of play about {place * 1e3:.0f} mm only",
-                  ("direction", "xyz"[k]), (("backlash", AXES[k], {}),))
+                  ("direction", "xyz"[k]), play_of(k))
 
 
 def product_of_positions(draw, runs):
@@ -203,7 +208,7 @@ def tall_play(draw, runs):
     wide = lambda r: h * r.q[:, k] / TRAVEL * r.sense[:, k] / 2
     return Effect({"travel": lambda r: np.eye(3)[k] * wide(r)[:, None]},
                   f"{AXES[k]} has play from nothing to {h * 1e6:.2f} um at its end", ("direction", "xyz"[k]),
-                  (("backlash", AXES[k], {}),))
+                  play_of(k))
 
 
 def speed_squared(draw, runs):
@@ -257,7 +262,8 @@ def probe_hysteresis(draw, runs):
 
 
 def form_four_times(draw, runs):
-    return Effect({"form": 4.0}, "the target is four times less flat than stated")
+    return Effect({"form": 4.0}, "the target is four times less flat than stated",
+                  same_as=(("target-form", None, {"rms_um": (0.02, 0.08)}),))
 
 
 def wandering_target(draw, runs):

@@ -69,7 +69,11 @@ def map_of(program, world, folder, *options, names=MAPPED):
     ratios = judge.map_pulls(result, world.machine)
     blamed = [pathlib.Path(str(b.get("run", b)) if isinstance(b, dict) else str(b)).name
               for b in result["contradictions"] + result["misfits"]]
-    return {"map": "flagged" if blamed else "told", "blamed": blamed, "message": message,
+    may_be = [pathlib.Path(run).name for run in result.get("may_be_wrong", ())]
+    if result["contradictions"] and not may_be:
+        blamed = []  # no single run, it says
+    return {"map": "flagged" if result["contradictions"] + result["misfits"] else "told", "blamed": blamed,
+            "may_be_wrong": may_be, "message": message,
             "smoothness_mm": result["smoothness_mm"], "by_error": {n: judge.coverage(p) for n, p in ratios.items()},
             "inside": judge.coverage(sum(ratios.values(), [])), "volume": judge.volume_error(result, world),
             "seconds": seconds}
@@ -115,7 +119,9 @@ def one(job, program, task, wide=False):
         line.update(task(program, world, pathlib.Path(folder)))
     if "blamed" in line:
         guilty = [] if not world.effect or {"machine", "form"} & set(world.hooks) else line["touched"]
-        line["innocent"] = [b for b in line["blamed"] if not any(run in b for run in guilty)]
+        innocent = lambda b: not any(run in b for run in guilty)
+        line["innocent"] = [b for b in line["blamed"] if innocent(b) and
+                            (b not in line["may_be_wrong"] or all(map(innocent, line["may_be_wrong"])))]
     return line
 
 
