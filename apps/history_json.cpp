@@ -245,7 +245,8 @@ ordered_json CheckJson(const std::string& machine, const std::string& of,
                               {"U95", OrNull(each.U95)},
                               {"U95_from", each.u_from_limit ? "machine file" : "result"},
                               {"limit", each.limit.size},
-                              {"verdict", verdict}});
+                              {"verdict", verdict},
+                              {"reason", each.reason}});
   }
   json["counts"] = std::move(counts);
   return json;

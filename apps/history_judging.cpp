@@ -156,7 +156,8 @@ int CheckLimits(const HistoryOptions& options) {
                                  options.machine_file.string(), name, measured.of,
                                  measured.machine));
   }
-  const auto judged = history::Judge(measured.figures, limits);
+  const auto judged =
+      history::Judge(measured.figures, limits, history::ReadTravels(document.Root()));
   ShowHistory(options, CheckText(judged));
   KeepHistory(options, CheckJson(measured.machine, measured.of, judged));
   const auto count = [&](history::Verdict verdict) {

@@ -239,11 +239,11 @@ std::string CheckText(const std::vector<Judged>& judged) {
         each.object.empty() ? each.limit.quantity : each.object + "." + each.limit.quantity;
     const bool measured = each.verdict != Verdict::kNotMeasured;
     const Decimals shown(each.U95.value_or(0.0));
-    text += fmt::format("{:<52}{:>12}{:>10}{:>10}  {:<6}{}{}\n",
-                        WithConditions(name, each.conditions), measured ? shown(each.value) : "-",
-                        each.U95 ? shown(*each.U95) : "-", fmt::format("{:g}", each.limit.size),
-                        QuantityUnit(each.limit.quantity), Name(each.verdict),
-                        measured && !each.U95 ? ": the result states no uncertainty" : "");
+    text +=
+        fmt::format("{:<52}{:>12}{:>10}{:>10}  {:<6}{}{}\n", WithConditions(name, each.conditions),
+                    measured ? shown(each.value) : "-", each.U95 ? shown(*each.U95) : "-",
+                    fmt::format("{:g}", each.limit.size), QuantityUnit(each.limit.quantity),
+                    Name(each.verdict), each.reason.empty() ? "" : ": " + each.reason);
   }
   return text +
          "pass: |value| + U95 <= limit; fail: |value| - U95 > limit; undecided: neither is proven "

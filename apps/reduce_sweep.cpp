@@ -189,6 +189,12 @@ ordered_json SweepJson(const SweepResult& result) {
         {"moving", result.counts.moving},
         {"outliers", result.counts.outliers}}},
   };
+  if (result.planned) {
+    data["planned"] = {{"stations", result.planned->stations},
+                       {"passes", result.planned->passes},
+                       {"missing_stations", result.planned->missing_stations},
+                       {"missing_passes", result.planned->missing_passes}};
+  }
   for (const ComponentResult& component : result.components) AddComponent(component, data);
   AddDwells(result, data);
   data["noise"] = NoiseData(result.noise);

@@ -11,8 +11,9 @@
 //   fail       |y| - U95 >  L
 //   undecided  between the two: neither is proven
 //
-// A figure without an uncertainty is undecided: nothing is proven by it. A limit that no figure
-// belongs to is not measured.
+// A figure without an uncertainty is undecided: nothing is proven by it. So is one within its limit
+// whose sweep lacks stations that were planned, or leaves more than a tenth of the travel out: what
+// was not measured may be worse. A limit that no figure belongs to is not measured.
 //
 // Units: those of the figures. Source: ISO 14253-1:2017 with the guard band g = U95; not checked
 // against its text. That edition asks for a conformance probability of 95 % of one side, a guard
@@ -39,11 +40,13 @@ struct Judged {
   double value = 0.0;
   std::optional<double> U95{};
   bool u_from_limit = false;  // U95 is that of the machine file
+  std::string reason{};       // why a figure that is no fail is no pass either, if not its U95
 };
 
 // One entry for each limit and each figure that it is for, in the order of the limits. A limit of
 // an object replaces that of its quantity for all objects.
-std::vector<Judged> Judge(const std::vector<Figure>& figures, const Limits& limits);
+std::vector<Judged> Judge(const std::vector<Figure>& figures, const Limits& limits,
+                          const Travels& travels = {});
 
 // The limit for a figure, or null.
 const Limit* LimitOf(const std::string& object, const std::string& quantity, const Limits& limits);

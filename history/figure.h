@@ -25,6 +25,13 @@ namespace abbe::history {
 
 using Shares = std::map<std::string, double>;  // instrument -> part of the variance, 0 to 1
 
+// The stations of a sweep along its axis.
+struct Stations {
+  char axis = 'X';
+  double first_mm = 0.0, last_mm = 0.0;
+  int planned = 0, missing = 0;  // 0: the result does not say
+};
+
 struct Figure {
   std::string object;      // "EYX", "C0Y", "XY", "X", "linkage"; empty: of the whole machine
   std::string quantity;    // "straightness_um"
@@ -33,6 +40,7 @@ struct Figure {
   std::optional<double> u{};  // none: the result states none
   double coverage = standards::kCoverage;
   Shares shares{};
+  std::optional<Stations> stations{};  // of a sweep
 
   std::string Name() const { return object.empty() ? quantity : object + "." + quantity; }
   double U95() const { return coverage * u.value_or(0.0); }

@@ -108,4 +108,15 @@ Limits ReadLimits(const settings::Table& root) {
   return limits;
 }
 
+Travels ReadTravels(const settings::Table& root) {
+  Travels travels;
+  for (const settings::Table& axis : root.Child("axis").Named()) {
+    const auto travel = axis.Quantities("travel_mm", 2, std::vector<double>{});
+    if (travel.size() != 2) continue;
+    travels[axis.key().front()] = {travel[0] / settings::kMillimetre,
+                                   travel[1] / settings::kMillimetre};
+  }
+  return travels;
+}
+
 }  // namespace abbe::history

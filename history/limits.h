@@ -14,6 +14,7 @@
 // does not exist or lies on an axis that the machine does not have, with the nearest name.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,14 @@ struct Limit {
 };
 
 using Limits = std::vector<Limit>;
+
+struct TravelOfAxis {
+  double first_mm = 0.0, last_mm = 0.0;
+};
+using Travels = std::map<char, TravelOfAxis>;  // by axis
+
+// Those of the machine file.
+Travels ReadTravels(const settings::Table& root);
 
 // In the order of the file's keys by kind. Requests all keys of the table, none but these.
 Limits ReadLimits(const settings::Table& root);

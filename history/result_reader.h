@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,9 @@ void ReadPath(const Json& result, Extract& extract);
 void ReadMap(const Json& result, Extract& extract);  // fuse and plate
 void ReadCalibration(const Json& result, Extract& extract);
 void ReadDiagnosis(const Json& result, Extract& extract);
+
+// Nothing for a result that is no sweep.
+std::optional<Stations> StationsOf(const Json& result);
 
 inline constexpr double kToMicro = 1e6;  // m -> um, rad -> urad
 inline constexpr double kToMillimetre = 1e3;

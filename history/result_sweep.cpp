@@ -34,8 +34,21 @@ Shares SharesOf(const Json& budget) {
 
 }  // namespace
 
+std::optional<Stations> StationsOf(const Json& result) {
+  const std::vector<double> at = ListAt(result, "stations", kToMillimetre);
+  const std::string axis = TextAt(result, "axis");
+  if (TextAt(result, "kind") != "sweep" || at.empty() || axis.empty()) return std::nullopt;
+  const Json& planned = ObjectAt(result, "planned");
+  const auto count = [&](const char* key) {
+    return static_cast<int>(NumberAt(planned, key).value_or(0.0));
+  };
+  return Stations{axis.front(), at.front(), at.back(), count("stations"),
+                  count("missing_stations")};
+}
+
 void ReadSweep(const Json& result, Extract& extract) {
   const std::vector<double> stations = ListAt(result, "stations", kToMillimetre);
+  const std::optional<Stations> along = StationsOf(result);
   for (const auto& entry : ObjectAt(result, "errors").items()) {
     const std::string& name = entry.key();
     const Json& error = entry.value();
@@ -47,7 +60,7 @@ void ReadSweep(const Json& result, Extract& extract) {
       if (!value) return;
       if (u) u = kToMicro * *u;
       extract.figures.push_back(
-          {name, quantity + "_" + unit, "", kToMicro * *value, u, coverage, shares});
+          {name, quantity + "_" + unit, "", kToMicro * *value, u, coverage, shares, along});
     };
     const Json& straightness = ObjectAt(ObjectAt(result, "straightness"), name);
     const auto u = NumberAt(straightness, "u");

@@ -341,6 +341,10 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
   result.residual = means.residual;
   result.noise = means.noise;
   result.notes = means.notes;
+  result.planned = PlannedSweepOf(recording, result.stations, result.passes);
+  if (result.planned) {
+    if (auto note = MissingNote(*result.planned)) result.notes.push_back(std::move(*note));
+  }
   std::ranges::move(SlipNotes(sweep, means.noise, setup.noise), std::back_inserter(result.notes));
   const SweepGauge gauge(
       Eigen::Map<const Eigen::VectorXd>(means.stations.data(), means.stations.size()), directions);

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "probes/planned_sweep.h"
 #include "probes/sweep_conditions.h"
 #include "probes/sweep_dwells.h"
 #include "probes/sweep_inversion.h"
@@ -75,6 +76,7 @@ struct SweepResult {
   SweepConditions conditions;
   std::vector<double> stations;  // m, ascending
   int passes = 0;
+  std::optional<PlannedSweep> planned;  // as the header says
   SampleCounts counts;
   std::array<ComponentResult, kComponents> components;  // EA. EB. EC., then the two straightnesses
   std::vector<Dwell> dwells;

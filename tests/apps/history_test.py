@@ -55,7 +55,7 @@ def sweep(days, straightness, u=0.1e-6, machine="mill"):
 
 def machine_file(limits="", name="mill"):
     return (f'name = "{name}"\nchain = "[w X Y b Z t]"\naxis.X.positive = "tool"\naxis.Y.positive = "tool"\n' +
-            "".join(f"axis.{a}.travel_mm = [0, 100]\n" for a in "XYZ") + limits)
+            "".join(f"axis.{a}.travel_mm = [0, 20]\n" for a in "XYZ") + limits)
 
 
 class HistoryCase(ProgramCase):
@@ -290,6 +290,27 @@ class Judged(HistoryCase):
         run = self.run_program(1, "--machine", self.limits("EYX = { straightness_um = 1.5 }"), "--store", self.store,
                                command="history check")
         self.assertEqual(run.returncode, 1, run.stderr)
+
+    def test_a_sweep_that_leaves_stations_out_proves_nothing(self):
+        machine = self.limits("EYX = { straightness_um = 3.0 }\n")
+        wide = self.write("wide.toml", machine.read_text().replace("[0, 20]", "[0, 100]"))
+        cut = {**sweep(0, 2e-6), "planned": {"stations": 5, "passes": 2, "missing_stations": 2, "missing_passes": 1}}
+        for name, result, file, reason in (
+                ("cut", cut, machine, "2 of 5 planned stations are missing"),
+                ("short", sweep(0, 2e-6), wide, "the stations, 0 to 20 mm, leave out part of the travel, 0 to 100 mm")):
+            folder = self.folder(name, result)
+            self.history("add", folder)
+            for of in (folder, "latest"):
+                run = self.run_program(of, "--machine", file, "--proven", "--store", self.store, "--json",
+                                       self.path / "check.json", "--force", command="history check")
+                self.assertEqual(run.returncode, 1, run.stdout + run.stderr)
+                (check,) = json.loads((self.path / "check.json").read_text())["checks"]
+                self.assertEqual((check["verdict"], check["reason"]), ("undecided", reason))
+                self.assertIn("undecided: " + reason, run.stdout)
+        # What fails by the stations that are there fails.
+        low = self.write("low.toml", machine.read_text().replace("= 3.0", "= 1.0"))
+        run = self.run_program(self.path / "cut", "--machine", low, command="history check")
+        self.assertIn("1 of 1 figures fail", run.stderr)
 
     def test_limits_for_what_does_not_exist_are_refused_everywhere(self):
         folder = self.folder("a", sweep(0, 2e-6))

@@ -63,6 +63,26 @@ TEST(Judge, FollowsIso14253) {
   EXPECT_EQ(verdict(9.0, std::nullopt), Verdict::kUndecided);
 }
 
+TEST(Judge, PassesNothingThatLeavesStationsOut) {
+  const Limits limits = LimitsOf("[limits]\nEYX = { straightness_um = 3.0 }\n");
+  const auto judged = [&](double value, const Stations& stations, const Travels& travels) {
+    Figure figure{"EYX", "straightness_um", "", value, 0.1};
+    figure.stations = stations;
+    return Judge({figure}, limits, travels).front();
+  };
+  const Travels travels{{'X', {0.0, 100.0}}};
+  EXPECT_EQ(judged(1.0, {'X', 0.0, 100.0, 11, 0}, travels).verdict, Verdict::kPass);
+  EXPECT_EQ(judged(1.0, {'X', 5.0, 95.0, 0, 0}, travels).verdict, Verdict::kPass);
+  EXPECT_EQ(judged(1.0, {'X', 0.0, 89.0, 9, 0}, travels).verdict, Verdict::kUndecided);
+  EXPECT_EQ(judged(1.0, {'X', 0.0, 100.0, 11, 1}, travels).reason,
+            "1 of 11 planned stations are missing");
+  EXPECT_EQ(judged(4.0, {'X', 0.0, 50.0, 11, 5}, travels).verdict, Verdict::kFail);
+  EXPECT_EQ(ReadTravels(settings::Document::Parse("axis.X.travel_mm = [-5, 100]", "m").Root())
+                .at('X')
+                .first_mm,
+            -5.0);
+}
+
 TEST(Judge, TakesTheAmountOfASignedFigureAndTheStatedUncertainty) {
   const Limits limits = LimitsOf(R"([limits]
 C0Y = { urad = 30 }

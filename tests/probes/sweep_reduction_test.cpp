@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "failure/failure.h"
 #include "tests/probes/synthetic_sweep.h"
 
@@ -37,6 +39,29 @@ Eigen::VectorXd FromLine(const Eigen::VectorXd& values) {
   A.col(0).setOnes();
   A.col(1).setLinSpaced(0.0, 1.0);
   return values - A * A.colPivHouseholderQr().solve(values);
+}
+
+// A file that was cut off looks like a shorter sweep; its header knows better.
+TEST(SweepReduction, NamesWhatTheHeaderPlannedAndTheRecordingLacks) {
+  SyntheticSweep sweep{.header =
+                           "[sweep]\nstations_mm = [0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55, "
+                           "60]\npasses = 5\n"};
+  const auto lacking = [](const SweepResult& result) {
+    return std::ranges::count_if(result.notes, [](const std::string& note) {
+      return note.starts_with("the recording lacks");
+    });
+  };
+  const SweepResult whole = ReduceSweep(Record(sweep, TestSetup()), TestSetup());
+  EXPECT_EQ(whole.planned->missing_stations + whole.planned->missing_passes, 0);
+  EXPECT_EQ(lacking(whole), 0);
+  sweep.stations = 4;
+  sweep.passes = 1;
+  const SweepResult cut = ReduceSweep(Record(sweep, TestSetup()), TestSetup());
+  EXPECT_EQ(cut.planned->missing_stations, 9);
+  EXPECT_EQ(cut.planned->missing_passes, 4);
+  EXPECT_EQ(lacking(cut), 1);
+  EXPECT_THAT(cut.notes,
+              testing::Contains(testing::HasSubstr("9 of 13 stations and 4 of 5 passes")));
 }
 
 // Noise-free: what is left is the zero of the first station, where the truth is not zero: its
