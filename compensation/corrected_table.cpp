@@ -20,7 +20,8 @@ CorrectedTable CorrectTable(std::string_view text, const std::string& file,
       corrected.text += table.line();
       continue;
     }
-    Eigen::Vector3d made = Located(table.Where(), [&] { return corrector.Made(table.Position()); });
+    Eigen::Vector3d made =
+        Located(table.Where(), [&] { return corrector.MadeOfReading(table.Position()); });
     if (beside.size() > 0) made += beside.col(corrected.rows);
     corrected.largest = std::max(corrected.largest, (made - table.Position()).norm());
     ++corrected.rows;

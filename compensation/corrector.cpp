@@ -40,14 +40,32 @@ Vector3d Corrector::InTravels(const Vector3d& position) const {
     const machine::Travel& limit = limits_[axis];
     if (!(position[axis] >= limit.first && position[axis] <= limit.last)) {
       throw InputError(fmt::format(
-          "{0} = {1:.9g} mm is beyond the soft limits, {2:.9g} to {3:.9g} mm; keep away from the "
-          "end of the travel, or state the limits of the control as limit_mm in [axis.{0}] of the "
-          "machine file",
+          "{0} = {1:.9g} mm is beyond the soft limits, {2:.9g} to {3:.9g} mm, where the control "
+          "would stop: keep away from the end of the travel (limit_mm in [axis.{0}] of the machine "
+          "file are the limits that the control has)",
           "XYZ"[axis], 1e3 * position[axis], 1e3 * limit.first, 1e3 * limit.last));
     }
     inside[axis] = std::clamp(position[axis], travel.first, travel.last);
   }
   return inside;
+}
+
+Vector3d Corrector::MadeOfReading(const Vector3d& reading) const {
+  constexpr double kWritten = 2e-9;  // m: a corrected program is rounded to 1e-7 inch
+  const auto beyond = [](const machine::Travel& range, double at, double by) {
+    return !(at >= range.first - by && at <= range.last + by);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!beyond(limits_[axis], reading[axis], 0.0)) continue;
+    machine::InTravel(travels_[axis], axis, reading[axis]);
+  }
+  const Vector3d made = Made(reading);
+  for (int axis = 0; axis < 3; ++axis) {
+    const machine::Travel& travel = travels_[axis];
+    if (!beyond(travel, reading[axis], 0.0) || !beyond(travel, made[axis], kWritten)) continue;
+    machine::InTravel(travel, axis, reading[axis]);
+  }
+  return made;
 }
 
 Vector3d Corrector::Command(const Vector3d& wanted) const {

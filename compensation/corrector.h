@@ -15,10 +15,10 @@
 // the tool there, S E(z). It is subtracted everywhere, so that Command(z) = z and all other
 // positions are corrected relative to it.
 // A command may exceed the travels as far as the soft limits; the errors there are those at the end
-// of the travel.
+// of the travel. A reading may exceed them only as far as the command for a place inside does.
 //
-// Units: m. Failure: InputError when `wanted` is outside the travels, or a position or the
-// command is beyond the soft limits; NumericalError for a map whose errors grow as fast as the
+// Units: m. Failure: InputError when `wanted` is outside the travels, a reading and its place are,
+// or a position or the command is beyond the soft limits; NumericalError for a map whose errors grow as fast as the
 // position, which has no inverse. Source: Ha and Khanh (2011) take the first step of the
 // iteration, X - E(X); it neglects the error times its slope, 0.01 um for 100 um that grow by 100
 // um/m. Validity: slopes of the error well below 1.
@@ -54,6 +54,8 @@ class Corrector {
   Eigen::Vector3d Made(const Eigen::Vector3d& position) const {
     return position + Offset(position);
   }
+  // Made, for a reading of the scales.
+  Eigen::Vector3d MadeOfReading(const Eigen::Vector3d& reading) const;
   Eigen::Vector3d Command(const Eigen::Vector3d& wanted) const;
 
  private:

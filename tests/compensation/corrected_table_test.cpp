@@ -57,6 +57,10 @@ TEST(CorrectedTable, RefusesWithTheLine) {
   const auto refusal = [&](const char* text) {
     return map::MessageOf<InputError>([&] { CorrectTable(text, "t.csv", corrector); });
   };
+  // Within the soft limits, 0.1 mm beyond the travel of 60 mm, no error is known either.
+  map::ExpectHas(refusal("x_mm,y_mm,z_mm\n1,2,3\n60.09,2,3\n"),
+                 "t.csv:3: X = 60.09 mm lies outside its travel, 0 to 60 mm");
+  map::ExpectHas(refusal("x_mm,y_mm,z_mm\n61,2,3\n"), "t.csv:2: X = 61 mm lies outside its travel");
   map::ExpectHas(refusal("x_mm,y_mm\n1,2\n"), "t.csv:1: there is no column z_mm");
   map::ExpectHas(refusal("x_mm,y_mm,z_mm\n1,2,3\n1,2\n"), "t.csv:3: 2 values");
   map::ExpectHas(refusal("x_mm,y_mm,z_mm\n1,nan,3\n"), "t.csv:2: \"nan\"");

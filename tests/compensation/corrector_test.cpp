@@ -112,6 +112,7 @@ TEST(Corrector, ACommandMayLieBeyondTheTravelButNotBeyondTheSoftLimits) {
         const std::string refused = map::MessageOf<InputError>([&] { hard.Command(corner); });
         map::ExpectHas(refused, "is beyond the soft limits, 0 to 60 mm");
         map::ExpectHas(refused, "limit_mm in [axis.");
+        EXPECT_LT((corrector.MadeOfReading(command) - corner).norm(), 1e-12);
       }
     }
   }
