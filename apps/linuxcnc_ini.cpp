@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <string>
@@ -12,6 +13,25 @@
 #include "settings/ini_text.h"
 
 namespace abbe::apps {
+namespace {
+
+// mm in the unit of the control. LinuxCNC compares the words without case.
+double MillimetresOf(const std::string& units, const std::string& file) {
+  constexpr double kMmPerInch = 25.4;
+  std::string word = units;
+  std::ranges::transform(word, word.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (word == "mm" || word == "metric") return 1.0;
+  if (word == "inch" || word == "in" || word == "imperial") return kMmPerInch;
+  if (word.empty()) {
+    throw InputError(fmt::format(
+        "{}: [TRAJ] LINEAR_UNITS is missing; add LINEAR_UNITS = mm or inch, the unit of the limits",
+        file));
+  }
+  throw InputError(fmt::format(
+      "{}: [TRAJ] LINEAR_UNITS = {} is no unit of LinuxCNC; write mm or inch", file, units));
+}
+
+}  // namespace
 
 void ReadLinuxcncIni(const std::filesystem::path& path, MachineDescription& machine) {
   const auto values = settings::ParseIni(map::ReadWhole(path), path.string());
@@ -26,9 +46,7 @@ void ReadLinuxcncIni(const std::filesystem::path& path, MachineDescription& mach
                     "such a machine by hand (docs/machine-file.md)",
                     path.string(), kinematics));
   }
-  const std::string units = text("TRAJ.LINEAR_UNITS");
-  constexpr double kMmPerInch = 25.4;
-  const double unit = units == "inch" || units == "in" || units == "imperial" ? kMmPerInch : 1.0;
+  const double unit = MillimetresOf(text("TRAJ.LINEAR_UNITS"), path.string());
   if (!text("EMC.MACHINE").empty()) {
     machine.name = text("EMC.MACHINE");
     for (char& c : machine.name) {

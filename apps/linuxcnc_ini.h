@@ -5,7 +5,7 @@
 // Read: [EMC] MACHINE, [TRAJ] LINEAR_UNITS and COORDINATES, [AXIS_X] MIN_LIMIT and MAX_LIMIT,
 // [KINS] KINEMATICS. The travels and the soft limits become those of the control; which axis
 // carries the workpiece does not stand there. Units: mm, from inches where the file has them.
-// Failure: InputError with file and line or section.
+// Failure: InputError with file and line or section, also where LINEAR_UNITS is missing or no unit.
 // Source: LinuxCNC 2.9, INI configuration.
 #pragma once
 

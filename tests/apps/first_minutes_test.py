@@ -169,12 +169,18 @@ class InitTest(ProgramCase):
         self.refuse("--ini", self.path / "a.ini", *out, saying=["[AXIS_X] MIN_LIMIT"])
 
     def test_inches_of_an_ini_file_become_millimetres(self):
-        text = "[EMC]\nMACHINE = My Mill\n[TRAJ]\nLINEAR_UNITS = inch\n"
+        text = "[EMC]\nMACHINE = My Mill\n[TRAJ]\n@\n"
         text += "".join(f"[AXIS_{axis}]\nMIN_LIMIT = -1.0\nMAX_LIMIT = 10 # in\n" for axis in "XYZ")
-        (self.path / "mill.ini").write_text(text)
-        self.done("--ini", self.path / "mill.ini", "--out", self.path / "m.toml")
-        told = tomllib.loads((self.path / "m.toml").read_text())
-        self.assertEqual((told["name"], told["axis"]["Y"]["limit_mm"]), ("My-Mill", [-25.4, 254]))
+        ini, out = self.path / "mill.ini", self.path / "m.toml"
+        for units, limits in (("inch", [-25.4, 254]), ("INCH", [-25.4, 254]), ("Imperial", [-25.4, 254]),
+                              ("mm", [-1, 10]), ("Metric", [-1, 10])):
+            ini.write_text(text.replace("@", f"LINEAR_UNITS = {units}"))
+            self.done("--ini", ini, "--out", out, "--force")
+            told = tomllib.loads(out.read_text())
+            self.assertEqual((told["name"], told["axis"]["Y"]["limit_mm"]), ("My-Mill", limits), units)
+        for line, said in (("LINEAR_UNITS = cubit", "LINEAR_UNITS = cubit is no unit"), ("", "LINEAR_UNITS is missing")):
+            ini.write_text(text.replace("@", line))
+            self.refuse("--ini", ini, "--out", out, "--force", saying=["mill.ini", said])
 
     @unittest.skipUnless(INI.exists(), "linuxcnc-uspace is not installed")
     def test_the_ini_file_of_linuxcnc_itself(self):
