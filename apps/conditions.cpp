@@ -9,7 +9,7 @@
 
 #include "estimation/in_parallel.h"
 #include "failure/failure.h"
-#include "recording/instant.h"
+#include "recording/started.h"
 
 namespace abbe::apps {
 namespace {
@@ -47,8 +47,7 @@ std::string SensorOf(const std::string& column) {
 }
 
 double BeganAt(const recording::Recording& head) {
-  const auto started = head.HeaderText("started");
-  return started ? recording::SecondsOf(*started).value_or(0.0) : 0.0;
+  return recording::StartedAt(head).value_or(0.0);
 }
 
 double MustHaveBegan(const recording::Recording& head) {

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "apps/linkage_reader.h"
 #include "apps/machine_recording.h"
 #include "apps/protocol.h"
 #include "recording/made_on.h"
+#include "recording/started.h"
 
 namespace abbe::apps {
 namespace {
@@ -71,9 +74,10 @@ void Add(const Recording& read, Machine& machine, MeasuredPaths& paths) {
   }
   if (reference) paths.reference.push_back(paths::ReferencePath(recording));
   if (radius) paths.reference.push_back(paths::BallbarPath(recording));
-  for (const char* key : {"machine", "started"}) {
-    const auto text = recording.HeaderText(key);
-    if (text && !paths.head.contains(key)) paths.head[key] = *text;
+  for (const auto& [key, text] :
+       {std::pair{"machine", recording.HeaderText("machine").value_or("")},
+        std::pair{"started", recording::StartedText(recording)}}) {
+    if (!text.empty() && !paths.head.contains(key)) paths.head[key] = text;
   }
   AddProtocol(recording, paths.head);
 }

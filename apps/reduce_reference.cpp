@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "recording/made_on.h"
+#include "recording/started.h"
 #include "settings/unit.h"
 #include "standards/positioning.h"
 
@@ -137,8 +138,9 @@ ordered_json ReduceReference(const Recording& recording) {
     throw InputError(fmt::format("{}: {}", recording.name, error.what()));
   }
   ordered_json result{{"abbe", ABBE_VERSION}, {"command", "reduce"}, {"kind", "reference"}};
-  for (const char* const key : {"machine", "started"}) {
-    if (const auto text = recording.HeaderText(key)) result[key] = *text;
+  if (const auto machine = recording.HeaderText("machine")) result["machine"] = *machine;
+  if (const auto started = recording::StartedText(recording); !started.empty()) {
+    result["started"] = started;
   }
   result["axis"] = std::string(1, static_cast<char>(axis - 'a' + 'A'));
   result["iso230_2"] = std::move(iso230_2);

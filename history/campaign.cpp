@@ -16,6 +16,7 @@
 #include "recording/file_hash.h"
 #include "recording/instant.h"
 #include "recording/recording_file.h"
+#include "recording/started.h"
 #include "settings/document.h"
 
 namespace abbe::history {
@@ -159,8 +160,15 @@ class Gathering {
                       TextOf(json, "kind"),
                       0.0,
                       FiguresOf(json)};
-    if (const auto started = recording::SecondsOf(TextOf(json, "started"))) {
-      result.measured = *started;
+    if (const std::string started = TextOf(json, "started"); !started.empty()) {
+      const auto seconds = recording::SecondsOf(started);
+      if (!seconds) {
+        throw InputError(
+            fmt::format("{}: started = {} is no time; reduce the recording again, with a time such "
+                        "as 2026-11-21T09:00:00Z in its header",
+                        path.string(), started));
+      }
+      result.measured = *seconds;
     }
     if (!result.extract.trouble.empty()) {
       campaign_.notes.push_back(fmt::format("{}: {}", path.string(), result.extract.trouble));
@@ -190,7 +198,7 @@ class Gathering {
       campaign_.notes.push_back(fmt::format("left out: {}", error.what()));
       return false;
     }
-    const std::string started = head.HeaderText("started").value_or("");
+    const std::string started = recording::StartedText(head);
     campaign_.recordings.push_back({fs::absolute(path).lexically_normal().string(),
                                     recording::Sha256OfFile(path), head.Kind(), started,
                                     static_cast<long long>(fs::file_size(path))});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "recording/started.h"
 #include "settings/unit.h"
 
 namespace abbe::probes {
@@ -32,7 +33,7 @@ Spread SpreadOf(const recording::Recording& recording, std::span<const double> v
 
 SweepConditions ConditionsOf(const recording::Recording& recording) {
   SweepConditions conditions;
-  conditions.started = recording.HeaderText("started").value_or("");
+  conditions.started = recording::StartedText(recording);
   conditions.simulated = recording.IsSimulated();
   const auto time = recording.At("time_s");
   if (!time.empty()) conditions.duration = time.back() - time.front();

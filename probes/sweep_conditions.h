@@ -1,6 +1,6 @@
 // The conditions of a recording: temperatures, duration, feed.
 // Units: degC, s, m/s.
-// Failure: InputError for a recording without time_s.
+// Failure: InputError for a recording without time_s, or with `started` that is no instant.
 // Validity: largest and smallest of single rows, so one wild row shows in them.
 #pragma once
 
@@ -20,7 +20,7 @@ struct SweepConditions {
     std::string name;  // of the column: "temp_column_c"
     Spread spread;     // degC
   };
-  std::string started;  // as stated in the header
+  std::string started;  // of the header, in UTC
   double duration = 0;  // s
   double feed = 0;      // m/s, the largest commanded one
   std::vector<Temperature> temperatures;

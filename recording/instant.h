@@ -1,4 +1,4 @@
-// Instants in UTC: texts such as "2026-11-21T09:00:00Z" and seconds since 1970.
+// Instants, in UTC unless the text states a zone ("T14:00:00+05:00"), and seconds since 1970.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,7 @@
 
 namespace abbe::recording {
 
-// Nothing for a text of another form.
+// Nothing for a text of another form, and for a date or time that does not exist (30 February).
 std::optional<double> SecondsOf(const std::string& instant);
 // The text of an instant, in whole seconds.
 std::string InstantText(double seconds);

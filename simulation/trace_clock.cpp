@@ -1,10 +1,7 @@
 // When the rows of a trace were, and how warm, counted from the beginning of a campaign.
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "failure/failure.h"
-#include "recording/instant.h"
+#include "recording/started.h"
 #include "simulation/trace.h"
 
 namespace abbe::simulation {
@@ -12,12 +9,7 @@ namespace abbe::simulation {
 using Eigen::Index;
 
 double StartedOf(const recording::Recording& recording) {
-  const auto text = recording.HeaderText("started");
-  if (!text) return 0.0;
-  const auto seconds = recording::SecondsOf(*text);
-  if (seconds) return *seconds;
-  throw InputError(fmt::format("{}: started = {} is no time; write it as 2026-11-21T09:00:00Z",
-                               recording.name, *text));
+  return recording::StartedAt(recording).value_or(0.0);
 }
 
 Origin OriginOf(const std::vector<const Trace*>& traces) {

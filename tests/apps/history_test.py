@@ -129,6 +129,17 @@ class Kept(HistoryCase):
         self.assertEqual({each["object"] for each in campaign["results"][0]["curves"]},
                          {"EAX", "EBX", "ECX", "EYX", "EZX"})
 
+    def test_a_time_has_a_zone_and_exists(self):
+        self.history("add", self.folder("zone", {**sweep(0, 2e-6), "started": "2026-11-21T01:30:00+05:00"}))
+        self.history("add", self.folder("said", {**sweep(0, 3e-6), "started": ""}), "--measured",
+                     "2026-11-20T15:30:00-05:00")
+        self.assertEqual([each["measured"] for each in self.data("list")["campaigns"]],
+                         ["2026-11-20T20:30:00Z", "2026-11-20T20:30:00Z"])
+        for time in ("2026-02-30T09:00:00Z", "2026-11-21T09:00:60Z", "2026-11-21T09:00:00 CET"):
+            never = self.folder("never", {**sweep(0, 4e-6), "started": time})
+            self.refused("add", never, saying=["result_0.json", time, "is no time"])
+            self.refused("add", self.path / "said", "--measured", time, saying=["--measured", "is no instant"])
+
     def test_names_are_data(self):
         self.history("add", self.folder("x", sweep(0, 2e-6, machine=HOSTILE)), "--note", HOSTILE)
         (campaign,) = self.data("list", "--machine", HOSTILE)["campaigns"]
