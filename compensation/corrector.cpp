@@ -29,8 +29,14 @@ Corrector::Corrector(const machine::VolumetricModel& model, const Vector3d& p_TQ
       signs_(model.chain().ToolSenses()) {}
 
 void Corrector::KeepZero(const Vector3d& zero) {
+  zero_ = zero;
   at_zero_.setZero();
   at_zero_ = Offset(zero);
+}
+
+void Corrector::SetTool(const Vector3d& p_TQ) {
+  p_TQ_ = p_TQ;
+  if (zero_) KeepZero(*zero_);
 }
 
 Vector3d Corrector::InTravels(const Vector3d& position) const {

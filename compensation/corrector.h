@@ -26,6 +26,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "machine/volumetric_field.h"
 #include "map/error_map.h"
@@ -44,8 +45,8 @@ class Corrector {
             const Limits& limits);
 
   void KeepZero(const Eigen::Vector3d& zero);
-  // Another tool; the zero stays with the tool that touched it.
-  void SetTool(const Eigen::Vector3d& p_TQ) { p_TQ_ = p_TQ; }
+  // Another tool, which is taken to have touched the zero itself: the place does not move with it.
+  void SetTool(const Eigen::Vector3d& p_TQ);
   // S.
   const Eigen::Vector3d& signs() const { return signs_; }
   // Whether the machine has the axis: a lathe has no Y, and what it errs by there stays.
@@ -69,6 +70,7 @@ class Corrector {
   std::array<machine::Travel, 3> travels_;
   Limits limits_;
   Eigen::Vector3d p_TQ_, signs_, at_zero_ = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> zero_;
 };
 
 // The length of a straight line of commands between two corrected points that deviates from the

@@ -139,6 +139,21 @@ TEST(Corrector, AKeptZeroStaysAndAllElseIsRightAgainstIt) {
   }
 }
 
+// Whichever tool is in the spindle: each is taken to have touched the zero itself.
+TEST(Corrector, AKeptZeroMovesWithNoTool) {
+  const ErrorMap map = map::RandomMap(8);
+  const Vector3d zero(0.03, 0.02, 0.01), longer(0.0, 0.0, -0.15);
+  Corrector corrector(map, Vector3d::Zero());
+  const Vector3d before = corrector.Made(zero);
+  corrector.SetTool(longer);
+  EXPECT_GT((corrector.Made(zero) - before).norm(), 1e-6);  // the angles act at its length
+  corrector.KeepZero(zero);
+  for (const double length : {0.0, -0.05, -0.15}) {
+    corrector.SetTool({0.0, 0.0, length});
+    EXPECT_EQ(corrector.Command(zero), zero) << length;
+  }
+}
+
 TEST(Corrector, AMapWithoutInverseIsANumericalError) {
   machine::VolumetricModel model(machine::Chain::Parse(map::kBridge), {{{0, 1}, {0, 1}, {0, 1}}});
   // 0.2 m of sine over 1 m: a slope of 1.26 at the middle, about which the iteration swings.
