@@ -177,6 +177,35 @@ std::string ComparisonText(const history::Comparison& comparison) {
   return text;
 }
 
+namespace {
+
+// The campaign that was measured last, of those in the fit.
+const history::Point& LastOf(const Trend& trend) {
+  const history::TrendPoint* last = nullptr;
+  for (const auto& each : trend.points) {
+    if (each.used && (last == nullptr || each.point.measured >= last->point.measured)) last = &each;
+  }
+  return last->point;
+}
+
+// The line is beyond the limit; whether the machine is, only the last campaign can say.
+std::string BeyondText(const Trend& trend) {
+  const std::string unit = QuantityUnit(trend.quantity);
+  const history::Point& last = LastOf(trend);
+  const std::string limit = fmt::format("its limit of {:g} {}", *trend.limit, unit);
+  if (MeasuredBeyond(trend)) return fmt::format("; it is beyond {}", limit);
+  const auto& since = trend.reached->expected;
+  return fmt::format("; expected to be beyond {}{}; last measured {} {} on {}", limit,
+                     since ? fmt::format(" since {} if the drift went on", DayText(*since)) : "",
+                     Decimals(last.figure.U95())(last.figure.value), unit, DayText(last.measured));
+}
+
+}  // namespace
+
+bool MeasuredBeyond(const Trend& trend) {
+  return trend.fit && trend.limit && std::abs(LastOf(trend).figure.value) > *trend.limit;
+}
+
 std::string DriftText(const Trend& trend) {
   if (!trend.fit) return "";
   const auto& fit = *trend.fit;
@@ -198,8 +227,7 @@ std::string DriftText(const Trend& trend) {
     return text + fmt::format("; it moves away from its limit of {:g} {}", *trend.limit, unit);
   }
   const auto& reached = *trend.reached;
-  if (reached.already)
-    return text + fmt::format("; it is beyond its limit of {:g} {}", *trend.limit, unit);
+  if (reached.already) return text + BeyondText(trend);
   if (reached.expected) {
     return text + fmt::format("; its limit of {:g} {} is reached about {} (between {} and {})",
                               *trend.limit, unit, DayText(*reached.expected),

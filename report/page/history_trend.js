@@ -19,7 +19,7 @@ const monthlyRate = ({fit}) =>
 function limitText({limit_reached: reached, limit}) {
   if (!isNumber(limit)) return null;
   if (!reached) return 'never';
-  if (reached.already) return 'beyond it now';
+  if (reached.already) return reached.measured === false ? 'expected beyond it' : 'beyond it now';
   if (reached.expected)
     return `${dayText(reached.expected)} (${dayText(reached.earliest)} to ${
         dayText(reached.latest)})`;
@@ -138,7 +138,11 @@ function trendSummary(result) {
       series.filter(({limit_reached: reached}) => reached?.expected && !reached.already);
   const drifting = series.filter(({fit}) => fit?.drifts);
   const sentences = [];
-  if (beyond.length) sentences.push(`${named(beyond)}: beyond the limit`);
+  const measured = beyond.filter(({limit_reached: reached}) => reached.measured !== false);
+  const expected = beyond.filter(({limit_reached: reached}) => reached.measured === false);
+  if (measured.length) sentences.push(`${named(measured)}: beyond the limit`);
+  if (expected.length)
+    sentences.push(`${named(expected)}: expected to be beyond the limit if the drift went on`);
   for (const one of nearing)
     sentences.push(`${withConditions(one)} reaches its limit about ${
         dayText(one.limit_reached.expected)}`);

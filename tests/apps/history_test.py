@@ -257,6 +257,17 @@ class Judged(HistoryCase):
         path.write_text(machine_file(f"\n[limits]\n{text}\n"))
         return path
 
+    def test_a_line_beyond_the_limit_is_no_measurement_beyond_it(self):
+        for i in range(6):
+            self.folder(f"d{i}", circle(10.0 * i, 2.0 + 0.3 * i, 0.05))
+        self.history("add", *(self.path / f"d{i}" for i in range(6)), "--machine", self.limits("circularity_um = 3.8"))
+        said = self.history("trend", "XY.circularity_um")
+        self.assertRegex(said, r"expected to be beyond its limit of 3\.8 um since \d{4}-\d\d-\d\d if the drift went on; "
+                               r"last measured 3\.50 um on \d{4}-\d\d-\d\d")
+        self.assertNotIn("it is beyond", said)
+        self.history("add", self.folder("d6", circle(60.0, 3.9, 0.05)), "--machine", self.limits("circularity_um = 3.8"))
+        self.assertIn("it is beyond its limit of 3.8 um", self.history("trend", "XY.circularity_um"))
+
     def test_a_known_rate_comes_out(self):
         for i in range(6):
             self.folder(f"c{i}", circle(10 * i, 3.0 + 0.5 * i, 0.05))
