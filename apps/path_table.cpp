@@ -1,12 +1,9 @@
 #include "apps/path_table.h"
 
-#include <fmt/format.h>
-
 #include <string>
 #include <vector>
 
 #include "compensation/position_table.h"
-#include "failure/failure.h"
 #include "map/text_file.h"
 
 namespace abbe::apps {
@@ -18,10 +15,6 @@ Eigen::Matrix3Xd ReadPathTable(const std::filesystem::path& file) {
     if (!table.IsRow()) continue;
     const Eigen::Vector3d& position = table.Position();
     values.insert(values.end(), position.data(), position.data() + 3);
-  }
-  if (values.empty()) {
-    throw InputError(
-        fmt::format("{}: has no rows under x_mm, y_mm, z_mm; it may be cut off", file.string()));
   }
   return Eigen::Map<const Eigen::Matrix3Xd>(values.data(), 3, values.size() / 3);
 }

@@ -15,7 +15,7 @@ CorrectedTable CorrectTable(std::string_view text, const std::string& file,
   CorrectedTable corrected;
   corrected.text.reserve(text.size());
   const std::array<bool, 3> needed{corrector.Has(0), corrector.Has(1), corrector.Has(2)};
-  for (PositionTable table(text, file, needed); table.Next(); corrected.text += '\n') {
+  for (PositionTable table(text, file, needed); table.Next(); corrected.text += table.End()) {
     if (!table.IsRow()) {
       corrected.text += table.line();
       continue;

@@ -18,6 +18,10 @@ bool Names(std::string_view quantity, char axis) {
   return quantity.size() == 1 && std::tolower(static_cast<unsigned char>(quantity[0])) == axis;
 }
 
+bool IsLength(const settings::Unit& unit) {
+  return settings::MeasureTheSame(unit, settings::WrittenUnit("mm"));
+}
+
 std::vector<std::string> Unquoted(const std::vector<std::string_view>& cells) {
   std::vector<std::string> columns(cells.size());
   std::ranges::transform(cells, columns.begin(), settings::Unquoted);
@@ -28,7 +32,7 @@ std::vector<std::string> Unquoted(const std::vector<std::string_view>& cells) {
 
 PositionTable::PositionTable(std::string_view text, const std::string& file,
                              const std::array<bool, 3>& needed)
-    : lines_(text, file), file_(file), needed_(needed) {}
+    : text_(text), lines_(text, file), file_(file), needed_(needed) {}
 
 bool PositionTable::Next() {
   row_ = false;
@@ -36,7 +40,13 @@ bool PositionTable::Next() {
     if (!named_) {
       throw InputError(file_ + ": is empty; a table of positions has x_mm, y_mm and z_mm");
     }
+    if (!has_rows_) {
+      throw InputError(file_ + ": has no rows under x_mm, y_mm, z_mm; it may be cut off");
+    }
     return false;
+  }
+  if (line_.find('\0') != std::string_view::npos) {
+    throw InputError(Where() + ": is not UTF-8 text; save the table as CSV (UTF-8)");
   }
   const std::string_view text = settings::WithoutByteOrderMark(line_);
   if (text.empty() || text.starts_with('#')) return true;
@@ -46,6 +56,37 @@ bool PositionTable::Next() {
     TakeRow();
   }
   return true;
+}
+
+std::string_view PositionTable::End() const {
+  const char* const end = line_.data() + line_.size();
+  return end < text_.data() + text_.size() && *end == '\r' ? "\r\n" : "\n";
+}
+
+void PositionTable::RefuseTwoOf(char axis, const std::vector<std::string>& columns) const {
+  std::vector<std::string> lengths;
+  for (const std::string& column : columns) {
+    const settings::ColumnName name = settings::ColumnNameOf(column);
+    if (Names(name.quantity, axis) && IsLength(name.unit)) lengths.push_back(column);
+  }
+  if (lengths.size() < 2) return;
+  throw InputError(fmt::format("{}: the columns {} are all positions of {}; rename all but one",
+                               Where(), fmt::join(lengths, " and "),
+                               static_cast<char>(std::toupper(axis))));
+}
+
+bool PositionTable::HasDecimalCommas() const {
+  map::Lines rows = lines_;
+  for (std::string_view row; rows.Next(row);) {
+    if (row.starts_with('#')) continue;
+    const auto cells = settings::CellsOf(row, separator_);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (columns_[k] >= cells.size()) continue;
+      const std::string_view cell = cells[columns_[k]];
+      if (settings::WithDecimalPoint(cell, separator_) != cell) return true;
+    }
+  }
+  return false;
 }
 
 void PositionTable::TakeNames(std::string_view names) {
@@ -68,14 +109,16 @@ void PositionTable::TakeNames(std::string_view names) {
           Where(), axis, fmt::join(columns, ", ")));
     }
     const settings::Unit unit = settings::ColumnNameOf(*found).unit;
-    if (!settings::MeasureTheSame(unit, settings::WrittenUnit("mm"))) {
+    if (!IsLength(unit)) {
       throw InputError(
           fmt::format("{}: the column {} states no unit of length; name it {}_mm, or \"{} [mm]\"",
                       Where(), *found, axis, static_cast<char>(std::toupper(axis))));
     }
+    RefuseTwoOf(axis, columns);
     columns_[k] = found - columns.begin();
     si_[k] = unit.si;
   }
+  has_decimal_commas_ = HasDecimalCommas();
 }
 
 void PositionTable::TakeRow() {
@@ -89,7 +132,7 @@ void PositionTable::TakeRow() {
         settings::WithDecimalPoint(settings::Unquoted(words_[columns_[k]]), separator_);
     position_[k] = si_[k] * map::NumberOf(number, Where());
   }
-  row_ = true;
+  row_ = has_rows_ = true;
 }
 
 std::string PositionTable::WithPosition(const Eigen::Vector3d& position) const {
@@ -102,7 +145,7 @@ std::string PositionTable::WithPosition(const Eigen::Vector3d& position) const {
       continue;
     }
     std::string number = fmt::format("{}", position[at] / si_[at]);
-    if (words_[i].find(',') != std::string_view::npos) std::ranges::replace(number, '.', ',');
+    if (has_decimal_commas_) std::ranges::replace(number, '.', ',');
     text += number;
   }
   return text;

@@ -42,6 +42,17 @@ TEST(CorrectedTable, KeepsTheFormOfOtherPrograms) {
   std::ranges::replace(plain, '.', ',');
   EXPECT_EQ(written, "X [mm];Y [mm];Z [mm];note\n" + plain);
 
+  // One comma tells how the whole table writes its decimals.
+  const std::string mixed = corrected("X [mm];Y [mm];Z [mm]\n20;30;10\n20,5;30;10\n");
+  EXPECT_EQ(mixed.find('.'), std::string::npos) << mixed;
+  EXPECT_EQ(std::ranges::count(mixed, ','), 6) << mixed;
+
+  // Line ends of Windows stay.
+  const std::string windows = corrected("# a\r\nx_mm,y_mm,z_mm\r\n20.5,30,10\r\n");
+  EXPECT_EQ(std::ranges::count(windows, '\r'), 3);
+  EXPECT_TRUE(windows.starts_with("# a\r\nx_mm,y_mm,z_mm\r\n20."));
+  EXPECT_TRUE(windows.ends_with("\r\n"));
+
   const std::string tabs = corrected("\xEF\xBB\xBF\"X (um)\"\ty / mm\tz_m\n20500\t30\t0.01\n");
   const std::string row = tabs.substr(tabs.find('\n') + 1);
   const auto words = map::PartsOf(row, '\t');
@@ -69,6 +80,13 @@ TEST(CorrectedTable, RefusesWithTheLine) {
   map::ExpectHas(refusal("X [deg],Y [mm],Z [mm]\n1,2,3\n"), "X [deg] states no unit of length");
   map::ExpectHas(refusal("x_mm;y_mm;z_mm\n1,2,3;1;1\n"), "t.csv:2: \"1,2,3\" is not a number");
   map::ExpectHas(refusal("# nothing\n"), "is empty");
+  map::ExpectHas(refusal("x_mm,y_mm,z_mm\n# no row\n"), "t.csv: has no rows under x_mm");
+  map::ExpectHas(refusal("x_mm,y_mm,z_mm,x_mm\n1,2,3,4\n"), "t.csv:1: the columns x_mm and x_mm");
+  map::ExpectHas(refusal("x_mm,y_mm,X [um],z_mm\n1,2,3,4\n"),
+                 "t.csv:1: the columns x_mm and X [um] are all positions of X");
+  const std::string utf16("\xFF\xFEx\0_\0m\0m\0\n\0", 12);
+  map::ExpectHas(map::MessageOf<InputError>([&] { CorrectTable(utf16, "t.csv", corrector); }),
+                 "t.csv:1: is not UTF-8 text; save the table as CSV (UTF-8)");
 }
 
 }  // namespace corrected_table_test
