@@ -11,6 +11,7 @@
 #include "map/export_grid.h"
 #include "map/export_linuxcnc_hal.h"
 #include "map/export_tables.h"
+#include "map/file_header.h"
 #include "map/map_file.h"
 #include "map/text_file.h"
 
@@ -22,6 +23,33 @@ constexpr std::string_view kGridDrops =
     "errors at different points, the error between the points";
 constexpr std::string_view kTableDrops =
     "the uncertainty, what determined each error, the form of the functions between the stations";
+
+[[noreturn]] void RefuseContradiction(std::string_view option, std::string_view given,
+                                      std::string_view stated) {
+  throw InputError(fmt::format("states {} = \"{}\", but --{} says \"{}\"; leave the option out",
+                               option, stated, option, given));
+}
+
+// What the command line says stands where the file says nothing, and must not contradict it.
+void Complete(FileHeader& header, std::string_view chain, std::string_view positive) {
+  if (!chain.empty()) {
+    const std::string given = machine::Chain::Parse(chain).Text();
+    if (!header.chain.empty() && machine::Chain::Parse(header.chain).Text() != given) {
+      RefuseContradiction("chain", given, header.chain);
+    }
+    header.chain = given;
+  }
+  if (positive.empty()) return;
+  FileHeader given = header;
+  given.positive = positive;
+  if (!header.positive.empty() && !header.chain.empty()) {
+    const std::string stated = ChainOf(header).PositiveText();
+    if (ChainOf(given).PositiveText() != stated) {
+      RefuseContradiction("positive", positive, stated);
+    }
+  }
+  header = given;
+}
 
 }  // namespace
 
@@ -69,13 +97,17 @@ Export ExportMap(const ErrorMap& map, const Format& format, const ExportOptions&
 
 ErrorMap ReadAnyMap(const std::filesystem::path& path, std::string_view chain,
                     std::string_view positive) {
-  if (path.extension() == ".toml") return ReadMap(path);
+  if (path.extension() == ".toml") {
+    ErrorMap map = ReadMap(path);
+    FileHeader header = HeaderOf(map, map.origin().tool);
+    Located(path.string(), [&] { Complete(header, chain, positive); });
+    return map;
+  }
   const std::string text = ReadWhole(path);
   const bool is_etalon =
       text.find("Gridpoints") != std::string::npos || text.find("VALUE") != std::string::npos;
   AxisTables tables = FormatNamed(is_etalon ? "etalon" : "isg").import(path);
-  if (!chain.empty()) tables.header.chain = chain;
-  if (!positive.empty()) tables.header.positive = positive;
+  Located(path.string(), [&] { Complete(tables.header, chain, positive); });
   if (tables.header.machine.empty()) tables.header.machine = path.stem().string();
   return Located(path.string(), [&] { return MapOfTables(tables); });
 }

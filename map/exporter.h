@@ -63,7 +63,8 @@ Export ExportMap(const ErrorMap& map, const Format& format, const ExportOptions&
                  const std::filesystem::path& path);
 
 // Reads map.toml (by its extension) or an importable format (by its content). `chain` and
-// `positive` (Chain::ReadPositive) replace those of the file; empty: not given.
+// `positive` (Chain::ReadPositive) are those of a file that does not state them; empty: not given.
+// InputError where they contradict the file.
 ErrorMap ReadAnyMap(const std::filesystem::path& path, std::string_view chain = {},
                     std::string_view positive = {});
 

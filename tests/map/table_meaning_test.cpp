@@ -210,6 +210,20 @@ TEST(TableMeaning, AsksForTheChainAndTheCount) {
   const Folder folder;
   WriteWhole("X EXX\n0 0\n50 1\n#\nY EYY\n0 0\n50 1\n#\nZ EZZ\n0 0\n50 1\n", folder / "f.csv");
   ExpectHas(MessageOf<InputError>([&] { ReadAnyMap(folder / "f.csv"); }), "--chain");
+  // A map that states them is not contradicted, whichever kind it is.
+  const ErrorMap own = RandomMap(3, kColumn);
+  WriteMap(own, folder / "own.toml");
+  ExportMap(own, FormatNamed("isg"), {{5, 5, 5}}, folder / "own.csv");
+  const std::string counts = own.model().chain().PositiveText();
+  const std::string other = counts.starts_with("tool") ? "carriage" : "tool";
+  for (const char* const name : {"own.toml", "own.csv"}) {
+    const auto refusal = [&](const char* chain, const std::string& positive) {
+      return MessageOf<InputError>([&] { ReadAnyMap(folder / name, chain, positive); });
+    };
+    EXPECT_EQ(ReadAnyMap(folder / name, kColumn, counts).model().chain().PositiveText(), counts);
+    ExpectHas(refusal(kBridge, ""), "but --chain says");
+    ExpectHas(refusal("", other), "but --positive says");
+  }
   const auto refused = [&](const char* positive) {
     return MessageOf<InputError>([&] { ReadAnyMap(folder / "f.csv", kColumn, positive); });
   };
