@@ -2,6 +2,8 @@
 // represent.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -70,8 +72,11 @@ int RunExport(const ExportCommand& options) {
     out.replace_extension(format.extension);
     if (out == options.map.path) out.replace_extension("again" + std::string(format.extension));
   }
-  const map::ExportOptions at{PointsOf(options.points), options.map.Tool(map)};
-  if (!map::SampleErrors(map, at.tool, at.counts).error().allFinite()) {
+  const map::ExportOptions at{PointsOf(options.points, format.is_grid), options.map.Tool(map)};
+  std::array<Eigen::Index, 3> looked_at = at.counts;
+  constexpr Eigen::Index kOfLines = 31;  // a coarse grid around lines along the axes
+  for (Eigen::Index& each : looked_at) each = format.is_grid ? each : std::min(each, kOfLines);
+  if (!map::SampleErrors(map, at.tool, looked_at).error().allFinite()) {
     throw InputError(fmt::format(
         "{}: gives no finite error in its volume; it may be damaged: export or fuse it again",
         options.map.path.string()));

@@ -38,22 +38,24 @@ Eigen::Vector3d MapOption::Tool(const map::ErrorMap& map) const {
   return tool_mm.empty() ? map.origin().tool : VectorOf(tool_mm);
 }
 
-std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given) {
-  constexpr double kMost = 1e7;  // of a grid; about 1 GB as text
+std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given, bool is_grid) {
+  constexpr double kMost = 1e7;  // about 1 GB as text
   if (given.size() != 1 && given.size() != 3) {
     throw InputError("--points takes one number or three, of X, Y and Z");
   }
   const std::array<Eigen::Index, 3> points{given[0], given[given.size() / 2], given.back()};
-  double product = 1.0;
+  double product = 1.0, sum = 0.0;
   for (const Eigen::Index each : points) {
     if (each < 2) {
       throw InputError(fmt::format("--points {}: an axis needs at least 2 points", each));
     }
     product *= each;
+    sum += each;
   }
-  if (product <= kMost) return points;
+  const double written = is_grid ? product : sum;
+  if (written <= kMost) return points;
   throw InputError(fmt::format(
-      "--points: {:.3g} points in all, at most {:.0g} are written; take fewer", product, kMost));
+      "--points: {:.3g} points in all, at most {:.0g} are written; take fewer", written, kMost));
 }
 
 Eigen::Vector3d VectorOf(const std::vector<double>& mm) {

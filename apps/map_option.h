@@ -25,8 +25,9 @@ struct MapOption {
 };
 
 // "--points 31" or "--points 31,11,21": points along X, Y, Z. InputError for another number of
-// numbers, fewer than 2 points or too many.
-std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given);
+// numbers, fewer than 2 points or too many: of a grid all its points count, else those along the
+// axes.
+std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given, bool is_grid);
 
 // Three lengths in mm from an option, in m.
 Eigen::Vector3d VectorOf(const std::vector<double>& mm);

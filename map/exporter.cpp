@@ -59,12 +59,12 @@ const std::vector<Format>& Formats() {
       {"json", ".json", kGridDrops, WriteJsonGrid, ReadBackJsonGrid, nullptr},
       {"hdf5", ".h5", kGridDrops, WriteHdf5Grid, ReadBackHdf5Grid, nullptr},
       {"vtk", ".vtr", kGridDrops, WriteVtkGrid, ReadBackVtkGrid, nullptr},
-      {"isg", ".isg.csv", kTableDrops, WriteIsg, ReadBackIsg, ReadIsg},
-      {"etalon", ".etalon", kTableDrops, WriteEtalon, ReadBackEtalon, ReadEtalon},
+      {"isg", ".isg.csv", kTableDrops, WriteIsg, ReadBackIsg, ReadIsg, false},
+      {"etalon", ".etalon", kTableDrops, WriteEtalon, ReadBackEtalon, ReadEtalon, false},
       {"linuxcnc", ".comp",
        "straightness, angles, squareness and the uncertainty: it carries the position error of "
        "each axis along one line through the middle of the travels, no backlash",
-       WriteLinuxcnc, ReadBackLinuxcnc, nullptr},
+       WriteLinuxcnc, ReadBackLinuxcnc, nullptr, false},
       {"linuxcnc-hal", ".hal",
        "the uncertainty, what determined each error, the error between the points; it carries any "
        "tool",
@@ -72,7 +72,7 @@ const std::vector<Format>& Formats() {
       {"sinumerik", ".ini",
        "all that depends on two axes at once (the angles times their arms) and the uncertainty: it "
        "carries the three components along three lines through the middle of the travels",
-       WriteSinumerik, ReadBackSinumerik, nullptr},
+       WriteSinumerik, ReadBackSinumerik, nullptr, false},
   };
   return formats;
 }

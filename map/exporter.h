@@ -46,6 +46,7 @@ struct Format {
   ErrorField (*read)(const Paths& files, const machine::Chain& chain);
   // The whole map, for formats that contain one; else null.
   AxisTables (*import)(const std::filesystem::path& file);
+  bool is_grid = true;  // holds every point of the volume; else lines along the axes
 };
 
 // All formats, in the order of `abbe map`'s help.

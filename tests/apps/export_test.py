@@ -56,6 +56,17 @@ class ExportTest(unittest.TestCase):
         data = json.loads(self.export("json", "m.json", "--points", "4").read_text())
         self.assertLess(np.abs(np.array(data["error_um"]) - expected).max(), ROUNDING_UM)
 
+    def test_the_limit_counts_what_is_written(self):
+        for format in ("isg", "etalon", "sinumerik"):
+            self.export(format, "many." + format, "--points", "300")
+        for format, points, words in (("linuxcnc", "300", "300 points for X: a .comp of LinuxCNC takes 2 to 256"),
+                                      ("csv", "300", "--points: 2.7e+07 points in all"),
+                                      ("isg", "4000000", "--points: 1.2e+07 points in all")):
+            done = subprocess.run([ABBE, "export", self.map, "--format", format, "--out", self.folder / "x", "--points",
+                                   points], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2, format)
+            self.assertIn(words, done.stderr)
+
     def test_another_tool_is_another_grid(self):
         data = json.loads(self.export("json", "m.json", "--points", "3", "--tool", "0,0,-150").read_text())
         expected = self.errors_um(3, np.array([0, 0, -0.150]))
