@@ -171,8 +171,7 @@ std::set<int> CopiedCodes(const std::vector<std::string>& words) {
       const auto [stop, error] = std::from_chars(word.data() + 1, end, code);
       if (error != std::errc() || stop != end) code = -1;
     }
-    constexpr int kFirstOfUser = 100, kLast = 999;
-    if (code < kFirstOfUser || code > kLast) {
+    if (code < compensation::kFirstOfUser || code > compensation::kLastOfUser) {
       throw InputError(fmt::format("--copy {}: not an M code from M100 to M999", word));
     }
     codes.insert(code);

@@ -80,6 +80,11 @@ std::string_view WhyNot(int code) {
   }
 }
 
+bool MayBeCopied(int code_times_10) {
+  return code_times_10 % 10 == 0 && code_times_10 >= 10 * kFirstOfUser &&
+         code_times_10 <= 10 * kLastOfUser;
+}
+
 bool IsKnownM(int code) {
   return code >= 0 && code % 10 == 0 &&
          (code <= 90 || IsOneOf(code / 10, {19, 30, 48, 49, 50, 51, 52, 53, 60, 61, 62,
@@ -143,6 +148,16 @@ class Meaning {
     if (code >= 0 && code % 10 == 0 && allowed_.copied.contains(code / 10)) {
       takes_p_ = takes_q_ = true;
       return;
+    }
+    if (code == 980 || code == 990) {
+      Refuse(fmt::format(
+          "{}: subroutines of M98 and M99 are not supported; write them as O words (O100 sub, O100 "
+          "endsub, O100 call), or put their lines in the place of the call",
+          word.text));
+    }
+    if (!IsKnownM(code) && !MayBeCopied(code)) {
+      Refuse(fmt::format("{} is not supported: its effect on the machine is unknown; remove it",
+                         word.text));
     }
     if (!IsKnownM(code)) {
       Refuse(

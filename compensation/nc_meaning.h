@@ -50,6 +50,9 @@ struct NcMeaning {
   bool HasCentre() const { return centre[0] || centre[1] || centre[2]; }
 };
 
+// The M codes of a machine's own, which alone may be copied.
+inline constexpr int kFirstOfUser = 100, kLastOfUser = 999;
+
 struct NcAllowed {
   std::set<int> copied;  // M codes that are kept because they do not move the machine
   bool rotary = false;   // A, B, C: axes that carry the workpiece

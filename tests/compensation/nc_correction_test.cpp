@@ -177,6 +177,12 @@ TEST(NcCorrection, IncrementsAddUpWithoutDrift) {
 TEST(NcCorrection, WhatItCannotCorrectIsRefusedWithItsLine) {
   map::ExpectHas(Refusal("G0 X1\nG41 D1\n"),
                  "line 2: length and radius of a tool are in the tool table");
+  const std::string called = Refusal("M98 P2\n");
+  map::ExpectHas(called,
+                 "line 1: M98: subroutines of M98 and M99 are not supported; write them as O");
+  EXPECT_EQ(called.find("--copy"), std::string::npos);
+  EXPECT_EQ(Refusal("M91\n").find("--copy"), std::string::npos);
+  map::ExpectHas(Refusal("M110\n"), "keep it with --copy M110");
   map::ExpectHas(Refusal("G43 H1\n"), "line 1: length and radius of a tool are in the tool table");
   for (const char* const word :
        {"G81 Z-3", "G81 X1 Z-3 R-4", "G93 G1 X1", "G10 L2", "G10 L1 P1 X1", "G5", "G33", "G38.2 Z1",
