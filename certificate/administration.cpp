@@ -143,6 +143,11 @@ Administration ReadAdministration(const Table& root) {
   if (read.end < read.begin) throw table.Error("performed", "ends before it begins");
   read.received = Date(table, "received", Optional(table, "received"));
   read.issued = Date(table, "issued", Optional(table, "issued"));
+  if (!read.issued.empty() && read.issued < read.end) {
+    throw table.Error("issued", fmt::format("is {}, before the calibration ended on {}; correct "
+                                            "issued or performed",
+                                            read.issued, read.end));
+  }
   read.location = table.Choice(
       "location", {"laboratory", "customer", "laboratoryBranch", "customerBranch", "other"}, true);
   read.decision_rule = table.Choice("decision_rule", {kIso14253, "none"});

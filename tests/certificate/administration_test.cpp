@@ -71,9 +71,11 @@ TEST(Administration, NamesEveryKeyThatIsMissing) {
 }
 
 TEST(Administration, RefusesValuesThatNoCertificateCanHold) {
-  constexpr std::array<std::array<const char*, 3>, 8> kCases{
+  constexpr std::array<std::array<const char*, 3>, 9> kCases{
       {{"2026-11-21", "2026-11-31", "is no date"},
        {"\"2026-11-20\"", "\"2026-11-22\"", "ends before it begins"},
+       {"number =", "issued = \"2026-11-20\"\nnumber =",
+        "before the calibration ended on 2026-11-21"},
        {"\"CH\"", "\"Switzerland\"", "two capital letters"},
        {"\"4711\"", "\"\"", "is empty"},
        {"\"4711\"", "\" 4711\"", "blank"},
