@@ -9,6 +9,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -121,6 +122,22 @@ void Ask(InitCommand& options, MachineDescription& machine) {
   }
 }
 
+// Those of the options; InputError for one of an axis that the machine does not have.
+void TakeTravels(const InitCommand& options, MachineDescription& machine) {
+  for (const char letter : std::string_view("XYZ")) {
+    const std::vector<double>& given = options.travel_mm[letter - 'X'];
+    if (given.empty()) continue;
+    const auto axis = std::ranges::find(machine.axes, letter, &AxisDescription::letter);
+    if (axis == machine.axes.end()) {
+      throw InputError(
+          fmt::format("--travel-{}: a machine of kind {} has no axis {}; leave it out, "
+                      "or choose another --kind",
+                      static_cast<char>(letter - 'A' + 'a'), machine.kind, letter));
+    }
+    axis->travel_mm = {given[0], given[1]};
+  }
+}
+
 MachineDescription Described(InitCommand& options) {
   const bool may_ask = options.asks || (isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0);
   const bool asks = options.kind.empty() && options.ini.empty();
@@ -133,10 +150,7 @@ MachineDescription Described(InitCommand& options) {
   if (!options.ini.empty()) ReadLinuxcncIni(options.ini, machine);
   if (asks) Ask(options, machine);
   if (!options.name.empty()) machine.name = options.name;
-  for (AxisDescription& axis : machine.axes) {
-    const std::vector<double>& given = options.travel_mm[axis.letter - 'X'];
-    if (!given.empty()) axis.travel_mm = {given[0], given[1]};
-  }
+  TakeTravels(options, machine);
   if (!options.positive.empty()) machine.positive = options.positive;
   machine.has_head = options.has_head;
   return machine;

@@ -1,5 +1,7 @@
 #include "apps/readiness.h"
 
+#include <fmt/format.h>
+
 #include "apps/machine_file.h"
 
 namespace abbe::apps {
@@ -13,6 +15,15 @@ void ReadAsCommandsDo(const settings::Document& machine_file) {
   } else {
     ReadMachineAlone(machine_file);
   }
+}
+
+// "YZ": the machine has X alone.
+std::string AbsentAxes(const settings::Table& root) {
+  std::string absent;
+  for (const char axis : std::string("XYZ")) {
+    if (!root.Child("axis").Has(std::string(1, axis))) absent += axis;
+  }
+  return absent;
 }
 
 }  // namespace
@@ -40,8 +51,16 @@ std::vector<CommandReadiness> ReadinessOf(const settings::Document& machine_file
   add("reduce of a sweep, rig", sweep);
   add("record, doctor",
       root.Has("devices") ? std::vector<std::string>{} : std::vector<std::string>{devices});
-  add("circle, path, plate, fuse, diagnose of a machine",
-      has_axes ? std::vector<std::string>{} : std::vector<std::string>{axes});
+  const std::string absent = has_axes ? AbsentAxes(root) : "";
+  if (absent.empty()) {
+    add("circle, path, plate, fuse, diagnose of a machine",
+        has_axes ? std::vector<std::string>{} : std::vector<std::string>{axes});
+  } else {
+    add("path, fuse, diagnose of a machine", {});
+    add("circle", absent.size() < 2 ? std::vector<std::string>{}
+                                    : std::vector<std::string>{"a second axis, for a plane"});
+    add("plate", {fmt::format("{}, for a volume: the machine has no such axis", absent)});
+  }
   add("calibrate, diagnose of an arm",
       root.Has("linkage") ? std::vector<std::string>{} : std::vector<std::string>{linkage});
   add("diagnose of a turning shaft", {});

@@ -62,6 +62,13 @@ Matrix3Xd Along(const std::vector<Span>& spans) {
 }
 
 double RadiusOf(const Volume& volume, const TestSize& size) {
+  for (int k = 0; k < 3; ++k) {
+    if (volume.half[k] > 0.0) continue;
+    throw InputError(fmt::format(
+        "the machine has no axis {}, and this test piece has sides along X, Y and Z; take "
+        "\"freeform\" with a path of the axes that are there",
+        "XYZ"[k]));
+  }
   const double radius = size.radius > 0.0 ? size.radius : 0.8 * volume.half.minCoeff();
   if (radius > volume.half.minCoeff()) {
     throw InputError(
