@@ -27,6 +27,7 @@
 #include "failure/failure.h"
 #include "failure/located.h"
 #include "map/text_file.h"
+#include "recording/instant.h"
 #include "recording/whole_file.h"
 
 namespace abbe::apps {
@@ -46,6 +47,7 @@ struct CorrectCommand {
   std::string control_units = "mm", block_delete, rotary;
   std::vector<std::filesystem::path> subroutines;
   std::vector<std::string> copied;
+  bool again = false;
 };
 
 // Largest deviation of a line of commands from the corrected line, if its length is not given.
@@ -143,19 +145,37 @@ std::string ReadProgram(const CorrectCommand& options) {
   return text;
 }
 
+// As the first line ends, so do all.
+bool HasLinesOfWindows(const std::string& text) {
+  const std::size_t end = text.find('\n');
+  return end != std::string::npos && end > 0 && text[end - 1] == '\r';
+}
+
+void AppendLines(std::string_view lines, bool of_windows, recording::WholeFile& out) {
+  if (!of_windows) return out.Append(lines);
+  std::string text;
+  for (const char c : lines) {
+    if (c == '\n') text += '\r';
+    text += c;
+  }
+  out.Append(text);
+}
+
 // The corrected program is written as it comes, and is not there if it is refused.
 compensation::NcCounts StreamProgram(const CorrectCommand& options,
                                      const compensation::Corrector& corrector,
                                      const compensation::NcOptions& nc) {
   std::string text = ReadProgram(options);
+  const bool of_windows = HasLinesOfWindows(text);
   recording::WholeFile out(OutOf(options));
   compensation::NcCounts counts;
   Located(options.from.string(), [&] {
     compensation::NcSource source("", std::move(text));
     source.SearchIn(options.from.parent_path());
     for (const auto& folder : options.subroutines) source.SearchIn(folder);
-    counts = compensation::CorrectProgram(corrector, nc, source,
-                                          [&](std::string_view piece) { out.Append(piece); });
+    counts = compensation::CorrectProgram(corrector, nc, source, [&](std::string_view piece) {
+      AppendLines(piece, of_windows, out);
+    });
   });
   out.Finish();
   return counts;
@@ -223,13 +243,16 @@ void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
   nc.limits.chord = options.chord_um * 1e-6;
   nc.limits.length = options.length_mm > 0.0 ? options.length_mm * 1e-3
                                              : LineLength(corrector, map.model(), kLineTolerance);
-  nc.work_offset = VectorOf(options.work_offset_mm);
-  if (!options.start_mm.empty()) nc.start = VectorOf(options.start_mm);
+  nc.work_offset = VectorOf("--work-offset", options.work_offset_mm);
+  if (!options.start_mm.empty()) nc.start = VectorOf("--start", options.start_mm);
   nc.tables = TablesOf(options);
-  if (!options.map.tool_mm.empty()) nc.p_TQ_gauge = VectorOf(options.map.tool_mm);
+  if (!options.map.tool_mm.empty()) nc.p_TQ_gauge = options.map.Tool(map);
   if (!options.block_delete.empty()) nc.deletes_blocks = options.block_delete == "on";
   nc.allowed.copied = CopiedCodes(options.copied);
   nc.allowed.rotary = !options.rotary.empty();
+  nc.corrects_again = options.again;
+  nc.mark = compensation::MarkOf(options.map.path.filename().string(),
+                                 map.state() ? recording::InstantText(map.state()->time) : "");
   const compensation::NcCounts counts = StreamProgram(options, corrector, nc);
   Warn(options, counts);
   if (!options.json.empty()) {
@@ -254,7 +277,7 @@ void CorrectProgram(const CorrectCommand& options, const map::ErrorMap& map,
 int Correct(const CorrectCommand& options) {
   const map::ErrorMap map = options.map.Read();
   compensation::Corrector corrector(map, options.map.Tool(map));
-  if (!options.zero_mm.empty()) corrector.KeepZero(VectorOf(options.zero_mm));
+  if (!options.zero_mm.empty()) corrector.KeepZero(VectorOf("--zero", options.zero_mm));
   if (options.from.extension() == ".csv") {
     CorrectCsv(options, map, corrector);
   } else if (!options.causes.path.empty()) {
@@ -310,6 +333,8 @@ void AddCorrect(CLI::App& program, int& exit_code) {
       ->check(CLI::IsMember({"table"}));
   command->add_option("--copy", options->copied,
                       "Programs: M codes of the machine's own that do not move it (M110)");
+  command->add_flag("--again", options->again,
+                    "Programs: correct one that is corrected already, by another map");
   command
       ->add_option("--start", options->start_mm,
                    "Programs: position of the machine at the start, x,y,z in mm of the program")

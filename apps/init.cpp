@@ -29,6 +29,7 @@ struct InitCommand {
   std::vector<double> travel_mm[3];
   std::filesystem::path ini, check, out = "machine.toml";
   bool has_head = false, asks = false, force = false;
+  std::vector<char> unstated;  // axes whose travel is an example
 };
 
 int CheckReadiness(const std::filesystem::path& path) {
@@ -151,6 +152,11 @@ MachineDescription Described(InitCommand& options) {
   if (asks) Ask(options, machine);
   if (!options.name.empty()) machine.name = options.name;
   TakeTravels(options, machine);
+  for (const AxisDescription& axis : machine.axes) {
+    const bool stated =
+        asks || !options.ini.empty() || !options.travel_mm[axis.letter - 'X'].empty();
+    if (!stated) options.unstated.push_back(axis.letter);
+  }
   if (!options.positive.empty()) machine.positive = options.positive;
   machine.has_head = options.has_head;
   return machine;
@@ -169,6 +175,12 @@ int Init(InitCommand& options) {
   const bool carries = std::any_of(machine.axes.begin(), machine.axes.end(),
                                    [](const AxisDescription& axis) { return axis.carries_work; });
   fmt::print("{}: written. Next:\n", options.out.string());
+  if (!options.unstated.empty()) {
+    fmt::print(
+        "  write your travels: those of {} were not stated and are examples ([axis.X] "
+        "travel_mm, or --travel-x FROM,TO)\n",
+        fmt::join(options.unstated, ", "));
+  }
   if (carries) {
     fmt::print("  look at the sense of the table's axes (positive = \"{}\"): the file says how\n",
                machine.positive);

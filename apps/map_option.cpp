@@ -1,6 +1,9 @@
 #include "apps/map_option.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
 
 #include "failure/failure.h"
 #include "map/exporter.h"
@@ -35,7 +38,7 @@ map::ErrorMap MapOption::Read() const {
 }
 
 Eigen::Vector3d MapOption::Tool(const map::ErrorMap& map) const {
-  return tool_mm.empty() ? map.origin().tool : VectorOf(tool_mm);
+  return tool_mm.empty() ? map.origin().tool : VectorOf("--tool", tool_mm);
 }
 
 std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given, bool is_grid) {
@@ -58,7 +61,12 @@ std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given, bool is_grid
       "--points: {:.3g} points in all, at most {:.0g} are written; take fewer", written, kMost));
 }
 
-Eigen::Vector3d VectorOf(const std::vector<double>& mm) {
+Eigen::Vector3d VectorOf(const std::string& option, const std::vector<double>& mm) {
+  for (const double each : mm) {
+    if (std::isfinite(each)) continue;
+    throw InputError(
+        fmt::format("{} {}: give three numbers in mm, x,y,z", option, fmt::join(mm, ",")));
+  }
   return 1e-3 * Eigen::Vector3d(mm.at(0), mm.at(1), mm.at(2));
 }
 

@@ -29,7 +29,7 @@ struct MapOption {
 // axes.
 std::array<Eigen::Index, 3> PointsOf(const std::vector<int>& given, bool is_grid);
 
-// Three lengths in mm from an option, in m.
-Eigen::Vector3d VectorOf(const std::vector<double>& mm);
+// Three lengths in mm from an option, in m. InputError with the option for what is not finite.
+Eigen::Vector3d VectorOf(const std::string& option, const std::vector<double>& mm);
 
 }  // namespace abbe::apps

@@ -110,7 +110,7 @@ class Tracking {
     report.watched = track::Watch(tracked, limits_);
     if (!arguments_.next.empty()) report.choice = NextOf(tracked, report);
     const map::ErrorMap map = tracked.Map();
-    if (!arguments_.at_mm.empty()) report.at = VectorOf(arguments_.at_mm);
+    if (!arguments_.at_mm.empty()) report.at = VectorOf("--at", arguments_.at_mm);
     if (!arguments_.out.empty()) map::WriteMap(map, arguments_.out);
     report.out = arguments_.out;
     if (!arguments_.json.empty()) WriteResult(TrackJson(map, report), arguments_.json);

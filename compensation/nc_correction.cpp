@@ -20,6 +20,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr std::string_view kMark = "(corrected by abbe with the map ";
+
 // #5599: whether the control shows (debug, ...) comments; it stays in the program.
 constexpr int kDebugComments = 5599;
 
@@ -49,6 +51,8 @@ class ProgramCorrection : public NcHost {
 
   NcCounts Run() {
     counts_.lines = source_.main().starts.size();
+    RefuseCorrected();
+    if (!BeginsWithPercent()) WriteMark();
     RunProgram(source_, parameters_, *this);
     Close();
     writer_.Flush();
@@ -122,11 +126,36 @@ class ProgramCorrection : public NcHost {
 
   [[noreturn]] void Refuse(const std::string& what) const { RefuseLine(line_number_, what); }
 
+  void RefuseCorrected() const {
+    if (options_.corrects_again) return;
+    const NcFile& main = source_.main();
+    const std::size_t at = main.text.find(kMark);
+    if (at == std::string::npos) return;
+    const auto line = std::upper_bound(main.starts.begin(), main.starts.end(), at);
+    RefuseLine(line - main.starts.begin(),
+               "the program is corrected already; correct the original, or add --again to correct "
+               "what is left by another map");
+  }
+
+  // % must stand first.
+  bool BeginsWithPercent() const {
+    const std::string& text = source_.main().text;
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    return first != std::string::npos && text[first] == '%';
+  }
+
+  void WriteMark() {
+    if (options_.mark.empty()) return;
+    writer_.Word(options_.mark);
+    writer_.EndLine();
+  }
+
   // The block of `line`; false at the end of the program.
   bool Act(std::string_view line) {
     if (block_.is_deletable && Deletes(line_number_)) return true;
     const bool is_percent = IsPercent(line);
-    if (is_percent && !has_begun_) is_open_ = true;
+    const bool opens = is_percent && !has_begun_;
+    if (opens) is_open_ = true;
     if (is_percent && has_begun_) counts_.has_end = true;
     if (is_percent && has_begun_ && is_open_) ended_by_percent_ = true;
     has_begun_ = has_begun_ || line.find_first_not_of(" \t\r") != std::string_view::npos;
@@ -139,6 +168,7 @@ class ProgramCorrection : public NcHost {
       setup_.TakeModes(block_, meaning, line_number_);
       ActOnMotion(line, meaning);
     }
+    if (opens) WriteMark();
     for (const NcSetting& setting : block_.settings) {
       if (setting.parameter.number == kDebugComments) continue;
       Set(setting);
@@ -286,6 +316,19 @@ class ProgramCorrection : public NcHost {
 };
 
 }  // namespace
+
+std::string MarkOf(const std::string& map, const std::string& date) {
+  std::string name = map;
+  std::ranges::replace_if(
+      name,
+      [](unsigned char c) {
+        constexpr std::string_view kOfComments = "();%#";
+        return c < ' ' || c > '~' ||
+               kOfComments.find(static_cast<char>(c)) != std::string_view::npos;
+      },
+      '_');
+  return fmt::format("{}{}{})", kMark, name, date.empty() ? "" : " of " + date);
+}
 
 NcCounts CorrectProgram(const Corrector& corrector, const NcOptions& options, NcSource& source,
                         const NcSink& write) {

@@ -18,7 +18,7 @@
 // listed in NcCounts::uncorrected.
 // Frames: program coordinates + offsets (nc_offsets.h) = axis positions of the map. Units: m.
 // Failure: InputError with the line, also while the position of the machine is unknown, for a
-// command outside the travels, and for a move that would become more than kMostLines lines.
+// command outside the travels, for a program that was corrected already, and for a move that would become more than kMostLines lines.
 // Source: RS 274/NGC (NIST IR 6556); LinuxCNC 2.9. Validity: rigid tools; errors at standstill.
 #pragma once
 
@@ -46,6 +46,8 @@ struct NcOptions {
   std::optional<Eigen::Vector3d> p_TQ_gauge = {};
   std::optional<bool> deletes_blocks = {};  // whether the control leaves out blocks with /
   NcAllowed allowed = {};
+  std::string mark = {};        // comment at the head of the program: MarkOf; empty: none
+  bool corrects_again = false;  // a program that carries a mark
   std::size_t most_steps = 20'000'000;
   double most_lines = 2e8;
 };
@@ -64,6 +66,10 @@ struct NcCounts {
   std::vector<NcAssumption> uncorrected;  // why, and the first line
   bool has_end = false;                   // M2, M30 or a % after the first line
 };
+
+// "(corrected by abbe with the map NAME of DATE)", by which a corrected program is known; characters
+// that no comment takes become _. An empty date is left out.
+std::string MarkOf(const std::string& map, const std::string& date);
 
 // Hands the corrected program to `write` in pieces.
 NcCounts CorrectProgram(const Corrector& corrector, const NcOptions& options, NcSource& source,

@@ -17,8 +17,11 @@ void WriteWhole(const std::string& text, const std::filesystem::path& path) {
 }
 
 std::string ReadWhole(const std::filesystem::path& path) {
+  if (std::filesystem::is_directory(path)) {
+    throw InputError(path.string() + ": is a folder; name a file in it");
+  }
   std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) {
+  if (!file) {
     throw InputError(
         fmt::format("{}: cannot be read: {}; check the path", path.string(), std::strerror(errno)));
   }

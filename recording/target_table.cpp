@@ -22,6 +22,7 @@ namespace {
 struct TargetTable {
   std::string file;
   double mm_per_unit = 1.0;
+  bool has_unit = false;
   int cycles = 0;     // 0: not stated
   int positions = 0;  // 0: not stated
   std::string target_source, reference_source;
@@ -117,6 +118,7 @@ void Take(const Assignment& line, TargetTable& table) {
     once(table.backward.emplace(line.PositionAndCycle(), line.Number()).second);
   } else if (line.name() == "UNIT") {
     table.mm_per_unit = MillimetresPerUnit(line);
+    table.has_unit = true;
   } else if (line.name() == "CYCLES") {
     table.cycles = line.Whole();
   } else if (line.name() == "POSITIONS") {
@@ -145,6 +147,10 @@ TargetTable ReadTable(const std::filesystem::path& path) {
       text = settings::Trimmed(text.substr(kPrefix.size()));
     if (text.empty() || text.starts_with('#')) continue;
     Take(Assignment(table.file, number, text), table);
+  }
+  if (!table.has_unit) {
+    table.warnings.push_back(fmt::format(
+        "{}: has no UNIT: its numbers are taken as mm; add UNIT=mm, m or um", table.file));
   }
   return table;
 }

@@ -94,7 +94,9 @@ class CorrectTest(unittest.TestCase):
                 kept = re.findall(r"(?:START_SPINDLE\w*|STOP_SPINDLE\w*|SET_SPINDLE_SPEED|SET_FEED_RATE|DWELL|COMMENT|"
                                   r"CHANGE_TOOL|SELECT_TOOL|USE_LENGTH_UNITS|SELECT_PLANE|PROGRAM_END)\([^)]*\)", text)
                 return kept
-            self.assertEqual(others(after), others(before))
+            mark = 'COMMENT("corrected by abbe with the map map.toml")'
+            self.assertEqual([call for call in others(after) if call != mark], others(before))
+            self.assertEqual(others(after).count(mark), 1)
             self.assertIn('COMMENT("long line")', after)
             self.assertNotIn("ARC_FEED", after)
             self.assertIn("ARC_FEED", before)
@@ -125,6 +127,28 @@ class CorrectTest(unittest.TestCase):
         last = (self.folder / "a_corrected.nc").read_text().splitlines()[-1]
         command = np.array([float(word[1:]) for word in last.split()])
         self.assertLess(np.abs(1e3 * machine.made(1e-3 * command) - (50, 40, 35)).max(), 0.6e-6)
+
+    def test_a_corrected_program_is_known_and_not_corrected_again(self):
+        machine = MapMachine(5)
+        (self.folder / "a.nc").write_bytes(b"%\r\nG21 G90 G17\r\nG0 X10 Y20 Z30\r\nM2\r\n%\r\n")
+        self.assertEqual(self.correct(machine, "a.nc").returncode, 0)
+        written = (self.folder / "a_corrected.nc").read_bytes()
+        self.assertTrue(written.startswith(b"%\r\n(corrected by abbe with the map map.toml)\r\nG21 G90 G17\r\nG0 X"), written)
+        self.assertEqual(written.count(b"\n"), written.count(b"\r\n"))
+        self.refused(machine, "a_corrected.nc", "a_corrected.nc: line 2: the program is corrected already", "--again")
+        self.assertEqual(self.correct(machine, "a_corrected.nc", "--again").returncode, 0)
+        (self.folder / "b.nc").write_bytes(b"G21 G90 G17\nG0 X10 Y20 Z30\nM2\n")
+        self.assertEqual(self.correct(machine, "b.nc").returncode, 0)
+        self.assertNotIn(b"\r", (self.folder / "b_corrected.nc").read_bytes())
+
+    def test_what_is_wrong_with_the_options_is_not_the_maps_fault(self):
+        machine = MapMachine(5)
+        (self.folder / "a.nc").write_text("G21 G90 G17\nG0 X10 Y20 Z30\nM2\n")
+        done = self.correct(machine, "a.nc", "--tool", "nan,0,0")
+        self.assertEqual((done.returncode, done.stderr), (2, "abbe: --tool nan,0,0: give three numbers in mm, x,y,z\n"))
+        done = subprocess.run([ABBE, "correct", self.folder, self.folder / "a.nc"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(f"{self.folder}: is a folder; name a file", done.stderr)
 
     def test_what_cannot_be_corrected_leaves_no_file(self):
         machine = MapMachine(5)

@@ -162,6 +162,13 @@ class InitTest(ProgramCase):
         self.assertIn("a travel is two numbers", done.stderr)
         self.assertFalse((self.path / "n.toml").exists())
 
+    def test_travels_that_nobody_stated_are_said(self):
+        out = self.path / "m.toml"
+        said = self.done("--kind", "mill", "--travel-y", "0,300", "--out", out)
+        self.assertIn("write your travels: those of X, Z were not stated", said)
+        said = self.done("--kind", "axis", "--travel-x", "0,300", "--out", out, "--force")
+        self.assertNotIn("write your travels", said)
+
     def test_it_refuses_what_is_no_machine(self):
         out = ["--out", self.path / "n.toml"]
         self.refuse("--kind", "mill", "--travel-x", "5,5", *out, saying=["X goes from 5 to 5 mm"])

@@ -44,6 +44,24 @@ std::string RefusalOf(std::string_view program, const NcOptions& options = Optio
   return map::MessageOf<InputError>([&] { WrittenOut(program, options); });
 }
 
+// A % must stand first; a program that carries the mark is corrected.
+TEST(NcProgram, CarriesAMarkByWhichItIsKnown) {
+  NcOptions options = Options();
+  options.mark = MarkOf("a (b).toml", "2026-11-21T09:00:00Z");
+  const std::string mark = "(corrected by abbe with the map a _b_.toml of 2026-11-21T09:00:00Z)\n";
+  EXPECT_EQ(options.mark + "\n", mark);
+  EXPECT_EQ(MarkOf("m.toml", ""), "(corrected by abbe with the map m.toml)");
+  const std::string marked = WrittenOut("G21 G90\nG0 X0\nM2\n", options);
+  EXPECT_TRUE(marked.starts_with(mark + "G21 G90\n")) << marked;
+  const std::string open = WrittenOut("\n%\nG21 G90\nM2\n%\n", options);
+  EXPECT_TRUE(open.starts_with("\n%\n" + mark + "G21 G90\n")) << open;
+  EXPECT_EQ(WrittenOut("G21 G90\nM2\n").find("corrected"), std::string::npos);
+  map::ExpectHas(RefusalOf(open), "line 3: the program is corrected already");
+  options.corrects_again = true;
+  options.mark.clear();
+  EXPECT_EQ(WrittenOut(marked, options), marked);
+}
+
 double ValueOf(std::string_view text) {
   const NcParameters parameters;
   return NcCursor(text, 1, parameters).Value();

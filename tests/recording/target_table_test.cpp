@@ -95,6 +95,10 @@ TEST_F(TargetTable, UnitsAreConvertedToMillimetres) {
   const std::string rest = "TGT_DATA[1]=2\nREF_DATA_FWD[1,1]=3\nREF_DATA_BWD[1,1]=4\n";
   EXPECT_EQ(Values(ReadText(rest), 1), (Numbers{2, 2}));
   EXPECT_EQ(Values(ReadText("UNIT=m\n" + rest), 4), (Numbers{3000, 4000}));
+  EXPECT_TRUE(ReadText("UNIT=m\n" + rest).warnings.empty());
+  const std::vector<std::string> warnings = ReadText(rest).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("has no UNIT: its numbers are taken as mm"), std::string::npos);
   EXPECT_DOUBLE_EQ(Values(ReadText("UNIT=um\n" + rest), 4)[0], 0.003);
 }
 
