@@ -269,6 +269,16 @@ std::optional<std::string> FormNote(const TargetSettings& target, const SweepRes
       std::sqrt(1.0 + most * (kTimes * kTimes * flatter - 1.0)));
 }
 
+// What the directions of the sweep leave open: the reversal.
+std::optional<std::string> DirectionNote(const StationMeans& means) {
+  if (means.directions.size() > 1) return std::nullopt;
+  return fmt::format(
+      "the sweep has {} passes only: the errors are those of this direction, and u holds no "
+      "reversal; the mean of both directions, as ISO 230-1 states it, differs by half the reversal; "
+      "record passes in both",
+      means.directions.front() > 0 ? "forward" : "backward");
+}
+
 std::vector<std::string> AssumptionNotes(const HeadSettings& head, const SweepResult& result,
                                          const GroupErrors& errors, const SweepGauge& gauge) {
   std::vector<std::string> notes;
@@ -355,6 +365,7 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
         evaluate(inversion.components()[i], errors.row(i).transpose(), uncertainty.Covariance(i),
                  errors.row(at_target).transpose(), uncertainty.Covariance(at_target));
   }
+  if (auto note = DirectionNote(means)) result.notes.push_back(std::move(*note));
   if (auto note = FormNote(setup.target, result)) result.notes.push_back(std::move(*note));
   std::ranges::move(AssumptionNotes(setup.head, result, errors, gauge),
                     std::back_inserter(result.notes));

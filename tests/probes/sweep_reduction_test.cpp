@@ -161,6 +161,16 @@ TEST(SweepReduction, OnePassKnowsItsNoiseToAFactorOfTwo) {
   }
 }
 
+TEST(SweepReduction, OneDirectionSaysWhatItsErrorsLack) {
+  SyntheticSweep sweep{.passes = 3, .backward = false, .white = 20e-9};
+  const auto note = testing::HasSubstr(
+      "the sweep has forward passes only: the errors are those of this direction");
+  EXPECT_THAT(ReduceSweep(Record(sweep, TestSetup()), TestSetup()).notes, testing::Contains(note));
+  sweep.backward = true;
+  EXPECT_THAT(ReduceSweep(Record(sweep, TestSetup()), TestSetup()).notes,
+              testing::Not(testing::Contains(note)));
+}
+
 TEST(SweepReduction, TooFewStationsAreRefused) {
   const SyntheticSweep sweep{.stations = 2};
   try {
