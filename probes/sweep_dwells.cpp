@@ -10,10 +10,12 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "estimation/reading_step.h"
 #include "estimation/robust_mean.h"
 #include "failure/failure.h"
+#include "probes/frozen_readings.h"
 #include "recording/made_on.h"
 #include "settings/unit.h"
 
@@ -88,12 +90,17 @@ class DwellFinder {
     for (std::size_t probe = 0; probe < kProbes; ++probe) {
       gaps_[probe].push_back(rows.gaps[probe][row]);
       steps_[probe].Add(rows.gaps[probe][row]);
+      readings_[probe].Add(rows.gaps[probe][row]);
     }
   }
 
   void Close() {
     const std::size_t samples = gaps_[0].size();
     if (open_ && samples > 0) {
+      sums_.emplace_back();
+      for (std::size_t probe = 0; probe < kProbes; ++probe) {
+        seen_[probe].push_back(readings_[probe]);
+      }
       const double n = samples;
       dwell_.time = time_ / n;
       dwell_.duration = last_time_ - first_time_;
@@ -103,10 +110,14 @@ class DwellFinder {
       found_.dwells.push_back(dwell_);
     }
     for (std::vector<double>& gap : gaps_) gap.clear();
+    readings_ = {};
     time_ = position_ = 0.0;
     open_ = false;
   }
 
+  // Tells of the frozen dwells in `found` and leaves them out; to be called once, after the last
+  // dwell was closed.
+  void LeaveOutFrozen();
   // The pooled scatter of all dwells closed so far.
   PerProbe<Scatter> Scatters() const;
   PerProbe<> Steps() const {
@@ -127,6 +138,14 @@ class DwellFinder {
     double readings = 0.0;
     double pairs = 0.0;
     double dwells = 0.0;
+
+    void Add(const Sums& other) {
+      squares += other.squares;
+      products += other.products;
+      readings += other.readings;
+      pairs += other.pairs;
+      dwells += other.dwells;
+    }
   };
 
   bool Continues(const Rows& rows, std::size_t row) const {
@@ -146,14 +165,16 @@ class DwellFinder {
   double position_ = 0.0;
   PerProbe<std::vector<double>> gaps_;  // um
   PerProbe<estimation::ReadingStep> steps_;
-  PerProbe<Sums> sums_;
+  PerProbe<DwellReadings> readings_;           // of the open dwell
+  PerProbe<std::vector<DwellReadings>> seen_;  // of each closed one
+  std::vector<PerProbe<Sums>> sums_;
   PerProbe<std::vector<double>> far_;  // m, deviations of the outliers of each dwell
 };
 
 double DwellFinder::Mean(std::size_t probe) {
   const std::vector<double>& readings = gaps_[probe];
   const estimation::RobustMean mean = estimation::HuberMean(readings);
-  Sums& sums = sums_[probe];
+  Sums& sums = sums_.back()[probe];
   sums.dwells += 1.0;
   const double widest = estimation::RobustMeanOptions{}.outlier_at * mean.scale;
   double before = std::numeric_limits<double>::quiet_NaN();  // an outlier has no neighbours
@@ -177,7 +198,8 @@ double DwellFinder::Mean(std::size_t probe) {
 PerProbe<Scatter> DwellFinder::Scatters() const {
   PerProbe<Scatter> scatter;
   for (std::size_t probe = 0; probe < kProbes; ++probe) {
-    const Sums& sums = sums_[probe];
+    Sums sums;
+    for (const PerProbe<Sums>& dwell : sums_) sums.Add(dwell[probe]);
     const double dof = sums.readings - sums.dwells;
     if (dof < 1.0 || sums.squares <= 0.0 || sums.pairs <= 0.0) continue;
     // Taking off the mean of n white readings leaves a correlation of -1/n between neighbours.
@@ -194,6 +216,29 @@ std::size_t DwellFinder::Outliers(const PerProbe<Scatter>& scatter) const {
     outliers += std::ranges::count_if(far_[probe], [&](double far) { return far > widest; });
   }
   return outliers;
+}
+
+void DwellFinder::LeaveOutFrozen() {
+  std::vector<bool> frozen(found_.dwells.size());
+  for (std::size_t probe = 0; probe < kProbes; ++probe) {
+    for (const FrozenRun& run : FindFrozen(seen_[probe])) {
+      found_.frozen.push_back({probe, run.reading * kMicrometre, run.last - run.first + 1,
+                               found_.dwells[run.first], found_.dwells[run.last]});
+      for (std::size_t i = run.first; i <= run.last; ++i) frozen[i] = true;
+    }
+  }
+  std::vector<Dwell> kept;
+  std::vector<PerProbe<Sums>> sums;
+  for (std::size_t i = 0; i < frozen.size(); ++i) {
+    if (frozen[i]) {
+      found_.counts.flagged += found_.dwells[i].samples;
+      continue;
+    }
+    kept.push_back(found_.dwells[i]);
+    sums.push_back(sums_[i]);
+  }
+  found_.dwells = std::move(kept);
+  sums_ = std::move(sums);
 }
 
 void RefuseImpossibleGap(const recording::Recording& recording, const Rows& rows, std::size_t row,
@@ -279,6 +324,22 @@ void AddRows(const recording::Recording& recording, const PerProbe<>& ranges, Dw
 
 }  // namespace
 
+std::string SweepDwells::FrozenText() const {
+  const auto place = [&](const Dwell& dwell) {
+    return fmt::format("pass {} {}, {:c} = {:.6g} mm", dwell.pass,
+                       dwell.direction > 0 ? "forward" : "backward", axis,
+                       dwell.position / kMillimetre);
+  };
+  std::string text;
+  for (const FrozenStretch& each : frozen) {
+    text +=
+        fmt::format("{}probe_{:c} shows {:.6g} um to the last digit in {} dwells, from {} to {}",
+                    text.empty() ? "" : "; ", 'a' + each.probe, each.reading / kMicrometre,
+                    each.dwells, place(each.first), place(each.last));
+  }
+  return text;
+}
+
 DwellRule DwellRuleOf(const recording::Recording& recording) {
   return {recording.HeaderNumber("sweep.window_um", 0.0).value_or(20.0) * kMicrometre,
           recording.HeaderNumber("sweep.settle_s", 0.0).value_or(0.1)};
@@ -291,6 +352,7 @@ SweepDwells FindDwells(const recording::Recording& head, const recording::Blocks
   DwellFinder finder(rule, found);
   blocks([&](const recording::Recording& block) { AddRows(block, ranges, finder, found); });
   finder.Close();
+  finder.LeaveOutFrozen();
   DropOtherStandstills(found);
   if (found.dwells.empty()) {
     throw InputError(fmt::format(

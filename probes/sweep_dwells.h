@@ -5,7 +5,7 @@
 // `window` of its first row; its first `settle` seconds do not count. Pass 0 and direction 0 are
 // outside the sweep; runs with fewer than a quarter of the usual number of rows are turning points,
 // not dwells. The gap of a dwell is a Huber-type robust mean. Dwells nearer to each other than
-// `window` belong to one station.
+// `window` belong to one station. Dwells in which a channel is frozen are left out.
 //
 // Frames: none; gaps of probes and positions of axes.
 // Units: m, s. Rows with a flag or a NaN are left out and counted; a gap in an unflagged row that
@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "probes/head_layout.h"
@@ -47,7 +48,7 @@ struct Dwell {
 struct SampleCounts {
   std::size_t rows = 0;
   std::size_t used = 0;      // in dwells, per row
-  std::size_t flagged = 0;   // flag or NaN
+  std::size_t flagged = 0;   // flag or NaN, or a channel that is frozen
   std::size_t moving = 0;    // between dwells, or settling
   std::size_t outliers = 0;  // single readings that the robust means gave less than full weight
 };
@@ -59,6 +60,14 @@ struct Scatter {
   double dof = 0.0;    // degrees of freedom of `white`
 };
 
+// A probe that shows one reading over several dwells (frozen_readings.h); these are left out.
+struct FrozenStretch {
+  std::size_t probe = 0;
+  double reading = 0.0;  // m
+  std::size_t dwells = 0;
+  Dwell first, last;
+};
+
 struct SweepDwells {
   char axis = 'X';
   std::vector<double> stations;  // m, ascending: the mean position of the station's dwells
@@ -66,7 +75,11 @@ struct SweepDwells {
   std::vector<Dwell> dwells;                        // in the order of time
   PerProbe<Scatter> scatter;
   PerProbe<> step = {};  // m, of the readings (estimation/reading_step.h); 0: none
+  std::vector<FrozenStretch> frozen;
   SampleCounts counts;
+
+  // "probe_b shows 100.125 um in 42 dwells, from ... to ..."; empty where nothing is frozen.
+  std::string FrozenText() const;
 };
 
 // The rule that the recording's header states (`sweep.window_um`, `sweep.settle_s`), else 20 um,

@@ -40,11 +40,19 @@ void KeepCompleteStations(const std::string& name, const SweepDwells& sweep, Sta
     kept[station] = means.stations.size();
     means.stations.push_back(sweep.stations[station]);
   }
+  const std::string frozen = sweep.FrozenText();
   if (means.stations.size() < 3) {
     throw InputError(fmt::format(
         "{}: {} of {} stations were approached from every direction of the sweep, at least 3 are "
-        "needed; record a complete pass or correct sweep.window_um in the header",
-        name, means.stations.size(), sweep.stations.size()));
+        "needed; record a complete pass or correct sweep.window_um in the header{}{}",
+        name, means.stations.size(), sweep.stations.size(),
+        frozen.empty() ? "" : "; dwells were left out where a channel is frozen: ", frozen));
+  }
+  if (!frozen.empty()) {
+    means.notes.push_back(
+        fmt::format("{}, as no probe does: the channel was frozen there and these dwells are left "
+                    "out; look at its amplifier and at how its register is renewed",
+                    frozen));
   }
   if (means.stations.size() < sweep.stations.size()) {
     means.notes.push_back(
