@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
-#include <span>
 
-#include "estimation/markov_noise.h"
 #include "estimation/reading_step.h"
 #include "failure/failure.h"
+#include "probes/dwell_fit.h"
 #include "settings/unit.h"
 #include "standards/chi_squared.h"
 
@@ -66,56 +65,6 @@ void KeepCompleteStations(const std::string& name, const SweepDwells& sweep, Sta
     means.dwells.push_back(dwell);
   }
 }
-
-// The fits of all probes under one noise model.
-class DwellFit {
- public:
-  explicit DwellFit(const StationMeans& means) {
-    const auto directions = static_cast<int>(means.directions.size());
-    const Eigen::Index dwells = means.dwells.size();
-    values_.resize(dwells, kProbes);
-    for (Eigen::Index i = 0; i < dwells; ++i) {
-      const Dwell& dwell = means.dwells[i];
-      const int k = dwell.direction == means.directions.front() ? 0 : 1;
-      groups_.push_back(static_cast<int>(dwell.station) * directions + k);
-      times_.push_back(dwell.time);
-      for (std::size_t probe = 0; probe < kProbes; ++probe)
-        values_(i, Row(probe)) = dwell.gap[probe];
-    }
-    group_count_ = static_cast<int>(means.stations.size()) * directions;
-  }
-
-  const std::vector<int>& groups() const { return groups_; }
-  int group_count() const { return group_count_; }
-  double dof() const { return kProbes * static_cast<double>(values_.rows() - group_count_); }
-
-  struct Sums {
-    double chi2 = 0.0, log_likelihood = 0.0;  // of all probes
-  };
-  // `white`: m^2, dwells x probes.
-  Sums Run(const Eigen::MatrixXd& white, const ProbeNoise& noise, StationMeans& means) const {
-    Sums sums;
-    means.gap.resize(kProbes, group_count_);
-    for (std::size_t probe = 0; probe < kProbes; ++probe) {
-      const Eigen::VectorXd white_of_probe = white.col(Row(probe));
-      const auto fit =
-          estimation::FitGroupsUnderDrift(times_, groups_, values_.col(Row(probe)),
-                                          std::span(white_of_probe.data(), white_of_probe.size()),
-                                          noise.drift, noise.drift_time, group_count_);
-      means.gap.row(Row(probe)) = fit.values.col(0).transpose();
-      means.covariance[probe] = fit.covariance;
-      sums.chi2 += fit.chi_square[0];
-      sums.log_likelihood += fit.log_restricted_likelihood[0];
-    }
-    return sums;
-  }
-
- private:
-  std::vector<double> times_;
-  std::vector<int> groups_;
-  Eigen::MatrixXd values_;
-  int group_count_ = 0;
-};
 
 // The variance of a dwell's mean from the scatter within the dwells. Averaging over the length T of
 // a dwell reduces the drift's variance S^2 by S^2 T / (3 tau), to first order in T / tau.
@@ -181,55 +130,55 @@ Eigen::MatrixXd ChooseWhite(const SweepDwells& sweep, const ProbeNoise& noise, c
   return Constant(means, noise.probe * noise.probe);
 }
 
-// The logarithms of the white noise, the drift and its time against what is stated.
-using Factors = std::array<double, 3>;
-
-ProbeNoise Times(ProbeNoise noise, const Factors& logs) {
-  noise.drift *= std::exp(logs[1]);
-  noise.drift_time *= std::exp(logs[2]);
-  return noise;
-}
-
-// The noise that makes the dwells most probable: each of `logs` is normal with kUnknown before. One
-// after the other is moved by ever smaller steps.
-Factors MostProbableNoise(const DwellFit& fit, const ProbeNoise& noise, StationMeans means) {
-  constexpr double kUnknown = 0.7, kFirstStep = 0.7, kLastStep = 0.05;
-  const Eigen::MatrixXd white = means.white;
-  const auto probability = [&](const Factors& logs) {
-    double log = fit.Run(std::exp(2.0 * logs[0]) * white, Times(noise, logs), means).log_likelihood;
-    for (const double each : logs) log -= 0.5 * std::pow(each / kUnknown, 2);
-    return log;
-  };
-  Factors best{};
-  double most = probability(best);
-  for (double step = kFirstStep; step > kLastStep;) {
-    bool moved = false;
-    for (double& each : best) {
-      for (const double way : {step, -step}) {
-        each += way;
-        const double here = probability(best);
-        if (here > most) {
-          most = here;
-          moved = true;
-          break;
-        }
-        each -= way;
-      }
-    }
-    if (!moved) step /= 2.0;
-  }
-  return best;
-}
-
 bool Scattered(double chi2, double dof) {
   return chi2 > standards::ChiSquaredQuantile(kSignificance, dof);
 }
 
+// The jumps of probes, with where and when.
+std::vector<std::string> JumpNotes(char axis, const StationMeans& means) {
+  const auto place = [axis](const Dwell& dwell) {
+    return fmt::format("{:c} = {:.6g} mm, pass {} {}", axis, dwell.position / settings::kMillimetre,
+                       dwell.pass, dwell.direction > 0 ? "forward" : "backward");
+  };
+  std::vector<std::string> notes;
+  for (const ZeroJump& jump : means.jumps) {
+    const Dwell &before = means.dwells[jump.dwell - 1], &after = means.dwells[jump.dwell];
+    notes.push_back(fmt::format(
+        "the zero of probe_{:c} jumps by {:.3g} +- {:.2g} um (95 %) about {:.1f} s, between {} and "
+        "{}: it is taken out, as one more unknown; look at the clamping, the cable and the "
+        "amplifier of this probe",
+        'a' + jump.probe, jump.size / settings::kMicrometre, 1.96 * jump.u / settings::kMicrometre,
+        0.5 * (before.time + after.time), place(before), place(after)));
+  }
+  return notes;
+}
+
+// The noise that makes the dwells of all probes most probable.
+NoiseFactors NoiseOfPasses(const DwellFit& fit, const ProbeNoise& noise,
+                           const StationMeans& means) {
+  StationMeans scratch = means;
+  return MostProbableNoise([&](const NoiseFactors& logs) {
+           return fit.Run(std::exp(2.0 * logs[0]) * means.white, Times(noise, logs), scratch)
+               .log_likelihood;
+         })
+      .logs;
+}
+
 // Tests the noise model against the scatter between the passes. Where that is significantly larger,
 // takes the noise from it if asked to; what that does not explain scales the covariances up.
-void CheckAgainstPasses(const DwellFit& fit, const ProbeNoise& noise, double chi2,
-                        ExcessNoise excess, StationMeans& means) {
-  const double dof = fit.dof();
+void CheckAgainstPasses(DwellFit& fit, const ProbeNoise& noise, ExcessNoise excess,
+                        StationMeans& means) {
+  double chi2 = fit.Run(means.white, noise, means).chi2;
+  double dof = fit.dof();
+  NoiseFactors found{};
+  if (excess == ExcessNoise::kFitted && dof > 0.0 && Scattered(chi2, dof)) {
+    found = NoiseOfPasses(fit, noise, means);
+    if (fit.FindJumps(means.white, noise, found)) {
+      chi2 = fit.Run(means.white, noise, means).chi2;
+      dof = fit.dof();
+      if (Scattered(chi2, dof)) found = NoiseOfPasses(fit, noise, means);
+    }
+  }
   means.noise.chi2 = chi2;
   means.noise.dof = dof;
   if (dof <= 0.0) {
@@ -249,7 +198,6 @@ void CheckAgainstPasses(const DwellFit& fit, const ProbeNoise& noise, double chi
                     means.noise.scale));
     return;
   }
-  const Factors found = MostProbableNoise(fit, noise, means);
   means.white *= std::exp(2.0 * found[0]);
   const double left = fit.Run(means.white, Times(noise, found), means).chi2;
   if (Scattered(left, dof)) {
@@ -316,10 +264,11 @@ StationMeans FitStations(const std::string& name, const SweepDwells& sweep, cons
                          ExcessNoise excess) {
   StationMeans means;
   KeepCompleteStations(name, sweep, means);
-  const DwellFit fit(means);
+  DwellFit fit(means);
   means.white = ChooseWhite(sweep, noise, fit, means);
-  const double chi2 = fit.Run(means.white, noise, means).chi2;
-  CheckAgainstPasses(fit, noise, chi2, excess, means);
+  CheckAgainstPasses(fit, noise, excess, means);
+  std::ranges::move(JumpNotes(sweep.axis, means), std::back_inserter(means.notes));
+  fit.TakeJumpsOut(means);
   FillResidualsAndFigures(sweep, fit, means);
   AddUnseenSteps(sweep, means);
   return means;

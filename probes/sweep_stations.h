@@ -14,7 +14,8 @@
 // With one reading per dwell there is no such scatter: the variance is then that of the scatter
 // between the passes or, with one pass, that of the machine file.
 //
-// The scatter between the passes tests this (chi2). Where it is significantly larger, white noise,
+// The scatter between the passes tests this (chi2). Where it is significantly larger, a jump of the
+// zero of a probe is looked for (dwell_fit.h); where it is larger still, white noise,
 // drift and its time are those that make the dwells most probable (restricted maximum likelihood,
 // each within a factor of two of what was said before, normal in its logarithm).
 //
@@ -56,6 +57,13 @@ struct NoiseFigures {
   double u_dof = 0.0;  // degrees of freedom of the noise's standard uncertainty
 };
 
+// The zero of one probe moved once, between two dwells (dwell_fit.h).
+struct ZeroJump {
+  std::size_t probe;
+  std::size_t dwell;  // the first after it
+  double size, u;     // m
+};
+
 struct StationMeans {
   std::vector<int> directions;                         // {+1, -1}, or the only one
   std::vector<double> stations;                        // m, ascending
@@ -64,8 +72,9 @@ struct StationMeans {
   PerProbe<Eigen::MatrixXd> covariance;                // m^2, group x group, per probe
   std::vector<Dwell> dwells;                           // those of `stations`
   Eigen::Matrix<double, kProbes, Eigen::Dynamic>
-      residual;           // m, per dwell: dwell - mean of its group
-  Eigen::MatrixXd white;  // m^2, dwells x probes: variance of a dwell without its drift
+      residual;                 // m, per dwell: dwell - mean of its group
+  std::vector<ZeroJump> jumps;  // one more unknown each; they are no longer in dwells and residual
+  Eigen::MatrixXd white;        // m^2, dwells x probes: variance of a dwell without its drift
   NoiseFigures noise;
   std::vector<std::string> notes;  // for the user, one sentence each
 
