@@ -14,6 +14,7 @@
 
 #include "failure/failure.h"
 #include "probes/channel_order.h"
+#include "probes/one_pass_drift.h"
 #include "probes/sweep_slips.h"
 #include "recording/made_on.h"
 #include "standards/straightness.h"
@@ -270,13 +271,25 @@ std::optional<std::string> FormNote(const TargetSettings& target, const SweepRes
 }
 
 // What the directions of the sweep leave open: the reversal.
-std::optional<std::string> DirectionNote(const StationMeans& means) {
-  if (means.directions.size() > 1) return std::nullopt;
+std::optional<std::string> DirectionNote(const StationMeans& means, const SweepResult& result) {
+  if (means.directions.size() == 1) {
+    return fmt::format(
+        "the sweep has {} passes only: the errors are those of this direction, and u holds no "
+        "reversal; the mean of both directions, as ISO 230-1 states it, differs by half the "
+        "reversal; record passes in both",
+        means.directions.front() > 0 ? "forward" : "backward");
+  }
+  if (Checked(means)) return std::nullopt;
+  std::string names;
+  for (const ComponentResult& component : result.components) {
+    if (!component.reversal->seen) continue;
+    names += (names.empty() ? "" : ", ") + component.component.name;
+  }
+  if (names.empty()) return std::nullopt;
   return fmt::format(
-      "the sweep has {} passes only: the errors are those of this direction, and u holds no "
-      "reversal; the mean of both directions, as ISO 230-1 states it, differs by half the reversal; "
-      "record passes in both",
-      means.directions.front() > 0 ? "forward" : "backward");
+      "one pass: forward and backward of {} differ by more than noise and drift, but a probe that "
+      "jumps at the turn looks like that reversal; a second pass tells",
+      names);
 }
 
 std::vector<std::string> AssumptionNotes(const HeadSettings& head, const SweepResult& result,
@@ -323,11 +336,7 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
           : FindDwells(InProbeOrder(recording, order), DwellRuleOf(recording), setup.head.Ranges());
   RefuseSlips(recording.name, sweep, setup.machine, setup.head);
   StationMeans means = FitStations(recording.name, sweep, setup.noise, ExcessNoise::kFitted);
-  if (!Checked(means)) {
-    for (auto& covariance : means.covariance) {
-      covariance *= std::pow(UncheckedTimes(kKnownTo), 2);
-    }
-  }
+  if (!Checked(means)) CountUncheckedNoise(sweep.axis, means);
   const SweepInversion inversion(setup.machine, setup.head, sweep.axis, sweep.start);
   const Eigen::Index directions = means.directions.size();
   const GroupErrors errors = inversion.Errors(means.gap, means.position, directions);
@@ -365,7 +374,7 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
         evaluate(inversion.components()[i], errors.row(i).transpose(), uncertainty.Covariance(i),
                  errors.row(at_target).transpose(), uncertainty.Covariance(at_target));
   }
-  if (auto note = DirectionNote(means)) result.notes.push_back(std::move(*note));
+  if (auto note = DirectionNote(means, result)) result.notes.push_back(std::move(*note));
   if (auto note = FormNote(setup.target, result)) result.notes.push_back(std::move(*note));
   std::ranges::move(AssumptionNotes(setup.head, result, errors, gauge),
                     std::back_inserter(result.notes));
