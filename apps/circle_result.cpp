@@ -129,7 +129,8 @@ std::string CauseTable(const fusion::CircleCauses& causes) {
                                  "unit", "on the radius");
   for (const fusion::CauseEstimate& one : causes.causes) {
     const estimation::PrintUnit shown = DisplayUnit(one.unit);
-    const std::string name = one.cause + " " + one.object;
+    const std::string alike = one.alike.empty() ? "" : " or " + one.alike;
+    const std::string name = one.cause + " " + one.object + alike;
     if (!one.seen) {
       text += fmt::format("  {:<28}{:>12}{:>10.2f}{:>7}{:>16}\n", name, "not seen",
                           standards::kCoverage * one.u / shown.si, shown.name, "-");
@@ -179,6 +180,7 @@ ordered_json CircleJson(const Circle& circle) {
                               {"u", one.u},
                               {"effect_um", Um(one.effect)},
                               {"seen", one.seen}});
+    if (!one.alike.empty()) data["causes"].back()["or"] = one.alike;
   }
   data["rms_before_um"] = Um(circle.causes->rms_before);
   data["rms_smooth_um"] = Um(circle.causes->rms_smooth);

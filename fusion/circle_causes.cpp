@@ -160,6 +160,7 @@ CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptio
           estimate.effect, std::abs(estimate.value) * one.causes.col(i).cwiseAbs().maxCoeff());
     }
     estimate.seen = SeenByData(fit.result, name);
+    estimate.alike = table[i].alike;
     found.causes.push_back(std::move(estimate));
   }
   for (const auto& weak : fit.result.weak_directions) {
@@ -190,8 +191,8 @@ struct CircleTrial {
 void FitTakenUp(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
                 double spike_width, std::vector<CircleTrial>& trials) {
   constexpr int kRounds = 4;  // each brings the way closer to the play by a factor of five
-  constexpr std::array kWays{0.5e-6, 1e-6,  2e-6,   5e-6,   10e-6,
-                             20e-6,  50e-6, 100e-6, 200e-6, 500e-6};  // m
+  constexpr std::array kWays{0.5e-6, 1e-6,   2e-6, 5e-6, 10e-6, 20e-6, 50e-6, 100e-6,
+                             200e-6, 500e-6, 1e-3, 2e-3, 3e-3,  5e-3,  8e-3};  // m
   const auto fitted = [&](const ReversalForm& form) { return FitWith(runs, options, form); };
   const ReversalForm at_once{.spike_width = spike_width};
   trials.push_back({at_once, fitted(at_once)});

@@ -55,6 +55,7 @@ struct CauseEstimate {
   double u = 0.0;
   double effect = 0.0;
   bool seen = false;
+  std::string alike = {};  // "-EYY": what has the same signature (standards/circle_signatures.h)
 };
 
 struct CircleCauses {

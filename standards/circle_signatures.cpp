@@ -72,9 +72,9 @@ std::vector<Signature> CircleSignatures(const SignatureOptions& options) {
                 ShareTakenUp(at, kPi / 2.0, how, way);
        }},
       {"straightness", "E" + y + x, "m", 50e-6,
-       [](At at) { return (std::sin(at.angle) + std::sin(3.0 * at.angle)) / 4.0; }},
+       [](At at) { return (std::sin(at.angle) + std::sin(3.0 * at.angle)) / 4.0; }, "-E" + y + y},
       {"straightness", "E" + x + y, "m", 50e-6,
-       [](At at) { return (std::cos(at.angle) - std::cos(3.0 * at.angle)) / 4.0; }},
+       [](At at) { return (std::cos(at.angle) - std::cos(3.0 * at.angle)) / 4.0; }, "-E" + x + x},
       {"reversal_spike", x, "m", 20e-6,
        [w = options.spike_width](At at) { return Spike(SinceReversal(at, 0.0), w); }},
       {"reversal_spike", y, "m", 20e-6,

@@ -21,6 +21,9 @@
 //   reversal spike            (s/w) exp(1 - s/w)              m; s is the angle since the axis last
 //                                                             turned, w the width; outwards
 //
+// A radius does not tell a bow of the first axis into the second from one of the second along
+// itself with the other sign: k (second/R)^2 along second is k/4 (3 sin t - sin 3t), and sin t is
+// the centre. `alike` names it.
 // Units: SI. Source: derived from position errors dx, dy by radial = dx cos t + dy sin t, to first
 // order. A bow written as h(1 - (x/R)^2) has the same signature, up to `centre`. Validity: errors
 // small compared with R. Caution: unequal backlash leaks d 0.424 (b_first - b_second) into sin 2t,
@@ -49,6 +52,7 @@ struct Signature {
   std::string unit;    // SI, of the amount: "m", "rad", "s", "s2", "1"
   double usual;        // a large amount for a machine tool; infinite: no bound
   std::function<double(const CirclePoint&)> radial;  // m, for an amount 1
+  std::string alike = {};  // "-EYY": the same amount of it with the other sign has this signature
 };
 
 // How backlash is taken up after a reversal.

@@ -139,6 +139,19 @@ TEST(CircleSignatures, SpikesStandBehindTheReversal) {
   }
 }
 
+// A bow of Y along itself is, with the other sign, one of X into Y beside another centre.
+TEST(CircleSignatures, SayWhichBowsARadiusDoesNotTellApart) {
+  const Signature bow = Find(CircleSignatures({}), "straightness", "EYX");
+  EXPECT_EQ(bow.alike, "-EYY");
+  constexpr double h = 1e-6;
+  for (int degree = 0; degree < 360; degree += 7) {
+    const double t = degree * kPi / 180, x = kRadius * std::cos(t), y = kRadius * std::sin(t);
+    const double along = std::hypot(x, y - h * std::pow(y / kRadius, 2)) - kRadius;
+    const double into = h * bow.radial({.angle = t, .sense = 1, .radius = kRadius, .feed = kFeed});
+    EXPECT_NEAR(into - along, h * std::sin(t), 1e-10) << degree;
+  }
+}
+
 // The trap: backlash of one axis alone projects on d sin 2t with 4 / (3 pi) = 0.424 of its size.
 TEST(CircleSignatures, UnequalBacklashLooksLikeServoMismatch) {
   const auto table = CircleSignatures({});
