@@ -124,6 +124,12 @@ estimation::PrintUnit DisplayUnit(const std::string& unit) {
   return {"ppm", 1e-6};
 }
 
+// Beyond its U95, on a circle that the table of causes can explain.
+bool IsCertain(const fusion::CircleCauses& causes, const fusion::CauseEstimate& one) {
+  return one.seen && causes.beyond_noise < fusion::kNoNoise &&
+         std::abs(one.value) > standards::kCoverage * one.u;
+}
+
 std::string CauseTable(const fusion::CircleCauses& causes) {
   std::string text = fmt::format("  {:<28}{:>12}{:>10}{:>7}{:>16}\n", "cause", "value", "U95",
                                  "unit", "on the radius");
@@ -136,16 +142,20 @@ std::string CauseTable(const fusion::CircleCauses& causes) {
                           standards::kCoverage * one.u / shown.si, shown.name, "-");
       continue;
     }
-    text +=
-        fmt::format("  {:<28}{:>12.2f}{:>10.2f}{:>7}{:>13.2f} um{}\n", name, one.value / shown.si,
-                    standards::kCoverage * one.u / shown.si, shown.name, Um(one.effect),
-                    std::abs(one.value) > standards::kCoverage * one.u ? " *" : "");
+    text += fmt::format("  {:<28}{:>12.2f}{:>10.2f}{:>7}{:>13.2f} um{}\n", name,
+                        one.value / shown.si, standards::kCoverage * one.u / shown.si, shown.name,
+                        Um(one.effect), IsCertain(causes, one) ? " *" : "");
   }
   text += fmt::format(
       "  rms of the radius {:.2f} um, smooth errors without a cause {:.2f} um, unexplained {:.2f} "
       "um; * beyond its U95\n",
       Um(causes.rms_before), Um(causes.rms_smooth), Um(causes.rms_after));
-  return text;
+  if (causes.beyond_noise < fusion::kNoNoise) return text;
+  return text + fmt::format(
+                    "  no cause is certain: what is unexplained is {:.1f} times the scatter from "
+                    "point to point, so the machine does something that is not in this table, or "
+                    "the instrument drifts\n",
+                    causes.beyond_noise);
 }
 
 std::string FigureText(double value, double U) {
@@ -180,11 +190,13 @@ ordered_json CircleJson(const Circle& circle) {
                               {"u", one.u},
                               {"effect_um", Um(one.effect)},
                               {"seen", one.seen}});
+    data["causes"].back()["certain"] = IsCertain(*circle.causes, one);
     if (!one.alike.empty()) data["causes"].back()["or"] = one.alike;
   }
   data["rms_before_um"] = Um(circle.causes->rms_before);
   data["rms_smooth_um"] = Um(circle.causes->rms_smooth);
   data["rms_after_um"] = Um(circle.causes->rms_after);
+  data["unexplained_over_noise"] = circle.causes->beyond_noise;
   data["weak_directions"] = circle.causes->weak_directions;
   return data;
 }

@@ -18,8 +18,8 @@
 // of the travel. A reading may exceed them only as far as the command for a place inside does.
 //
 // Units: m. Failure: InputError when `wanted` is outside the travels, a reading and its place are,
-// or a position or the command is beyond the soft limits; NumericalError for a map whose errors grow as fast as the
-// position, which has no inverse. Source: Ha and Khanh (2011) take the first step of the
+// or a position or the command is beyond the soft limits; NumericalError for a map whose errors
+// grow as fast as the position, which has no inverse. Source: Ha and Khanh (2011) take the first step of the
 // iteration, X - E(X); it neglects the error times its slope, 0.01 um for 100 um that grow by 100
 // um/m. Validity: slopes of the error well below 1.
 #pragma once

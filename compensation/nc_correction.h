@@ -18,7 +18,8 @@
 // listed in NcCounts::uncorrected.
 // Frames: program coordinates + offsets (nc_offsets.h) = axis positions of the map. Units: m.
 // Failure: InputError with the line, also while the position of the machine is unknown, for a
-// command outside the travels, for a program that was corrected already, and for a move that would become more than kMostLines lines.
+// command outside the travels, for a program that was corrected already, and for a move that would
+// become more than kMostLines lines.
 // Source: RS 274/NGC (NIST IR 6556); LinuxCNC 2.9. Validity: rigid tools; errors at standstill.
 #pragma once
 

@@ -109,6 +109,22 @@ double Correlated(const std::vector<const CircleRun*>& runs,
   return rms > 0.0 ? std::sqrt(std::max(1.0, excess / sectors / (rms * rms))) : 1.0;
 }
 
+// By the median of second differences, which leaves out what goes on from point to point, and the
+// few points of a spike.
+double BeyondNoise(const std::vector<Eigen::VectorXd>& residuals, double rms) {
+  constexpr double kMedian = 0.6745;  // of a normal number without its sign
+  std::vector<double> differences;
+  for (const Eigen::VectorXd& one : residuals) {
+    for (Eigen::Index i = 1; i + 1 < one.size(); ++i) {
+      differences.push_back(std::abs(one[i - 1] - 2.0 * one[i] + one[i + 1]) / std::sqrt(6.0));
+    }
+  }
+  if (differences.empty()) return 1.0;
+  const auto middle = differences.begin() + std::ssize(differences) / 2;
+  std::nth_element(differences.begin(), middle, differences.end());
+  return *middle > 0.0 ? rms * kMedian / *middle : 1.0;
+}
+
 // The data determine the parameter itself, not only a combination with another.
 bool SeenByData(const estimation::Result& result, const std::string& name) {
   if (result.Seen(name) != estimation::SeenBy::kData) return false;
@@ -148,6 +164,7 @@ CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptio
   for (const Eigen::VectorXd& one : fit.smooth) smooth.emplace_back(one.array() - one.mean());
   found.rms_smooth = Rms(smooth);  // a longer ballbar is no error of the machine
   found.rms_after = Rms(fit.noise);
+  found.beyond_noise = BeyondNoise(fit.noise, found.rms_after);
   found.covariance = fit.result.Covariance("cause", "cause");
   const double independent = rows / (found.correlated * found.correlated);
   found.freedom = std::max(independent - (rows - FreedomOf(fit, rows)), 1.0);

@@ -58,13 +58,18 @@ struct CauseEstimate {
   std::string alike = {};  // "-EYY": what has the same signature (standards/circle_signatures.h)
 };
 
+inline constexpr double kNoNoise = 3.0;
+
 struct CircleCauses {
   std::vector<CauseEstimate> causes;  // without the centres
   std::vector<std::string> weak_directions;
-  double rms_before = 0.0;     // m: of the radius about centre and mean radius of each run
-  double rms_smooth = 0.0;     // m: of the fitted smooth errors and errors of the instrument
-  double rms_after = 0.0;      // m: of the residuals
-  double correlated = 1.0;     // the factor on the standard deviation
+  double rms_before = 0.0;  // m: of the radius about centre and mean radius of each run
+  double rms_smooth = 0.0;  // m: of the fitted smooth errors and errors of the instrument
+  double rms_after = 0.0;   // m: of the residuals
+  double correlated = 1.0;  // the factor on the standard deviation
+  // The residuals over their scatter from point to point: near 1 for noise, larger for what no cause
+  // does. Beyond kNoNoise the causes are those of a table that does not hold.
+  double beyond_noise = 1.0;
   double freedom = 0.0;        // degrees of freedom of the noise, of independent rows
   Eigen::MatrixXd covariance;  // of `causes`, in their order
   std::vector<std::vector<double>> residuals;  // m, [run][point]: without the causes

@@ -59,7 +59,7 @@ class DwellFit {
   int group_count() const { return group_count_; }
   double dof() const;
 
-  // Of all probes; fills gap, covariance and jumps of `means`.
+  // Fits all probes; fills gap, covariance and jumps of `means`.
   Sums Run(const Eigen::MatrixXd& white, const ProbeNoise& noise, StationMeans& means) const;
 
   // Looks for a jump of each probe under the noise that suits all of them. It is taken where it

@@ -66,9 +66,11 @@ function circleSummary(result) {
   return capital(sentences.join('; ')) + (sentences.length ? '.' : '');
 }
 
-const signatureName = ({cause, object}) => `${SIGNATURE_NAMES[cause] ?? cause} ${object}`;
+const signatureName = ({cause, object, or}) =>
+    `${SIGNATURE_NAMES[cause] ?? cause} ${object}${or ? ` or ${or}` : ''}`;
 // Determined by the data, and beyond its U95.
-const isFound = ({seen, value, u}) => seen && Math.abs(value) > COVERAGE * u;
+const isBeyond = ({seen, value, u}) => seen && Math.abs(value) > COVERAGE * u;
+const isFound = (one) => one.certain ?? isBeyond(one);
 
 // With its expanded uncertainty, if known.
 const circleFigure = (run, key) =>
@@ -107,6 +109,7 @@ function signatureTable(circle) {
              one.seen ? quantity(one.value * scale, COVERAGE * one.u * scale) : null,
              SIGNATURE_UNITS[one.unit] ?? one.unit, one.seen ? significant(one.effect_um) : null,
              isFound(one) ? 'yes' :
+                 isBeyond(one) ? 'not certain: too much is unexplained' :
                  one.seen ? 'below its uncertainty' :
                             'not seen']),
   });
