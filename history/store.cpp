@@ -61,7 +61,7 @@ Figure FigureOf(const Row& row, std::size_t first) {
 
 // The tables do not hold the stations of a figure; the result does.
 void AddStations(ResultFile& result) {
-  const auto stations = StationsOf(Json::parse(result.content));
+  const auto stations = StationsOf(Json::parse(result.content, nullptr, false));
   for (Figure& each : result.extract.figures) each.stations = stations;
 }
 

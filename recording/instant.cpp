@@ -84,12 +84,16 @@ std::optional<double> SecondsOf(const std::string& instant) {
   const int month = digits.Number(2);
   digits.Mark("-");
   const int day = digits.Number(2);
-  digits.Mark("Tt ");
-  const int hour = digits.Number(2);
-  digits.Mark(":");
-  const int minute = digits.Number(2);
-  digits.Mark(":");
-  const double second = digits.Number(2) + digits.Fraction();
+  int hour = 0, minute = 0;
+  double second = 0.0;
+  if (!digits.rest().empty()) {
+    digits.Mark("Tt ");
+    hour = digits.Number(2);
+    digits.Mark(":");
+    minute = digits.Number(2);
+    digits.Mark(":");
+    second = digits.Number(2) + digits.Fraction();
+  }
   const std::chrono::year_month_day date{std::chrono::year(year),
                                          std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day))};

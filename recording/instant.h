@@ -1,4 +1,5 @@
-// Instants, in UTC unless the text states a zone ("T14:00:00+05:00"), and seconds since 1970.
+// Instants, in UTC unless the text states a zone ("T14:00:00+05:00"), and seconds since 1970. A date
+// alone is its first second.
 #pragma once
 
 #include <optional>
