@@ -15,8 +15,11 @@ std::optional<double> StartedAt(const Recording& recording) {
 }
 
 std::string StartedText(const Recording& recording) {
+  constexpr std::size_t kDate = 10;  // characters of a date alone, which stays one
   const auto seconds = StartedAt(recording);
-  return seconds ? InstantText(*seconds) : std::string();
+  if (!seconds) return "";
+  const std::string text = *recording.HeaderText("started");
+  return text.size() == kDate ? text : InstantText(*seconds);
 }
 
 }  // namespace abbe::recording
