@@ -24,7 +24,7 @@
 #include <utility>
 #include <vector>
 
-#include "probes/sweep_stations.h"
+#include "probes/station_means.h"
 
 namespace abbe::probes {
 

@@ -25,7 +25,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "probes/sweep_stations.h"
+#include "probes/station_means.h"
 
 namespace abbe::probes {
 

@@ -16,6 +16,7 @@
 #include "probes/channel_order.h"
 #include "probes/one_pass_drift.h"
 #include "probes/sweep_slips.h"
+#include "probes/sweep_stations.h"
 #include "recording/made_on.h"
 #include "standards/straightness.h"
 #include "standards/student_coverage.h"

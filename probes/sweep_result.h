@@ -18,10 +18,10 @@
 #include <vector>
 
 #include "probes/planned_sweep.h"
+#include "probes/station_means.h"
 #include "probes/sweep_conditions.h"
 #include "probes/sweep_dwells.h"
 #include "probes/sweep_inversion.h"
-#include "probes/sweep_stations.h"
 #include "probes/sweep_uncertainty.h"
 #include "standards/reference_line.h"
 

@@ -15,8 +15,8 @@
 
 #include "machine/machine.h"
 #include "probes/head_settings.h"
+#include "probes/station_means.h"
 #include "probes/sweep_dwells.h"
-#include "probes/sweep_stations.h"
 
 namespace abbe::probes {
 

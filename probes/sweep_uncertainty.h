@@ -31,9 +31,9 @@
 #include <vector>
 
 #include "probes/head_settings.h"
+#include "probes/station_means.h"
 #include "probes/sweep_gauge.h"
 #include "probes/sweep_inversion.h"
-#include "probes/sweep_stations.h"
 
 namespace abbe::probes {
 

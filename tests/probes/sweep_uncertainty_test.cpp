@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "estimation/monte_carlo.h"
+#include "probes/sweep_stations.h"
 #include "random/counter_random.h"
 #include "tests/probes/synthetic_sweep.h"
 
