@@ -121,7 +121,7 @@ ordered_json TrendJson(const history::Trend& trend) {
   }
   if (trend.reached) {
     json["limit_reached"] = {{"already", trend.reached->already},
-                             {"measured", MeasuredBeyond(trend)},
+                             {"measured", trend.MeasuredBeyond()},
                              {"expected", InstantOrNull(trend.reached->expected)},
                              {"earliest", InstantOrNull(trend.reached->earliest)},
                              {"latest", InstantOrNull(trend.reached->latest)}};

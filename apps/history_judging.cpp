@@ -93,7 +93,8 @@ Measured MeasuredIn(const HistoryOptions& options) {
     return {campaign.machine, campaign.name, FiguresIn(campaign.results)};
   }
   const history::Store store = OpenStore(options, history::Store::Missing::kRefuse);
-  const auto campaign = store.Read(CampaignNumber(options.campaign, "", store));
+  auto campaign = store.Read(CampaignNumber(options.campaign, "", store));
+  for (auto& result : campaign.results) history::AddStations(result.content, result.extract);
   return {campaign.head.machine, fmt::format("campaign {}", campaign.head.id),
           FiguresIn(campaign.results)};
 }

@@ -179,21 +179,12 @@ std::string ComparisonText(const history::Comparison& comparison) {
 
 namespace {
 
-// The campaign that was measured last, of those in the fit.
-const history::Point& LastOf(const Trend& trend) {
-  const history::TrendPoint* last = nullptr;
-  for (const auto& each : trend.points) {
-    if (each.used && (last == nullptr || each.point.measured >= last->point.measured)) last = &each;
-  }
-  return last->point;
-}
-
 // The line is beyond the limit; whether the machine is, only the last campaign can say.
 std::string BeyondText(const Trend& trend) {
   const std::string unit = QuantityUnit(trend.quantity);
-  const history::Point& last = LastOf(trend);
+  const history::Point& last = trend.Last();
   const std::string limit = fmt::format("its limit of {:g} {}", *trend.limit, unit);
-  if (MeasuredBeyond(trend)) return fmt::format("; it is beyond {}", limit);
+  if (trend.MeasuredBeyond()) return fmt::format("; it is beyond {}", limit);
   const auto& since = trend.reached->expected;
   return fmt::format("; expected to be beyond {}{}; last measured {} {} on {}", limit,
                      since ? fmt::format(" since {} if the drift went on", DayText(*since)) : "",
@@ -201,10 +192,6 @@ std::string BeyondText(const Trend& trend) {
 }
 
 }  // namespace
-
-bool MeasuredBeyond(const Trend& trend) {
-  return trend.fit && trend.limit && std::abs(LastOf(trend).figure.value) > *trend.limit;
-}
 
 std::string DriftText(const Trend& trend) {
   if (!trend.fit) return "";

@@ -22,8 +22,6 @@ std::string ComparisonText(const history::Comparison& comparison);
 std::string ChangeText(const history::Difference& difference);
 
 std::string TrendText(const history::Trend& trend);
-// Whether the campaign that was measured last is beyond the limit; false without a limit or a fit.
-bool MeasuredBeyond(const history::Trend& trend);
 // What the figure does, and when it meets its limit.
 std::string DriftText(const history::Trend& trend);
 

@@ -27,6 +27,11 @@ constexpr std::array<Reader, 9> kReaders{{{"reduce", "sweep", ReadSweep},
 
 }  // namespace
 
+void AddStations(const std::string& content, Extract& extract) {
+  const auto stations = StationsOf(Json::parse(content, nullptr, /*allow_exceptions=*/false));
+  for (Figure& each : extract.figures) each.stations = stations;
+}
+
 Extract FiguresOf(const Json& result) {
   Extract extract;
   const std::string command = TextAt(result, "command"), kind = TextAt(result, "kind");

@@ -31,4 +31,7 @@ struct Extract {
 
 Extract FiguresOf(const nlohmann::ordered_json& result);
 
+// Where the figures of a sweep were measured, which a store does not hold. `content`: of the result.
+void AddStations(const std::string& content, Extract& extract);
+
 }  // namespace abbe::history

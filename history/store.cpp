@@ -7,7 +7,6 @@
 
 #include "failure/failure.h"
 #include "history/database.h"
-#include "history/result_reader.h"
 #include "history/schema.h"
 #include "settings/nearest_word.h"
 
@@ -57,12 +56,6 @@ Figure FigureOf(const Row& row, std::size_t first) {
           row.RealAt(first + 4),
           *row.RealAt(first + 5),
           SharesOf(row.TextAt(first + 6))};
-}
-
-// The tables do not hold the stations of a figure; the result does.
-void AddStations(ResultFile& result) {
-  const auto stations = StationsOf(Json::parse(result.content, nullptr, false));
-  for (Figure& each : result.extract.figures) each.stations = stations;
 }
 
 }  // namespace
@@ -474,7 +467,6 @@ StoredCampaign Store::Read(long long campaign) const {
          rows_of("object, quantity, conditions, value, u, coverage, shares", "figure")) {
       extract_of(row).figures.push_back(FigureOf(row, 1));
     }
-    for (ResultFile& result : stored.results) AddStations(result);
     for (const Row& row :
          rows_of("object, unit, conditions, positions_mm, curve_values, u, coverage, shares",
                  "curve")) {

@@ -224,6 +224,18 @@ double TrendFit::U95At(double instant) const {
   return coverage * std::sqrt(u_value * u_value + u_common * u_common + u_rate * u_rate * t * t);
 }
 
+const Point& Trend::Last() const {
+  const TrendPoint* last = nullptr;
+  for (const TrendPoint& each : points) {
+    if (each.used && (last == nullptr || each.point.measured >= last->point.measured)) last = &each;
+  }
+  return last->point;
+}
+
+bool Trend::MeasuredBeyond() const {
+  return fit && limit && std::abs(Last().figure.value) > *limit;
+}
+
 Trend FollowFigure(const std::vector<Point>& points,
                    const std::map<long long, std::map<std::string, std::string>>& instruments,
                    const TrendOptions& options) {

@@ -72,6 +72,11 @@ struct Trend {
   std::optional<TrendFit> fit;  // none: fewer than three instants
   std::optional<LimitReached> reached;
   std::vector<std::string> notes;
+
+  // The campaign that was measured last, of those in the fit.
+  const Point& Last() const;
+  // Whether that is beyond the limit, not the line alone; false without a limit or a fit.
+  bool MeasuredBeyond() const;
 };
 
 // `points` of one figure under one set of conditions; `instruments` by campaign.
