@@ -37,11 +37,6 @@ constexpr double kNoiseSettled = 0.05;  // of its logarithm
 // and knots may be wrong.
 constexpr double kSettled = 1e-4, kFirstLook = 0.03, kTolerated = 3.0;
 
-// By how much the disagreement of a run exceeds what its uncertainty and that of the others allow.
-double BirgeRatio(const RunConsistency& run) {
-  return std::sqrt(std::max(1.0, run.statistic / static_cast<double>(run.directions)));
-}
-
 void Widen(double times, SeenErrors& seen) {
   seen.covariance *= times * times;
   for (FunctionSeen& function : seen.functions) function.u *= times;

@@ -146,6 +146,10 @@ int Contradicting(const std::vector<RunConsistency>& runs) {
   return static_cast<int>(worst - runs.begin());
 }
 
+double BirgeRatio(const RunConsistency& run) {
+  return std::sqrt(std::max(1.0, run.statistic / static_cast<double>(run.directions)));
+}
+
 double CorrelationIn(const Eigen::VectorXd& left) {
   constexpr Eigen::Index kFewRows = 50;  // too few to tell
   double largest = 0.0;

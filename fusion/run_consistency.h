@@ -49,6 +49,9 @@ std::vector<RunConsistency> CheckRuns(const estimation::Problem& problem,
 // set.
 int Contradicting(const std::vector<RunConsistency>& runs);
 
+// By how much the disagreement of a run exceeds what its uncertainty and that of the others allow.
+double BirgeRatio(const RunConsistency& run);
+
 // The runs that may be the wrong one: without any of them, none contradicts the others. Where there
 // are several, the data do not tell which; where there is none, no single run is wrong, but what
 // they all are taken to share: the machine as a chain of rigid bodies that stays as it is.
