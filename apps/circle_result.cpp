@@ -124,12 +124,6 @@ estimation::PrintUnit DisplayUnit(const std::string& unit) {
   return {"ppm", 1e-6};
 }
 
-// Beyond its U95, on a circle that the table of causes can explain.
-bool IsCertain(const fusion::CircleCauses& causes, const fusion::CauseEstimate& one) {
-  return one.seen && causes.beyond_noise < fusion::kNoNoise &&
-         std::abs(one.value) > standards::kCoverage * one.u;
-}
-
 std::string CauseTable(const fusion::CircleCauses& causes) {
   std::string text = fmt::format("  {:<28}{:>12}{:>10}{:>7}{:>16}\n", "cause", "value", "U95",
                                  "unit", "on the radius");
@@ -144,18 +138,18 @@ std::string CauseTable(const fusion::CircleCauses& causes) {
     }
     text += fmt::format("  {:<28}{:>12.2f}{:>10.2f}{:>7}{:>13.2f} um{}\n", name,
                         one.value / shown.si, standards::kCoverage * one.u / shown.si, shown.name,
-                        Um(one.effect), IsCertain(causes, one) ? " *" : "");
+                        Um(one.effect), causes.IsCertain(one) ? " *" : "");
   }
   text += fmt::format(
       "  rms of the radius {:.2f} um, smooth errors without a cause {:.2f} um, unexplained {:.2f} "
       "um; * beyond its U95\n",
       Um(causes.rms_before), Um(causes.rms_smooth), Um(causes.rms_after));
-  if (causes.beyond_noise < fusion::kNoNoise) return text;
+  if (causes.TableHolds()) return text;
   return text + fmt::format(
-                    "  no cause is certain: what is unexplained is {:.1f} times the scatter from "
-                    "point to point, so the machine does something that is not in this table, or "
-                    "the instrument drifts\n",
-                    causes.beyond_noise);
+                    "  what is unexplained is {:.1f} times the scatter from point to point: the "
+                    "machine does something that is not in this table, or the instrument drifts; "
+                    "no cause below {:g} times as much has a star\n",
+                    causes.beyond_noise, fusion::CircleCauses::kStandsOut);
 }
 
 std::string FigureText(double value, double U) {
@@ -190,7 +184,7 @@ ordered_json CircleJson(const Circle& circle) {
                               {"u", one.u},
                               {"effect_um", Um(one.effect)},
                               {"seen", one.seen}});
-    data["causes"].back()["certain"] = IsCertain(*circle.causes, one);
+    data["causes"].back()["certain"] = circle.causes->IsCertain(one);
     if (!one.alike.empty()) data["causes"].back()["or"] = one.alike;
   }
   data["rms_before_um"] = Um(circle.causes->rms_before);

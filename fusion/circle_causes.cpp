@@ -10,6 +10,7 @@
 #include "failure/failure.h"
 #include "fusion/circle_fit.h"
 #include "standards/circle_signatures.h"
+#include "standards/coverage.h"
 #include "standards/student_coverage.h"
 
 namespace abbe::fusion {
@@ -122,7 +123,7 @@ double BeyondNoise(const std::vector<Eigen::VectorXd>& residuals, double rms) {
   if (differences.empty()) return 1.0;
   const auto middle = differences.begin() + std::ssize(differences) / 2;
   std::nth_element(differences.begin(), middle, differences.end());
-  return *middle > 0.0 ? rms * kMedian / *middle : 1.0;
+  return rms / std::max(*middle / kMedian, kLeastRadialNoise);
 }
 
 // The data determine the parameter itself, not only a combination with another.
@@ -291,6 +292,16 @@ std::vector<CircleTrial> FitWithAll(const std::vector<const CircleRun*>& runs,
 }
 
 }  // namespace
+
+bool CircleCauses::TableHolds() const {
+  constexpr double kNoNoise = 3.0;
+  return beyond_noise < kNoNoise;
+}
+
+bool CircleCauses::IsCertain(const CauseEstimate& one) const {
+  return one.seen && std::abs(one.value) > standards::kCoverage * one.u &&
+         (TableHolds() || one.effect > kStandsOut * rms_after);
+}
 
 CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs, CauseOptions options) {
   CheckCircles(runs);

@@ -58,8 +58,6 @@ struct CauseEstimate {
   std::string alike = {};  // "-EYY": what has the same signature (standards/circle_signatures.h)
 };
 
-inline constexpr double kNoNoise = 3.0;
-
 struct CircleCauses {
   std::vector<CauseEstimate> causes;  // without the centres
   std::vector<std::string> weak_directions;
@@ -68,11 +66,18 @@ struct CircleCauses {
   double rms_after = 0.0;   // m: of the residuals
   double correlated = 1.0;  // the factor on the standard deviation
   // The residuals over their scatter from point to point: near 1 for noise, larger for what no cause
-  // does. Beyond kNoNoise the causes are those of a table that does not hold.
+  // of the table does.
   double beyond_noise = 1.0;
   double freedom = 0.0;        // degrees of freedom of the noise, of independent rows
   Eigen::MatrixXd covariance;  // of `causes`, in their order
   std::vector<std::vector<double>> residuals;  // m, [run][point]: without the causes
+
+  // Whether the residuals are noise.
+  bool TableHolds() const;
+  // Determined by the data, beyond its U95 and, where the table does not hold, larger on the radius
+  // than what it may stand in for: kStandsOut times the residuals.
+  bool IsCertain(const CauseEstimate& one) const;
+  static constexpr double kStandsOut = 5.0;
 };
 
 CircleCauses FitCircleCauses(const std::vector<const paths::CircleRun*>& runs,

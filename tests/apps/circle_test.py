@@ -78,6 +78,24 @@ class Circle(ProgramCase):
                 scale = one["effect_um"] / abs(one["value"])
                 self.assertAlmostEqual(one["value"] * scale, expected * scale, delta=5e-3, msg=one)
 
+    def test_no_small_cause_is_certain_beside_what_no_cause_does(self):
+        """1 um of a fifth harmonic that turns with the sense: 4 um of backlash may come from it, 40 um do not."""
+        def lobed(backlash):
+            def machine(x, y, vx, vy):
+                sense, t = math.copysign(1, x * vy - y * vx), math.atan2(y, x)
+                by = 0.001 * sense * math.cos(5 * t)
+                return x - backlash / 2 * math.copysign(1, vx) + by * math.cos(t), y + by * math.sin(t)
+            return machine
+        for backlash, certain in ((0.004, False), (0.04, True)):
+            recording = linkage_runs.write(self.path / f"{backlash}.csv", circle(lobed(backlash)), reference=True,
+                                           linkage=False, header=OF_10_MM)
+            result = self.result(recording)["circles"][0]
+            self.assertGreater(result["unexplained_over_noise"], 3)
+            found = {(c["cause"], c["object"]): c for c in result["causes"]}
+            self.assertEqual(found["backlash", "X"]["certain"], certain)
+            self.assertEqual(found["straightness", "EYX"]["or"], "-EYY")
+            self.assertEqual("um *" in self.run_program(recording).stdout, certain)
+
     def test_offset_senses_and_set_up(self):
         """Senses in two recordings, radii 10.002 and 9.999 mm, 5 um off centre, with run-in."""
         def grown(by):
