@@ -219,10 +219,11 @@ TEST(Instant, HasAZoneAndExists) {
   EXPECT_EQ(recording::SecondsOf("2026-11-20T23:30:00-09:30"), nine);
   EXPECT_EQ(recording::SecondsOf("2026-11-21 09:00:00"), nine);  // without a zone: UTC
   EXPECT_EQ(recording::SecondsOf("2026-11-21T09:00:00.25Z"), nine + 0.25);
+  EXPECT_EQ(recording::SecondsOf("2026-11-21"), nine - 9 * 3600);  // a date alone: its first second
   EXPECT_TRUE(recording::SecondsOf("2028-02-29T00:00:00Z"));
   for (const char* const none :
        {"2026-02-30T00:00:00Z", "2026-02-29T00:00:00Z", "2026-13-01T00:00:00Z",
-        "2026-11-21T24:00:00Z", "2026-11-21T09:00:60Z", "2026-11-21T09:60:00Z", "2026-11-21",
+        "2026-11-21T24:00:00Z", "2026-11-21T09:00:60Z", "2026-11-21T09:60:00Z", "2026-11-31",
         "2026-11-21T09:00:00+5", "2026-11-21T09:00:00+24:00", "2026-11-21T09:00:00 o'clock", "",
         "2026-11-21T09:00:00.Z"}) {
     EXPECT_FALSE(recording::SecondsOf(none)) << none;
