@@ -385,7 +385,7 @@ void AddAlign(CLI::App& program, int& exit_code) {
   command
       ->add_option("--clock-speed", options->clock_speed,
                    "for a virtual machine that runs faster by this factor")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command->add_flag("--as-is", options->as_is,
                     "accept a set-up that is in range without any turn, which leaves the wiring of "
                     "one face untested");

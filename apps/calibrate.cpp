@@ -267,13 +267,13 @@ void AddCalibrate(CLI::App& program, int& exit_code) {
   command
       ->add_option("--poses", arguments->poses,
                    "Use the best N poses; without recordings: plan them")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command
       ->add_option("--volume", arguments->volume_mm,
                    "X,Y,Z in mm: what poses in such a box would see of the parameters, in words")
       ->delimiter(',')
       ->expected(3)
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command->add_flag("--study", arguments->study, "Which calibration volume and spacing");
   command->add_option("--folds", arguments->folds, "Blocks held out in turn; 1: none")
       ->check(CLI::Range(1, 100));

@@ -197,7 +197,7 @@ void AddPathCauses(CLI::App& command, CausesOption& option, double& feed_mm_min)
   command
       .add_option("--feed-mm-min", feed_mm_min,
                   "With --causes: the feed, for lag (0: at standstill at each point)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(NonNegativeNumber());
 }
 
 nlohmann::ordered_json CauseCorrection::Data() const {

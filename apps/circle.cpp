@@ -227,20 +227,20 @@ void AddCircle(CLI::App& program, int& exit_code) {
   command
       ->add_option("--radius", options->radius_mm,
                    "Programmed radius, mm (default: radius_mm of the header)")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command
       ->add_option("--filter", options->filter,
                    "Cutoff of the Gaussian filter of the figures, undulations per turn")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command->add_option("--pitch", options->pitches,
                       "Axis and pitch in mm of cyclic errors to fit: --pitch X=5");
   command->add_option("--spike", options->spike_deg, "Width of reversal spikes, degrees")
-      ->check(CLI::PositiveNumber)
+      ->check(PositiveNumber())
       ->capture_default_str();
   command
       ->add_option("--limit", options->limit_um,
                    "Exit code 1 when the circular deviation is larger, um")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command->add_option("-o,--out", options->out, "Folder for the result (RECORDING_circle.json)");
   command->add_option("--json", options->json, "File for the result");
   command->add_flag("--quiet", options->quiet, "No table");

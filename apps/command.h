@@ -17,6 +17,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 
 namespace abbe::apps {
 
@@ -28,5 +29,24 @@ inline constexpr int kDeviceFailed = 3;
 inline constexpr int kNumericsFailed = 4;
 
 using AddCommand = void (*)(CLI::App& program, int& exit_code);
+
+// A check of an option that takes a number above 0, or not below; that of CLI11 names the largest
+// number there is, digit by digit.
+inline CLI::Validator PositiveNumber() {
+  return {[](std::string& word) {
+            double number = 0.0;
+            const bool is_one = CLI::detail::lexical_cast(word, number) && number > 0.0;
+            return is_one ? std::string() : word + " is no number above 0";
+          },
+          "POSITIVE"};
+}
+inline CLI::Validator NonNegativeNumber() {
+  return {[](std::string& word) {
+            double number = 0.0;
+            const bool is_one = CLI::detail::lexical_cast(word, number) && number >= 0.0;
+            return is_one ? std::string() : word + " is no number, or one below 0";
+          },
+          "NONNEGATIVE"};
+}
 
 }  // namespace abbe::apps

@@ -180,12 +180,12 @@ void AddConvert(CLI::App& program, int& exit_code) {
       ->add_option("--ballbar-mm", options->ballbar.radius_mm,
                    "Tables in CSV with angle_deg and deviation_um: the programmed radius of a "
                    "ballbar's circle")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command->add_option("--plane", options->ballbar.plane, "Ballbars: the plane, XY, YZ or ZX (XY)")
       ->check(CLI::IsMember({"XY", "YZ", "ZX"}));
   command
       ->add_option("--feed-mm-min", options->ballbar.feed_mm_min, "Ballbars: the programmed feed")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command
       ->add_option("--centre-mm", options->ballbar.centre_mm,
                    "Ballbars: X,Y,Z of the axes with the tool at the centre ball; needed for a map "
@@ -198,7 +198,7 @@ void AddConvert(CLI::App& program, int& exit_code) {
       ->add_option("--u-length-um", options->ballbar.u_length_um,
                    "Ballbars: standard uncertainty of its length, where that was calibrated and "
                    "radii are true lengths")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command->add_option("--kind", options->kind, "Tables in CSV: the kind of the recording (linkage)")
       ->default_val("linkage");
   command
@@ -207,7 +207,7 @@ void AddConvert(CLI::App& program, int& exit_code) {
   command
       ->add_option("--probing-um", options->import.u_probing_um,
                    "Standard uncertainty of a hole centre in a table of holes")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command->add_flag("--quiet", options->quiet, "Print nothing but warnings");
   command->footer(
       "Example: abbe convert sweep_X.csv sweep_X.h5\n"

@@ -346,11 +346,11 @@ void AddCorrect(CLI::App& program, int& exit_code) {
       ->delimiter(',')
       ->expected(3);
   command->add_option("--chord-um", options->chord_um, "Arcs: largest distance of a chord (1)")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command
       ->add_option("--length-mm", options->length_mm,
                    "Longest line (default: for a deviation of at most 0.1 um from the map)")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command->add_option("--json", options->json, "What was corrected, as data");
   command->add_flag("--quiet", options->quiet, "Print nothing but warnings");
   command->footer("Example: abbe correct out/map.toml part.ngc --work-offset 30,30,20");

@@ -153,13 +153,13 @@ std::string WhichIsWrong(const fusion::FuseReport& report) {
            "came. abbe diagnose of all recordings looks for it.";
   }
   if (others.empty()) return fmt::format("; {}", WordsOf(report.suspect));
-  const char* own = report.suspect == fusion::Suspect::kMounting ? ", which agrees if mounted anew,"
+  const char* own = report.suspect == fusion::Suspect::kMounting ? " (which agrees if mounted anew)"
                     : report.suspect == fusion::Suspect::kInstrument
-                        ? ", which agrees with another instrument,"
+                        ? " (which agrees with another instrument)"
                         : "";
   return fmt::format(
       "; but without {} the rest agrees too, so the data do not tell which is wrong, or whether the "
-      "machine changed between them: look at {}{} and at all of these.",
+      "machine changed between them: look at {}{} and at each of these.",
       fmt::join(others, ", or without "), named, own);
 }
 

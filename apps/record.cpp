@@ -144,11 +144,11 @@ void AddRecord(CLI::App& program, int& exit_code) {
   command->add_option("--operator", options->operator_name,
                       "who measures (default: [protocol] of the machine file)");
   command->add_option("--seconds", options->seconds, "duration in s (default: until Ctrl-C)")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command
       ->add_option("--clock-speed", options->clock_speed,
                    "for a virtual machine that runs faster by this factor")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command
       ->add_option("--devices", options->devices,
                    "only these tables [devices.NAME] (default: all): --devices machine,linkage")

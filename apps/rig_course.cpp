@@ -145,7 +145,7 @@ void AddCourseOptions(CLI::App& command, CourseRequest& request) {
                   "(25), side of the square (40)")
       ->delimiter(',')
       ->expected(1, 3)
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   command
       .add_option("--points", request.points,
                   "Points of the cube along each axis (7,7,12), or of a stepping line (6)")
@@ -156,16 +156,16 @@ void AddCourseOptions(CLI::App& command, CourseRequest& request) {
       ->check(CLI::IsMember({"XY", "YZ", "ZX"}))
       ->capture_default_str();
   command.add_option("--feed", request.feed_mm_min, "mm/min")
-      ->check(CLI::PositiveNumber)
+      ->check(PositiveNumber())
       ->capture_default_str();
   command.add_option("--dwell", request.dwell_s, "Dwell at each position of cube or stepping, s")
-      ->check(CLI::PositiveNumber)
+      ->check(PositiveNumber())
       ->capture_default_str();
   command.add_option("--passes", request.passes, "Passes of circle or square, in each sense")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command.add_option("--cap-force", request.cap_force_n, "Force of the magnet in the tool cap, N")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
 }
 
 void AddRecordingOptions(CLI::App& command, CourseRequest& request) {

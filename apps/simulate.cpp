@@ -104,7 +104,7 @@ void AddSimulate(CLI::App& program, int& exit_code) {
   command
       ->add_option("--radius-mm", options->radius_mm,
                    "Radius of circle and cylinder, half the side of the square (0.39 of a travel)")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   AddPathCauses(*command, options->causes, options->feed_mm_min);
   command->add_flag("--corrected", options->corrected,
                     "Also the figures after correction by the map: its own uncertainty");

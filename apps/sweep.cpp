@@ -217,7 +217,7 @@ void AddSweep(CLI::App& program, int& exit_code) {
   command
       ->add_option("--clock-speed", options->clock_speed,
                    "for a virtual machine that runs faster by this factor")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveNumber());
   AddLiveOptions(*command, options->live);
   command->add_flag("--quiet", options->quiet, "print nothing but problems");
   command->footer("Example: abbe sweep --axis X --machine mill.toml --out measured");

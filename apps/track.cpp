@@ -299,7 +299,7 @@ void AddTrack(CLI::App& program, int& exit_code) {
       ->expected(3);
   command->add_option("--next", arguments->next,
                       "Tests as they were made before: which of them keeps the limits");
-  command->add_option("--days", arguments->days, "For so long (7)")->check(CLI::PositiveNumber);
+  command->add_option("--days", arguments->days, "For so long (7)")->check(PositiveNumber());
   command->add_flag("--history", arguments->history,
                     "Take the tests from the history of the machine, all since the map");
   command->add_option("--store", arguments->store, "The history (that of abbe history)");

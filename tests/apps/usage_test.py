@@ -53,6 +53,12 @@ class UsageTest(ProgramCase):
         self.assertIn("a.dat:1: ", run.stderr)
         self.assertTrue(run.stderr.rstrip("\n").isprintable(), repr(run.stderr))
 
+    def test_a_number_that_is_none_is_named_in_one_line(self):
+        for word in ("abc", "-3", "0", "nan"):
+            run = self.run_program("a.csv", f"--radius={word}", command="circle")
+            self.assertEqual(run.returncode, 2)
+            self.assertIn(f"--radius: {word} is no number above 0; see abbe circle --help", run.stderr)
+
     def test_missing_option(self):
         self.refuse("a.h5", saying=["--machine is required", "abbe diagnose --help"])
 
