@@ -109,6 +109,12 @@ std::string DriftLines(const fusion::FuseReport& report) {
   return text;
 }
 
+std::string NoteLines(const fusion::FuseReport& report) {
+  std::string text;
+  for (const std::string& note : report.notes) text += "\nRECORDING: " + note + '\n';
+  return text;
+}
+
 std::string ReversalLines(const fusion::FuseReport& report) {
   std::string text;
   for (const auto& each : report.reversals) {
@@ -233,7 +239,7 @@ std::string RunsText(const fusion::FuseReport& report) {
   return ScaleText(report.scale) +
          fmt::format("Correlation length of the error functions: {:.1f} mm\n",
                      1e3 * report.chosen_smoothness) +
-         ReversalLines(report) + DriftLines(report) + ScatterLines(report) +
+         NoteLines(report) + ReversalLines(report) + DriftLines(report) + ScatterLines(report) +
          MachineFileNotes(report) + RunTable(report) + MisfitLines(report) +
          ContradictionLine(report);
 }
@@ -255,6 +261,7 @@ ordered_json FuseJson(const fusion::FuseReport& report) {
                                                    {"u_log", line.u_log},
                                                    {"refuted", line.Refuted()}};
   }
+  json["notes"] = report.notes;
   json["reversals"] = ordered_json::array();
   for (const auto& each : report.reversals) {
     json["reversals"].push_back({{"error", each.name},

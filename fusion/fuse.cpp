@@ -286,7 +286,10 @@ class FuseJob {
       report.noise[r] *= memory_[r]->white;
     }
     report.reversals = ReversalsOf(now.fit, widened);
-    for (const SimulatedRun& run : runs_) report.kinds.push_back(run.kind);
+    for (const SimulatedRun& run : runs_) {
+      report.kinds.push_back(run.kind);
+      for (const std::string& note : run.notes) report.notes.push_back(run.name + ": " + note);
+    }
     report.runs = std::move(consistency);
     report.scatter = std::move(scatter);
     report.follows = std::move(follows);

@@ -70,6 +70,7 @@ struct FuseReport {
   std::vector<Reversal> reversals = {};  // the map is the mean of both directions
   double chosen_smoothness = 0.0;        // m: of all functions together
   std::vector<std::string> kinds = {};   // of each run
+  std::vector<std::string> notes = {};   // what was taken out of the readings of which run
   std::vector<RunConsistency> runs = {};
   int contradicting = -1;              // index into `runs`; -1: none
   double widened = 1.0;                // all uncertainties for it, by its Birge ratio

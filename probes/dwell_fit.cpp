@@ -1,5 +1,7 @@
 #include "probes/dwell_fit.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,8 +12,9 @@
 namespace abbe::probes {
 namespace {
 
-constexpr double kJump = 1e-6;  // m: what a jump is expected to be like
-constexpr double kJumpOdds = 1e3;
+constexpr double kMove = 1e-6;        // m: what a move is expected to be like
+constexpr double kTimeKnownTo = 0.7;  // logarithm
+constexpr double kMoveOdds = 1e3;
 
 estimation::MarkovNoiseFit FitColumns(std::span<const double> times, std::span<const int> groups,
                                       const Eigen::MatrixXd& columns, const Eigen::VectorXd& white,
@@ -21,16 +24,21 @@ estimation::MarkovNoiseFit FitColumns(std::span<const double> times, std::span<c
                                          noise.drift_time, group_count);
 }
 
-// One from dwell `first` on.
-Eigen::VectorXd After(Eigen::Index dwells, Eigen::Index first) {
-  Eigen::VectorXd column = Eigen::VectorXd::Zero(dwells);
-  column.tail(dwells - first).setOnes();
-  return column;
+// C' V^-1 y from the residuals V y of the fit.
+Eigen::MatrixXd Weighed(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& residuals,
+                        const Eigen::VectorXd& white) {
+  const Eigen::MatrixXd weighed = white.cwiseInverse().asDiagonal() * residuals;
+  return columns.transpose() * weighed;
 }
 
-double LogOdds(double sum, double precision) {
-  const double known = kJump * kJump * precision;
-  return 0.5 * (sum * sum / (precision + 1.0 / (kJump * kJump)) - std::log1p(known));
+double LogOdds(const Eigen::VectorXd& sum, const Eigen::MatrixXd& precision) {
+  Eigen::VectorXd prior(sum.size());  // standard deviations
+  for (Eigen::Index i = 0; i < sum.size(); ++i) prior[i] = i == 0 ? kMove : kTimeKnownTo;
+  const Eigen::MatrixXd known = prior.asDiagonal() * precision * prior.asDiagonal();
+  const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(sum.size(), sum.size()) + known;
+  const Eigen::LLT<Eigen::MatrixXd> factor(all);
+  const Eigen::VectorXd scaled = factor.matrixL().solve(prior.cwiseProduct(sum));
+  return 0.5 * scaled.squaredNorm() - factor.matrixLLT().diagonal().array().log().sum();
 }
 
 }  // namespace
@@ -86,31 +94,52 @@ DwellFit::DwellFit(const StationMeans& means) {
 
 double DwellFit::dof() const {
   double dof = kProbes * static_cast<double>(values_.rows() - group_count_);
-  for (const auto& jump : jumps_) dof -= jump ? (jump->free ? 2.0 : 1.0) : 0.0;
+  for (const auto& move : moves_) {
+    if (move) dof -= move->free || move->settles > 0.0 ? 2.0 : 1.0;
+  }
   return dof;
 }
 
-DwellFit::OfProbe DwellFit::Fit(Eigen::Index probe, Eigen::VectorXd white, const ProbeNoise& noise,
-                                const std::optional<Jump>& jump) const {
+Eigen::MatrixXd DwellFit::ColumnsOf(const Move& move) const {
   const Eigen::Index dwells = values_.rows();
-  Eigen::MatrixXd columns(dwells, jump ? 2 : 1);
-  columns.col(0) = values_.col(probe);
-  if (jump) {
-    columns.col(1) = After(dwells, jump->first);
-    if (jump->free) white[*jump->free] += jump->size * jump->size;
+  if (move.settles == 0.0) {
+    Eigen::MatrixXd after = Eigen::MatrixXd::Zero(dwells, 1);
+    after.bottomRows(dwells - move.first).setOnes();
+    return after;
+  }
+  Eigen::MatrixXd columns(dwells, 2);
+  for (Eigen::Index i = 0; i < dwells; ++i) {
+    const double since = (times_[i] - times_.front()) / move.settles;
+    columns(i, 0) = -std::expm1(-since);
+    columns(i, 1) = -move.size * since * std::exp(-since);
+  }
+  return columns;
+}
+
+DwellFit::OfProbe DwellFit::Fit(Eigen::Index probe, Eigen::VectorXd white, const ProbeNoise& noise,
+                                const std::optional<Move>& move) const {
+  Eigen::MatrixXd columns = values_.col(probe);
+  if (move) {
+    const Eigen::MatrixXd of_move = ColumnsOf(*move);
+    columns.conservativeResize(Eigen::NoChange, 1 + of_move.cols());
+    columns.rightCols(of_move.cols()) = of_move;
+    if (move->free) white[*move->free] += move->size * move->size;
   }
   const auto fit = FitColumns(times_, groups_, columns, white, noise, group_count_);
   OfProbe found{
       fit.values.col(0), fit.covariance, {fit.chi_square[0], fit.log_restricted_likelihood[0]}};
-  if (!jump) return found;
-  const double precision = fit.chi_square[1];
-  const double sum = columns.col(1).dot(fit.residuals.col(0).cwiseQuotient(white));
-  found.size = sum / precision;
-  found.u = 1.0 / std::sqrt(precision);
-  const Eigen::VectorXd moved = fit.values.col(1);
-  found.gap -= found.size * moved;
-  found.covariance += moved * moved.transpose() / precision;
-  found.sums.chi2 -= sum * found.size;
+  if (!move) return found;
+  const Eigen::MatrixXd of_move = columns.rightCols(columns.cols() - 1);
+  const Eigen::MatrixXd weighed = Weighed(of_move, fit.residuals, white);
+  const Eigen::VectorXd sum = weighed.col(0);
+  const Eigen::MatrixXd precision = weighed.rightCols(of_move.cols());
+  const Eigen::MatrixXd covariance = precision.inverse();
+  found.unknowns = covariance * sum;
+  found.u = covariance.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd moved = fit.values.rightCols(of_move.cols());
+  found.gap -= moved * found.unknowns;
+  found.covariance += moved * covariance * moved.transpose();
+  found.sums.chi2 -= sum.dot(found.unknowns);
   found.sums.log_likelihood += LogOdds(sum, precision);
   return found;
 }
@@ -119,92 +148,146 @@ DwellFit::Sums DwellFit::Run(const Eigen::MatrixXd& white, const ProbeNoise& noi
                              StationMeans& means) const {
   Sums sums;
   means.gap.resize(kProbes, group_count_);
-  means.jumps.clear();
+  means.moves.clear();
   for (std::size_t probe = 0; probe < kProbes; ++probe) {
     const auto row = static_cast<Eigen::Index>(probe);
-    const auto& jump = jumps_[probe];
-    const OfProbe fit = Fit(row, white.col(row), noise, jump);
+    const auto& move = moves_[probe];
+    const OfProbe fit = Fit(row, white.col(row), noise, move);
     means.gap.row(row) = fit.gap.transpose();
     means.covariance[probe] = fit.covariance;
     sums.chi2 += fit.sums.chi2;
     sums.log_likelihood += fit.sums.log_likelihood;
-    if (jump)
-      means.jumps.push_back({probe, static_cast<std::size_t>(jump->first), fit.size, fit.u});
+    if (!move) continue;
+    means.moves.push_back(
+        {probe, static_cast<std::size_t>(move->first), fit.unknowns[0], fit.u[0], move->settles});
   }
   return sums;
 }
 
 ProbableNoise DwellFit::NoiseOf(Eigen::Index probe, const Eigen::VectorXd& white,
-                                const ProbeNoise& noise, const std::optional<Jump>& jump) const {
+                                const ProbeNoise& noise, const std::optional<Move>& move) const {
   return MostProbableNoise([&](const NoiseFactors& logs) {
-    return Fit(probe, std::exp(2.0 * logs[0]) * white, Times(noise, logs), jump)
+    return Fit(probe, std::exp(2.0 * logs[0]) * white, Times(noise, logs), move)
         .sums.log_likelihood;
   });
 }
 
-DwellFit::Likeliest DwellFit::LikeliestJump(Eigen::Index probe, const Eigen::VectorXd& white,
-                                            const ProbeNoise& noise) const {
+DwellFit::Likeliest DwellFit::LikeliestOf(const std::vector<Move>& moves, Eigen::Index probe,
+                                          const Eigen::VectorXd& white,
+                                          const ProbeNoise& noise) const {
   constexpr Eigen::Index kAtOnce = 1024;
-  const Eigen::Index dwells = values_.rows();
   const auto fit = FitColumns(times_, groups_, values_.col(probe), white, noise, group_count_);
-  const Eigen::VectorXd weighed = fit.residuals.col(0).cwiseQuotient(white);
-  Likeliest likeliest{{1, std::nullopt, 0.0}, -std::numeric_limits<double>::infinity()};
-  for (Eigen::Index first = 1; first < dwells; first += kAtOnce) {
-    const Eigen::Index count = std::min(kAtOnce, dwells - first);
-    Eigen::MatrixXd columns(dwells, count);
-    for (Eigen::Index i = 0; i < count; ++i) columns.col(i) = After(dwells, first + i);
-    const auto of_jumps = FitColumns(times_, groups_, columns, white, noise, group_count_);
+  Likeliest likeliest{moves.front(), -std::numeric_limits<double>::infinity()};
+  for (Eigen::Index from = 0; from < std::ssize(moves); from += kAtOnce) {
+    const Eigen::Index count = std::min(kAtOnce, std::ssize(moves) - from);
+    Eigen::MatrixXd columns(values_.rows(), count);
+    for (Eigen::Index i = 0; i < count; ++i) columns.col(i) = ColumnsOf(moves[from + i]).col(0);
+    const auto of_moves = FitColumns(times_, groups_, columns, white, noise, group_count_);
+    const Eigen::VectorXd sums = Weighed(columns, fit.residuals, white);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const double sum = weighed.tail(dwells - first - i).sum();
-      const double precision = of_jumps.chi_square[i];
-      const double odds = LogOdds(sum, precision);
-      if (odds > likeliest.log_odds) {
-        likeliest = {{first + i, std::nullopt, sum / precision}, odds};
-      }
+      const double precision = of_moves.chi_square[i];
+      const double odds = LogOdds(Eigen::VectorXd::Constant(1, sums[i]),
+                                  Eigen::MatrixXd::Constant(1, 1, precision));
+      if (odds <= likeliest.log_odds) continue;
+      likeliest = {moves[from + i], odds};
+      likeliest.move.size = sums[i] / precision;
     }
   }
   return likeliest;
 }
 
-bool DwellFit::AtTurn(const Jump& jump) const {
+// Before each dwell.
+std::vector<DwellFit::Move> DwellFit::Jumps() const {
+  std::vector<Move> jumps;
+  for (Eigen::Index first = 1; first < values_.rows(); ++first) {
+    jumps.push_back({first, std::nullopt, 1.0});
+  }
+  return jumps;
+}
+
+// With times from twice the sweep to twice the time between two dwells.
+std::vector<DwellFit::Move> DwellFit::WarmingsUp() const {
+  std::vector<Move> warmings;
+  for (double settles = 2.0 * Whole(); settles > 2.0 * Between(); settles /= 2.0) {
+    warmings.push_back({0, std::nullopt, 1.0, settles});
+  }
+  return warmings;
+}
+
+double DwellFit::Whole() const { return times_.back() - times_.front(); }
+double DwellFit::Between() const { return Whole() / static_cast<double>(values_.rows() - 1); }
+
+bool DwellFit::AtTurn(const Move& jump) const {
   const Eigen::Index before = jump.free == jump.first - 1 ? jump.first - 2 : jump.first - 1;
   const Eigen::Index after = jump.free == jump.first ? jump.first + 1 : jump.first;
   return before < 0 || after >= std::ssize(halves_) || halves_[before] != halves_[after];
 }
 
-bool DwellFit::FindJumps(const Eigen::MatrixXd& white, const ProbeNoise& noise,
+DwellFit::Move DwellFit::Refined(Move move, Eigen::Index probe, const Eigen::VectorXd& white,
+                                 const ProbeNoise& noise) const {
+  if (move.settles == 0.0) {
+    const std::array<Move, 3> within{move, Move{move.first, move.first - 1, move.size},
+                                     Move{move.first, move.first, move.size}};
+    return *std::ranges::max_element(within, {}, [&](const Move& each) {
+      return Fit(probe, white, noise, each).sums.log_likelihood;
+    });
+  }
+  constexpr int kSteps = 12;
+  constexpr double kFarthest = 0.5;  // of a step of log(tau)
+  for (int step = 0; step < kSteps; ++step) {
+    const Eigen::VectorXd unknowns = Fit(probe, white, noise, move).unknowns;
+    move.size = unknowns[0];
+    move.settles *= std::exp(std::clamp(unknowns[1], -kFarthest, kFarthest));
+    move.settles = std::clamp(move.settles, Between(), 4.0 * Whole());
+  }
+  return move;
+}
+
+// The noise that suits all probes hides a warming up of several of them, but no jump.
+std::vector<DwellFit::Move> DwellFit::Candidates(Eigen::Index probe, const Eigen::VectorXd& white,
+                                                 const ProbeNoise& noise,
+                                                 const NoiseFactors& suiting, double enough) const {
+  const Eigen::VectorXd suited = std::exp(2.0 * suiting[0]) * white;
+  std::vector<Move> candidates;
+  const Likeliest jump = LikeliestOf(Jumps(), probe, suited, Times(noise, suiting));
+  if (jump.log_odds > enough) {
+    const Move refined = Refined(jump.move, probe, white, noise);
+    if (!AtTurn(refined)) candidates.push_back(refined);
+  }
+  const Likeliest warming = LikeliestOf(WarmingsUp(), probe, suited, Times(noise, suiting));
+  if (warming.log_odds > 0.0) candidates.push_back(Refined(warming.move, probe, white, noise));
+  return candidates;
+}
+
+bool DwellFit::FindMoves(const Eigen::MatrixXd& white, const ProbeNoise& noise,
                          const NoiseFactors& suiting) {
-  const double enough = std::log(kJumpOdds * kProbes * static_cast<double>(values_.rows() - 1));
+  const double enough = std::log(kMoveOdds * kProbes * static_cast<double>(values_.rows() - 1));
   bool found = false;
   for (std::size_t probe = 0; probe < kProbes; ++probe) {
     const auto row = static_cast<Eigen::Index>(probe);
     const Eigen::VectorXd of_probe = white.col(row);
-    const Likeliest likeliest =
-        LikeliestJump(row, std::exp(2.0 * suiting[0]) * of_probe, Times(noise, suiting));
-    if (likeliest.log_odds < enough) continue;
-    const Jump& jump = likeliest.jump;
-    const std::array<Jump, 3> jumps{jump, Jump{jump.first, jump.first - 1, jump.size},
-                                    Jump{jump.first, jump.first, jump.size}};
-    const Jump best = *std::ranges::max_element(jumps, {}, [&](const Jump& each) {
-      return Fit(row, of_probe, noise, each).sums.log_likelihood;
-    });
-    if (AtTurn(best)) continue;
-    const double without = NoiseOf(row, of_probe, noise, std::nullopt).log_probability;
-    if (NoiseOf(row, of_probe, noise, best).log_probability - without < enough) continue;
-    jumps_[probe] = best;
-    found = true;
+    double most = NoiseOf(row, of_probe, noise, std::nullopt).log_probability + enough;
+    for (const Move& move : Candidates(row, of_probe, noise, suiting, enough)) {
+      const double probability = NoiseOf(row, of_probe, noise, move).log_probability;
+      if (probability < most) continue;
+      most = probability;
+      moves_[probe] = move;
+      found = true;
+    }
   }
   return found;
 }
 
-void DwellFit::TakeJumpsOut(StationMeans& means) const {
-  for (const ZeroJump& jump : means.jumps) {
-    for (std::size_t i = jump.dwell; i < means.dwells.size(); ++i) {
-      means.dwells[i].gap[jump.probe] -= jump.size;
+void DwellFit::TakeMovesOut(StationMeans& means) const {
+  for (const ZeroMove& move : means.moves) {
+    const auto& found = moves_[move.probe];
+    const Eigen::MatrixXd columns = ColumnsOf(*found);
+    for (std::size_t i = 0; i < means.dwells.size(); ++i) {
+      means.dwells[i].gap[move.probe] -= move.size * columns(static_cast<Eigen::Index>(i), 0);
     }
-    const auto row = static_cast<Eigen::Index>(jump.probe);
-    const auto& free = jumps_[jump.probe]->free;
-    if (free) means.dwells[*free].gap[jump.probe] = means.gap(row, groups_[*free]);
+    const auto row = static_cast<Eigen::Index>(move.probe);
+    if (found->free)
+      means.dwells[*found->free].gap[move.probe] = means.gap(row, groups_[*found->free]);
   }
 }
 

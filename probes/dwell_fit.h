@@ -1,14 +1,15 @@
 // The fits of the dwells of a sweep under one noise model: the mean gap of each group (station and
-// direction), and the one jump of the zero that a probe may have.
+// direction), and the one move of the zero that a probe may have.
 //
-// A jump at a time is one more unknown of its probe: all dwells from `first` on have it, and a dwell
-// within which it falls is left free. With s the sum of V^-1 (y - mean) over the dwells after it and
-// A the precision of its size (of the column of ones after it, the groups marginalised):
+// A move is a jump, all dwells from `first` on have it and one within which it falls is left free;
+// or a warming up from the start on, 1 - exp(-t / tau). Its columns C are those of its unknowns: its
+// size, and log(tau) about the value found. With r = V^-1 (y - mean), s = C' r, A the precision of
+// the unknowns (C' V^-1 C, the groups marginalised) and D that of their prior:
 //
-//   size = s / A,  chi2 falls by s^2 / A,  covariance of the means grows by m m' / A
-//   log odds against none = s^2 / (A + 1 / b^2) / 2 - log(1 + b^2 A) / 2,  size ~ N(0, b^2)
+//   unknowns = A^-1 s,  chi2 falls by s' A^-1 s,  covariance of the means grows by M A^-1 M'
+//   log odds against none = s' (A + D)^-1 s / 2 - log det(1 + D^-1 A) / 2
 //
-// with m the means of that column and b = 1 um.
+// with M the means of the columns; a size is about 1 um, tau known to a factor of two.
 //
 // Units: m, s. Shapes: white variances dwells x probes.
 // Failure: as estimation/markov_noise.h.
@@ -44,10 +45,11 @@ ProbableNoise MostProbableNoise(
 
 class DwellFit {
  public:
-  struct Jump {
+  struct Move {
     Eigen::Index first;                // dwell
     std::optional<Eigen::Index> free;  // the dwell within which it falls
     double size;                       // m, roughly
+    double settles = 0.0;              // s: tau of a warming up; 0: a jump
   };
   struct Sums {
     double chi2 = 0.0, log_likelihood = 0.0;
@@ -59,45 +61,58 @@ class DwellFit {
   int group_count() const { return group_count_; }
   double dof() const;
 
-  // Fits all probes; fills gap, covariance and jumps of `means`.
+  // Fits all probes; fills gap, covariance and moves of `means`.
   Sums Run(const Eigen::MatrixXd& white, const ProbeNoise& noise, StationMeans& means) const;
 
-  // Looks for a jump of each probe under the noise that suits all of them. It is taken where it
-  // makes the dwells a thousand times as probable, all times of a jump together, as that noise and
-  // as the noise that suits this probe best without it. One at a turn of the sweep is not: halves
+  // Looks for a move of each probe under the noise that suits all of them. It is taken where it
+  // makes the dwells a thousand times as probable, all times of a jump together, as the noise that
+  // suits this probe best without it; a jump also under the noise of all. A jump at a turn of the sweep is not: halves
   // of passes that scatter look the same. Returns whether there is any.
-  bool FindJumps(const Eigen::MatrixXd& white, const ProbeNoise& noise,
+  bool FindMoves(const Eigen::MatrixXd& white, const ProbeNoise& noise,
                  const NoiseFactors& suiting);
-  // Takes the jumps out of the gaps of the dwells, at the sizes in `means`.
-  void TakeJumpsOut(StationMeans& means) const;
+  // Takes the moves out of the gaps of the dwells, at the sizes in `means`.
+  void TakeMovesOut(StationMeans& means) const;
 
  private:
   struct OfProbe {
     Eigen::VectorXd gap;
     Eigen::MatrixXd covariance;
     Sums sums;
-    double size = 0.0, u = 0.0;  // of the jump
+    Eigen::VectorXd unknowns = {}, u = {};  // of the move
   };
 
+  // The columns of the unknowns of a move.
+  Eigen::MatrixXd ColumnsOf(const Move& move) const;
   OfProbe Fit(Eigen::Index probe, Eigen::VectorXd white, const ProbeNoise& noise,
-              const std::optional<Jump>& jump) const;
+              const std::optional<Move>& move) const;
   ProbableNoise NoiseOf(Eigen::Index probe, const Eigen::VectorXd& white, const ProbeNoise& noise,
-                        const std::optional<Jump>& jump) const;
-  bool AtTurn(const Jump& jump) const;
+                        const std::optional<Move>& move) const;
+  bool AtTurn(const Move& jump) const;
 
   struct Likeliest {
-    Jump jump;
+    Move move;
     double log_odds;
   };
-  Likeliest LikeliestJump(Eigen::Index probe, const Eigen::VectorXd& white,
-                          const ProbeNoise& noise) const;
+  // `moves`: with sizes of 1.
+  Likeliest LikeliestOf(const std::vector<Move>& moves, Eigen::Index probe,
+                        const Eigen::VectorXd& white, const ProbeNoise& noise) const;
+  // The same move where the dwells have it: size and tau, or the dwell within which it falls.
+  Move Refined(Move move, Eigen::Index probe, const Eigen::VectorXd& white,
+               const ProbeNoise& noise) const;
+  std::vector<Move> Jumps() const;
+  std::vector<Move> WarmingsUp() const;
+  std::vector<Move> Candidates(Eigen::Index probe, const Eigen::VectorXd& white,
+                               const ProbeNoise& noise, const NoiseFactors& suiting,
+                               double enough) const;
+  double Whole() const;    // s, from the first dwell to the last
+  double Between() const;  // s, from one to the next
 
   std::vector<double> times_;
   std::vector<int> groups_;
   std::vector<std::pair<int, int>> halves_;  // of each dwell: pass, direction
   Eigen::MatrixXd values_;
   int group_count_ = 0;
-  PerProbe<std::optional<Jump>> jumps_;
+  PerProbe<std::optional<Move>> moves_;
 };
 
 }  // namespace abbe::probes

@@ -33,11 +33,12 @@ struct NoiseFigures {
   double u_dof = 0.0;  // degrees of freedom of the noise's standard uncertainty
 };
 
-// The zero of one probe moved once, between two dwells (dwell_fit.h).
-struct ZeroJump {
+// The zero of one probe moved (dwell_fit.h).
+struct ZeroMove {
   std::size_t probe;
   std::size_t dwell;  // the first after it
   double size, u;     // m
+  double settles;     // s: the time constant of a warming up; 0: a jump between two dwells
 };
 
 struct StationMeans {
@@ -49,7 +50,7 @@ struct StationMeans {
   std::vector<Dwell> dwells;                           // those of `stations`
   Eigen::Matrix<double, kProbes, Eigen::Dynamic>
       residual;                 // m, per dwell: dwell - mean of its group
-  std::vector<ZeroJump> jumps;  // one more unknown each; they are no longer in dwells and residual
+  std::vector<ZeroMove> moves;  // more unknowns; they are no longer in dwells and residual
   Eigen::MatrixXd white;        // m^2, dwells x probes: variance of a dwell without its drift
   NoiseFigures noise;
   std::vector<std::string> notes;  // for the user, one sentence each

@@ -14,7 +14,6 @@
 
 #include "failure/failure.h"
 #include "probes/channel_order.h"
-#include "probes/one_pass_drift.h"
 #include "probes/sweep_slips.h"
 #include "probes/sweep_stations.h"
 #include "recording/made_on.h"
@@ -336,8 +335,7 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
           ? FindDwells(recording, DwellRuleOf(recording), setup.head.Ranges())
           : FindDwells(InProbeOrder(recording, order), DwellRuleOf(recording), setup.head.Ranges());
   RefuseSlips(recording.name, sweep, setup.machine, setup.head);
-  StationMeans means = FitStations(recording.name, sweep, setup.noise, ExcessNoise::kFitted);
-  if (!Checked(means)) CountUncheckedNoise(sweep.axis, means);
+  const StationMeans means = FitStations(recording.name, sweep, setup.noise, ExcessNoise::kFitted);
   const SweepInversion inversion(setup.machine, setup.head, sweep.axis, sweep.start);
   const Eigen::Index directions = means.directions.size();
   const GroupErrors errors = inversion.Errors(means.gap, means.position, directions);

@@ -11,6 +11,7 @@
 #include "estimation/reading_step.h"
 #include "failure/failure.h"
 #include "probes/dwell_fit.h"
+#include "probes/one_pass_drift.h"
 #include "settings/unit.h"
 #include "standards/chi_squared.h"
 
@@ -134,25 +135,6 @@ bool Scattered(double chi2, double dof) {
   return chi2 > standards::ChiSquaredQuantile(kSignificance, dof);
 }
 
-// The jumps of probes, with where and when.
-std::vector<std::string> JumpNotes(char axis, const StationMeans& means) {
-  const auto place = [axis](const Dwell& dwell) {
-    return fmt::format("{:c} = {:.6g} mm, pass {} {}", axis, dwell.position / settings::kMillimetre,
-                       dwell.pass, dwell.direction > 0 ? "forward" : "backward");
-  };
-  std::vector<std::string> notes;
-  for (const ZeroJump& jump : means.jumps) {
-    const Dwell &before = means.dwells[jump.dwell - 1], &after = means.dwells[jump.dwell];
-    notes.push_back(fmt::format(
-        "the zero of probe_{:c} jumps by {:.3g} +- {:.2g} um (95 %) about {:.1f} s, between {} and "
-        "{}: it is taken out, as one more unknown; look at the clamping, the cable and the "
-        "amplifier of this probe",
-        'a' + jump.probe, jump.size / settings::kMicrometre, 1.96 * jump.u / settings::kMicrometre,
-        0.5 * (before.time + after.time), place(before), place(after)));
-  }
-  return notes;
-}
-
 // The noise that makes the dwells of all probes most probable.
 NoiseFactors NoiseOfPasses(const DwellFit& fit, const ProbeNoise& noise,
                            const StationMeans& means) {
@@ -173,7 +155,7 @@ void CheckAgainstPasses(DwellFit& fit, const ProbeNoise& noise, ExcessNoise exce
   NoiseFactors found{};
   if (excess == ExcessNoise::kFitted && dof > 0.0 && Scattered(chi2, dof)) {
     found = NoiseOfPasses(fit, noise, means);
-    if (fit.FindJumps(means.white, noise, found)) {
+    if (fit.FindMoves(means.white, noise, found)) {
       chi2 = fit.Run(means.white, noise, means).chi2;
       dof = fit.dof();
       if (Scattered(chi2, dof)) found = NoiseOfPasses(fit, noise, means);
@@ -260,6 +242,33 @@ void AddUnseenSteps(const SweepDwells& sweep, StationMeans& means) {
 
 }  // namespace
 
+std::vector<std::string> MoveNotes(char axis, const StationMeans& means) {
+  const auto place = [axis](const Dwell& dwell) {
+    return fmt::format("{:c} = {:.6g} mm, pass {} {}", axis, dwell.position / settings::kMillimetre,
+                       dwell.pass, dwell.direction > 0 ? "forward" : "backward");
+  };
+  std::vector<std::string> notes;
+  for (const ZeroMove& jump : means.moves) {
+    if (jump.settles > 0.0) {
+      notes.push_back(fmt::format(
+          "the zero of probe_{:c} warms up by {:.3g} +- {:.2g} um (95 %) with a time constant of "
+          "{:.3g} s: it is taken out, as two more unknowns; let head and amplifier warm up before "
+          "a sweep",
+          'a' + jump.probe, jump.size / settings::kMicrometre,
+          1.96 * jump.u / settings::kMicrometre, jump.settles));
+      continue;
+    }
+    const Dwell &before = means.dwells[jump.dwell - 1], &after = means.dwells[jump.dwell];
+    notes.push_back(fmt::format(
+        "the zero of probe_{:c} jumps by {:.3g} +- {:.2g} um (95 %) about {:.1f} s, between {} and "
+        "{}: it is taken out, as one more unknown; look at the clamping, the cable and the "
+        "amplifier of this probe",
+        'a' + jump.probe, jump.size / settings::kMicrometre, 1.96 * jump.u / settings::kMicrometre,
+        0.5 * (before.time + after.time), place(before), place(after)));
+  }
+  return notes;
+}
+
 StationMeans FitStations(const std::string& name, const SweepDwells& sweep, const ProbeNoise& noise,
                          ExcessNoise excess) {
   StationMeans means;
@@ -267,10 +276,13 @@ StationMeans FitStations(const std::string& name, const SweepDwells& sweep, cons
   DwellFit fit(means);
   means.white = ChooseWhite(sweep, noise, fit, means);
   CheckAgainstPasses(fit, noise, excess, means);
-  std::ranges::move(JumpNotes(sweep.axis, means), std::back_inserter(means.notes));
-  fit.TakeJumpsOut(means);
+  std::ranges::move(MoveNotes(sweep.axis, means), std::back_inserter(means.notes));
+  fit.TakeMovesOut(means);
   FillResidualsAndFigures(sweep, fit, means);
   AddUnseenSteps(sweep, means);
+  if (excess == ExcessNoise::kFitted && means.noise.dof <= 0.0) {
+    CountUncheckedNoise(sweep.axis, means);
+  }
   return means;
 }
 

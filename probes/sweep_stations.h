@@ -15,7 +15,7 @@
 // between the passes or, with one pass, that of the machine file.
 //
 // The scatter between the passes tests this (chi2). Where it is significantly larger, a jump of the
-// zero of a probe is looked for (dwell_fit.h); where it is larger still, white noise,
+// zero of a probe, or its warming up, is looked for (dwell_fit.h); where it is larger still, white noise,
 // drift and its time are those that make the dwells most probable (restricted maximum likelihood,
 // each within a factor of two of what was said before, normal in its logarithm).
 //
@@ -30,10 +30,11 @@
 // Source: Aitken's generalised least squares; restricted maximum likelihood of the variances
 // (estimation/markov_noise.h).
 // Validity: a drift that is one Ornstein-Uhlenbeck process with a time between the dwells and the
-// whole sweep; jumps show in chi2.
+// whole sweep; one move of a zero; others show in chi2.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "probes/head_settings.h"
 #include "probes/station_means.h"
@@ -41,13 +42,17 @@
 
 namespace abbe::probes {
 
-// Where the passes scatter significantly more than the noise says: the noise that makes them most
-// probable, or all covariances scaled up alike. The second takes no cause of the scatter for a
-// drift: what shows in one probe, or at a few stations, keeps standing out for a diagnosis.
+// Where the passes scatter significantly more than the noise says: moves of zeros and the noise that
+// make them most probable, or all covariances scaled up alike. The second takes no cause of the
+// scatter for a drift: what shows in one probe, or at a few stations, keeps standing out for a
+// diagnosis. Where no second pass checks the noise, the first enlarges it (one_pass_drift.h).
 enum class ExcessNoise : unsigned char { kFitted, kScaled };
 
 // `name` is the recording in messages.
 StationMeans FitStations(const std::string& name, const SweepDwells& sweep, const ProbeNoise& noise,
                          ExcessNoise excess);
+
+// What moved in the zeros of probes, with where and when: one sentence each. `axis` is the swept one.
+std::vector<std::string> MoveNotes(char axis, const StationMeans& means);
 
 }  // namespace abbe::probes

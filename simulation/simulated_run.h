@@ -98,6 +98,7 @@ struct SimulatedRun {
   std::function<SimulatedRun(std::size_t one, std::size_t other)> noise_exchanged = {};
   // m: whitened rows as they are in space, one column for each pose; empty: rows are no places.
   std::function<Eigen::Matrix3Xd(const Eigen::VectorXd& whitened)> in_space = {};
+  std::vector<std::string> notes = {};  // what was taken out of the readings, one sentence each
 };
 
 }  // namespace abbe::simulation

@@ -28,10 +28,11 @@ std::string MountingOf(const recording::Recording& recording) {
 }
 
 Sweep ReadMeans(const recording::Recording& recording, const recording::Blocks& blocks,
-                const probes::HeadSettings& head, const probes::ProbeNoise& noise) {
+                const probes::HeadSettings& head, const probes::ProbeNoise& noise,
+                probes::ExcessNoise excess) {
   const auto dwells =
       probes::FindDwells(recording, blocks, probes::DwellRuleOf(recording), head.Ranges());
-  Sweep sweep{{}, probes::FitStations(recording.name, dwells, noise, probes::ExcessNoise::kScaled)};
+  Sweep sweep{{}, probes::FitStations(recording.name, dwells, noise, excess)};
   sweep.run.name = recording.name;
   sweep.run.mounting = MountingOf(recording);
   sweep.run.mounted = MountedOf(recording);
@@ -178,9 +179,10 @@ SweepRun ReadSweepRun(const recording::Recording& recording, const probes::HeadS
 
 SweepRun ReadSweepRun(const recording::Recording& recording, const recording::Blocks& blocks,
                       const probes::HeadSettings& head, const probes::ProbeNoise& noise) {
-  auto [run, means] = ReadMeans(recording, blocks, head, noise);
+  auto [run, means] = ReadMeans(recording, blocks, head, noise, probes::ExcessNoise::kFitted);
   run.position = std::move(means.position);
   run.gap = std::move(means.gap);
+  run.notes = probes::MoveNotes(run.axis, means);
   run.covariance = std::move(means.covariance);
   run.pass.assign(run.rows(), 0);
   run.time.resize(run.rows());
@@ -204,7 +206,8 @@ SweepRun ReadSweepRun(const recording::Recording& recording, const recording::Bl
 SweepRun ReadSweepDwells(const recording::Recording& recording, const probes::HeadSettings& head,
                          const probes::ProbeNoise& noise) {
   auto [run, means] = ReadMeans(
-      recording, [&](const auto& use) { use(recording); }, head, noise);
+      recording, [&](const auto& use) { use(recording); }, head, noise,
+      probes::ExcessNoise::kScaled);
   const Index rows = means.dwells.size();
   run.position.resize(rows);
   run.time.resize(rows);

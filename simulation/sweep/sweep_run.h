@@ -3,7 +3,8 @@
 //   const SweepRun run = ReadSweepRun(recording, head, noise);
 //
 // Station means: one row is the mean of all dwells at one station and in one direction of approach,
-// with the covariance that white noise and drift leave (probes/sweep_stations.h): what a sweep of
+// with the covariance that white noise and drift leave, as the passes show them, and without moves
+// of the zeros (probes/sweep_stations.h): what a sweep of
 // any length says of the machine, kept in a few hundred numbers. Dwells: one row is one dwell, in
 // the order of time, to show what changes from pass to pass; the covariance is that of the machine
 // file's drift and the scatter within the dwells. Gap steps: at some stations the axes that stand
@@ -55,6 +56,7 @@ struct SweepRun {
   std::vector<std::size_t> first_rows;  // of the recording: of the first dwell of each row
   Eigen::Matrix<double, probes::kProbes, Eigen::Dynamic> gap;  // as read
   probes::PerProbe<Eigen::MatrixXd> covariance;                // m^2
+  std::vector<std::string> notes = {};  // what was taken out of the readings
 
   Eigen::Index rows() const { return position.size(); }
   // [x y z] of all axes in a row.

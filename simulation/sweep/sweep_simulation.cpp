@@ -336,6 +336,7 @@ SimulatedRun SimulateSweep(const machine::VolumetricModel& model, const Vector3d
   }
   const auto residual = std::make_shared<SweepResidual>(model, plan, instrument, within);
   simulated.residual = simulated.response = residual;
+  simulated.notes = run.notes;
   simulated.heading = Eigen::Matrix3Xd::Zero(3, run.rows());
   simulated.heading.row(run.axis - 'X') = ApproachOf(run.direction);
   FormOfTarget form = FormOfTargetIn(model.chain(), instrument, run);

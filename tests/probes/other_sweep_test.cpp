@@ -222,6 +222,8 @@ TEST(SweepOfAnotherWorld, FollowsTheNoise) {
       {.name = "drift x 10, one pass",
        .change = drift(10.0),
        .passes = 1,
+      {.name = "warming up", .extra = WarmingUp, .note = "warms up by"},
+      {.name = "warming up, three passes", .extra = WarmingUp, .passes = 3, .note = "warms up by"},
        .note = "one pass: forward and backward differ"},
       {.name = "warming up, one pass",
        .extra = WarmingUp,

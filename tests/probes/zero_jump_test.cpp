@@ -1,5 +1,9 @@
-// The zero of one probe jumps in mid-run.
+// The zero of one probe jumps in mid-run, or warms up.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
 
 #include "tests/probes/changed_sweep.h"
 
@@ -65,6 +69,56 @@ TEST(ZeroJump, AtATurnIsScatter) {
     EXPECT_FALSE(Tells(result, "the zero of probe")) << seed;
     EXPECT_TRUE(Tells(result, "the passes scatter")) << seed;
   }
+}
+
+// Probes that warm up, most of it in the first of three passes: as an exponential, and slower at
+// the end than one.
+TEST(WarmingUp, IsTakenOutAndNamed) {
+  const SweepSetup setup = SetupOfNoiseOnly();
+  constexpr std::array<double, kProbes> kSizes{2.0, -1.0, 1.5, 0.7, -2.0};  // um
+  for (const bool slower : {false, true}) {
+    InsideU95 inside;
+    double times = 0.0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+      const SyntheticSweep sweep = ThreePasses(seed);
+      const SweepResult result =
+          ReduceSweep(WithAdded(Record(sweep, setup),
+                                [&](std::size_t probe, double share) {
+                                  const double fast = -std::expm1(-4.0 * share);
+                                  const double slow = -std::expm1(-share / 0.8);
+                                  return kSizes[probe] * (slower ? 0.7 * fast + 0.3 * slow : fast);
+                                }),
+                      setup);
+      inside.Add(sweep, result);
+      for (const char probe : {'a', 'b', 'c', 'd', 'e'}) {
+        EXPECT_TRUE(Tells(result, fmt::format("the zero of probe_{} warms up by ", probe))) << seed;
+      }
+      const SweepResult sound = ReduceSweep(Record(sweep, setup), setup);
+      times += result.components[2].u[6] / sound.components[2].u[6] / 12.0;
+    }
+    EXPECT_GT(inside.share(), 0.92) << slower;
+    EXPECT_LT(times, slower ? 10.0 : 2.0);
+  }
+}
+
+// Its time and size are those that were put in, and a probe that does not warm up is not named.
+TEST(WarmingUp, TheNoteSaysHowLongAndHowFar) {
+  const SweepSetup setup = SetupOfNoiseOnly();
+  const SweepResult result =
+      ReduceSweep(WithAdded(Record(ThreePasses(5), setup),
+                            [&](std::size_t probe, double share) {
+                              return probe == 0 ? -std::expm1(-4.0 * share) : 0.0;
+                            }),
+                  setup);
+  std::string told;
+  for (const std::string& note : result.notes) {
+    if (note.starts_with("the zero of probe_a warms up by ")) told = note;
+    EXPECT_FALSE(note.starts_with("the zero of probe_b")) << note;
+  }
+  ASSERT_NE(told, "");
+  EXPECT_NEAR(std::stod(told.substr(32)), 1.0, 0.1);
+  const double whole = 78.0 * (12 + 20 + 10) * 0.005;  // s: 78 dwells
+  EXPECT_NEAR(std::stod(told.substr(told.find("constant of ") + 12)), whole / 4.0, 0.1 * whole / 4);
 }
 
 // A drift that wanders far more than stated is no jump.
