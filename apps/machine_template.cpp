@@ -56,6 +56,7 @@ probe_position_um = 10.0
 installation_urad = 500.0
 installation_um = 50.0
 gain_ppm = 500.0
+linearity_um = 0.12  # 0.1 % of the range: limit of the certificate / 1.7
 
 # The target: its form from its certificate.
 [target]

@@ -7,8 +7,11 @@ namespace abbe::history {
 namespace {
 
 // The instrument behind each entry of a sweep's budget (docs/sweep.md); its noise is its own.
-const std::map<std::string, std::string> kInstrumentOf{
-    {"gain", "head"}, {"position", "head"}, {"installation", "mounting"}, {"form", "target"}};
+const std::map<std::string, std::string> kInstrumentOf{{"gain", "head"},
+                                                       {"linearity", "head"},
+                                                       {"position", "head"},
+                                                       {"installation", "mounting"},
+                                                       {"form", "target"}};
 
 // One standard uncertainty, or the mean square of one a station, as variance.
 double Variance(const Json& u) {

@@ -58,7 +58,8 @@ HeadTolerance ReadTolerance(const Table& table) {
   const HeadTolerance tolerance{.probe_position = deviation("probe_position_um", 10.0),
                                 .installation = deviation("installation_urad", 500.0),
                                 .offset = deviation("installation_um", 50.0),
-                                .gain = deviation("gain_ppm", 500.0)};
+                                .gain = deviation("gain_ppm", 500.0),
+                                .linearity = deviation("linearity_um", 0.0)};
   table.RefuseUnknown();
   return tolerance;
 }
@@ -104,6 +105,9 @@ HeadSettings ReadHeadSettings(const Table& root) {
     const SimplifiedInversion separates(head.layout, MovingBody::kHead);
   } catch (const InputError& failure) {
     throw table.Error("", failure.what());
+  }
+  if (!table.Child("tolerance").Has("linearity_um")) {
+    head.assumed.insert("head.tolerance.linearity_um");
   }
   head.tolerance = ReadTolerance(table.Child("tolerance"));
   head.installation = ReadInstallation(table.Child("installation"));

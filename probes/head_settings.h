@@ -33,10 +33,11 @@ struct ProbeSettings {
 
 // Standard deviations that remain after manufacture and mounting.
 struct HeadTolerance {
-  double probe_position;  // m
-  double installation;    // rad
-  double offset;          // m, of the installation
-  double gain;            // relative
+  double probe_position;   // m
+  double installation;     // rad
+  double offset;           // m, of the installation
+  double gain;             // relative
+  double linearity = 0.0;  // m: of each probe's departure from its straight characteristic
 };
 
 // The pose of the head frame in the machine for the sweep of one axis.

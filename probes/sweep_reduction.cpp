@@ -24,6 +24,7 @@ namespace abbe::probes {
 namespace {
 
 using Sources = std::array<Eigen::MatrixXd, kSources>;
+using PerComponent = std::array<double, kComponents>;
 
 Eigen::MatrixXd Sum(const Sources& sources) {
   return std::accumulate(sources.begin() + 1, sources.end(), sources.front());
@@ -124,8 +125,7 @@ class ComponentEvaluation {
     }
     double noise = 0.0;
     for (std::size_t source = 0; source < kSources; ++source) {
-      result.budget[source] =
-          RootMeanSquare(Means(gauge_.Covariance(kind, reference_sources[source])));
+      result.budget[source] = OverStations(kind, reference_sources[source]);
       if (source == 0) noise = result.budget[source];
     }
     const double dof = Freedom(noise, RootMeanSquare(station_V));
@@ -141,6 +141,11 @@ class ComponentEvaluation {
       result.reversal->seen = std::abs(mean.value) > beyond * mean.u;
     }
     return result;
+  }
+
+  // The standard uncertainty from a covariance of the groups, rms over the stations.
+  double OverStations(SweepGauge::Kind kind, const Eigen::MatrixXd& V) const {
+    return RootMeanSquare(Means(gauge_.Covariance(kind, V)));
   }
 
  private:
@@ -270,6 +275,29 @@ std::optional<std::string> FormNote(const TargetSettings& target, const SweepRes
       std::sqrt(1.0 + most * (kTimes * kTimes * flatter - 1.0)));
 }
 
+// What probes of usual linearity would add where the machine file does not state it.
+std::optional<std::string> LinearityNote(const HeadSettings& head, const SweepResult& result,
+                                         const PerComponent& usual) {
+  constexpr double kMatters = 1.5;  // of a U95
+  if (!head.assumed.contains("head.tolerance.linearity_um")) return std::nullopt;
+  double most = 0.0;
+  std::string name;
+  for (std::size_t i = 0; i < usual.size(); ++i) {
+    const auto& budget = result.components[i].budget;
+    const double all = std::inner_product(budget.begin(), budget.end(), budget.begin(), 0.0);
+    const double times = all > 0.0 ? std::sqrt(1.0 + usual[i] * usual[i] / all) : 1.0;
+    if (times <= most) continue;
+    most = times;
+    name = result.components[i].component.name;
+  }
+  if (most < kMatters) return std::nullopt;
+  return fmt::format(
+      "the linearity of the probes is not in u: of 0.1 % of their range, which is usual, U95 of {} "
+      "would be {:.1f} times as large over these gaps; state head.tolerance.linearity_um by their "
+      "certificate (its limit / 1.7), 0 where their characteristics are corrected",
+      name, most);
+}
+
 // What the directions of the sweep leave open: the reversal.
 std::optional<std::string> DirectionNote(const StationMeans& means, const SweepResult& result) {
   if (means.directions.size() == 1) {
@@ -367,14 +395,20 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
   const SweepGauge gauge(
       Eigen::Map<const Eigen::VectorXd>(means.stations.data(), means.stations.size()), directions);
   const ComponentEvaluation evaluate(means, gauge);
+  PerComponent usual_linearity{};
   for (int i = 0; i < kComponents; ++i) {
     const int at_target = i + kComponents;
     result.components[i] =
         evaluate(inversion.components()[i], errors.row(i).transpose(), uncertainty.Covariance(i),
                  errors.row(at_target).transpose(), uncertainty.Covariance(at_target));
+    usual_linearity[i] =
+        evaluate.OverStations(inversion.components()[i].gauge(), uncertainty.UsualLinearity(i));
   }
   if (auto note = DirectionNote(means, result)) result.notes.push_back(std::move(*note));
   if (auto note = FormNote(setup.target, result)) result.notes.push_back(std::move(*note));
+  if (auto note = LinearityNote(setup.head, result, usual_linearity)) {
+    result.notes.push_back(std::move(*note));
+  }
   std::ranges::move(AssumptionNotes(setup.head, result, errors, gauge),
                     std::back_inserter(result.notes));
   return result;

@@ -4,6 +4,8 @@
 #include <functional>
 #include <utility>
 
+#include "probes/probe_linearity.h"
+
 namespace abbe::probes {
 namespace {
 
@@ -85,10 +87,26 @@ void SweepUncertainty::TakeZero(std::size_t row_probe, std::size_t column_probe,
   }
 }
 
-Eigen::MatrixXd SweepUncertainty::NoiseCovariance(Eigen::Index row) const {
+PerProbe<Eigen::MatrixXd> SweepUncertainty::Departures(const PerProbe<>& linearity) const {
+  PerProbe<Eigen::MatrixXd> of_gaps;
+  for (std::size_t probe = 0; probe < kProbes; ++probe) {
+    of_gaps[probe] = LinearityCovariance(means_.gap.row(static_cast<Eigen::Index>(probe)),
+                                         linearity[probe], head_.probes[probe].range);
+  }
+  return of_gaps;
+}
+
+Eigen::MatrixXd SweepUncertainty::UsualLinearity(Eigen::Index row) const {
+  PerProbe<> usual = head_.Ranges();
+  for (double& each : usual) each *= kUsualLinearity;
+  return ProbeCovariance(row, Departures(usual));
+}
+
+Eigen::MatrixXd SweepUncertainty::ProbeCovariance(Eigen::Index row,
+                                                  PerProbe<Eigen::MatrixXd> of_gaps) const {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(means_.groups(), means_.groups());
   for (std::size_t probe = 0; probe < kProbes; ++probe) {
-    Eigen::MatrixXd V = means_.covariance[probe];
+    Eigen::MatrixXd& V = of_gaps[probe];
     TakeZero(probe, probe, V);
     const Eigen::VectorXd by_gap = Sensitivity(row, probe) / head_.probes[probe].gain;
     sum += by_gap.asDiagonal() * V * by_gap.asDiagonal();
@@ -135,8 +153,11 @@ Eigen::MatrixXd SweepUncertainty::ColumnCovariance(const Columns& columns, Eigen
 }
 
 std::array<Eigen::MatrixXd, kSources> SweepUncertainty::Covariance(Eigen::Index row) const {
-  return {NoiseCovariance(row), ColumnCovariance(gain_, row), ColumnCovariance(position_, row),
-          ColumnCovariance(installation_, row), FormCovariance(row)};
+  PerProbe<> linearity{};
+  linearity.fill(head_.tolerance.linearity);
+  return {ProbeCovariance(row, means_.covariance),     ColumnCovariance(gain_, row),
+          ProbeCovariance(row, Departures(linearity)), ColumnCovariance(position_, row),
+          ColumnCovariance(installation_, row),        FormCovariance(row)};
 }
 
 }  // namespace abbe::probes

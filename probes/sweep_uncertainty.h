@@ -2,6 +2,7 @@
 //
 //   noise         covariance of the station means, through the linearised inversion
 //   gain          of each probe, relative (head.tolerance.gain)
+//   linearity     of each probe over its gaps (probes/probe_linearity.h)
 //   position      of each probe in the fixture (head.tolerance.probe_position)
 //   installation  of the head: three angles, three offsets (head.tolerance)
 //   form          of the target: a Gaussian process over each face with standard deviation
@@ -14,7 +15,7 @@
 //
 // The inversion is exactly determined (five readings, five errors), so the data cannot separate a
 // source from the errors and every source enters with its stated uncertainty. The sources other
-// than noise and form are normal with the standard deviations of the machine file; their columns
+// than noise, linearity and form are normal with the standard deviations of the machine file; their columns
 // are central differences of the exact inversion over +-1 standard deviation. The tests check the
 // sum against a Monte Carlo through the exact inversion (GUM Supplement 1).
 //
@@ -37,9 +38,9 @@
 
 namespace abbe::probes {
 
-inline constexpr std::size_t kSources = 5;
-inline constexpr std::array<std::string_view, kSources> kSourceNames = {"noise", "gain", "position",
-                                                                        "installation", "form"};
+inline constexpr std::size_t kSources = 6;
+inline constexpr std::array<std::string_view, kSources> kSourceNames = {
+    "noise", "gain", "linearity", "position", "installation", "form"};
 
 // A size that nothing checks is lognormal about what is stated, with the logarithm of `known_to` as
 // standard deviation: its root mean square over what is stated. 1 for a size that is known, 1.62
@@ -54,6 +55,8 @@ class SweepUncertainty {
 
   // The covariance by source of one row of GroupErrors, before any gauge.
   std::array<Eigen::MatrixXd, kSources> Covariance(Eigen::Index row) const;
+  // Of probes that depart by kUsualLinearity.
+  Eigen::MatrixXd UsualLinearity(Eigen::Index row) const;
 
  private:
   using Columns = std::vector<GroupErrors>;  // one per parameter, times its standard deviation
@@ -65,7 +68,9 @@ class SweepUncertainty {
   };
 
   void AddForm();
-  Eigen::MatrixXd NoiseCovariance(Eigen::Index row) const;
+  // By independent covariances of the gaps of each probe.
+  Eigen::MatrixXd ProbeCovariance(Eigen::Index row, PerProbe<Eigen::MatrixXd> of_gaps) const;
+  PerProbe<Eigen::MatrixXd> Departures(const PerProbe<>& linearity) const;
   Eigen::MatrixXd FormCovariance(Eigen::Index row) const;
   Eigen::MatrixXd ColumnCovariance(const Columns& columns, Eigen::Index row) const;
   // Turns the covariance V of the gaps of two probes into that of their Delta: subtracts the mean

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "random/counter_random.h"
 #include "rig/streams.h"
@@ -17,7 +18,28 @@ Eigen::Vector3d NormalVector(const random::CounterRandom& random, std::uint64_t 
   return {random.Normal(first), random.Normal(first + 1), random.Normal(first + 2)};
 }
 
+Characteristic DrawCharacteristic(const RigSettings& settings, std::uint64_t probe,
+                                  std::uint64_t seed) {
+  constexpr double kFewest = 0.5, kMost = 3.5;
+  const random::CounterRandom random(seed, kLinearityStream);
+  Characteristic drawn{settings.linearity * std::sqrt(2.0 / Characteristic::kWaves)};
+  for (int wave = 0; wave < Characteristic::kWaves; ++wave) {
+    const std::uint64_t index = 8 * probe + 2 * static_cast<std::uint64_t>(wave);
+    drawn.periods[wave] = random.Uniform(index, kFewest, kMost);
+    drawn.phases[wave] = random.Uniform(index + 1, 0.0, 2.0 * std::numbers::pi);
+  }
+  return drawn;
+}
+
 }  // namespace
+
+double Characteristic::At(double gap) const {
+  double sum = 0.0;
+  for (int wave = 0; wave < kWaves; ++wave) {
+    sum += amplitude * std::sin(2.0 * std::numbers::pi * periods[wave] * gap + phases[wave]);
+  }
+  return sum;
+}
 
 TargetFace::TargetFace(const RigSettings& settings, int side, const Eigen::Vector3d& normal,
                        const Eigen::Vector3d& corner, double reach, std::uint64_t seed)
@@ -53,7 +75,8 @@ std::array<ProbeTruth, kProbes> DrawProbes(const RigSettings& settings, std::uin
     const Eigen::Vector3d place = settings.probe_position * NormalVector(random, 4 * probe);
     const ProbePlace& nominal = settings.probes[probe];
     probes[probe] = {nominal.along + place[0], nominal.across + place[1], place[2],
-                     settings.gain * random.Normal(4 * probe + 3)};
+                     settings.gain * random.Normal(4 * probe + 3),
+                     DrawCharacteristic(settings, probe, seed)};
   }
   return probes;
 }
@@ -85,7 +108,7 @@ std::array<Electrode, kProbes> PlaceElectrodes(const RigSettings& settings, cons
   std::array<Electrode, kProbes> electrodes;
   for (int probe = 0; probe < kProbes; ++probe) {
     const bool top = settings.probes[probe].top;
-    const auto& [along, across, depth, gain] = probes[probe];
+    const auto& [along, across, depth, gain, departs] = probes[probe];
     const double away = installation.set_gap[top ? 0 : 1] + depth;
     const Eigen::Vector3d in_head(along, top ? across : away, top ? away : across);
     electrodes[probe] = {place.position + place.rotation * (turn * in_head + installation.offsets),

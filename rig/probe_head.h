@@ -2,7 +2,7 @@
 // for the sweep of an axis, the mounting of the target and the form of its faces.
 //
 // Drawn by the seed, once:  each electrode's place in the fixture (three coordinates), each probe's
-// gain, the target's tilt, the squareness of its faces, their form. For each axis: the installation
+// gain and characteristic, the target's tilt, the squareness of its faces, their form. For each axis: the installation
 // of the head (three angles, three offsets) and the gap to which the fitter set each unit.
 //
 // The target is one corner with faces +-x, +-y, +-z (those that the head looks at), mounted once:
@@ -66,9 +66,21 @@ struct HeadInstallation {
   std::array<double, 2> set_gap;  // mean gap of the top and of the side unit at the start
 };
 
+// What a probe departs from its straight characteristic: waves over its range.
+struct Characteristic {
+  static constexpr int kWaves = 3;
+  double amplitude = 0.0;                   // m, of each wave
+  std::array<double, kWaves> periods = {};  // over the range
+  std::array<double, kWaves> phases = {};   // rad
+
+  // `gap` as a share of the range.
+  double At(double gap) const;
+};
+
 struct ProbeTruth {
   double along, across, depth;  // true place in the head: u, then s or n; depth > 0: farther away
   double gain;                  // relative error of the sensitivity, about the middle of the range
+  Characteristic departs;
 };
 
 std::array<ProbeTruth, kProbes> DrawProbes(const RigSettings& settings, std::uint64_t seed);

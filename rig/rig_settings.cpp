@@ -139,6 +139,7 @@ void ReadHead(const Table& head, RigSettings& rig) {
   rig.installation_angle = sd("installation_urad", 500.0);
   rig.installation_offset = sd("installation_um", 50.0);
   rig.gain = sd("gain_ppm", 500.0);
+  rig.linearity = sd("linearity_um", 0.0);
   for (int axis = 0; axis < kAxes; ++axis) {
     rig.head[axis] = ReadHeadPlace(head.Child(std::string("axis_") + kAxisNames[axis]), axis);
   }

@@ -84,6 +84,7 @@ struct RigSettings {
   std::array<HeadPlace, kAxes> head;
   std::array<std::optional<hal::SweepPlan>, kAxes> sweeps;  // of [sweep]: those that it has
   double probe_position, installation_angle, installation_offset, gain;  // standard deviations
+  double linearity = 0.0;  // m: standard deviation of what a probe departs from its straight line
 
   std::vector<TargetScrew> screws;
   double form, form_length;  // of the target's faces

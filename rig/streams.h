@@ -11,6 +11,7 @@ enum Stream : std::uint64_t {
   kScaleStream = 0x120,           // index: axis
   kSquarenessStream = 0x121,      // index: A0Z, B0Z, C0Y
   kProbeStream = 0x200,           // index: 4 * probe + along, across, depth, gain
+  kLinearityStream = 0x202,       // index: 8 * probe + three pairs of period and phase
   kInstallationStream = 0x201,    // index: 8 * axis + three angles, three offsets, two gap settings
   kTargetStream = 0x300,          // index: three angles, three squarenesses
   kFaceStream = 0x310,            // + face: -x +x -y +y -z +z

@@ -48,12 +48,22 @@ std::vector<double> ListedNumbers(const Eigen::Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
 
+// At eleven gaps over the range.
+std::vector<double> Departures(const Characteristic& characteristic) {
+  std::vector<double> departures;
+  for (int gap = 0; gap <= 10; ++gap) departures.push_back(characteristic.At(gap / 10.0));
+  return departures;
+}
+
 ordered_json HeadTruth(const World& world) {
   ordered_json head;
   for (int probe = 0; probe < kProbes; ++probe) {
-    const auto& [along, across, depth, gain] = world.probes()[probe];
-    head[kProbeNames[probe]] = {
-        {"along_m", along}, {"across_m", across}, {"depth_m", depth}, {"gain", gain}};
+    const auto& [along, across, depth, gain, departs] = world.probes()[probe];
+    head[kProbeNames[probe]] = {{"along_m", along},
+                                {"across_m", across},
+                                {"depth_m", depth},
+                                {"gain", gain},
+                                {"departures_m", Departures(departs)}};
   }
   for (int axis = 0; axis < kAxes; ++axis) {
     const HeadInstallation& installed = world.InstallationOf(axis);

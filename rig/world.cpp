@@ -179,7 +179,8 @@ double World::ResponseTo(const Sight& sight, int probe) const {
   if (settings_.electrode > 0.0 && gap > 0.0) {
     gap = TiltResponse(gap, sight.tilt, settings_.electrode);
   }
-  return middle + (1.0 + parts_.probes[probe].gain) * (gap - middle);
+  return middle + (1.0 + parts_.probes[probe].gain) * (gap - middle) +
+         parts_.probes[probe].departs.At(gap / settings_.probes[probe].range);
 }
 
 Readings World::TrueGaps(int axis, const Eigen::Vector3d& command, const Displacement& seat) const {

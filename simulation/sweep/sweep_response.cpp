@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "failure/failure.h"
+#include "probes/probe_linearity.h"
 #include "simulation/sweep/target_spots.h"
 
 namespace abbe::simulation {
@@ -42,7 +43,14 @@ class FormOfFace {
   double sign_, length_;
 };
 
-// cov of the readings of the probes of one face: noise of each, form of the face for all.
+// By the gaps that were read; the channels of other probes bring their own characteristic along.
+MatrixXd LinearityOf(const probes::HeadSettings& head, const SweepRun& run, Index probe) {
+  return probes::LinearityCovariance(run.gap.row(probe).transpose(), head.tolerance.linearity,
+                                     head.probes[run.mounted.channels[probe]].range);
+}
+
+// cov of the readings of the probes of one face: noise and linearity of each, form of the face for
+// all.
 MatrixXd FaceCovariance(const SweepPlan& plan, const SweepInstrument& instrument,
                         const SweepRun& run, Index first, Index count) {
   const Index n = run.rows();
@@ -55,7 +63,7 @@ MatrixXd FaceCovariance(const SweepPlan& plan, const SweepInstrument& instrument
       for (Index h = 0; h < n && variance > 0.0; ++h) {
         for (Index g = 0; g < n; ++g) block(g, h) = variance * form(first + p, g, first + q, h);
       }
-      if (p == q) block += run.covariance[first + p];
+      if (p == q) block += run.covariance[first + p] + LinearityOf(instrument.head, run, first + p);
     }
   }
   return V;

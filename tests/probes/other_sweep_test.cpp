@@ -111,14 +111,18 @@ class Sweeps {
       : document_(settings::Document::Read(DemoMillFile())),
         channels_(rig::ChannelsOf(hal::ReadDevices(document_.Root().Child("devices")))) {}
 
-  // With a head and a target without errors: nothing but noise.
-  Found OfNoise(const Row& row) const {
+  // With a head and a target without errors: nothing but noise, and what probes depart from a
+  // straight characteristic, drawn and stated, m.
+  Found OfNoise(const Row& row, double linearity = 0.0, double stated = 0.0) const {
     SweepSetup setup = ReadSweepSetup(document_.Root());
     setup.head.tolerance = {};
+    setup.head.tolerance.linearity = stated;
+    if (stated == 0.0) setup.head.assumed.insert("head.tolerance.linearity_um");
     setup.target.form = 0.0;
     rig::RigSettings rig = rig::ReadRigSettings(document_.Root());
     rig.gain = rig.probe_position = rig.form = 0.0;
     rig.installation_angle = rig.installation_offset = 0.0;
+    rig.linearity = linearity;
     return Run(row, setup, rig);
   }
   Found OfAll(const Row& row) const {
@@ -218,12 +222,12 @@ TEST(SweepOfAnotherWorld, FollowsTheNoise) {
       {.name = "memory of 60 s", .extra = Memory(60.0), .note = scatter},
       {.name = "each half of a pass another", .extra = EachHalf(2), .passes = 2, .note = scatter},
       {.name = "zeros that jump", .extra = Jump},
+      {.name = "warming up", .extra = WarmingUp, .note = "warms up by"},
+      {.name = "warming up, three passes", .extra = WarmingUp, .passes = 3, .note = "warms up by"},
       {.name = "drift x 3, one pass", .change = drift(3.0), .passes = 1, .note = "one pass"},
       {.name = "drift x 10, one pass",
        .change = drift(10.0),
        .passes = 1,
-      {.name = "warming up", .extra = WarmingUp, .note = "warms up by"},
-      {.name = "warming up, three passes", .extra = WarmingUp, .passes = 3, .note = "warms up by"},
        .note = "one pass: forward and backward differ"},
       {.name = "warming up, one pass",
        .extra = WarmingUp,
@@ -231,6 +235,20 @@ TEST(SweepOfAnotherWorld, FollowsTheNoise) {
        .note = "one pass: forward and backward differ"}};
   const Sweeps sweeps;
   for (const Row& row : rows) Check(row, sweeps.OfNoise(row));
+}
+
+// Waves of half a period to 3.5 over the range; a target within 100 urad of the axis.
+TEST(SweepOfAnotherWorld, HoldsTheLinearityOfItsProbes) {
+  constexpr double kLimit = 115.0 * kNano;  // 0.1 % of 200 um / sqrt(3)
+  const Sweeps sweeps;
+  const Row row{.name = "linearity as stated"};
+  Check(row, sweeps.OfNoise(row, kLimit, kLimit));
+  const Row unsaid{.name = "linearity that is not stated",
+                   .least = 0.0,
+                   .note = "the linearity of the probes is not in u"};
+  const Found found = sweeps.OfNoise(unsaid, kLimit);
+  Check(unsaid, found);
+  EXPECT_LT(found.inside.mean(), 0.85);
 }
 
 TEST(SweepOfAnotherWorld, CountsAFormThatNobodyMeasured) {
