@@ -71,6 +71,35 @@ class FuseTest(ProgramCase):
         sweep = self.rig_record("X.csv", "--axis", "X", "--rate", 20)
         self.refuse(sweep, "--machine", machine, saying=[f"square.toml:{line}: population.squareness_urad", "above 0"])
 
+    def test_a_zero_that_moves_is_taken_out_and_told(self):
+        """Of one probe, in one of three sweeps: a step at 40 % of the time, a warming up within a quarter of it."""
+        runs = self.record()[:3]
+        plain = self.path / "plain.json"
+        self.done(*runs, "--machine", self.machine, "--json", plain)
+        self.assertEqual(json.loads(plain.read_text())["notes"], [])
+        before = json.loads(plain.read_text())["map"]["errors"]
+        for move, words in ((lambda share: 1.0 * (share > 0.4), "the zero of probe_b jumps by "),
+                            (lambda share: 1.5 * (1 - np.exp(-4 * share)), "the zero of probe_b warms up by ")):
+            lines = runs[0].read_text().splitlines()
+            head = next(i for i, line in enumerate(lines) if line.startswith("time_s"))
+            column = lines[head].split(",").index("probe_b_um")
+            rows = [line.split(",") for line in lines[head + 1:]]
+            for i, row in enumerate(rows):
+                row[column] = repr(float(row[column]) + move(i / len(rows)))
+            moved = self.path / "moved.csv"
+            moved.write_text("\n".join([*lines[:head + 1], *(",".join(row) for row in rows)]) + "\n")
+            found = self.path / "moved.json"
+            text = self.done(moved, *runs[1:], "--machine", self.machine, "--json", found)
+            self.assertIn("moved.csv: " + words, text.replace("\n", " "))
+            result = json.loads(found.read_text())
+            self.assertEqual(len(result["notes"]), 1, result["notes"])
+            self.assertEqual(result["contradictions"] + result["misfits"], [])
+            for name in ("EAX", "EBX", "EYX", "EZX"):
+                now, then = result["map"]["errors"][name], before[name]
+                off = np.abs(np.subtract(now["value"], then["value"]))
+                self.assertTrue(np.all(off < 2 * np.array(now["u"]) + 1e-12), (name, off))
+                self.assertTrue(np.all(np.array(now["u"]) < 1.5 * np.array(then["u"]) + 1e-12), name)
+
     def test_a_campaign_becomes_a_map(self):
         runs = self.record()
         map_file = self.path / "map.toml"
