@@ -143,8 +143,15 @@ bool IsOfCauses(const estimation::Result& result, const estimation::WeakDirectio
   return result.names[most].starts_with("cause.");
 }
 
-CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
-                     const ReversalForm& form) {
+// A fit and the form it was made with.
+struct CircleTrial {
+  ReversalForm form;
+  CircleCauses found;
+  std::array<double, 2> longer{};  // CircleFit
+};
+
+CircleTrial FitWith(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
+                    const ReversalForm& form) {
   const std::vector<Signature> table = CausesOf(*runs.front(), options, form);
   std::vector<CircleEquations> equations;
   CircleCauses found;
@@ -187,7 +194,7 @@ CircleCauses FitWith(const std::vector<const CircleRun*>& runs, const CauseOptio
   for (const Eigen::VectorXd& one : fit.unexplained) {
     found.residuals.emplace_back(one.begin(), one.end());
   }
-  return found;
+  return {form, std::move(found), fit.longer};
 }
 
 std::array<double, 2> BacklashOf(const CircleCauses& found) {
@@ -199,11 +206,27 @@ std::array<double, 2> BacklashOf(const CircleCauses& found) {
   return backlash;
 }
 
-// A fit and the form it was made with.
-struct CircleTrial {
-  ReversalForm form;
-  CircleCauses found;
-};
+const CircleTrial& MostLikely(const std::vector<CircleTrial>& trials) {
+  return *std::ranges::min_element(trials, {},
+                                   [](const CircleTrial& one) { return one.found.rms_after; });
+}
+
+// The fit with the ways of winding up that suit both axes best, each with its own, not known better
+// than the fit tells them: a list would leave backlash as far off as its nearest way.
+CircleTrial WithOwnWays(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
+                        CircleTrial trial) {
+  constexpr int kSteps = 12;
+  constexpr double kFarthest = 0.5;  // of the logarithm of a way, in one step
+  for (int step = 0; step < kSteps; ++step) {
+    ReversalForm form = trial.form;
+    form.wound_up = BacklashOf(trial.found);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      form.way[axis] *= std::exp(std::clamp(trial.longer[axis], -kFarthest, kFarthest));
+    }
+    trial = FitWith(runs, options, form);
+  }
+  return trial;
+}
 
 // The fits with all ways in which backlash may be taken up.
 void FitTakenUp(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
@@ -212,18 +235,20 @@ void FitTakenUp(const std::vector<const CircleRun*>& runs, const CauseOptions& o
   constexpr std::array kWays{0.5e-6, 1e-6,   2e-6, 5e-6, 10e-6, 20e-6, 50e-6, 100e-6,
                              200e-6, 500e-6, 1e-3, 2e-3, 3e-3,  5e-3,  8e-3};  // m
   const auto fitted = [&](const ReversalForm& form) { return FitWith(runs, options, form); };
-  const ReversalForm at_once{.spike_width = spike_width};
-  trials.push_back({at_once, fitted(at_once)});
+  trials.push_back(fitted({.spike_width = spike_width}));
   CircleTrial with_play = trials.back();
   with_play.form.how = standards::TakenUp::kWithPlay;
   for (int round = 0; round < kRounds; ++round) {
     with_play.form.way = BacklashOf(with_play.found);
-    with_play.found = fitted(with_play.form);
+    with_play = fitted(with_play.form);
   }
   trials.push_back(std::move(with_play));
   for (const double way : kWays) {
-    const ReversalForm wound_up{standards::TakenUp::kByWindUp, {way, way}, spike_width};
-    trials.push_back({wound_up, fitted(wound_up)});
+    trials.push_back(fitted({standards::TakenUp::kByWindUp, {way, way}, spike_width}));
+  }
+  if (const CircleTrial& best = MostLikely(trials);
+      best.form.how == standards::TakenUp::kByWindUp) {
+    trials.push_back(WithOwnWays(runs, options, best));
   }
 }
 
@@ -256,11 +281,6 @@ std::array<double, 2> SpikesOf(const CircleCauses& found) {
   return sizes;
 }
 
-const CircleTrial& MostLikely(const std::vector<CircleTrial>& trials) {
-  return *std::ranges::min_element(trials, {},
-                                   [](const CircleTrial& one) { return one.found.rms_after; });
-}
-
 // Fits with all forms that a reversal may have: first spikes of the width of the options, then of
 // others, where there are spikes; and these last not quite of the form of the table.
 std::vector<CircleTrial> FitWithAll(const std::vector<const CircleRun*>& runs,
@@ -274,7 +294,7 @@ std::vector<CircleTrial> FitWithAll(const std::vector<const CircleRun*>& runs,
   ReversalForm form = MostLikely(trials).form;
   for (const double times : kWidths) {
     form.spike_width = times * options.spike_width;
-    trials.push_back({form, FitWith(runs, options, form)});
+    trials.push_back(FitWith(runs, options, form));
   }
   if (const double width = MostLikely(trials).form.spike_width; width != options.spike_width) {
     FitTakenUp(runs, options, width, trials);
@@ -286,7 +306,7 @@ std::vector<CircleTrial> FitWithAll(const std::vector<const CircleRun*>& runs,
     if (LogLikelihood(trial.found, rows) < LogLikelihood(best, rows) - kLikely) continue;
     CircleTrial& own = formed.emplace_back(trial);
     own.form.spike_size = SpikesOf(trial.found);
-    if (own.form.spike_size != none) own.found = FitWith(runs, options, own.form);
+    if (own.form.spike_size != none) own = FitWith(runs, options, own.form);
   }
   return formed;
 }

@@ -14,9 +14,10 @@
 //     without them they would pass for reversal spikes and through these for backlash,
 //   - the errors of the instrument: `shifted` holds the runs with one independent error of it
 //     changed by one standard deviation.
-// Backlash is taken up at once, with play, or by wind-up on any of ten ways; results are the mean of
-// these fits by their likelihood, and their spread is in u (Bayesian model averaging: Hoeting et
-// al., Statistical Science 14 (1999)).
+// Backlash is taken up at once, with play, or by wind-up on ways from 0.5 um to 8 mm; near the best of
+// these the way of each axis is one more unknown, known to a factor of e. Results are the mean of
+// the fits by their likelihood, and their spread is in u (Bayesian model averaging: Hoeting et al.,
+// Statistical Science 14 (1999)).
 // Units: SI; `effect` is the largest radial deviation of a cause in m, without sign.
 // Noise: estimated from the residuals and their degrees of freedom, whose Student's t is in u (2 u is
 // a U95), and enlarged for the correlation of neighbouring rows by the

@@ -64,6 +64,7 @@ CircleEquations EquationsOf(const CircleRun& run, const CauseOptions& options,
                             Eigen::MatrixXd(n, options.shifted.size()),
                             {},
                             {},
+                            {},
                             Eigen::VectorXd(n)};
   for (Eigen::Index i = 0; i < n; ++i) {
     const CirclePoint& point = run.points[i];
@@ -92,13 +93,28 @@ CircleRun About(const Eigen::Vector2d& middle, const CircleRun& run) {
   return centred;
 }
 
-// Those of the spikes, one an axis.
-Eigen::MatrixXd SpikesIn(const Eigen::MatrixXd& causes, const std::vector<Signature>& table) {
-  Eigen::MatrixXd spikes(causes.rows(), 2);
+// Those of one cause, one an axis.
+Eigen::MatrixXd OfBothAxes(const std::string& of, const Eigen::MatrixXd& causes,
+                           const std::vector<Signature>& table) {
+  Eigen::MatrixXd columns(causes.rows(), 2);
   for (Eigen::Index cause = 0, axis = 0; cause < causes.cols(); ++cause) {
-    if (table[cause].cause == "reversal_spike") spikes.col(axis++) = causes.col(cause);
+    if (table[cause].cause == of) columns.col(axis++) = causes.col(cause);
   }
-  return spikes;
+  return columns;
+}
+
+// The derivatives of the deviations with respect to the logarithm of the way of each axis.
+Eigen::MatrixXd ByWays(const CircleRun& run, const CauseOptions& options,
+                       const ReversalForm& form) {
+  constexpr double kStep = 0.01;
+  const auto backlash = [&](double step) {
+    ReversalForm changed = form;
+    for (double& way : changed.way) way *= std::exp(step);
+    return OfBothAxes("backlash", EquationsOf(run, options, changed).causes,
+                      CausesOf(run, options, changed));
+  };
+  const Eigen::MatrixXd slopes = (backlash(kStep) - backlash(-kStep)) / (2.0 * kStep);
+  return slopes * Eigen::Vector2d(form.wound_up[0], form.wound_up[1]).asDiagonal();
 }
 
 estimation::ParameterBlock SmoothBlock(const std::vector<double>& deviations) {
@@ -143,11 +159,13 @@ CircleEquations CentredEquations(const std::vector<const CircleRun*>& runs, std:
     }
   }
   if (form.spike_size != std::array<double, 2>{}) {
-    const Eigen::MatrixXd spikes = SpikesIn(equations.causes, CausesOf(centred, options, form));
+    const Eigen::MatrixXd spikes =
+        OfBothAxes("reversal_spike", equations.causes, CausesOf(centred, options, form));
     const AfterReversals after{form.spike_size, form.spike_width};
     equations.shapes = ShapesOf(centred, spikes, after);
     equations.between = SpikesBetweenRuns(spikes, at, runs.size(), after);
   }
+  if (form.wound_up != std::array<double, 2>{}) equations.ways = ByWays(centred, options, form);
   return equations;
 }
 
@@ -168,6 +186,8 @@ CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
   if (equations.front().between.size() > 0) {
     shared.emplace_back(problem.Add(UnitBlock("between", equations.front().between.cols())));
   }
+  const bool ways = equations.front().ways.size() > 0;
+  if (ways) shared.emplace_back(problem.Add(UnitBlock("ways", equations.front().ways.cols())));
   for (std::size_t run = 0; run < equations.size(); ++run) {
     const CircleEquations& one = equations[run];
     std::vector<estimation::Input> inputs = shared;
@@ -177,8 +197,8 @@ CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
       inputs.emplace_back(problem.Add(UnitBlock(fmt::format("shapes_{}", run), one.shapes.cols())));
     }
     Eigen::MatrixXd A(one.radial.size(), 0);
-    for (const auto* part :
-         {&one.causes, &one.smooth, &one.instrument, &one.between, &one.centre, &one.shapes}) {
+    for (const auto* part : {&one.causes, &one.smooth, &one.instrument, &one.between, &one.ways,
+                             &one.centre, &one.shapes}) {
       if (part->cols() == 0) continue;
       A.conservativeResize(Eigen::NoChange, A.cols() + part->cols());
       A.rightCols(part->cols()) = *part;
@@ -187,7 +207,7 @@ CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
                 std::make_shared<estimation::LinearResidual>(std::move(A), one.radial), inputs,
                 deviation);
   }
-  CircleFit fit{problem.Solve(), {}, {}, {}};
+  CircleFit fit{problem.Solve(), {}, {}, {}, {}};
   if (!fit.result.Usable()) throw NumericalError(fit.result.WhyNotUsable());
   const auto without = [&fit](const Eigen::MatrixXd& columns, const std::string& block,
                               Eigen::VectorXd& left) {
@@ -198,12 +218,17 @@ CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
     Eigen::VectorXd& left = fit.unexplained.emplace_back(one.radial);
     without(one.causes, "cause", left);
     without(one.between, "between", left);
+    without(one.ways, "ways", left);
     without(one.shapes, fmt::format("shapes_{}", run), left);
     without(one.centre, fmt::format("centre_{}", run), left);
     Eigen::VectorXd& noise = fit.noise.emplace_back(left);
     without(one.smooth, "smooth", noise);
     without(one.instrument, "instrument", noise);
     fit.smooth.emplace_back(left - noise);
+  }
+  if (ways) {
+    const Eigen::VectorXd longer = fit.result.Block("ways").Values();
+    fit.longer = {longer[0], longer[1]};
   }
   return fit;
 }

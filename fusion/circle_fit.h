@@ -31,6 +31,7 @@ struct ReversalForm {
   std::array<double, 2> way{};
   double spike_width = 0.0;
   std::array<double, 2> spike_size{};
+  std::array<double, 2> wound_up{};  // m: backlash whose way is not known exactly
 };
 
 std::string CauseName(const standards::Signature& cause);  // "backlash.X"
@@ -39,10 +40,10 @@ std::vector<standards::Signature> CausesOf(const paths::CircleRun& run, const Ca
                                            const ReversalForm& form);
 
 // Radial deviations of a run, and their derivatives with respect to the centre, each cause, the
-// harmonics of smooth errors, the errors of the instrument, what spikes do beside their form, and by
-// how much they differ between the runs.
+// harmonics of smooth errors, the errors of the instrument, what spikes do beside their form, by how
+// much they differ between the runs, and the logarithm of the way of each axis.
 struct CircleEquations {
-  Eigen::MatrixXd centre, causes, smooth, instrument, shapes, between;
+  Eigen::MatrixXd centre, causes, smooth, instrument, shapes, between, ways;
   Eigen::VectorXd radial;
 };
 
@@ -56,6 +57,8 @@ struct CircleFit {
   // For each run: the deviations without the causes, their fitted smooth part (with the errors of
   // the instrument), and the residuals.
   std::vector<Eigen::VectorXd> unexplained, smooth, noise;
+  // What the fit adds to the logarithm of the way of each axis.
+  std::array<double, 2> longer{};
 };
 
 // `deviation`: m, of the rows.

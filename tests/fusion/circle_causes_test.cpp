@@ -143,6 +143,29 @@ TEST(CircleCauses, BacklashIsTakenUpOnTheWay) {
   }
 }
 
+// Over ways between those of any list, at a radius that the largest ways are half of.
+TEST(CircleCauses, BacklashThatWindsUpOverMillimetresIsAsSureAsItsWay) {
+  double inside = 0.0, all = 0.0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const random::CounterRandom random(seed, 0xBAC);
+    Machine m{.scale_x = 20e-6 * random.Normal(0), .scale_y = 20e-6 * random.Normal(1)};
+    m.wind_up_x = 4e-6 * (1.0 + random.Uniform(2));
+    m.wind_up_way = 0.3e-3 * std::pow(4e-3 / 0.3e-3, random.Uniform(3));
+    m.noise = 0.1e-6;
+    const auto slow = Measure(m, 0.002, {1, -1}, seed), fast = Measure(m, 0.02, {1, -1}, seed);
+    const CircleCauses found = FitCircleCauses({&slow, &fast});
+    for (Truth truth : TruthOf(m)) {
+      if (std::string(truth.cause) == "backlash" && truth.object[0] == 'X') {
+        truth.value = m.wind_up_x;
+      }
+      const CauseEstimate& one = Find(found, truth.cause, truth.object);
+      inside += std::abs(one.value - truth.value) < 2.0 * one.u ? 1.0 : 0.0;
+      all += 1.0;
+    }
+  }
+  EXPECT_GT(inside / all, 0.93);
+}
+
 TEST(CircleCauses, AllCausesAtOnceAreToldApart) {
   const auto slow = Measure(kAll, 0.002, {1, -1}), fast = Measure(kAll, 0.03, {1, -1});
   const CircleCauses found = FitCircleCauses({&slow, &fast});
