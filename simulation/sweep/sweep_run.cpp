@@ -32,7 +32,16 @@ Sweep ReadMeans(const recording::Recording& recording, const recording::Blocks& 
                 probes::ExcessNoise excess) {
   const auto dwells =
       probes::FindDwells(recording, blocks, probes::DwellRuleOf(recording), head.Ranges());
-  Sweep sweep{{}, probes::FitStations(recording.name, dwells, noise, excess)};
+  const auto fitted = [&](probes::ExcessNoise how) {
+    return probes::FitStations(recording.name, dwells, noise, how);
+  };
+  Sweep sweep{{}, fitted(excess)};
+  // One wild dwell of many passes raises the noise of all stations, which the robust loss of a map
+  // would leave out.
+  if (excess == probes::ExcessNoise::kFitted && sweep.means.moves.empty() &&
+      sweep.means.noise.dof > 0.0) {
+    sweep.means = fitted(probes::ExcessNoise::kScaled);
+  }
   sweep.run.name = recording.name;
   sweep.run.mounting = MountingOf(recording);
   sweep.run.mounted = MountedOf(recording);

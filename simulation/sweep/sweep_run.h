@@ -56,7 +56,7 @@ struct SweepRun {
   std::vector<std::size_t> first_rows;  // of the recording: of the first dwell of each row
   Eigen::Matrix<double, probes::kProbes, Eigen::Dynamic> gap;  // as read
   probes::PerProbe<Eigen::MatrixXd> covariance;                // m^2
-  std::vector<std::string> notes = {};  // what was taken out of the readings
+  std::vector<std::string> notes = {};                         // what was taken out of the readings
 
   Eigen::Index rows() const { return position.size(); }
   // [x y z] of all axes in a row.

@@ -89,7 +89,7 @@ TEST(ZeroTolerance, OfAnyKeyOfTheMachineFileTakesNoCauseAway) {
   ASSERT_TRUE(seen.contains("squareness:XY"));
   ASSERT_TRUE(seen.contains("link-gravity-bend:pivot_2"));
   const std::vector<std::string> tolerances = Tolerances(text);
-  ASSERT_EQ(tolerances.size(), 19u);
+  ASSERT_EQ(tolerances.size(), 20u);
   std::string none = text;
   for (const std::string& key : tolerances) {
     EXPECT_EQ(SeenWith(WithZero(text, key), world.recordings), seen) << key;
