@@ -73,6 +73,23 @@ std::string Line(std::string_view what, const fusion::ArmFigures& run) {
   return text;
 }
 
+// What the geometry does not explain; empty: nothing.
+std::string LeftText(const fusion::ArmCalibration& found) {
+  const bool is_no_noise = found.no_noise > 0.5;
+  if (found.excess <= 1.0 && !is_no_noise) return "";
+  std::string text = "\n";
+  if (found.excess > 1.0) {
+    text += fmt::format("The geometry leaves {:.3g} times the stated noise. ", found.excess);
+  }
+  text += is_no_noise
+              ? fmt::format(
+                    "What it leaves goes with the posture or the time (probability {:.3f}): "
+                    "the numbers may hide more of it, which U95 estimates from what is left",
+                    found.no_noise)
+              : "What it leaves looks like noise, and U95 counts it as such";
+  return text + "; abbe diagnose looks for its causes, and --causes takes them out first.\n";
+}
+
 }  // namespace
 
 ordered_json ArmCalibrationJson(const fusion::ArmCalibration& found, const std::string& machine) {
@@ -99,6 +116,7 @@ ordered_json ArmCalibrationJson(const fusion::ArmCalibration& found, const std::
           {"recordings", runs},
           {"tests", tests},
           {"residuals_over_noise", found.excess},
+          {"residuals_no_noise", found.no_noise},
           {"numbers", numbers},
           {"balls", balls}};
 }
@@ -120,12 +138,7 @@ std::string ArmCalibrationTable(const fusion::ArmCalibration& found) {
     text += fmt::format("ball \"{}\": {:.4f}, {:.4f}, {:.4f} mm in the same frame as ball\n", name,
                         p.x() / kMillimetre, p.y() / kMillimetre, p.z() / kMillimetre);
   }
-  if (found.excess > 1.0) {
-    text += fmt::format(
-        "\nThe geometry leaves {:.3g} times the stated noise, which U95 contains; abbe diagnose "
-        "looks for its causes, and --causes takes them out first.\n",
-        found.excess);
-  }
+  text += LeftText(found);
   if (found.tests.empty()) text += "No test set: give poses that took no part by --check.\n";
   return text;
 }

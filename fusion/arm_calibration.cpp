@@ -11,6 +11,7 @@
 
 #include "estimation/problem.h"
 #include "failure/failure.h"
+#include "fusion/arm_discrepancy.h"
 #include "fusion/contradiction.h"
 #include "fusion/machine_problem.h"
 #include "simulation/arm/arm_baseline.h"
@@ -67,10 +68,12 @@ class ArmJob {
     if (RaiseNoise()) fit_ = Fit(false);
     RefuseContradiction(fit_, 1.0);
     before_ = Fit(true);
+    AddDiscrepancy();
   }
 
   ArmCalibration Found(const std::vector<ArmPoses>& runs, const std::vector<ArmPoses>& tests) {
     ArmCalibration found{nominal_, WrittenBy(fit_, ""), {}, {}, {}, {}};
+    found.no_noise = no_noise_;
     found.u95 = Uncertainties(found);
     for (const FittedRun& run : fitted_) {
       found.excess = std::max(found.excess, run.baseline.excess);
@@ -146,6 +149,54 @@ class ArmJob {
       raised = true;
     }
     return raised;
+  }
+
+  // The part of what is left that no larger noise contains.
+  void AddDiscrepancy() {
+    std::vector<ArmLeft> runs;
+    double least = 1.0;
+    for (const FittedRun& run : fitted_) {
+      runs.push_back(LeftOf(run));
+      least = std::min(least, 1.0 / (run.baseline.excess * run.baseline.excess));
+    }
+    VectorXd prior_sd(std::ssize(fit_.names)), off(prior_sd.size());
+    for (const auto& block : fit_.blocks) {
+      for (std::size_t i = 0; i < block.entries.size(); ++i) {
+        const auto at = std::find(fit_.names.begin(), fit_.names.end(), block.FullName(i));
+        if (at == fit_.names.end()) continue;
+        prior_sd[at - fit_.names.begin()] = block.entries[i].prior_sd;
+        off[at - fit_.names.begin()] = block.entries[i].value - block.entries[i].nominal;
+      }
+    }
+    const Discrepancy found = DiscrepancyOf(runs, prior_sd, off, fit_.covariance, least);
+    fit_.covariance += found.covariance;
+    no_noise_ = found.probability;
+  }
+
+  ArmLeft LeftOf(const FittedRun& run) const {
+    const VectorXd x = ValuesFound(fit_, run.simulated.blocks);
+    const Index rows = run.simulated.residual->Rows(), pivots = run.kept.readings.angles.rows();
+    ArmLeft found{run.kept.readings.angles,
+                  run.kept.time,
+                  VectorXd(rows),
+                  Eigen::MatrixXd::Zero(rows, fit_.covariance.cols()),
+                  {}};
+    estimation::RowMatrix J(rows, x.size());
+    run.simulated.residual->Evaluate(x, found.left, &J);
+    const auto columns = simulation::ColumnsOf(run.simulated.blocks, run.kept.mounting, fit_.names);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (columns[i] >= 0) found.by_parameters.col(columns[i]) = J.col(i);
+    }
+    std::vector<simulation::Disturbance> moved;
+    for (Index stage = 0; stage < pivots + 3; ++stage) {
+      moved.emplace_back(run.kept.poses());
+      moved.back()
+          .row(stage < pivots ? simulation::kEncoderStage + stage
+                              : simulation::kTipStage + stage - pivots)
+          .setOnes();
+    }
+    found.by_stage = run.simulated.response->At(x)->Columns(moved);
+    return found;
   }
 
   void RefusePoor() const {
@@ -284,6 +335,7 @@ class ArmJob {
   WrittenChain nominal_;
   std::vector<FittedRun> fitted_;
   Result fit_, before_;
+  double no_noise_ = 0.0;
 };
 
 }  // namespace

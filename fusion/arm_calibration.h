@@ -8,7 +8,9 @@
 // Fitted are the lines of all joints, their encoder offsets, the balls, and where the instrument
 // stands (simulation/arm/arm_run.h); errors that are no geometry (eccentricity, gears, weights) are
 // not, and count as noise: what the geometry leaves beyond the stated noise does
-// (simulation/excess_noise.h). Poses far off all others are left out, as in a diagnosis. "Before"
+// (simulation/excess_noise.h). Where what is left is no noise but goes with the posture or with time,
+// such as by weight, U95 contains what the geometry may have taken of it (fusion/arm_discrepancy.h).
+// Poses far off all others are left out, as in a diagnosis. "Before"
 // is the arm as the file has it, with the place of the instrument and of further balls found from
 // `runs` alone, "after" the written numbers alone. `with`: corrected for causes
 // (simulation/correction.h); before is then of the recordings as they are.
@@ -19,7 +21,7 @@
 // NumericalError when the fit does not converge.
 // Source: product of exponentials (relm/serial_chain.h), least squares (estimation/problem.h).
 // Validity: geometry only; an arm that bends under its load by more than the noise shows as
-// `excess`.
+// `excess` and `no_noise`.
 #pragma once
 
 #include <Eigen/Core>
@@ -52,6 +54,7 @@ struct ArmCalibration {
   std::vector<std::pair<std::string, Eigen::Vector3d>> balls;
   std::vector<ArmFigures> runs, tests;
   double excess = 1.0;      // residuals over stated noise, the largest of a run; U95 contains it
+  double no_noise = 0.0;    // probability that what is left goes with the posture or with time
   double ball_noise = 0.0;  // m rms a coordinate: what the uncertainties of all numbers make
 };
 

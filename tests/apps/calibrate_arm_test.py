@@ -30,6 +30,11 @@ encoder_urad = 2.0
 reference_um = 5.0
 """
 NOISE = 5e-3  # mm
+# What the file should have then. Row 3 is the tilt; 90 degrees of theta go from it to row 4.
+WRITTEN = {("row 1", "a_mm"): 80.4, ("row 1", "alpha_deg"): -90.03, ("row 2", "theta_deg"): -89.95,
+           ("row 2", "a_mm"): 349.7, ("row 2", "alpha_deg"): 0.02, ("row 3", "alpha_deg"): 0.015,
+           ("row 4", "theta_deg"): 0.04 - 90.0, ("row 4", "d_mm"): 0.3, ("row 4", "a_mm"): 300.2,
+           ("row 4", "alpha_deg"): 90.02, ("ball", "x_mm"): 0.6, ("ball", "y_mm"): -0.3, ("ball", "z_mm"): 0.2}
 
 
 def in_radians(rows):
@@ -60,10 +65,12 @@ class CalibrateArm(ProgramCase):
         self.machine = self.path / "arm.toml"
         self.machine.write_text(MACHINE.format(form="denavit-hartenberg", rows=rows_text(NOMINAL)))
 
-    def record(self, name, ball="1", poses=80, seed=1, header="", joints=4):
+    def record(self, name, ball="1", poses=80, seed=1, header="", joints=4, gives=0.0):
+        """gives: rad by which joints 2 and 3 turn under the weight in the ball, over its lever in m."""
         draw = random.Random(seed)
         q = np.array([[draw.uniform(-2.0, 2.0) for _ in NOMINAL] for _ in range(poses)])
-        x = arm_fit.tips(in_radians(TRUE), BALLS[ball], q) @ np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1.0]])
+        turned = q + gives * 1e-3 * self.levers(q, ball) @ np.array([[0, 1, 0, 0], [0, 0, 0.6, 0]])
+        x = arm_fit.tips(in_radians(TRUE), BALLS[ball], turned) @ np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1.0]])
         lines = ["# abbe-recording = 1", '# kind = "linkage"', '# time = "order"', *header.splitlines(),
                  ",".join(["time_s", *(f"pivot_{i}_rad" for i in range(1, joints + 1)), "ref_x_mm", "ref_y_mm",
                            "ref_z_mm"])]
@@ -73,8 +80,35 @@ class CalibrateArm(ProgramCase):
         (self.path / name).write_text("\n".join(lines) + "\n")
         return self.path / name
 
+    def levers(self, q, ball):
+        """Of the ball about the horizontal axes 2 and 3, along the arm, mm: poses x 2."""
+        rows = in_radians(TRUE)
+        along = np.column_stack([np.cos(q[:, 0]), np.sin(q[:, 0]), np.zeros(len(q))])
+        places = [arm_fit.tips(rows[:n], np.zeros(3), q[:, :n]) for n in (1, 2)]
+        tip = arm_fit.tips(rows, BALLS[ball], q)
+        return np.column_stack([((tip - place) * along).sum(axis=1) for place in places])
+
     def numbers(self, result):
         return {(number["of"], number["key"]): number for number in result["numbers"]}
+
+    def pulls(self, found):
+        """By how many standard uncertainties each is off the truth."""
+        for key in WRITTEN:
+            self.assertGreater(found[key]["u95"], 0.0, key)
+        return [(found[key]["value"] - true) / (0.5 * found[key]["u95"]) for key, true in WRITTEN.items()]
+
+    def test_u95_contains_what_the_geometry_takes_of_joints_that_give(self):
+        pulls = []
+        for seed in range(1, 7):
+            # 20 to 100 um in the ball, beside a noise of 5 um.
+            poses = self.record("poses.csv", seed=seed, poses=60, gives=(-1.0)**seed * 200e-6)
+            result = self.result(poses, "--machine", self.machine)
+            self.assertGreater(result["residuals_no_noise"], 0.99)
+            pulls += self.pulls(self.numbers(result))
+        inside = np.mean(np.abs(pulls) < 2.0)
+        self.assertGreater(inside, 0.9, pulls)
+        self.assertLess(max(map(abs, pulls)), 4.0, pulls)
+        self.assertIn("goes with the posture", self.done(poses, "--machine", self.machine))
 
     def test_rows_are_found_with_their_uncertainty_and_written_into_a_new_file(self):
         old = self.machine.read_text()
@@ -83,21 +117,16 @@ class CalibrateArm(ProgramCase):
         result = self.result(poses, "--check", test, "--machine", self.machine, "-o", out)
         self.assertEqual(self.machine.read_text(), old)
         found = self.numbers(result)
-        # Row 3 is the tilt; 90 degrees of theta go from it to row 4.
-        true = {("row 1", "a_mm"): 80.4, ("row 1", "alpha_deg"): -90.03, ("row 2", "theta_deg"): -89.95,
-                ("row 2", "a_mm"): 349.7, ("row 2", "alpha_deg"): 0.02, ("row 3", "alpha_deg"): 0.015,
-                ("row 4", "theta_deg"): 0.04 - 90.0, ("row 4", "d_mm"): 0.3, ("row 4", "a_mm"): 300.2,
-                ("row 4", "alpha_deg"): 90.02, ("ball", "x_mm"): 0.6, ("ball", "y_mm"): -0.3, ("ball", "z_mm"): 0.2}
-        pulls = []
-        for key, value in true.items():
-            number = found.pop(key)
-            self.assertGreater(number["u95"], 0.0, key)
-            pulls.append((number["value"] - value) / (0.5 * number["u95"]))
+        pulls = self.pulls(found)
         # Thirteen normal numbers: none beyond four deviations, and neither all tiny nor all large.
         self.assertLess(max(abs(pull) for pull in pulls), 4.0, pulls)
         self.assertGreater(np.sqrt(np.mean(np.square(pulls))), 0.3, pulls)
         for key, number in found.items():
+            if key in WRITTEN:
+                continue
             self.assertAlmostEqual(number["value"], number.get("nominal", 90.0 if key[1] == "theta_deg" else 0.0), 9, key)
+        # Noise alone: nothing in it goes with the posture.
+        self.assertLess(result["residuals_no_noise"], 0.5)
         test_set, = result["tests"]
         self.assertGreater(test_set["before"]["rms_mm"], 0.2)
         self.assertLess(test_set["after"]["rms_mm"], 1.2 * math.sqrt(3.0) * NOISE)
