@@ -21,10 +21,9 @@ constexpr Index kFewRows = 8 * kLags;  // with less there are no such correlatio
 constexpr double kDoubtOfMemory = 1e-6;
 
 // What was whitened by a memory is held against what is stated, of as many rows as are independent.
-Leftover ScatterOf(const VectorXd& left, const PreparedRun& run) {
-  const double rows = left.size();
-  const double square = left.squaredNorm() / rows * run.excess * run.excess;
-  double freedom = rows;
+// An arm of few poses has nearly as many unknowns as rows, and its rows scatter less for it.
+Leftover ScatterOf(const VectorXd& left, const PreparedRun& run, double freedom) {
+  const double square = left.squaredNorm() / freedom * run.excess * run.excess;
   if (run.memory) {
     const VectorXd& time = run.trace.time;
     freedom *= run.memory->Independent((time.maxCoeff() - time.minCoeff()) / (time.size() - 1));
@@ -89,7 +88,10 @@ std::vector<Leftover> RunsThatScatter(const Fit& fit) {
   for (std::size_t run = 0; run < runs.size(); ++run) {
     const VectorXd& left = fit.LeftOf(run);
     if (left.size() == 0) continue;
-    std::vector<Leftover> answers{ScatterOf(left, runs[run])};
+    const double freedom = runs[run].EstimatesNoise()
+                               ? std::max(1.0, fit.result().sources[run].redundancy)
+                               : static_cast<double>(left.size());
+    std::vector<Leftover> answers{ScatterOf(left, runs[run], freedom)};
     if (HasNeighbours(runs[run], left)) answers.push_back(MemoryOf(InTime(left, runs[run].trace)));
     for (Leftover& answer : answers) {
       answer.object = runs[run].simulated.name;
