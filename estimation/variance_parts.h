@@ -1,8 +1,8 @@
 // How large the parts of a covariance are, by what was read.
 //
-//   const VariancePart ones{MatrixXd::Identity(n, n), 1.0};      // the noise, at least as stated
-//   const VarianceSizes sizes = EstimateVariances(prior, {ones, {kernel, 0.0}}, y);
-//   sizes.of_parts;                 // y ~ N(0, prior + sizes[0] I + sizes[1] kernel)
+//   const VariancePart noise{identity, 1.0};                     // at least as stated
+//   const VarianceSizes sizes = EstimateVariances(prior, {noise, {kernel}}, y);
+//   sizes.of_parts;     // y ~ N(0, prior + of_parts[0] identity + of_parts[1] kernel)
 //
 // Maximum of the marginal likelihood by steps that never lower it (minorization): each size times
 // the root of what y has of its part over what it should have. `prior`, such as J P J' of unknown

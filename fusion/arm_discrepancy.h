@@ -2,7 +2,7 @@
 // posture, such as by weight, gears or eccentricity, and a place that moves slowly. The geometry
 // takes part of it for its own, coherently in all poses, so no larger noise contains that.
 //
-//   const Discrepancy something = DiscrepancyOf(runs, prior_sd, off, covariance);
+//   const Discrepancy something = DiscrepancyOf(runs, prior_sd, off, covariance, 1.0);
 //   covariance += something.covariance;
 //
 // A Gaussian random field stands beside the noise: each joint turns by a field over its own angle

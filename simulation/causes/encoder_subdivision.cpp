@@ -1,4 +1,5 @@
-// Encoder subdivision: sin and cos `order` times per turn, order 8 and more.
+// Encoder subdivision: sin and cos `order` times per turn, order 8 and more. Of an encoder it is
+// whole; behind the gear of an arm it need not be, and stands for all up to those beside it.
 #include "simulation/causes/registry.h"
 
 namespace abbe::simulation {
@@ -28,6 +29,9 @@ Cause EncoderSubdivision() {
             for (int order = 8; order <= 128; ++order) orders.push_back(order);
             return ShapesOf(orders);
           },
+      .shape_spread = [](const Scene& scene, const Eigen::VectorXd&) -> double {
+        return scene.HasArms() ? 0.5 : 0.0;  // U95 is 1
+      },
       .tell = [](const Eigen::VectorXd& found, const Eigen::VectorXd& shape) -> Eigen::VectorXd {
         return Eigen::Vector3d(shape[0], found[0], found[1]);
       },

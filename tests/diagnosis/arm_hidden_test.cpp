@@ -70,6 +70,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Shown{"encoder-eccentricity:pivot_2",
                           {.joint = 1, .eccentricity_sin = 300e-6, .eccentricity_cos = -200e-6},
                           {300e-6, -200e-6}},
+                    Shown{"encoder-subdivision:pivot_3",
+                          {.joint = 2, .wave = 60e-6, .order = 60.0},
+                          {60.0, 60e-6, 0.0}},
                     Shown{"joint-gain:pivot_4", {.joint = 3, .gain = 300e-6}, {300e-6}},
                     Shown{"joint-compliance:pivot_2",
                           {.joint = 1, .own = 300e-6, .wrist = 400e-6, .load = 200e-6},
@@ -83,6 +86,20 @@ INSTANTIATE_TEST_SUITE_P(
                           {100e-6, 0.0, -150e-6, 40.0}},
                     Shown{"late-reading:arm", {.behind = 300e-6}, {1.0}},
                     Shown{"encoder-count-slip:pivot_5", {.joint = 4, .slip = 400e-6}, {}}));
+
+// Gears have waves of any order: where one is told for certain, U95 reaches that.
+TEST(ArmsHidden, AnOrderThatIsNotWholeIsWithinU95) {
+  constexpr double kOrder = 60.4;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Diagnosis diagnosis =
+        DiagnosisOf(ArmWorld::Record(seed, {.joint = 2, .wave = 15e-6, .order = kOrder}));
+    for (const auto& finding : diagnosis.findings) {
+      EXPECT_EQ(finding.score.candidate.Name(), "encoder-subdivision:pivot_3");
+      const auto [values, u] = KeysOf(finding.score);
+      EXPECT_NEAR(values[0], kOrder, 2.0 * u[0]) << seed;
+    }
+  }
+}
 
 // Outliers are counted by their rows, and no cause is blamed for them.
 TEST(ArmsHidden, PosesFarOffAreLeftOut) {

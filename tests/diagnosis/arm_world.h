@@ -32,7 +32,8 @@ struct HiddenInArm {
   int far_off = 0;                                         // poses that the tracker saw elsewhere
   double far_by = 3e-3;                                    // m
   double drift_x = 0.0, drift_z = 0.0, drift_poses = 1.0;  // mm, first order, in the base frame
-  double behind = 0.0;  // rad: scatter of what the joints were read before they stood
+  double wave = 0.0, order = 0.0;  // rad, per turn: of the joint behind its encoder
+  double behind = 0.0;             // rad: scatter of what the joints were read before they stood
 };
 
 class ArmWorld {
@@ -106,6 +107,7 @@ reference_um = 5.0
                       hidden.eccentricity_cos * std::cos(q) + hidden.gain * q +
                       (2 * pose >= kPoses ? hidden.slip : 0.0);
       const std::array<double, kJoints> sent = turned;
+      shown[joint] += hidden.wave * std::sin(hidden.order * q);
       for (std::size_t i = 0; hidden.behind > 0.0 && i < shown.size(); ++i) {
         shown[i] += normal(hidden.behind);
       }

@@ -63,8 +63,9 @@ TEST(VarianceParts, ThatAreNotThereFallTowardsZero) {
 
 // A level of each group that is unknown already leaves nothing to be seen of it.
 TEST(VarianceParts, LeaveWhatThePriorExplains) {
-  const VarianceSizes found = SizesOf(Drawn(2.0), 1e6 * SameGroup());
-  const auto groups = Drawn(2.0).reshaped(kEach, kGroups);
+  const VectorXd y = Drawn(2.0);
+  const VarianceSizes found = SizesOf(y, 1e6 * SameGroup());
+  const auto groups = y.reshaped(kEach, kGroups);
   const Eigen::RowVectorXd means = groups.colwise().mean();
   const double within = (groups.rowwise() - means).squaredNorm() / (kRows - kGroups);
   EXPECT_NEAR(found.of_parts[0], within, 1e-3 * within);
