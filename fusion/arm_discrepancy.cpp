@@ -110,7 +110,7 @@ std::vector<Index> StagesOf(const Field& field, const Poses& poses) {
   return {poses.pivots(), poses.pivots() + 1, poses.pivots() + 2};
 }
 
-// Of the rows.
+// What a field of size 1 makes of the rows.
 MatrixXd CovarianceOf(const Field& field, const Poses& poses) {
   const MatrixXd correlation = CorrelationOf(field, poses);
   MatrixXd covariance = MatrixXd::Zero(3 * poses.size(), 3 * poses.size());

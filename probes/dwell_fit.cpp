@@ -269,7 +269,7 @@ bool DwellFit::FindMoves(const Eigen::MatrixXd& white, const ProbeNoise& noise,
     double most = NoiseOf(row, of_probe, noise, std::nullopt).log_probability + enough;
     for (const Move& move : Candidates(row, of_probe, noise, suiting, enough)) {
       const double probability = NoiseOf(row, of_probe, noise, move).log_probability;
-      if (probability < most) continue;
+      if (!(probability > most)) continue;  // nor what is not finite
       most = probability;
       moves_[probe] = move;
       found = true;

@@ -22,7 +22,7 @@ inline constexpr double kLinearityLength = 1.0 / 16.0;  // of the range of a pro
 // The departure of a good probe, relative to its range: a limit of 0.1 %, evenly likely within.
 inline constexpr double kUsualLinearity = 0.001 / 1.7320508;
 
-// Of the readings at these gaps for the standard deviation `linearity`.
+// The covariance of readings at these gaps; `linearity`: standard deviation.
 inline Eigen::MatrixXd LinearityCovariance(const Eigen::VectorXd& gaps, double linearity,
                                            double range) {
   const double length = kLinearityLength * range;

@@ -55,7 +55,7 @@ class SweepUncertainty {
 
   // The covariance by source of one row of GroupErrors, before any gauge.
   std::array<Eigen::MatrixXd, kSources> Covariance(Eigen::Index row) const;
-  // Of probes that depart by kUsualLinearity.
+  // What a linearity of kUsualLinearity would add.
   Eigen::MatrixXd UsualLinearity(Eigen::Index row) const;
 
  private:

@@ -22,8 +22,8 @@
 // The zero takes in the height of each electrode, the place of head and faces along their normal
 // and the error of the machine at the start, so a sweep says nothing of these.
 //
-// Of each probe the departure from its straight characteristic (probes/probe_linearity.h) is in the
-// covariance, of one run: another run of the same gaps departs on its own.
+// What a probe departs from its straight characteristic (probes/probe_linearity.h) is in the
+// covariance of each run: another run over the same gaps departs on its own.
 // The form of the faces is a Gaussian process (target.form); where a probe sees it is nominal. It
 // correlates the readings of probes of one face, and is put into the covariance; `form_apart` has
 // it as parameters that all sweeps share (form_of_target.h).
