@@ -9,11 +9,11 @@
 #include <numeric>
 #include <optional>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include "failure/failure.h"
 #include "probes/channel_order.h"
+#include "probes/sweep_notes.h"
 #include "probes/sweep_slips.h"
 #include "probes/sweep_stations.h"
 #include "recording/made_on.h"
@@ -24,7 +24,6 @@ namespace abbe::probes {
 namespace {
 
 using Sources = std::array<Eigen::MatrixXd, kSources>;
-using PerComponent = std::array<double, kComponents>;
 
 Eigen::MatrixXd Sum(const Sources& sources) {
   return std::accumulate(sources.begin() + 1, sources.end(), sources.front());
@@ -224,130 +223,6 @@ int PassesOf(const std::vector<Dwell>& dwells) {
   return static_cast<int>(passes.size());
 }
 
-// The effect of an error in the position of the head, in um per mm: the straightness that the
-// measured angles produce at the end of such a lever.
-std::string LeverText(const SweepResult& result, const GroupErrors& errors,
-                      const SweepGauge& gauge) {
-  std::string text;
-  for (std::size_t i = 3; i < kComponents; ++i) {
-    const std::string& name = result.components[i].component.name;
-    const int across = name[1] - 'X';
-    text += fmt::format("{}{} by", text.empty() ? "" : " and ", name);
-    for (int along = 0; along < 3; ++along) {
-      // -(w x e) in the direction `across`, w the rows 0 to 2 of the errors.
-      Eigen::VectorXd moved = Eigen::VectorXd::Zero(errors.cols());
-      if (along != across) {
-        const double sign = (along + 1) % 3 == across ? -1.0 : 1.0;
-        moved = sign * errors.row(3 - along - across).transpose();
-      }
-      const Eigen::VectorXd bow = gauge.StationMeans(gauge.Apply(SweepGauge::Kind::kLine, moved));
-      text += fmt::format("{} {:.2g}", along == 0 ? "" : ",",
-                          (bow.maxCoeff() - bow.minCoeff()) * 1e3);  // um per mm
-    }
-  }
-  return text;
-}
-
-// How much rests on the stated form of the target, which one sweep cannot check.
-std::optional<std::string> FormNote(const TargetSettings& target, const SweepResult& result) {
-  constexpr double kMatters = 0.1;  // of a variance
-  constexpr double kTimes = 3.0;
-  constexpr std::size_t kForm = kSources - 1;
-  if (target.form_known_to == 1.0) return std::nullopt;
-  double most = 0.0;
-  std::string name;
-  for (const ComponentResult& component : result.components) {
-    double all = 0.0;
-    for (const double source : component.budget) all += source * source;
-    const double share = all > 0.0 ? std::pow(component.budget[kForm], 2) / all : 0.0;
-    if (share <= most) continue;
-    most = share;
-    name = component.component.name;
-  }
-  if (most < kMatters) return std::nullopt;
-  const double flatter = std::pow(UncheckedTimes(target.form_known_to), -2);
-  return fmt::format(
-      "{:.0f} % of the variance of {} rests on target.form_nm = {:.3g}, which one sweep cannot check: "
-      "u holds it as known to a factor of {:.3g}; on a target with {:.0f} times that form U95 would "
-      "be {:.1f} times as large. Measure the flatness of the faces and state it with form_known_to "
-      "= 1, or sweep once more with the target shifted or reversed and fuse",
-      100.0 * most, name, target.form * 1e9, target.form_known_to, kTimes,
-      std::sqrt(1.0 + most * (kTimes * kTimes * flatter - 1.0)));
-}
-
-// What probes of usual linearity would add where the machine file does not state it.
-std::optional<std::string> LinearityNote(const HeadSettings& head, const SweepResult& result,
-                                         const PerComponent& usual) {
-  constexpr double kMatters = 1.5;  // of a U95
-  if (!head.assumed.contains("head.tolerance.linearity_um")) return std::nullopt;
-  double most = 0.0;
-  std::string name;
-  for (std::size_t i = 0; i < usual.size(); ++i) {
-    const auto& budget = result.components[i].budget;
-    const double all = std::inner_product(budget.begin(), budget.end(), budget.begin(), 0.0);
-    const double times = all > 0.0 ? std::sqrt(1.0 + usual[i] * usual[i] / all) : 1.0;
-    if (times <= most) continue;
-    most = times;
-    name = result.components[i].component.name;
-  }
-  if (most < kMatters) return std::nullopt;
-  return fmt::format(
-      "the linearity of the probes is not in u: of 0.1 % of their range, which is usual, U95 of {} "
-      "would be {:.1f} times as large over these gaps; state head.tolerance.linearity_um by their "
-      "certificate (its limit / 1.7), 0 where their characteristics are corrected",
-      name, most);
-}
-
-// What the directions of the sweep leave open: the reversal.
-std::optional<std::string> DirectionNote(const StationMeans& means, const SweepResult& result) {
-  if (means.directions.size() == 1) {
-    return fmt::format(
-        "the sweep has {} passes only: the errors are those of this direction, and u holds no "
-        "reversal; the mean of both directions, as ISO 230-1 states it, differs by half the "
-        "reversal; record passes in both",
-        means.directions.front() > 0 ? "forward" : "backward");
-  }
-  if (Checked(means)) return std::nullopt;
-  std::string names;
-  for (const ComponentResult& component : result.components) {
-    if (!component.reversal->seen) continue;
-    names += (names.empty() ? "" : ", ") + component.component.name;
-  }
-  if (names.empty()) return std::nullopt;
-  return fmt::format(
-      "one pass: forward and backward of {} differ by more than noise and drift, but a probe that "
-      "jumps at the turn looks like that reversal; a second pass tells",
-      names);
-}
-
-std::vector<std::string> AssumptionNotes(const HeadSettings& head, const SweepResult& result,
-                                         const GroupErrors& errors, const SweepGauge& gauge) {
-  std::vector<std::string> notes;
-  const std::string place = fmt::format("head.axis_{}.position_mm", result.axis);
-  if (head.assumed.contains(place)) {
-    notes.push_back(
-        fmt::format("{} is not in the machine file and is taken as [0, 0, 0]: each mm of it in x, "
-                    "y, z moves {} um; state it",
-                    place, LeverText(result, errors, gauge)));
-  }
-  const std::string turn = fmt::format("head.axis_{}.rotation", result.axis);
-  if (head.assumed.contains(turn)) {
-    notes.push_back(fmt::format(
-        "{} is not in the machine file: a head that stands otherwise changes names and signs of "
-        "the errors; state it",
-        turn));
-  }
-  const auto placed = [&](char probe) {
-    return !head.assumed.contains(fmt::format("head.probe_{}.position_mm", probe));
-  };
-  if (!std::ranges::all_of(std::string_view("abcde"), placed)) {
-    notes.push_back(
-        "probes without position_mm are taken to stand as drawn, 10 and 20 mm from the edge: 1 % "
-        "of it moves an angle by 1 %; state them");
-  }
-  return notes;
-}
-
 }  // namespace
 
 SweepSetup ReadSweepSetup(const settings::Table& root) {
@@ -404,12 +279,7 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
     usual_linearity[i] =
         evaluate.OverStations(inversion.components()[i].gauge(), uncertainty.UsualLinearity(i));
   }
-  if (auto note = DirectionNote(means, result)) result.notes.push_back(std::move(*note));
-  if (auto note = FormNote(setup.target, result)) result.notes.push_back(std::move(*note));
-  if (auto note = LinearityNote(setup.head, result, usual_linearity)) {
-    result.notes.push_back(std::move(*note));
-  }
-  std::ranges::move(AssumptionNotes(setup.head, result, errors, gauge),
+  std::ranges::move(NotesOn(result, means, errors, gauge, setup, usual_linearity),
                     std::back_inserter(result.notes));
   return result;
 }
