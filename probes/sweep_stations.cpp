@@ -242,28 +242,42 @@ void AddUnseenSteps(const SweepDwells& sweep, StationMeans& means) {
 
 }  // namespace
 
+namespace {
+
+// Whatever drifts slowly one way looks like it.
+std::string DriftNote(const ZeroMove& drift) {
+  const double u95 = 1.96 * drift.u;
+  const std::string size =
+      std::abs(drift.size) > u95
+          ? fmt::format("by {:.3g} +- {:.2g} um (95 %) with a time constant of {:.3g} s",
+                        drift.size / settings::kMicrometre, u95 / settings::kMicrometre,
+                        drift.settles)
+          : "over the whole sweep";
+  return fmt::format(
+      "the zero of probe_{:c} drifts like one that warms up, {}: this is taken out, as two more "
+      "unknowns; let head and amplifier warm up before a sweep, or look for what else drifts",
+      'a' + drift.probe, size);
+}
+
+}  // namespace
+
 std::vector<std::string> MoveNotes(char axis, const StationMeans& means) {
   const auto place = [axis](const Dwell& dwell) {
     return fmt::format("{:c} = {:.6g} mm, pass {} {}", axis, dwell.position / settings::kMillimetre,
                        dwell.pass, dwell.direction > 0 ? "forward" : "backward");
   };
   std::vector<std::string> notes;
-  for (const ZeroMove& jump : means.moves) {
-    if (jump.settles > 0.0) {
-      notes.push_back(fmt::format(
-          "the zero of probe_{:c} warms up by {:.3g} +- {:.2g} um (95 %) with a time constant of "
-          "{:.3g} s: it is taken out, as two more unknowns; let head and amplifier warm up before "
-          "a sweep",
-          'a' + jump.probe, jump.size / settings::kMicrometre,
-          1.96 * jump.u / settings::kMicrometre, jump.settles));
+  for (const ZeroMove& move : means.moves) {
+    if (move.settles > 0.0) {
+      notes.push_back(DriftNote(move));
       continue;
     }
-    const Dwell &before = means.dwells[jump.dwell - 1], &after = means.dwells[jump.dwell];
+    const Dwell &before = means.dwells[move.dwell - 1], &after = means.dwells[move.dwell];
     notes.push_back(fmt::format(
         "the zero of probe_{:c} jumps by {:.3g} +- {:.2g} um (95 %) about {:.1f} s, between {} and "
         "{}: it is taken out, as one more unknown; look at the clamping, the cable and the "
         "amplifier of this probe",
-        'a' + jump.probe, jump.size / settings::kMicrometre, 1.96 * jump.u / settings::kMicrometre,
+        'a' + move.probe, move.size / settings::kMicrometre, 1.96 * move.u / settings::kMicrometre,
         0.5 * (before.time + after.time), place(before), place(after)));
   }
   return notes;

@@ -79,7 +79,7 @@ class FuseTest(ProgramCase):
         self.assertEqual(json.loads(plain.read_text())["notes"], [])
         before = json.loads(plain.read_text())["map"]["errors"]
         for move, words in ((lambda share: 1.0 * (share > 0.4), "the zero of probe_b jumps by "),
-                            (lambda share: 1.5 * (1 - np.exp(-4 * share)), "the zero of probe_b warms up by ")):
+                            (lambda share: 1.5 * (1 - np.exp(-4 * share)), "the zero of probe_b drifts like one that warms up, by ")):
             lines = runs[0].read_text().splitlines()
             head = next(i for i, line in enumerate(lines) if line.startswith("time_s"))
             column = lines[head].split(",").index("probe_b_um")

@@ -91,7 +91,9 @@ TEST(WarmingUp, IsTakenOutAndNamed) {
                       setup);
       inside.Add(sweep, result);
       for (const char probe : {'a', 'b', 'c', 'd', 'e'}) {
-        EXPECT_TRUE(Tells(result, fmt::format("the zero of probe_{} warms up by ", probe))) << seed;
+        EXPECT_TRUE(Tells(
+            result, fmt::format("the zero of probe_{} drifts like one that warms up, by ", probe)))
+            << seed;
       }
       const SweepResult sound = ReduceSweep(Record(sweep, setup), setup);
       times += result.components[2].u[6] / sound.components[2].u[6] / 12.0;
@@ -112,11 +114,11 @@ TEST(WarmingUp, TheNoteSaysHowLongAndHowFar) {
                   setup);
   std::string told;
   for (const std::string& note : result.notes) {
-    if (note.starts_with("the zero of probe_a warms up by ")) told = note;
+    if (note.starts_with("the zero of probe_a drifts like one that warms up, by ")) told = note;
     EXPECT_FALSE(note.starts_with("the zero of probe_b")) << note;
   }
   ASSERT_NE(told, "");
-  EXPECT_NEAR(std::stod(told.substr(32)), 1.0, 0.1);
+  EXPECT_NEAR(std::stod(told.substr(told.find(", by ") + 5)), 1.0, 0.1);
   const double whole = 78.0 * (12 + 20 + 10) * 0.005;  // s: 78 dwells
   EXPECT_NEAR(std::stod(told.substr(told.find("constant of ") + 12)), whole / 4.0, 0.1 * whole / 4);
 }
