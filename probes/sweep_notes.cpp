@@ -146,14 +146,14 @@ std::vector<std::string> AssumptionNotes(const HeadSettings& head, const SweepRe
 
 std::vector<std::string> NotesOn(const SweepResult& result, const StationMeans& means,
                                  const GroupErrors& errors, const SweepGauge& gauge,
-                                 const SweepSetup& setup, const PerComponent& usual_linearity) {
+                                 const HeadSettings& head, const TargetSettings& target,
+                                 const PerComponent& usual_linearity) {
   std::vector<std::string> notes;
-  for (std::optional<std::string> note :
-       {DirectionNote(means, result), FormNote(setup.target, result),
-        LinearityNote(setup.head, result, usual_linearity)}) {
+  for (std::optional<std::string> note : {DirectionNote(means, result), FormNote(target, result),
+                                          LinearityNote(head, result, usual_linearity)}) {
     if (note) notes.push_back(*std::move(note));
   }
-  std::ranges::move(AssumptionNotes(setup.head, result, errors, gauge), std::back_inserter(notes));
+  std::ranges::move(AssumptionNotes(head, result, errors, gauge), std::back_inserter(notes));
   return notes;
 }
 

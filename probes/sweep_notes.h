@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "probes/head_settings.h"
 #include "probes/sweep_gauge.h"
-#include "probes/sweep_reduction.h"
+#include "probes/sweep_result.h"
 
 namespace abbe::probes {
 
@@ -19,6 +20,7 @@ using PerComponent = std::array<double, kComponents>;
 // One sentence each. `usual_linearity`: what probes of usual linearity would add.
 std::vector<std::string> NotesOn(const SweepResult& result, const StationMeans& means,
                                  const GroupErrors& errors, const SweepGauge& gauge,
-                                 const SweepSetup& setup, const PerComponent& usual_linearity);
+                                 const HeadSettings& head, const TargetSettings& target,
+                                 const PerComponent& usual_linearity);
 
 }  // namespace abbe::probes

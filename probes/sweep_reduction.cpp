@@ -279,8 +279,9 @@ SweepResult ReduceSweep(const recording::Recording& recording, const SweepSetup&
     usual_linearity[i] =
         evaluate.OverStations(inversion.components()[i].gauge(), uncertainty.UsualLinearity(i));
   }
-  std::ranges::move(NotesOn(result, means, errors, gauge, setup, usual_linearity),
-                    std::back_inserter(result.notes));
+  std::ranges::move(
+      NotesOn(result, means, errors, gauge, setup.head, setup.target, usual_linearity),
+      std::back_inserter(result.notes));
   return result;
 }
 
