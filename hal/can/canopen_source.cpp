@@ -59,10 +59,11 @@ SampleSet CanopenSource::Read() {
     encoder.too_short = false;
   }
   sync_s_.reset();
+  const bool answers_doubled = foreign_sync_;
   foreign_sync_ = false;
   if (part_ == Part::kMaster) {
     Listen(clock_.Now());
-    AwaitLateAnswers();
+    AwaitLateAnswers(answers_doubled);
     Command();
   }
   Collect();
@@ -87,10 +88,10 @@ void CanopenSource::Listen(double until_s) {
   }
 }
 
-void CanopenSource::AwaitLateAnswers() {
+void CanopenSource::AwaitLateAnswers(bool doubled) {
   double until = sent_s_ + Span(2.0 * settings_.times.answer);
   const auto owes = [](const Encoder& encoder) { return encoder.owes; };
-  while (sync_due_ || std::any_of(encoders_.begin(), encoders_.end(), owes)) {
+  while (doubled || sync_due_ || std::any_of(encoders_.begin(), encoders_.end(), owes)) {
     const bool was_due = sync_due_;
     const auto received = bus_->Receive(until);
     if (!received) break;
@@ -210,7 +211,7 @@ Sample CanopenSource::SampleOf(Encoder& encoder, bool torn, double now_s) {
   const bool waited_for = encoder.node.Answers(now_s) && (sync_s_ || !produces());
   encoder.silent = !encoder.answer;
   if (encoder.silent && waited_for) ++counts_.missing;
-  encoder.owes = waited_for && (encoder.silent || foreign_sync_);
+  encoder.owes = waited_for && encoder.silent;
   const auto missing = [&](Cause cause) {
     return encoder.judge.Missing(cause, sync_s_.value_or(now_s));
   };

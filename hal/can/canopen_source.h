@@ -4,8 +4,8 @@
 // stamped with the time at which the SYNC passed the bus, when the encoders latch their counts. A
 // PDO that answers no SYNC (late, doubled) is discarded and counted; after a missing one the next
 // SYNC waits until twice the answer time has passed, so that a late one is not mistaken for its
-// answer. With `sync_ms = 0` abbe sends no SYNC and uses those of another device, or, where there
-// are none, the PDOs as they arrive.
+// answer; so it does after a foreign SYNC, which is answered too. With `sync_ms = 0` abbe sends no
+// SYNC and uses those of another device, or, where there are none, the PDOs as they arrive.
 //
 // A node that restarts has lost its reference: its samples are bad until ConfirmReference(). This
 // is the one fault from which a source does not recover by itself.
@@ -86,7 +86,9 @@ class CanopenSource : public DeviceSource {
   Cycle HearSync(const ReceivedFrame& received);
   Cycle HearPdo(Encoder& encoder, const ReceivedFrame& received);
   void Listen(double until_s);  // handles all frames until then
-  void AwaitLateAnswers();
+  // Until no answer to the SYNC before is owed. After two SYNCs in one cycle (`doubled`) nobody knows
+  // whose answer an answer is: then the whole time is waited.
+  void AwaitLateAnswers(bool doubled);
   void Command();  // sends the requests that are due, then the SYNC
   void Collect();
   bool Complete(double now_s) const;

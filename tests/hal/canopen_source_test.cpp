@@ -249,6 +249,28 @@ TEST_F(ThreeEncoders, ASecondMasterIsNoticed) {
   EXPECT_TRUE(Next().AllGood());
 }
 
+// Every second SYNC and every answer arrives doubled, and the node needs a while: what it answers to
+// the double of a SYNC comes after both copies of its first answer.
+TEST_F(ThreeEncoders, AnAnswerToADoubledSyncIsNeverTakenForTheNext) {
+  nodes_.resize(1);
+  settings_.encoders.resize(1);
+  Open().Require();
+  wire_.Inject({.kind = CanTrouble::Kind::kDoubled, .id = kSyncId, .every = 2});
+  wire_.Inject({.kind = CanTrouble::Kind::kLate, .id = 0x181, .late_s = 0.005});
+  wire_.Inject({.kind = CanTrouble::Kind::kLate, .id = 0x181, .late_s = 0.003, .every = 3});
+  wire_.Inject({.kind = CanTrouble::Kind::kDoubled, .id = 0x181});
+  int good = 0;
+  for (int i = 0; i < 20; ++i) {
+    angle_ += 0.01;
+    const SampleSet set = source_->Read();
+    Beat();
+    if (!set.AllGood()) continue;
+    ++good;
+    EXPECT_NEAR(set.samples[0].value, angle_, 1e-5) << "set " << i;
+  }
+  EXPECT_EQ(good, 10);
+}
+
 // A bus that another commands: every SYNC of it is one reading, at its own time.
 TEST_F(ThreeEncoders, AListenerTakesTheSyncsOfAnother) {
   Open(CanopenSource::Part::kListener);
