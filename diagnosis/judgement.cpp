@@ -2,13 +2,16 @@
 // probable each is beside all others, what is left, and the verdict.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "diagnosis/alias_group.h"
 #include "diagnosis/doubts.h"
 #include "diagnosis/scatter.h"
 #include "diagnosis/search.h"
 #include "diagnosis/shape_posterior.h"
+#include "failure/failure.h"
 #include "simulation/causes/registry.h"
 
 namespace abbe::diagnosis {
@@ -21,6 +24,27 @@ Verdict VerdictOf(const Diagnosis& diagnosis) {
       std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
                   [](const Finding& finding) { return finding.probability >= kCertain; });
   return certain ? Verdict::kExplained : Verdict::kAmbiguous;
+}
+
+// A gap sensor whose gain is exactly that of the first is none: what is not seen of it is unknown
+// still, and moves the sizes of the causes that are.
+std::shared_ptr<const Fit> WithGainsNotSeen(std::shared_ptr<const Fit> fit,
+                                            const std::vector<Candidate>& all) {
+  std::vector<Candidate> with = fit->taken_in();
+  if (std::ranges::none_of(with, [](const Candidate& each) {
+        return each.cause->id == "target-eccentricity";  // without it no gain does anything
+      })) {
+    return fit;
+  }
+  for (const Candidate& each : all) {
+    if (each.cause->id == "sensor-gain" && !IsAmong(with, each)) with.push_back(each);
+  }
+  if (with.size() == fit->taken_in().size()) return fit;
+  try {
+    return std::make_shared<const Fit>(*fit, std::move(with));
+  } catch (const NumericalError&) {
+    return fit;
+  }
 }
 
 }  // namespace
@@ -93,7 +117,8 @@ void Search::ForgiveRivalsFound() {
 // In the order of the members. A shape that is hardly known widens what stands beside it too.
 std::vector<Score> Search::Scores() const {
   std::vector<Score> scores;
-  for (std::size_t i = 0; i < members_.size(); ++i) scores.push_back(fit_->ScoreOf(i));
+  const FitPointer fit = WithGainsNotSeen(fit_, candidates_);
+  for (std::size_t i = 0; i < members_.size(); ++i) scores.push_back(fit->ScoreOf(i));
   std::vector<Eigen::MatrixXd> added(members_.size());
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const bool hardly_known = IsHardlyKnown(scores[i]), aliases = MayHaveAliases(scores[i]);

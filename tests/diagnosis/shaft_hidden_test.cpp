@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "random/counter_random.h"
 #include "tests/diagnosis/shaft_world.h"
 #include "tests/hidden_effects/judgement.h"
 #include "tests/seeds.h"
@@ -77,6 +80,30 @@ TEST(TurningWheels, TellEccentricityLobesAndGain) {
     ExpectKey(diagnosis, "target-lobing:shaft", 3, -1e-6);
     ExpectKey(diagnosis, "sensor-gain:sensor_2", 0, 0.05);
   }
+}
+
+// No two sensors show the same of a motion; where the difference is too small to be found, sizes are
+// as uncertain as it leaves them.
+TEST(TurningWheels, KnowSizesBesideGainsThatAreNotFound) {
+  constexpr std::uint64_t kSeeds = 12;
+  Rate inside;
+  for (const double size : {0.001, 0.002, 0.004}) {
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      const random::CounterRandom draw(seed, 0x6A1);
+      Wheel wheel{.radius = kLarge, .eccentricity = 60e-6, .phase = 1.0};
+      for (std::size_t sensor = 1; sensor <= 2; ++sensor) {
+        wheel.gain[sensor] += size * draw.Normal(sensor);
+      }
+      const Diagnosis diagnosis = DiagnosisOf({wheel}, seed);
+      const Finding* found = Found(diagnosis, "target-eccentricity:shaft");
+      ASSERT_NE(found, nullptr);
+      const auto keys = diagnosis::KeysOf(found->score);
+      inside.Add(std::abs(keys.values[0] - wheel.eccentricity) < 1.96 * keys.u[0]);
+      inside.Add(std::abs(keys.values[1] - wheel.phase) < 1.96 * keys.u[1]);
+    }
+  }
+  fmt::print("inside U95: {}\n", inside.Text());
+  EXPECT_GE(inside.High(), 0.95) << inside.Text();
 }
 
 // As on the target wheel of the field test.
