@@ -124,6 +124,7 @@ class Calibration {
       ball.Add(recording, runs.back());
       AddProtocol(recording, whose);
     }
+    RefuseNearCopies(arguments_.recordings);
     if (arguments_.poses > 0) KeepBest(runs, certain);
     fusion::CalibrationReport report = CalibrationOf(runs);
     if (causes_.WidensU95()) {

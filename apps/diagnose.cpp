@@ -82,6 +82,7 @@ int Diagnose(const DiagnoseArguments& arguments) {
   simulation::Instruments instruments = ReadInstruments(arguments.machine);
   std::vector<recording::Recording> recordings;
   for (const fs::path& path : arguments.recordings) recordings.push_back(ReadWithWarnings(path));
+  RefuseNearCopies(arguments.recordings);
   const learned::Explanation all = [&] {
     const WorkingLine line("diagnose", arguments.quiet);
     return learned::Explain(recordings, std::move(instruments),

@@ -110,6 +110,7 @@ int Fuse(const FuseArguments& arguments) {
   std::vector<RunSource> sources;
   for (const fs::path& path : arguments.recordings) sources.push_back(SourceAt(machine, path));
   simulation::RefuseStrangers(sources, instruments);
+  RefuseNearCopies(arguments.recordings);
   std::optional<WorkingLine> line(std::in_place, "fuse", arguments.quiet);
   const bool choose = !arguments.fixed_smoothness;
   std::optional<fusion::FuseReport> other;

@@ -12,6 +12,7 @@
 
 #include "apps/working_line.h"
 #include "failure/failure.h"
+#include "fusion/near_copy.h"
 #include "recording/file_hash.h"
 #include "recording/made_on.h"
 #include "recording/recording_file.h"
@@ -22,6 +23,20 @@ namespace {
 void Warn(const recording::Recording& recording) {
   if (!recording.warnings.empty()) WorkingLine::Erase();
   for (const std::string& warning : recording.warnings) fmt::print(stderr, "abbe: {}\n", warning);
+}
+
+// The first rows, as many as tell what a recording is; no columns where it cannot be read, which its
+// reader says.
+recording::Recording FirstRowsOf(const std::filesystem::path& path) {
+  recording::Recording first;
+  try {
+    recording::ReadBlocks(path, [&](const recording::Recording& block) {
+      if (block.first_row == 0) first = block;
+    });
+  } catch (const InputError&) {
+    first.columns.clear();
+  }
+  return first;
 }
 
 }  // namespace
@@ -50,6 +65,22 @@ void RefuseTwice(const std::vector<std::filesystem::path>& recordings) {
                       path.string(), other.path.string()));
     }
     seen[size].push_back(std::move(now));
+  }
+}
+
+void RefuseNearCopies(const std::vector<std::filesystem::path>& paths) {
+  if (paths.size() < 2) return;
+  std::vector<recording::Recording> read;
+  for (const std::filesystem::path& path : paths) {
+    const recording::Recording& now = read.emplace_back(FirstRowsOf(path));
+    for (std::size_t i = 0; i + 1 < read.size(); ++i) {
+      const auto shared = fusion::SharedNoise(read[i], now);
+      if (!shared) continue;
+      throw InputError(
+          fmt::format("{}: is {} with small changes: its noise, which is new in every measurement, "
+                      "is the same (correlation {:.2f}), and would count twice; give one of them",
+                      path.string(), paths[i].string(), *shared));
+    }
   }
 }
 

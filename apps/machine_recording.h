@@ -13,6 +13,8 @@ namespace abbe::apps {
 
 // InputError where one file is given twice, or a copy of it: its rows would count twice.
 void RefuseTwice(const std::vector<std::filesystem::path>& recordings);
+// The same where one is another with small changes (fusion/near_copy.h).
+void RefuseNearCopies(const std::vector<std::filesystem::path>& recordings);
 
 // Reads any recording and prints its warnings on standard error. Failure: that of
 // recording/recording_file.h.

@@ -41,6 +41,7 @@ std::vector<simulation::PlateSetup> ReadSetups(const PlateArguments& arguments,
     AddProtocol(recording, result);
     for (auto& setup : simulation::ReadPlate(recording)) setups.push_back(std::move(setup));
   }
+  RefuseNearCopies(arguments.recordings);
   return setups;
 }
 
