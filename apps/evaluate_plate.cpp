@@ -1,12 +1,16 @@
 #include "apps/evaluate_plate.h"
 
+#include <utility>
+
 #include "failure/progress.h"
 
 namespace abbe::apps {
 
 PlateResult EvaluatePlate(const machine::Machine& machine,
-                          const std::vector<simulation::PlateSetup>& setups,
+                          const std::vector<simulation::PlateSetup>& measured,
                           const PlateOptions& options) {
+  std::vector<fusion::WrongHole> wrong = fusion::FindWrongHoles(machine, measured);
+  const auto setups = fusion::WithoutHoles(measured, wrong);
   const auto runs_on = [&](const machine::VolumetricModel& model) {
     std::vector<simulation::SimulatedRun> runs;
     runs.reserve(setups.size());
@@ -21,7 +25,8 @@ PlateResult EvaluatePlate(const machine::Machine& machine,
                    {.choose_smoothness = !options.fixed_smoothness, .runs_on = runs_on}),
       {},
       {},
-      {}};
+      {},
+      std::move(wrong)};
   const fusion::FuseReport& fused = result.fused;
   result.diagonals = fusion::SquarenessByDiagonals(fused, machine.reference, setups);
   if (options.holdout > 0) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "apps/fuse_result.h"
 #include "settings/unit.h"
@@ -82,6 +83,25 @@ std::string SpecimenTable(const PlateResult& result) {
   return text;
 }
 
+// A hole that is wrong in all set-ups has one line.
+std::string WrongHolesText(const PlateResult& result) {
+  std::string text;
+  std::set<int> told;
+  for (const fusion::WrongHole& each : result.wrong_holes) {
+    if (each.anywhere && !told.insert(each.hole).second) continue;
+    text += fmt::format(
+        "\nWRONG HOLE: hole {} {} is off by {:+.3g}, {:+.3g} um in the plate, {:.2g} times its "
+        "uncertainty, and left out: {}; measure it again.\n",
+        each.hole,
+        each.anywhere ? "in all set-ups"
+                      : fmt::format("of {}", result.fused.fit.sources[each.setup].name),
+        each.off.x() / kMicro, each.off.y() / kMicro, each.sigma,
+        each.anywhere ? "a moved or damaged bush, or a wrong line of the certificate"
+                      : "dirt, a wrong seat, or a wrong number");
+  }
+  return text;
+}
+
 std::vector<double> List(const VectorXd& values) { return {values.begin(), values.end()}; }
 
 }  // namespace
@@ -118,12 +138,19 @@ ordered_json PlateJson(const PlateResult& result) {
                                 {"after_mm", each.after / kMillimetre},
                                 {"u_um", each.u / kMicro}});
   }
+  for (const auto& each : result.wrong_holes) {
+    json["wrong_holes"].push_back({{"run", result.fused.fit.sources[each.setup].name},
+                                   {"hole", each.hole},
+                                   {"off_um", {each.off.x() / kMicro, each.off.y() / kMicro}},
+                                   {"sigma", each.sigma},
+                                   {"in_all_setups", each.anywhere}});
+  }
   return json;
 }
 
 std::string PlateTable(const PlateResult& result) {
-  return ErrorTable(result) + SquarenessTable(result) + RunsText(result.fused) +
-         InterpolatorTable(result) + SpecimenTable(result);
+  return ErrorTable(result) + SquarenessTable(result) + WrongHolesText(result) +
+         RunsText(result.fused) + InterpolatorTable(result) + SpecimenTable(result);
 }
 
 }  // namespace abbe::apps

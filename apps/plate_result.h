@@ -11,6 +11,7 @@
 #include "fusion/interpolators.h"
 #include "fusion/plate_diagonals.h"
 #include "fusion/specimen_check.h"
+#include "fusion/wrong_holes.h"
 
 namespace abbe::apps {
 
@@ -19,6 +20,7 @@ struct PlateResult {
   std::array<fusion::DiagonalSquareness, 3> diagonals;
   std::vector<fusion::InterpolatorCheck> interpolators;  // empty: nothing was held out
   std::vector<fusion::SpecimenLength> specimen;          // empty: none given
+  std::vector<fusion::WrongHole> wrong_holes;            // left out
 };
 
 // The keys of `abbe fuse`, and those of docs/plate.md.

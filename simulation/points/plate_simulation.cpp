@@ -84,23 +84,6 @@ void RefuseLine(const PlateSetup& setup) {
                   setup.points.name, setup.points.count()));
 }
 
-// The part of a plate that was measured in one set-up.
-PlateSetup Subset(const PlateSetup& all, const std::vector<Index>& of) {
-  PlateSetup part = all;
-  const Index n = of.size();
-  part.points.axes = all.points.axes(Eigen::all, of);
-  part.certificate = all.certificate(Eigen::all, of);
-  part.u_form = all.u_form(of);
-  part.holes.resize(of.size());
-  part.points.rows.resize(of.size());
-  for (Index i = 0; i < n; ++i) {
-    const std::size_t from = of[i];
-    part.holes[i] = all.holes[from];
-    part.points.rows[i] = all.points.rows[from];
-  }
-  return part;
-}
-
 estimation::ParameterBlock FormOf(const PlateSetup& setup, std::size_t point) {
   const double u = setup.u_form[point];
   estimation::ParameterBlock block(HoleBlock(setup, setup.holes[point]), {"um", 1e-6}, {});
@@ -170,6 +153,22 @@ class PlateResidual : public Responsive {
 
 }  // namespace
 
+PlateSetup PartOf(const PlateSetup& all, const std::vector<Index>& of) {
+  PlateSetup part = all;
+  const Index n = of.size();
+  part.points.axes = all.points.axes(Eigen::all, of);
+  part.certificate = all.certificate(Eigen::all, of);
+  part.u_form = all.u_form(of);
+  part.holes.resize(of.size());
+  part.points.rows.resize(of.size());
+  for (Index i = 0; i < n; ++i) {
+    const std::size_t from = of[i];
+    part.holes[i] = all.holes[from];
+    part.points.rows[i] = all.points.rows[from];
+  }
+  return part;
+}
+
 std::string HoleBlock(const PlateSetup& setup, int hole) {
   return fmt::format("plate_hole {} {}", setup.plate, hole);
 }
@@ -200,7 +199,7 @@ std::vector<PlateSetup> ReadPlate(const recording::Recording& recording) {
   }
   std::vector<PlateSetup> setups;
   for (const int number : order) {
-    PlateSetup& part = setups.emplace_back(Subset(all, rows[number]));
+    PlateSetup& part = setups.emplace_back(PartOf(all, rows[number]));
     part.points.tool = ToolOf(recording, number, part.points.rows.front());
     part.points.name = fmt::format("{} set-up {}", recording.name, number);
     RefuseLine(part);

@@ -54,6 +54,9 @@ struct PlateSetup {
 // In the order of first appearance.
 std::vector<PlateSetup> ReadPlate(const recording::Recording& recording);
 
+// These points of a set-up alone.
+PlateSetup PartOf(const PlateSetup& all, const std::vector<Eigen::Index>& of);
+
 // The block of the form of a hole.
 std::string HoleBlock(const PlateSetup& setup, int hole);
 
