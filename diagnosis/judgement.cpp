@@ -26,18 +26,14 @@ Verdict VerdictOf(const Diagnosis& diagnosis) {
   return certain ? Verdict::kExplained : Verdict::kAmbiguous;
 }
 
-// A gap sensor whose gain is exactly that of the first is none: what is not seen of it is unknown
-// still, and moves the sizes of the causes that are.
-std::shared_ptr<const Fit> WithGainsNotSeen(std::shared_ptr<const Fit> fit,
-                                            const std::vector<Candidate>& all) {
+// What is not seen of a cause that is always there is unknown still, and moves the sizes of those
+// that are.
+std::shared_ptr<const Fit> WithThoseAlwaysThere(std::shared_ptr<const Fit> fit,
+                                                const std::vector<Candidate>& all) {
   std::vector<Candidate> with = fit->taken_in();
-  if (std::ranges::none_of(with, [](const Candidate& each) {
-        return each.cause->id == "target-eccentricity";  // without it no gain does anything
-      })) {
-    return fit;
-  }
+  if (with.empty()) return fit;
   for (const Candidate& each : all) {
-    if (each.cause->id == "sensor-gain" && !IsAmong(with, each)) with.push_back(each);
+    if (each.cause->always_there && !IsAmong(with, each)) with.push_back(each);
   }
   if (with.size() == fit->taken_in().size()) return fit;
   try {
@@ -117,7 +113,7 @@ void Search::ForgiveRivalsFound() {
 // In the order of the members. A shape that is hardly known widens what stands beside it too.
 std::vector<Score> Search::Scores() const {
   std::vector<Score> scores;
-  const FitPointer fit = WithGainsNotSeen(fit_, candidates_);
+  const FitPointer fit = WithThoseAlwaysThere(fit_, candidates_);
   for (std::size_t i = 0; i < members_.size(); ++i) scores.push_back(fit->ScoreOf(i));
   std::vector<Eigen::MatrixXd> added(members_.size());
   for (std::size_t i = 0; i < members_.size(); ++i) {

@@ -4,12 +4,12 @@
 //   if (const auto shared = SharedNoise(one, other)) ...       // 1: the same noise throughout
 //
 // What a machine does it does again, and two true repetitions agree in it to the last wave; the
-// noise is new each time. So only what cannot repeat is compared. At a standstill (kStill), rows are
-// taken in groups of four, their means removed; of the directions that are left, over all channels
-// together, those two thirds with the largest variance are dropped: settling, mains, vibrations and
-// drifts, which have few directions, are among them. The share S of equal less unequal signs in
-// the rest, rows of equal time after one start at the same places, is 0 for independent noise, with a standard
-// deviation of 1 / sqrt(n). A copy is told where
+// noise is new each time. So only what cannot repeat is compared. At a standstill (kStill), rows
+// are taken in groups of four, their means removed; of the directions that are left, over all
+// channels together, those two thirds with the largest variance are dropped: settling, mains,
+// vibrations and drifts, which have few directions, are among them. The share S of equal less
+// unequal signs in the rest, rows of equal time after one start at the same places, is 0 for
+// independent noise, with a standard deviation of 1 / sqrt(n). A copy is told where
 //
 //   S > 0.4   and   S sqrt(n) > 10   and   S > 2 max_k |S_k|,     n >= 200
 //

@@ -1,10 +1,10 @@
-// Holes of a plate that were read wrong, by dirt, a wrong seat or a moved bush: named, and left out.
+// Holes of a plate read wrong, by dirt, a wrong seat or a moved bush: named, and left out.
 //
 //   WithoutHoles(setups, FindWrongHoles(machine, setups))
 //
 // All set-ups are linear in the machine, the poses and the form, H their information with the
-// priors of the machine file, e what is left of all rows at the solution, s their noise. For a shift
-// C of a reading, or of a hole in all set-ups (Rao, 1948; two numbers each),
+// priors of the machine file, e what is left of all rows at the solution, s their noise. For a
+// shift C of a reading, or of a hole in all set-ups (Rao, 1948; two numbers each),
 //
 //   g = C'e / s^2      S = C'C / s^2 - C'J H^-1 J'C / s^4      T = g' S^-1 g
 //

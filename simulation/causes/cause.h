@@ -139,6 +139,7 @@ struct Cause {
   bool fixed_shapes = false;        // nothing between those tried
   bool one_event = false;           // cannot be held against other passes
   bool own_in_each_run = false;     // other runs tell its size alone
+  bool always_there = false;        // of some size: beside others a nuisance parameter, even unseen
   bool exchanges_channels = false;  // of a pair: the noise of a channel goes with it
   Recall recall = {};               // of the values that `tell` gives; none: as without `tell`
   // Sine and cosine of shape[0] times the angle of a pivot: their phase is known no better than the

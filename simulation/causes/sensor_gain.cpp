@@ -34,6 +34,7 @@ Cause SensorGain() {
         if (!trace.rim || sensor >= trace.rim->sensors) return {};
         return {InStage(trace, kReadingStage + sensor, trace.rim->Of(sensor, trace.rim->seen))};
       },
+      .always_there = true,
   };
 }
 
