@@ -15,6 +15,7 @@ namespace {
 constexpr double kMove = 1e-6;        // m: what a move is expected to be like
 constexpr double kTimeKnownTo = 0.7;  // logarithm
 constexpr double kMoveOdds = 1e3;
+constexpr Eigen::Index kWildOneIn = 20;
 
 estimation::MarkovNoiseFit FitColumns(std::span<const double> times, std::span<const int> groups,
                                       const Eigen::MatrixXd& columns, const Eigen::VectorXd& white,
@@ -90,6 +91,7 @@ DwellFit::DwellFit(const StationMeans& means) {
     for (std::size_t probe = 0; probe < kProbes; ++probe) values_(i, probe) = dwell.gap[probe];
   }
   group_count_ = static_cast<int>(means.stations.size()) * directions;
+  wild_ = Eigen::MatrixXd::Zero(values_.rows(), kProbes);
 }
 
 double DwellFit::dof() const {
@@ -102,6 +104,7 @@ double DwellFit::dof() const {
 
 Eigen::MatrixXd DwellFit::ColumnsOf(const Move& move) const {
   const Eigen::Index dwells = values_.rows();
+  if (move.alone) return Eigen::VectorXd::Unit(dwells, move.first);
   if (move.settles == 0.0) {
     Eigen::MatrixXd after = Eigen::MatrixXd::Zero(dwells, 1);
     after.bottomRows(dwells - move.first).setOnes();
@@ -116,8 +119,13 @@ Eigen::MatrixXd DwellFit::ColumnsOf(const Move& move) const {
   return columns;
 }
 
+Eigen::VectorXd DwellFit::WithWild(Eigen::Index probe, Eigen::VectorXd white) const {
+  return white += wild_.col(probe);
+}
+
 DwellFit::OfProbe DwellFit::Fit(Eigen::Index probe, Eigen::VectorXd white, const ProbeNoise& noise,
                                 const std::optional<Move>& move) const {
+  white = WithWild(probe, std::move(white));
   Eigen::MatrixXd columns = values_.col(probe);
   if (move) {
     const Eigen::MatrixXd of_move = ColumnsOf(*move);
@@ -173,9 +181,10 @@ ProbableNoise DwellFit::NoiseOf(Eigen::Index probe, const Eigen::VectorXd& white
 }
 
 DwellFit::Likeliest DwellFit::LikeliestOf(const std::vector<Move>& moves, Eigen::Index probe,
-                                          const Eigen::VectorXd& white,
+                                          const Eigen::VectorXd& noise_of_dwells,
                                           const ProbeNoise& noise) const {
   constexpr Eigen::Index kAtOnce = 1024;
+  const Eigen::VectorXd white = WithWild(probe, noise_of_dwells);
   const auto fit = FitColumns(times_, groups_, values_.col(probe), white, noise, group_count_);
   Likeliest likeliest{moves.front(), -std::numeric_limits<double>::infinity()};
   for (Eigen::Index from = 0; from < std::ssize(moves); from += kAtOnce) {
@@ -212,6 +221,16 @@ std::vector<DwellFit::Move> DwellFit::WarmingsUp() const {
     warmings.push_back({0, std::nullopt, 1.0, settles});
   }
   return warmings;
+}
+
+std::vector<DwellFit::Move> DwellFit::Alone() const {
+  std::vector<Move> alone;
+  for (Eigen::Index i = 0; i < values_.rows(); ++i) {
+    if (std::ranges::count(groups_, groups_[i]) > 1) {
+      alone.push_back({.first = i, .free = {}, .size = 1.0, .alone = true});
+    }
+  }
+  return alone;
 }
 
 double DwellFit::Whole() const { return times_.back() - times_.front(); }
@@ -278,6 +297,39 @@ bool DwellFit::FindMoves(const Eigen::MatrixXd& white, const ProbeNoise& noise,
   return found;
 }
 
+bool DwellFit::FindWild(const Eigen::MatrixXd& white, const ProbeNoise& noise) {
+  const std::vector<Move> alone = Alone();
+  if (alone.empty()) return false;
+  const double enough = std::log(kMoveOdds * kProbes * static_cast<double>(values_.rows()));
+  const auto first = wild_dwells_.size();
+  for (std::size_t probe = 0; probe < kProbes; ++probe) {
+    const auto row = static_cast<Eigen::Index>(probe);
+    const Eigen::VectorXd of_probe = white.col(row);
+    ProbableNoise now = NoiseOf(row, of_probe, noise, std::nullopt);
+    for (Eigen::Index count = 0; count < values_.rows() / kWildOneIn; ++count) {
+      const Move worst =
+          LikeliestOf(alone, row, std::exp(2.0 * now.logs[0]) * of_probe, Times(noise, now.logs))
+              .move;
+      std::vector<Eigen::Index> of_group;
+      for (Eigen::Index i = 0; i < values_.rows(); ++i) {
+        if (groups_[i] == groups_[worst.first]) of_group.push_back(i);
+      }
+      const bool or_other = of_group.size() == 2;
+      if (!or_other) of_group = {worst.first};
+      const Eigen::VectorXd before = wild_.col(row);
+      for (const Eigen::Index i : of_group) wild_(i, row) += worst.size * worst.size;
+      const ProbableNoise then = NoiseOf(row, of_probe, noise, std::nullopt);
+      if (!(then.log_probability > now.log_probability + enough)) {
+        wild_.col(row) = before;
+        break;
+      }
+      now = then;
+      wild_dwells_.push_back({probe, static_cast<std::size_t>(worst.first), worst.size, or_other});
+    }
+  }
+  return wild_dwells_.size() > first;
+}
+
 void DwellFit::TakeMovesOut(StationMeans& means) const {
   for (const ZeroMove& move : means.moves) {
     const auto& found = moves_[move.probe];
@@ -288,6 +340,12 @@ void DwellFit::TakeMovesOut(StationMeans& means) const {
     const auto row = static_cast<Eigen::Index>(move.probe);
     if (found->free)
       means.dwells[*found->free].gap[move.probe] = means.gap(row, groups_[*found->free]);
+  }
+  means.wild = wild_dwells_;
+  for (Eigen::Index probe = 0; probe < wild_.cols(); ++probe) {
+    for (Eigen::Index i = 0; i < wild_.rows(); ++i) {
+      if (wild_(i, probe) > 0.0) means.dwells[i].gap[probe] = means.gap(probe, groups_[i]);
+    }
   }
 }
 

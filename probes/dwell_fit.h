@@ -11,6 +11,9 @@
 //
 // with M the means of the columns; a size is about 1 um, tau known to a factor of two.
 //
+// A wild dwell is one that a chip or a shock has moved, against the same place in the other passes:
+// its variance grows by the square of that. Of two passes nobody knows which one: both grow.
+//
 // Units: m, s. Shapes: white variances dwells x probes.
 // Failure: as estimation/markov_noise.h.
 // Source: Aitken's generalised least squares; Rasmussen and Williams, Gaussian Processes (2006),
@@ -50,6 +53,7 @@ class DwellFit {
     std::optional<Eigen::Index> free;  // the dwell within which it falls
     double size;                       // m, roughly
     double settles = 0.0;              // s: tau of a warming up; 0: a jump
+    bool alone = false;                // no move: this dwell only
   };
   struct Sums {
     double chi2 = 0.0, log_likelihood = 0.0;
@@ -70,7 +74,11 @@ class DwellFit {
   // of passes that scatter look the same. Returns whether there is any.
   bool FindMoves(const Eigen::MatrixXd& white, const ProbeNoise& noise,
                  const NoiseFactors& suiting);
-  // Takes the moves out of the gaps of the dwells, at the sizes in `means`.
+  // Looks for wild dwells of each probe, one after the other, at most one in twenty, each taken as a
+  // move is, against the noise that suits this probe best without it. Returns whether there is any.
+  bool FindWild(const Eigen::MatrixXd& white, const ProbeNoise& noise);
+  // Takes the moves out of the gaps of the dwells, at the sizes in `means`, and gives wild dwells the
+  // mean of their group; fills what is wild in `means`.
   void TakeMovesOut(StationMeans& means) const;
 
  private:
@@ -81,6 +89,8 @@ class DwellFit {
     Eigen::VectorXd unknowns = {}, u = {};  // of the move
   };
 
+  // The variances of a probe with those of its wild dwells.
+  Eigen::VectorXd WithWild(Eigen::Index probe, Eigen::VectorXd white) const;
   // The columns of the unknowns of a move.
   Eigen::MatrixXd ColumnsOf(const Move& move) const;
   OfProbe Fit(Eigen::Index probe, Eigen::VectorXd white, const ProbeNoise& noise,
@@ -101,6 +111,7 @@ class DwellFit {
                const ProbeNoise& noise) const;
   std::vector<Move> Jumps() const;
   std::vector<Move> WarmingsUp() const;
+  std::vector<Move> Alone() const;  // each dwell that others can be held against
   std::vector<Move> Candidates(Eigen::Index probe, const Eigen::VectorXd& white,
                                const ProbeNoise& noise, const NoiseFactors& suiting,
                                double enough) const;
@@ -113,6 +124,8 @@ class DwellFit {
   Eigen::MatrixXd values_;
   int group_count_ = 0;
   PerProbe<std::optional<Move>> moves_;
+  Eigen::MatrixXd wild_;  // m^2, dwells x probes: more variance
+  std::vector<WildDwell> wild_dwells_;
 };
 
 }  // namespace abbe::probes

@@ -41,6 +41,13 @@ struct ZeroMove {
   double settles;     // s: the time constant of a warming up; 0: a jump between two dwells
 };
 
+// A dwell that disagrees with the other passes as no noise does (dwell_fit.h).
+struct WildDwell {
+  std::size_t probe, dwell;
+  double off;     // m, read less what the others say
+  bool or_other;  // of two passes: this one or the other
+};
+
 struct StationMeans {
   std::vector<int> directions;                         // {+1, -1}, or the only one
   std::vector<double> stations;                        // m, ascending
@@ -51,6 +58,7 @@ struct StationMeans {
   Eigen::Matrix<double, kProbes, Eigen::Dynamic>
       residual;                 // m, per dwell: dwell - mean of its group
   std::vector<ZeroMove> moves;  // more unknowns; they are no longer in dwells and residual
+  std::vector<WildDwell> wild;  // hardly counted, and no longer in dwells and residual
   Eigen::MatrixXd white;        // m^2, dwells x probes: variance of a dwell without its drift
   NoiseFigures noise;
   std::vector<std::string> notes;  // for the user, one sentence each

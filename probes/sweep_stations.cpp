@@ -153,6 +153,10 @@ void CheckAgainstPasses(DwellFit& fit, const ProbeNoise& noise, ExcessNoise exce
   double chi2 = fit.Run(means.white, noise, means).chi2;
   double dof = fit.dof();
   NoiseFactors found{};
+  if (excess == ExcessNoise::kFitted && dof > 0.0 && Scattered(chi2, dof) &&
+      fit.FindWild(means.white, noise)) {
+    chi2 = fit.Run(means.white, noise, means).chi2;
+  }
   if (excess == ExcessNoise::kFitted && dof > 0.0 && Scattered(chi2, dof)) {
     found = NoiseOfPasses(fit, noise, means);
     if (fit.FindMoves(means.white, noise, found)) {
@@ -280,6 +284,16 @@ std::vector<std::string> MoveNotes(char axis, const StationMeans& means) {
         'a' + move.probe, move.size / settings::kMicrometre, 1.96 * move.u / settings::kMicrometre,
         0.5 * (before.time + after.time), place(before), place(after)));
   }
+  for (const WildDwell& wild : means.wild) {
+    const Dwell& dwell = means.dwells[wild.dwell];
+    notes.push_back(fmt::format(
+        "probe_{:c} reads {:+.3g} um off at {}, against {}; look for dirt, a shock or a loose cable "
+        "then",
+        'a' + wild.probe, wild.off / settings::kMicrometre, place(dwell),
+        wild.or_other ? "the only other pass: either of them may be wrong, and u of this station "
+                        "contains what they differ by"
+                      : "all other passes: it hardly counts there"));
+  }
   return notes;
 }
 
@@ -290,8 +304,8 @@ StationMeans FitStations(const std::string& name, const SweepDwells& sweep, cons
   DwellFit fit(means);
   means.white = ChooseWhite(sweep, noise, fit, means);
   CheckAgainstPasses(fit, noise, excess, means);
-  std::ranges::move(MoveNotes(sweep.axis, means), std::back_inserter(means.notes));
   fit.TakeMovesOut(means);
+  std::ranges::move(MoveNotes(sweep.axis, means), std::back_inserter(means.notes));
   FillResidualsAndFigures(sweep, fit, means);
   AddUnseenSteps(sweep, means);
   if (excess == ExcessNoise::kFitted && means.noise.dof <= 0.0) {

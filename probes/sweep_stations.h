@@ -30,7 +30,8 @@
 // Source: Aitken's generalised least squares; restricted maximum likelihood of the variances
 // (estimation/markov_noise.h).
 // Validity: a drift that is one Ornstein-Uhlenbeck process with a time between the dwells and the
-// whole sweep; one move of a zero; others show in chi2.
+// whole sweep; one move of a zero; others show in chi2. A wild dwell is found where others stand at
+// the same place.
 #pragma once
 
 #include <string>
@@ -52,7 +53,7 @@ enum class ExcessNoise : unsigned char { kFitted, kScaled };
 StationMeans FitStations(const std::string& name, const SweepDwells& sweep, const ProbeNoise& noise,
                          ExcessNoise excess);
 
-// What moved in the zeros of probes, with where and when: one sentence each. `axis` is the swept one.
+// What moved in the zeros of probes, and the wild dwells, with where and when: one sentence each. `axis` is the swept one.
 std::vector<std::string> MoveNotes(char axis, const StationMeans& means);
 
 }  // namespace abbe::probes

@@ -36,10 +36,9 @@ Sweep ReadMeans(const recording::Recording& recording, const recording::Blocks& 
     return probes::FitStations(recording.name, dwells, noise, how);
   };
   Sweep sweep{{}, fitted(excess)};
-  // One wild dwell of many passes raises the noise of all stations, which the robust loss of a map
-  // would leave out.
+  // What scatters more without a reason that is seen is left to the robust loss of a map.
   if (excess == probes::ExcessNoise::kFitted && sweep.means.moves.empty() &&
-      sweep.means.noise.dof > 0.0) {
+      sweep.means.wild.empty() && sweep.means.noise.dof > 0.0) {
     sweep.means = fitted(probes::ExcessNoise::kScaled);
   }
   sweep.run.name = recording.name;

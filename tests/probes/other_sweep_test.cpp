@@ -91,6 +91,17 @@ std::vector<double> Jump(const CounterRandom& random, std::size_t rows) {
   return zero;
 }
 
+// Each probe is off for a 300th of the time, by 2 um or more.
+std::vector<double> Shock(const CounterRandom& random, std::size_t rows) {
+  std::vector<double> off(rows);
+  const auto at = static_cast<std::size_t>(std::abs(std::remainder(random.Normal(0), 1.0)) * 300.0);
+  const std::size_t first = at * rows / 300, last = std::min(rows, (at + 1) * rows / 300);
+  const double size = random.Normal(1);
+  for (std::size_t i = first; i < last; ++i)
+    off[i] = kMicro * (3.0 * size + std::copysign(2.0, size));
+  return off;
+}
+
 struct Row {
   std::string name;
   Change change = {};
@@ -222,6 +233,8 @@ TEST(SweepOfAnotherWorld, FollowsTheNoise) {
       {.name = "memory of 60 s", .extra = Memory(60.0), .note = scatter},
       {.name = "each half of a pass another", .extra = EachHalf(2), .passes = 2, .note = scatter},
       {.name = "zeros that jump", .extra = Jump},
+      {.name = "a wild dwell", .extra = Shock, .note = "um off at"},
+      {.name = "a wild dwell, two passes", .extra = Shock, .passes = 2, .note = "um off at"},
       {.name = "warming up", .extra = WarmingUp, .note = "drifts like one that warms up"},
       {.name = "warming up, three passes",
        .extra = WarmingUp,
