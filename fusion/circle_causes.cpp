@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "failure/failure.h"
 #include "fusion/circle_fit.h"
@@ -147,8 +150,42 @@ bool IsOfCauses(const estimation::Result& result, const estimation::WeakDirectio
 struct CircleTrial {
   ReversalForm form;
   CircleCauses found;
-  std::array<double, 2> longer{};  // CircleFit
+  std::array<double, 2> longer{}, wider{};  // CircleFit
+  double improbable = 0.0;
 };
+
+// Where spikes have a form of their own, the size of one is the height of the whole, the same part of
+// all runs: the largest of its deviations.
+void TakeWholeSpikes(const CircleFit& fit, const CircleEquations& grid,
+                     const std::vector<Signature>& table, CircleCauses& found) {
+  const auto causes = std::ssize(table);
+  const Eigen::Index of_axis = grid.alike.cols() / 2, all = causes + grid.alike.cols();
+  Eigen::VectorXd parameters(all);
+  parameters << fit.result.Block("cause").Values(), fit.result.Block("alike").Values();
+  Eigen::MatrixXd covariance(all, all);
+  const Eigen::MatrixXd across = fit.result.Covariance("cause", "alike");
+  covariance << fit.result.Covariance("cause", "cause"), across, across.transpose(),
+      fit.result.Covariance("alike", "alike");
+  Eigen::MatrixXd of_parameters = Eigen::MatrixXd::Identity(causes, all);
+  Eigen::Index axis = 0;
+  for (Eigen::Index cause = 0; cause < causes; ++cause) {
+    if (table[cause].cause != "reversal_spike") continue;
+    Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(grid.causes.rows(), all);
+    whole.col(cause) = grid.causes.col(cause);
+    const Eigen::Index first = of_axis * axis++;
+    whole.middleCols(causes + first, of_axis) = grid.alike.middleCols(first, of_axis);
+    const Eigen::VectorXd deviation = whole * parameters;
+    Eigen::Index highest = 0;
+    deviation.cwiseAbs().maxCoeff(&highest);
+    of_parameters.row(cause) = whole.row(highest);
+  }
+  found.covariance = of_parameters * covariance * of_parameters.transpose();
+  const Eigen::VectorXd values = of_parameters * parameters;
+  for (Eigen::Index cause = 0; cause < causes; ++cause) {
+    found.causes[cause].value = values[cause];
+    found.causes[cause].u = std::sqrt(found.covariance(cause, cause));
+  }
+}
 
 CircleTrial FitWith(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
                     const ReversalForm& form) {
@@ -188,22 +225,26 @@ CircleTrial FitWith(const std::vector<const CircleRun*>& runs, const CauseOption
     estimate.alike = table[i].alike;
     found.causes.push_back(std::move(estimate));
   }
+  if (form.spike_size != std::array<double, 2>{}) {
+    TakeWholeSpikes(fit, SpikesOnGrid(*runs.front(), options, form), table, found);
+  }
   for (const auto& weak : fit.result.weak_directions) {
     if (IsOfCauses(fit.result, weak)) found.weak_directions.push_back(weak.words);
   }
   for (const Eigen::VectorXd& one : fit.unexplained) {
     found.residuals.emplace_back(one.begin(), one.end());
   }
-  return {form, std::move(found), fit.longer};
+  return {form, std::move(found), fit.longer, fit.wider, fit.improbable};
 }
 
-std::array<double, 2> BacklashOf(const CircleCauses& found) {
-  std::array<double, 2> backlash{};
+// Of both axes, with their signs.
+std::array<double, 2> OfBothAxes(const std::string& cause, const CircleCauses& found) {
+  std::array<double, 2> values{};
   std::size_t axis = 0;
   for (const CauseEstimate& one : found.causes) {
-    if (one.cause == "backlash") backlash[axis++] = std::abs(one.value);
+    if (one.cause == cause) values[axis++] = one.value;
   }
-  return backlash;
+  return values;
 }
 
 const CircleTrial& MostLikely(const std::vector<CircleTrial>& trials) {
@@ -211,51 +252,90 @@ const CircleTrial& MostLikely(const std::vector<CircleTrial>& trials) {
                                    [](const CircleTrial& one) { return one.found.rms_after; });
 }
 
-// The fit with the ways of winding up that suit both axes best, each with its own, not known better
-// than the fit tells them: a list would leave backlash as far off as its nearest way.
-CircleTrial WithOwnWays(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
+// The spikes that are far beyond chance: of smaller ones the form does not matter.
+std::array<double, 2> SpikesOf(const CircleCauses& found) {
+  constexpr double kFarBeyond = 5.0;
+  std::array<double, 2> spikes = OfBothAxes("reversal_spike", found);
+  std::size_t axis = 0;
+  for (const CauseEstimate& one : found.causes) {
+    if (one.cause != "reversal_spike") continue;
+    if (std::abs(one.value) <= kFarBeyond * one.u) spikes[axis] = 0.0;
+    ++axis;
+  }
+  return spikes;
+}
+
+// The fit with the way of winding up and the width of spikes that suit each axis best, not known
+// better than the fit tells them: a list would leave what rests on them as far off as its nearest
+// entry.
+CircleTrial WithOwnForm(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
                         CircleTrial trial) {
   constexpr int kSteps = 12;
-  constexpr double kFarthest = 0.5;  // of the logarithm of a way, in one step
+  constexpr double kFarthest = 0.5, kNear = 0.01;        // of a logarithm, in one step
+  constexpr double kNarrowest = 0.005, kWidest = 0.3;    // rad
+  constexpr double kShortest = 0.2e-6, kLongest = 8e-3;  // m
   for (int step = 0; step < kSteps; ++step) {
     ReversalForm form = trial.form;
-    form.wound_up = BacklashOf(trial.found);
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      form.way[axis] *= std::exp(std::clamp(trial.longer[axis], -kFarthest, kFarthest));
+    form.spread = SpikesOf(trial.found);
+    if (form.how == standards::TakenUp::kByWindUp) {
+      form.wound_up = OfBothAxes("backlash", trial.found);
     }
+    double farthest = 0.0;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      double& way = form.way[axis];
+      way *= std::exp(std::clamp(trial.longer[axis], -kFarthest, kFarthest));
+      if (way > 0.0) way = std::clamp(way, kShortest, kLongest);
+      double& width = form.spike.width[axis];
+      width *= std::exp(std::clamp(trial.wider[axis], -kFarthest, kFarthest));
+      width = std::clamp(width, kNarrowest, kWidest);
+      farthest = std::max({farthest, std::abs(trial.longer[axis]), std::abs(trial.wider[axis])});
+    }
+    if (step > 1 && farthest < kNear) break;
     trial = FitWith(runs, options, form);
   }
   return trial;
 }
 
-// The fits with all ways in which backlash may be taken up.
+// The fits with all ways in which backlash may be taken up, beside spikes of this form.
 void FitTakenUp(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
-                double spike_width, std::vector<CircleTrial>& trials) {
+                const standards::SpikeForm& spike, std::vector<CircleTrial>& trials) {
   constexpr int kRounds = 4;  // each brings the way closer to the play by a factor of five
   constexpr std::array kWays{0.5e-6, 1e-6,   2e-6, 5e-6, 10e-6, 20e-6, 50e-6, 100e-6,
                              200e-6, 500e-6, 1e-3, 2e-3, 3e-3,  5e-3,  8e-3};  // m
   const auto fitted = [&](const ReversalForm& form) { return FitWith(runs, options, form); };
-  trials.push_back(fitted({.spike_width = spike_width}));
+  ReversalForm form{.spike = spike};
+  trials.push_back(fitted(form));
   CircleTrial with_play = trials.back();
   with_play.form.how = standards::TakenUp::kWithPlay;
   for (int round = 0; round < kRounds; ++round) {
-    with_play.form.way = BacklashOf(with_play.found);
+    with_play.form.way = OfBothAxes("backlash", with_play.found);
+    for (double& way : with_play.form.way) way = std::abs(way);
     with_play = fitted(with_play.form);
   }
   trials.push_back(std::move(with_play));
+  form.how = standards::TakenUp::kByWindUp;
   for (const double way : kWays) {
-    trials.push_back(fitted({standards::TakenUp::kByWindUp, {way, way}, spike_width}));
+    form.way = {way, way};
+    trials.push_back(fitted(form));
   }
-  if (const CircleTrial& best = MostLikely(trials);
-      best.form.how == standards::TakenUp::kByWindUp) {
-    trials.push_back(WithOwnWays(runs, options, best));
+}
+
+// Of each way in which backlash may be taken up, the best of `trials` with its own form.
+void FitOwnForms(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
+                 std::vector<CircleTrial>& trials) {
+  for (const auto how : {standards::TakenUp::kAtOnce, standards::TakenUp::kWithPlay,
+                         standards::TakenUp::kByWindUp}) {
+    std::vector<CircleTrial> of_kind;
+    std::ranges::copy_if(trials, std::back_inserter(of_kind),
+                         [&](const CircleTrial& trial) { return trial.form.how == how; });
+    trials.push_back(WithOwnForm(runs, options, MostLikely(of_kind)));
   }
 }
 
 // The logarithm of the marginal likelihood of a fit, up to what is the same for all. `rows`:
 // independent ones.
-double LogLikelihood(const CircleCauses& fit, double rows) {
-  return -rows * std::log(std::max(fit.rms_after, kLeastRadialNoise));
+double LogLikelihood(const CircleTrial& trial, double rows) {
+  return -rows * std::log(std::max(trial.found.rms_after, kLeastRadialNoise)) - trial.improbable;
 }
 
 double IndependentRows(const std::vector<const CircleRun*>& runs, const CircleCauses& fit) {
@@ -268,47 +348,97 @@ Eigen::VectorXd ValuesOf(const CircleCauses& fit) {
   return values;
 }
 
-// The sizes of the spikes that are far beyond chance: of smaller ones the form does not matter.
-std::array<double, 2> SpikesOf(const CircleCauses& found) {
-  constexpr double kFarBeyond = 5.0;
-  std::array<double, 2> sizes{};
-  std::size_t axis = 0;
-  for (const CauseEstimate& one : found.causes) {
-    if (one.cause != "reversal_spike") continue;
-    if (std::abs(one.value) > kFarBeyond * one.u) sizes[axis] = std::abs(one.value);
-    ++axis;
-  }
-  return sizes;
+standards::SpikeForm StatedSpike(const CauseOptions& options) {
+  return {.width = {options.spike_width, options.spike_width}};
 }
 
-// Fits with all forms that a reversal may have: first spikes of the width of the options, then of
-// others, where there are spikes; and these last not quite of the form of the table.
-std::vector<CircleTrial> FitWithAll(const std::vector<const CircleRun*>& runs,
-                                    const CauseOptions& options) {
-  constexpr std::array kWidths{0.2, 0.3, 0.45, 0.67, 1.5, 2.2, 3.3, 5.0};  // of that stated
-  constexpr double kLikely = 12.0;  // logarithm of the odds against the most likely
-  std::vector<CircleTrial> trials;
-  FitTakenUp(runs, options, options.spike_width, trials);
-  const std::array<double, 2> none{};
-  if (SpikesOf(MostLikely(trials).found) == none) return trials;
+// Rounded and sharp, as wide at all feeds or in proportion to them where there are several: in the
+// angle, as friction has them that is overcome on a way, or in time, as controls have them.
+std::vector<standards::SpikeForm> SpikesLike(const std::vector<const CircleRun*>& runs,
+                                             const CauseOptions& options) {
+  constexpr double kOtherFeed = 1.2;  // times the smallest
+  const auto feed = [](const CircleRun* run) { return run->feed; };
+  const double least = std::ranges::min(runs, {}, feed)->feed;
+  const double most = std::ranges::max(runs, {}, feed)->feed;
+  std::vector<standards::SpikeForm> forms;
+  for (const bool sharp : {false, true}) {
+    standards::SpikeForm form = StatedSpike(options);
+    form.sharp = sharp;
+    forms.push_back(form);
+    form.at_feed = std::sqrt(least * most);
+    if (least > 0.0 && most > kOtherFeed * least) forms.push_back(form);
+  }
+  return forms;
+}
+
+// Fits with spikes of this form of all widths, backlash taken up as it is in the best of `trials`,
+// and with the width that suits each axis best.
+void FitSpikes(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
+               const standards::SpikeForm& spike, std::vector<CircleTrial>& trials) {
+  constexpr std::array kWidths{0.2, 0.3, 0.45, 0.67, 1.0, 1.5, 2.2, 3.3, 5.0};  // of that stated
   ReversalForm form = MostLikely(trials).form;
+  form.wound_up = {};
+  form.spread = {};
+  std::vector<CircleTrial> of_form;
   for (const double times : kWidths) {
-    form.spike_width = times * options.spike_width;
-    trials.push_back(FitWith(runs, options, form));
+    form.spike = spike;
+    for (double& width : form.spike.width) width *= times;
+    of_form.push_back(FitWith(runs, options, form));
   }
-  if (const double width = MostLikely(trials).form.spike_width; width != options.spike_width) {
-    FitTakenUp(runs, options, width, trials);
-  }
-  const CircleCauses best = MostLikely(trials).found;
-  const double rows = IndependentRows(runs, best);
-  std::vector<CircleTrial> formed;
+  of_form.push_back(WithOwnForm(runs, options, MostLikely(of_form)));
+  std::ranges::move(of_form, std::back_inserter(trials));
+}
+
+// The best of `trials` of each kind.
+template <typename Kind>
+std::vector<CircleTrial> BestOfEach(const std::vector<CircleTrial>& trials, const Kind& kind) {
+  std::map<decltype(kind(trials.front())), CircleTrial> best;
   for (const CircleTrial& trial : trials) {
-    if (LogLikelihood(trial.found, rows) < LogLikelihood(best, rows) - kLikely) continue;
-    CircleTrial& own = formed.emplace_back(trial);
-    own.form.spike_size = SpikesOf(trial.found);
-    if (own.form.spike_size != none) own = FitWith(runs, options, own.form);
+    const auto [at, added] = best.try_emplace(kind(trial), trial);
+    if (!added && trial.found.rms_after < at->second.found.rms_after) at->second = trial;
+  }
+  std::vector<CircleTrial> values;
+  for (auto& [key, trial] : best) values.push_back(std::move(trial));
+  return values;
+}
+
+// Every way in which backlash may be taken up beside every form of spikes, which are not quite of
+// that form. Without that the forms are not to be compared: one would take the part of another's.
+std::vector<CircleTrial> WithFormsOfTheirOwn(const std::vector<const CircleRun*>& runs,
+                                             const CauseOptions& options,
+                                             const std::vector<CircleTrial>& trials) {
+  const auto spikes = BestOfEach(trials, [](const CircleTrial& trial) {
+    return std::pair(trial.form.spike.sharp, trial.form.spike.at_feed > 0.0);
+  });
+  const auto ways = BestOfEach(trials, [](const CircleTrial& trial) { return trial.form.how; });
+  std::vector<CircleTrial> formed;
+  for (const CircleTrial& spike : spikes) {
+    for (const CircleTrial& way : ways) {
+      ReversalForm form = way.form;
+      form.spike = spike.form.spike;
+      form.spike_size = form.spread = SpikesOf(spike.found);
+      if (form.spike_size == std::array<double, 2>{}) continue;
+      formed.push_back(FitWith(runs, options, form));
+    }
   }
   return formed;
+}
+
+// Fits with all forms that a reversal may have: backlash taken up in every way and spikes of every
+// form and width; where there are spikes, these not quite of the form of the table.
+std::vector<CircleTrial> FitWithAll(const std::vector<const CircleRun*>& runs,
+                                    const CauseOptions& options) {
+  std::vector<CircleTrial> trials;
+  FitTakenUp(runs, options, StatedSpike(options), trials);
+  FitOwnForms(runs, options, trials);
+  const std::array<double, 2> none{};
+  for (const standards::SpikeForm& spike : SpikesLike(runs, options)) {
+    FitSpikes(runs, options, spike, trials);
+  }
+  if (SpikesOf(MostLikely(trials).found) == none) return trials;
+  FitTakenUp(runs, options, MostLikely(trials).form.spike, trials);
+  FitOwnForms(runs, options, trials);
+  return WithFormsOfTheirOwn(runs, options, trials);
 }
 
 }  // namespace
@@ -327,13 +457,15 @@ CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs, CauseOpt
   CheckCircles(runs);
   LimitOrders(runs, CausesOf(*runs.front(), options, {}).size(), options.smooth);
   const std::vector<CircleTrial> trials = FitWithAll(runs, options);
-  CircleCauses best = MostLikely(trials).found;
-  const double rows = IndependentRows(runs, best);
-  const double most = LogLikelihood(best, rows);
+  const double rows = IndependentRows(runs, MostLikely(trials).found);
+  const CircleTrial& likeliest = *std::ranges::max_element(
+      trials, {}, [rows](const CircleTrial& trial) { return LogLikelihood(trial, rows); });
+  CircleCauses best = likeliest.found;
+  const double most = LogLikelihood(likeliest, rows);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(std::ssize(best.causes));
   double sum = 0.0;
   for (const CircleTrial& trial : trials) {
-    const double weight = std::exp(LogLikelihood(trial.found, rows) - most);
+    const double weight = std::exp(LogLikelihood(trial, rows) - most);
     mean += weight * ValuesOf(trial.found);
     sum += weight;
   }
@@ -341,7 +473,7 @@ CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs, CauseOpt
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(mean.size(), mean.size());
   for (const CircleTrial& trial : trials) {
     const Eigen::VectorXd off = ValuesOf(trial.found) - mean;
-    const double weight = std::exp(LogLikelihood(trial.found, rows) - most) / sum;
+    const double weight = std::exp(LogLikelihood(trial, rows) - most) / sum;
     covariance += weight * (trial.found.covariance + off * off.transpose());
   }
   // The noise is known to so many degrees of freedom: 2 u is a U95 for all.

@@ -15,8 +15,10 @@
 //   - the errors of the instrument: `shifted` holds the runs with one independent error of it
 //     changed by one standard deviation.
 // Backlash is taken up at once, with play, or by wind-up on ways from 0.5 um to 8 mm; near the best of
-// these the way of each axis is one more unknown, known to a factor of e. Results are the mean of
-// the fits by their likelihood, and their spread is in u (Bayesian model averaging: Hoeting et al.,
+// these the way of each axis is one more unknown, known to a factor of e. Spikes rise or are there at
+// once, as wide at all feeds or in proportion to them, the width of each axis one more unknown, and
+// of a form known to a quarter of their height (reversal_shapes.h). Results are the mean of the fits
+// by their likelihood, less what that form costs by its prior, and their spread is in u (Bayesian model averaging: Hoeting et al.,
 // Statistical Science 14 (1999)).
 // Units: SI; `effect` is the largest radial deviation of a cause in m, without sign.
 // Noise: estimated from the residuals and their degrees of freedom, whose Student's t is in u (2 u is

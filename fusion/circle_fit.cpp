@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -29,7 +30,7 @@ std::vector<Signature> SignaturesOf(const CircleRun& run, const CauseOptions& op
                                       .first_centre = run.plane.first.dot(run.centre),
                                       .second_centre = run.plane.second.dot(run.centre),
                                       .pitch = options.pitch,
-                                      .spike_width = form.spike_width,
+                                      .spike = form.spike,
                                       .taken_up = form.how,
                                       .way = form.way});
 }
@@ -62,6 +63,7 @@ CircleEquations EquationsOf(const CircleRun& run, const CauseOptions& options,
                             Eigen::MatrixXd(n, table.size() - centres),
                             Waves(run, options.smooth.size()),
                             Eigen::MatrixXd(n, options.shifted.size()),
+                            {},
                             {},
                             {},
                             {},
@@ -103,18 +105,32 @@ Eigen::MatrixXd OfBothAxes(const std::string& of, const Eigen::MatrixXd& causes,
   return columns;
 }
 
-// The derivatives of the deviations with respect to the logarithm of the way of each axis.
-Eigen::MatrixXd ByWays(const CircleRun& run, const CauseOptions& options,
-                       const ReversalForm& form) {
+AfterReversals AfterReversalsOf(const CircleRun& run, const ReversalForm& form) {
+  return {form.spike_size, {form.spike.WidthAt(run.feed, 0), form.spike.WidthAt(run.feed, 1)}};
+}
+
+Eigen::MatrixXd SpikesOf(const CircleEquations& equations, const std::vector<Signature>& table) {
+  return OfBothAxes("reversal_spike", equations.causes, table);
+}
+
+// The derivatives of the deviations with respect to the logarithms of the way and of the width of
+// the spikes of each axis.
+Eigen::MatrixXd ByLogarithms(const CircleRun& run, const CauseOptions& options,
+                             const ReversalForm& form) {
   constexpr double kStep = 0.01;
-  const auto backlash = [&](double step) {
+  const auto stepped = [&](double step) {
     ReversalForm changed = form;
     for (double& way : changed.way) way *= std::exp(step);
-    return OfBothAxes("backlash", EquationsOf(run, options, changed).causes,
-                      CausesOf(run, options, changed));
+    for (double& width : changed.spike.width) width *= std::exp(step);
+    const std::vector<Signature> table = CausesOf(run, options, changed);
+    const Eigen::MatrixXd causes = EquationsOf(run, options, changed).causes;
+    Eigen::MatrixXd columns(causes.rows(), 4);
+    columns << OfBothAxes("backlash", causes, table), OfBothAxes("reversal_spike", causes, table);
+    return columns;
   };
-  const Eigen::MatrixXd slopes = (backlash(kStep) - backlash(-kStep)) / (2.0 * kStep);
-  return slopes * Eigen::Vector2d(form.wound_up[0], form.wound_up[1]).asDiagonal();
+  const Eigen::MatrixXd slopes = (stepped(kStep) - stepped(-kStep)) / (2.0 * kStep);
+  const Eigen::Vector4d sizes(form.wound_up[0], form.wound_up[1], form.spread[0], form.spread[1]);
+  return slopes * sizes.asDiagonal();
 }
 
 estimation::ParameterBlock SmoothBlock(const std::vector<double>& deviations) {
@@ -159,13 +175,32 @@ CircleEquations CentredEquations(const std::vector<const CircleRun*>& runs, std:
     }
   }
   if (form.spike_size != std::array<double, 2>{}) {
-    const Eigen::MatrixXd spikes =
-        OfBothAxes("reversal_spike", equations.causes, CausesOf(centred, options, form));
-    const AfterReversals after{form.spike_size, form.spike_width};
+    const Eigen::MatrixXd spikes = SpikesOf(equations, CausesOf(centred, options, form));
+    const AfterReversals after = AfterReversalsOf(centred, form);
     equations.shapes = ShapesOf(centred, spikes, after);
+    equations.alike = ShapesAlike(centred, after);
     equations.between = SpikesBetweenRuns(spikes, at, runs.size(), after);
   }
-  if (form.wound_up != std::array<double, 2>{}) equations.ways = ByWays(centred, options, form);
+  if (const std::array<double, 2> none{}; form.wound_up != none || form.spread != none) {
+    equations.ways = ByLogarithms(centred, options, form);
+  }
+  return equations;
+}
+
+CircleEquations SpikesOnGrid(const CircleRun& run, const CauseOptions& options,
+                             const ReversalForm& form) {
+  constexpr int kPoints = 3600;
+  CircleRun grid = run;
+  grid.points.clear();
+  for (int i = 0; i < kPoints; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kPoints;
+    grid.points.push_back(
+        {run.radius * std::cos(angle), run.radius * std::sin(angle), 0.0, angle, 1, 1});
+  }
+  CircleEquations equations = EquationsOf(grid, options, form);
+  if (form.spike_size != std::array<double, 2>{}) {
+    equations.alike = ShapesAlike(grid, AfterReversalsOf(grid, form));
+  }
   return equations;
 }
 
@@ -186,6 +221,9 @@ CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
   if (equations.front().between.size() > 0) {
     shared.emplace_back(problem.Add(UnitBlock("between", equations.front().between.cols())));
   }
+  if (spikes) {
+    shared.emplace_back(problem.Add(UnitBlock("alike", equations.front().alike.cols())));
+  }
   const bool ways = equations.front().ways.size() > 0;
   if (ways) shared.emplace_back(problem.Add(UnitBlock("ways", equations.front().ways.cols())));
   for (std::size_t run = 0; run < equations.size(); ++run) {
@@ -197,8 +235,8 @@ CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
       inputs.emplace_back(problem.Add(UnitBlock(fmt::format("shapes_{}", run), one.shapes.cols())));
     }
     Eigen::MatrixXd A(one.radial.size(), 0);
-    for (const auto* part : {&one.causes, &one.smooth, &one.instrument, &one.between, &one.ways,
-                             &one.centre, &one.shapes}) {
+    for (const auto* part : {&one.causes, &one.smooth, &one.instrument, &one.between, &one.alike,
+                             &one.ways, &one.centre, &one.shapes}) {
       if (part->cols() == 0) continue;
       A.conservativeResize(Eigen::NoChange, A.cols() + part->cols());
       A.rightCols(part->cols()) = *part;
@@ -207,7 +245,7 @@ CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
                 std::make_shared<estimation::LinearResidual>(std::move(A), one.radial), inputs,
                 deviation);
   }
-  CircleFit fit{problem.Solve(), {}, {}, {}, {}};
+  CircleFit fit{problem.Solve(), {}, {}, {}, {}, {}};
   if (!fit.result.Usable()) throw NumericalError(fit.result.WhyNotUsable());
   const auto without = [&fit](const Eigen::MatrixXd& columns, const std::string& block,
                               Eigen::VectorXd& left) {
@@ -218,6 +256,7 @@ CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
     Eigen::VectorXd& left = fit.unexplained.emplace_back(one.radial);
     without(one.causes, "cause", left);
     without(one.between, "between", left);
+    without(one.alike, "alike", left);
     without(one.ways, "ways", left);
     without(one.shapes, fmt::format("shapes_{}", run), left);
     without(one.centre, fmt::format("centre_{}", run), left);
@@ -226,9 +265,15 @@ CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
     without(one.instrument, "instrument", noise);
     fit.smooth.emplace_back(left - noise);
   }
+  for (const estimation::ParameterBlock& block : problem.blocks()) {
+    if (block.name == "alike" || block.name == "between" || block.name.starts_with("shapes_")) {
+      fit.improbable += 0.5 * fit.result.Block(block.name).Values().squaredNorm();
+    }
+  }
   if (ways) {
-    const Eigen::VectorXd longer = fit.result.Block("ways").Values();
-    fit.longer = {longer[0], longer[1]};
+    const Eigen::VectorXd more = fit.result.Block("ways").Values();
+    fit.longer = {more[0], more[1]};
+    fit.wider = {more[2], more[3]};
   }
   return fit;
 }

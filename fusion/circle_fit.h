@@ -24,14 +24,14 @@
 namespace abbe::fusion {
 
 // What may happen at a reversal: how backlash is taken up, and on which way of the first and the
-// second axis, m; how wide spikes are, rad; how large those are whose form is not that of the
-// table, m.
+// second axis, m; the form of spikes. In m of each axis, 0 where it is of no matter: the spikes whose
+// form is not that of the table, the backlash whose way and the spikes whose width are not known
+// exactly.
 struct ReversalForm {
   standards::TakenUp how = standards::TakenUp::kAtOnce;
   std::array<double, 2> way{};
-  double spike_width = 0.0;
-  std::array<double, 2> spike_size{};
-  std::array<double, 2> wound_up{};  // m: backlash whose way is not known exactly
+  standards::SpikeForm spike = {};
+  std::array<double, 2> spike_size{}, wound_up{}, spread{};
 };
 
 std::string CauseName(const standards::Signature& cause);  // "backlash.X"
@@ -40,10 +40,11 @@ std::vector<standards::Signature> CausesOf(const paths::CircleRun& run, const Ca
                                            const ReversalForm& form);
 
 // Radial deviations of a run, and their derivatives with respect to the centre, each cause, the
-// harmonics of smooth errors, the errors of the instrument, what spikes do beside their form, by how
-// much they differ between the runs, and the logarithm of the way of each axis.
+// harmonics of smooth errors, the errors of the instrument, what spikes do beside their form in this
+// run and alike in all, by how much they differ between the runs, and the logarithms of the way and
+// of the width of the spikes of each axis.
 struct CircleEquations {
-  Eigen::MatrixXd centre, causes, smooth, instrument, shapes, between, ways;
+  Eigen::MatrixXd centre, causes, smooth, instrument, shapes, alike, between, ways;
   Eigen::VectorXd radial;
 };
 
@@ -52,13 +53,18 @@ struct CircleEquations {
 CircleEquations CentredEquations(const std::vector<const paths::CircleRun*>& runs, std::size_t at,
                                  const CauseOptions& options, const ReversalForm& form);
 
+// The causes and what spikes do alike in all runs, at points so close that none of a spike is missed.
+CircleEquations SpikesOnGrid(const paths::CircleRun& run, const CauseOptions& options,
+                             const ReversalForm& form);
+
 struct CircleFit {
   estimation::Result result;
   // For each run: the deviations without the causes, their fitted smooth part (with the errors of
   // the instrument), and the residuals.
   std::vector<Eigen::VectorXd> unexplained, smooth, noise;
-  // What the fit adds to the logarithm of the way of each axis.
-  std::array<double, 2> longer{};
+  // What the fit adds to the logarithm of the way and of the width of each axis.
+  std::array<double, 2> longer{}, wider{};
+  double improbable = 0.0;  // half the sum of the squares of what spikes do beside their form
 };
 
 // `deviation`: m, of the rows.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace abbe::fusion {
 namespace {
@@ -10,8 +11,13 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr std::array kKnots{-0.5, 0.0, 0.5, 1.0, 2.0, 3.5, 6.0};  // widths
-constexpr double kFormKnownTo = 0.25;                             // of the size
+// Of triangles, with one more on either side, in widths: of one end in one run, and of all together.
+constexpr std::array kKnots{-0.5, 0.0, 0.5, 1.0, 2.0, 3.5, 6.0};
+constexpr std::array kKnotsOfAll{-0.25, 0.0, 0.25, 0.5, 0.75, 1.0, 1.4,
+                                 1.8,   2.3, 2.8,  3.4, 4.0,  5.0, 6.0};
+constexpr double kFormKnownTo = 0.25;  // of the size
+constexpr Index kTriangles = kKnots.size() - 2, kOfAxis = 1 + 2 * kTriangles;
+constexpr Index kTrianglesOfAll = kKnotsOfAll.size() - 2;
 
 // Where the axis last turned: the angle gone since, and at which of its two ends.
 struct Since {
@@ -26,8 +32,8 @@ Since SinceReversal(const paths::CirclePoint& point, int axis) {
 }
 
 // 1 at knot `peak`, 0 at its neighbours and beyond.
-double Triangle(double widths, std::size_t peak) {
-  const double before = kKnots[peak - 1], at = kKnots[peak], after = kKnots[peak + 1];
+double Triangle(double widths, std::span<const double> knots, std::size_t peak) {
+  const double before = knots[peak - 1], at = knots[peak], after = knots[peak + 1];
   return std::max(0.0,
                   std::min((widths - before) / (at - before), (after - widths) / (after - at)));
 }
@@ -36,7 +42,6 @@ double Triangle(double widths, std::size_t peak) {
 
 MatrixXd ShapesOf(const paths::CircleRun& run, const MatrixXd& spikes,
                   const AfterReversals& after) {
-  constexpr Index kTriangles = kKnots.size() - 2, kOfAxis = 1 + 2 * kTriangles;
   MatrixXd shapes = MatrixXd::Zero(spikes.rows(), 2 * kOfAxis);
   for (int axis = 0; axis < 2; ++axis) {
     const double size = after.size[axis];
@@ -47,11 +52,27 @@ MatrixXd ShapesOf(const paths::CircleRun& run, const MatrixXd& spikes,
       const Index first = axis * kOfAxis + (since.end > 0 ? 1 : 1 + kTriangles);
       for (Index peak = 0; peak < kTriangles; ++peak) {
         shapes(i, first + peak) =
-            kFormKnownTo * size * Triangle(since.angle / after.width, peak + 1);
+            kFormKnownTo * size * Triangle(since.angle / after.width[axis], kKnots, peak + 1);
       }
     }
   }
   return shapes;
+}
+
+MatrixXd ShapesAlike(const paths::CircleRun& run, const AfterReversals& after) {
+  MatrixXd alike = MatrixXd::Zero(std::ssize(run.points), 2 * kTrianglesOfAll);
+  for (int axis = 0; axis < 2; ++axis) {
+    const double size = after.size[axis];
+    if (size == 0.0) continue;
+    for (Index i = 0; i < alike.rows(); ++i) {
+      const double widths = SinceReversal(run.points[i], axis).angle / after.width[axis];
+      for (Index peak = 0; peak < kTrianglesOfAll; ++peak) {
+        alike(i, axis * kTrianglesOfAll + peak) =
+            kFormKnownTo * size * Triangle(widths, kKnotsOfAll, peak + 1);
+      }
+    }
+  }
+  return alike;
 }
 
 MatrixXd SpikesBetweenRuns(const MatrixXd& spikes, std::size_t at, std::size_t runs,

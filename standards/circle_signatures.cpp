@@ -27,7 +27,10 @@ double ShareTakenUp(const CirclePoint& at, double extreme, TakenUp how, double w
   return 1.0 - 2.0 * std::exp(-gone / way);
 }
 
-double Spike(double since, double width) { return since / width * std::exp(1.0 - since / width); }
+double Spike(const CirclePoint& at, double extreme, const SpikeForm& form, std::size_t axis) {
+  const double widths = SinceReversal(at, extreme) / form.WidthAt(at.feed, axis);
+  return form.sharp ? std::exp(-widths) : widths * std::exp(1.0 - widths);
+}
 
 // Cosine and sine of the cyclic error of an axis at `position`; `along` projects it on the radius.
 void AddCyclic(char axis, double pitch, const std::function<double(const CirclePoint&)>& position,
@@ -76,9 +79,9 @@ std::vector<Signature> CircleSignatures(const SignatureOptions& options) {
       {"straightness", "E" + x + y, "m", 50e-6,
        [](At at) { return (std::cos(at.angle) - std::cos(3.0 * at.angle)) / 4.0; }, "-E" + x + x},
       {"reversal_spike", x, "m", 20e-6,
-       [w = options.spike_width](At at) { return Spike(SinceReversal(at, 0.0), w); }},
+       [form = options.spike](At at) { return Spike(at, 0.0, form, 0); }},
       {"reversal_spike", y, "m", 20e-6,
-       [w = options.spike_width](At at) { return Spike(SinceReversal(at, kPi / 2.0), w); }},
+       [form = options.spike](At at) { return Spike(at, kPi / 2.0, form, 1); }},
   };
   if (const auto pitch = options.pitch.find(options.first); pitch != options.pitch.end()) {
     const auto position = [c = options.first_centre](At at) {

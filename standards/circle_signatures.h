@@ -19,7 +19,8 @@
 //   straightness of second    (cos t - cos 3t) / 4            m; bow h (second/R)^2 into first
 //   cyclic, pitch p           cos, sin(2 pi position/p) times cos t (first) or sin t (second)
 //   reversal spike            (s/w) exp(1 - s/w)              m; s is the angle since the axis last
-//                                                             turned, w the width; outwards
+//             or, sharp,      exp(-s/w)                       turned, w the width, the same at all
+//                                                             feeds or in proportion; outwards
 //
 // A radius does not tell a bow of the first axis into the second from one of the second along
 // itself with the other sign: k (second/R)^2 along second is k/4 (3 sin t - sin 3t), and sin t is
@@ -32,6 +33,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
@@ -58,11 +60,22 @@ struct Signature {
 // How backlash is taken up after a reversal.
 enum class TakenUp : unsigned char { kAtOnce, kWithPlay, kByWindUp };
 
+struct SpikeForm {
+  std::array<double, 2> width = {0.07, 0.07};  // rad, w of the first and the second axis
+  bool sharp = false;                          // there at once, and then falling
+  double at_feed = 0.0;  // m/s: there the width is this, else in proportion; 0: the same at all
+
+  double WidthAt(double feed, std::size_t axis) const {
+    return at_feed > 0.0 ? width[axis] * feed / at_feed : width[axis];
+  }
+  bool operator==(const SpikeForm&) const = default;
+};
+
 struct SignatureOptions {
   char first = 'X', second = 'Y';
   double first_centre = 0.0, second_centre = 0.0;  // m: axis positions of the circle's centre
   std::map<char, double> pitch;  // m: of cyclic errors, by axis; absent: not fitted
-  double spike_width = 0.07;     // rad, w
+  SpikeForm spike = {};
   TakenUp taken_up = TakenUp::kAtOnce;
   std::array<double, 2> way = {0.0, 0.0};  // m: of the first and the second axis; 0: at once
 };

@@ -121,7 +121,7 @@ TEST(CircleSignatures, CommonLagShrinksTheCircle) {
 
 // After a quadrant is passed the axis that turned sticks: outwards, largest one width on.
 TEST(CircleSignatures, SpikesStandBehindTheReversal) {
-  const auto table = CircleSignatures({.pitch = {}, .spike_width = 0.05});
+  const auto table = CircleSignatures({.pitch = {}, .spike = {.width = {0.05, 0.05}}});
   for (const auto& [axis, extremes] :
        {std::pair{"X", std::pair{0.0, kPi}}, std::pair{"Y", std::pair{kPi / 2, -kPi / 2}}}) {
     const auto& radial = Find(table, "reversal_spike", axis).radial;
