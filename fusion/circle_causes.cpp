@@ -7,7 +7,9 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "failure/failure.h"
 #include "fusion/circle_trial.h"
@@ -59,12 +61,15 @@ void LimitOrders(const std::vector<const CircleRun*>& runs, std::size_t causes,
   }
 }
 
-// Of both axes, with their signs.
-std::array<double, 2> OfBothAxes(const std::string& cause, const CircleCauses& found) {
+// Of both axes, with their signs; 0 where they are no larger than so many u.
+std::array<double, 2> OfBothAxes(const std::string& cause, const CircleCauses& found,
+                                 double least = 0.0) {
   std::array<double, 2> values{};
   std::size_t axis = 0;
   for (const CauseEstimate& one : found.causes) {
-    if (one.cause == cause) values[axis++] = one.value;
+    if (one.cause != cause) continue;
+    if (std::abs(one.value) > least * one.u) values[axis] = one.value;
+    ++axis;
   }
   return values;
 }
@@ -76,15 +81,7 @@ const CircleTrial& MostLikely(const std::vector<CircleTrial>& trials) {
 
 // The spikes that are far beyond chance: of smaller ones the form does not matter.
 std::array<double, 2> SpikesOf(const CircleCauses& found) {
-  constexpr double kFarBeyond = 5.0;
-  std::array<double, 2> spikes = OfBothAxes("reversal_spike", found);
-  std::size_t axis = 0;
-  for (const CauseEstimate& one : found.causes) {
-    if (one.cause != "reversal_spike") continue;
-    if (std::abs(one.value) <= kFarBeyond * one.u) spikes[axis] = 0.0;
-    ++axis;
-  }
-  return spikes;
+  return OfBothAxes("reversal_spike", found, 5.0);
 }
 
 // The fit with the way of winding up and the width of spikes that suit each axis best, not known
@@ -100,7 +97,7 @@ CircleTrial WithOwnForm(const std::vector<const CircleRun*>& runs, const CauseOp
     ReversalForm form = trial.form;
     form.spread = SpikesOf(trial.found);
     if (form.how == standards::TakenUp::kByWindUp) {
-      form.wound_up = OfBothAxes("backlash", trial.found);
+      form.wound_up = OfBothAxes("backlash", trial.found, standards::kCoverage);
     }
     double farthest = 0.0;
     for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -139,18 +136,6 @@ void FitTakenUp(const std::vector<const CircleRun*>& runs, const CauseOptions& o
   for (const double way : kWays) {
     form.way = {way, way};
     trials.push_back(fitted(form));
-  }
-}
-
-// Of each way in which backlash may be taken up, the best of `trials` with its own form.
-void FitOwnForms(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
-                 std::vector<CircleTrial>& trials) {
-  for (const auto how : {standards::TakenUp::kAtOnce, standards::TakenUp::kWithPlay,
-                         standards::TakenUp::kByWindUp}) {
-    std::vector<CircleTrial> of_kind;
-    std::ranges::copy_if(trials, std::back_inserter(of_kind),
-                         [&](const CircleTrial& trial) { return trial.form.how == how; });
-    trials.push_back(WithOwnForm(runs, options, MostLikely(of_kind)));
   }
 }
 
@@ -193,22 +178,35 @@ std::vector<standards::SpikeForm> SpikesLike(const std::vector<const CircleRun*>
   return forms;
 }
 
-// Fits with spikes of this form of all widths, backlash taken up as it is in the best of `trials`,
-// and with the width that suits each axis best.
-void FitSpikes(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
-               const standards::SpikeForm& spike, std::vector<CircleTrial>& trials) {
-  constexpr std::array kWidths{0.2, 0.3, 0.45, 0.67, 1.0, 1.5, 2.2, 3.3, 5.0};  // of that stated
-  ReversalForm form = MostLikely(trials).form;
-  form.wound_up = {};
-  form.spread = {};
-  std::vector<CircleTrial> of_form;
-  for (const double times : kWidths) {
-    form.spike = spike;
-    for (double& width : form.spike.width) width *= times;
-    of_form.push_back(FitWith(runs, options, form));
+// Fits in `form` with widths of spikes of so many times its own.
+std::vector<CircleTrial> WithWidths(const std::vector<const CircleRun*>& runs,
+                                    const CauseOptions& options, const ReversalForm& form,
+                                    std::span<const double> widths) {
+  std::vector<CircleTrial> trials;
+  for (const double times : widths) {
+    ReversalForm changed = form;
+    for (double& width : changed.spike.width) width *= times;
+    trials.push_back(FitWith(runs, options, changed));
   }
-  of_form.push_back(WithOwnForm(runs, options, MostLikely(of_form)));
-  std::ranges::move(of_form, std::back_inserter(trials));
+  return trials;
+}
+
+// The form of backlash of a trial beside spikes of this form.
+ReversalForm Beside(const standards::SpikeForm& spike, const CircleTrial& trial) {
+  return {.how = trial.form.how, .way = trial.form.way, .spike = spike};
+}
+
+// Whether spikes of some form suit the runs better than any of `trials`, or these have some.
+bool HasSpikes(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
+               const std::vector<standards::SpikeForm>& spikes,
+               const std::vector<CircleTrial>& trials) {
+  constexpr std::array kWidths{0.3, 1.0, 3.0};  // of that stated
+  std::vector<CircleTrial> best{MostLikely(trials)};
+  for (const standards::SpikeForm& spike : spikes) {
+    std::ranges::move(WithWidths(runs, options, Beside(spike, MostLikely(trials)), kWidths),
+                      std::back_inserter(best));
+  }
+  return SpikesOf(MostLikely(best).found) != std::array<double, 2>{};
 }
 
 // The best of `trials` of each kind.
@@ -224,26 +222,16 @@ std::vector<CircleTrial> BestOfEach(const std::vector<CircleTrial>& trials, cons
   return values;
 }
 
-// Every way in which backlash may be taken up beside every form of spikes, which are not quite of
-// that form. Without that the forms are not to be compared: one would take the part of another's.
-std::vector<CircleTrial> WithFormsOfTheirOwn(const std::vector<const CircleRun*>& runs,
-                                             const CauseOptions& options,
-                                             const std::vector<CircleTrial>& trials) {
-  const auto spikes = BestOfEach(trials, [](const CircleTrial& trial) {
-    return std::pair(trial.form.spike.sharp, trial.form.spike.at_feed > 0.0);
-  });
-  const auto ways = BestOfEach(trials, [](const CircleTrial& trial) { return trial.form.how; });
-  std::vector<CircleTrial> formed;
-  for (const CircleTrial& spike : spikes) {
-    for (const CircleTrial& way : ways) {
-      ReversalForm form = way.form;
-      form.spike = spike.form.spike;
-      form.spike_size = form.spread = SpikesOf(spike.found);
-      if (form.spike_size == std::array<double, 2>{}) continue;
-      formed.push_back(FitWith(runs, options, form));
-    }
-  }
-  return formed;
+// In `form`, with the width of spikes that suits each axis best, and spikes not quite of that form.
+// Without that the forms are not to be compared: one would take the part of another's.
+CircleTrial WithSpikes(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
+                       const ReversalForm& form) {
+  constexpr std::array kWidths{0.2, 0.3, 0.45, 0.67, 1.0, 1.5, 2.2, 3.3, 5.0};  // of that stated
+  const CircleTrial own =
+      WithOwnForm(runs, options, MostLikely(WithWidths(runs, options, form, kWidths)));
+  ReversalForm formed = own.form;
+  formed.spike_size = SpikesOf(own.found);
+  return FitWith(runs, options, formed);
 }
 
 // Fits with all forms that a reversal may have: backlash taken up in every way and spikes of every
@@ -252,15 +240,20 @@ std::vector<CircleTrial> FitWithAll(const std::vector<const CircleRun*>& runs,
                                     const CauseOptions& options) {
   std::vector<CircleTrial> trials;
   FitTakenUp(runs, options, StatedSpike(options), trials);
-  FitOwnForms(runs, options, trials);
-  const std::array<double, 2> none{};
-  for (const standards::SpikeForm& spike : SpikesLike(runs, options)) {
-    FitSpikes(runs, options, spike, trials);
+  if (const CircleTrial& best = MostLikely(trials);
+      best.form.how == standards::TakenUp::kByWindUp) {
+    trials.push_back(WithOwnForm(runs, options, best));
   }
-  if (SpikesOf(MostLikely(trials).found) == none) return trials;
-  FitTakenUp(runs, options, MostLikely(trials).form.spike, trials);
-  FitOwnForms(runs, options, trials);
-  return WithFormsOfTheirOwn(runs, options, trials);
+  const std::vector<standards::SpikeForm> spikes = SpikesLike(runs, options);
+  if (!HasSpikes(runs, options, spikes, trials)) return trials;
+  const auto ways = BestOfEach(trials, [](const CircleTrial& trial) { return trial.form.how; });
+  std::vector<CircleTrial> formed;
+  for (const standards::SpikeForm& spike : spikes) {
+    for (const CircleTrial& way : ways) {
+      formed.push_back(WithSpikes(runs, options, Beside(spike, way)));
+    }
+  }
+  return formed;
 }
 
 }  // namespace

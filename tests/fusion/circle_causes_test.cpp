@@ -1,5 +1,6 @@
 #include "fusion/circle_causes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -182,7 +183,8 @@ TEST(CircleCauses, BacklashThatWindsUpOverMillimetresIsAsSureAsItsWay) {
 // feeds or as long in time.
 TEST(CircleCauses, FrictionThatFallsFromTheReversalOnIsNoBacklash) {
   double inside = 0.0, all = 0.0;
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  std::string off;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const random::CounterRandom random(seed, 0x57C);
     Machine m{.squareness = 20e-6 * random.Normal(0), .delay_x = 0.3e-3 * random.Normal(1)};
     m.stuck_x = 2e-6 + 4e-6 * random.Uniform(2);
@@ -190,19 +192,25 @@ TEST(CircleCauses, FrictionThatFallsFromTheReversalOnIsNoBacklash) {
     if (seed % 2 == 0) m.stuck_time = m.stuck_for * kRadius / 0.006;  // as wide at 6 mm/s
     m.backlash_x = seed % 3 == 0 ? 0.0 : 3e-6 * random.Normal(4);
     m.noise = 0.1e-6;
-    const auto slow = Measure(m, 0.002, {1, -1}, seed), fast = Measure(m, 0.02, {1, -1}, seed);
+    const auto slow = Measure(m, 0.002, {1, -1}, seed, 360);
+    const auto fast = Measure(m, 0.02, {1, -1}, seed, 360);
     const CircleCauses found = FitCircleCauses({&slow, &fast});
     for (Truth truth : TruthOf(m)) {
       if (std::string(truth.cause) == "reversal_spike" && truth.object[0] == 'X') {
         truth.value = m.stuck_x;
       }
       const CauseEstimate& one = Find(found, truth.cause, truth.object);
-      inside += std::abs(one.value - truth.value) < 2.0 * one.u ? 1.0 : 0.0;
+      const double times = (one.value - truth.value) / one.u;
+      if (std::abs(times) < 2.0) {
+        inside += 1.0;
+      } else {
+        off += fmt::format("{}: {} {} {:.1f} u\n", seed, one.cause, one.object, times);
+      }
       all += 1.0;
     }
     EXPECT_LT(Find(found, "backlash", "X").u, 0.5e-6) << seed;
   }
-  EXPECT_GT(inside / all, 0.9);
+  EXPECT_GT(inside / all, 0.9) << off;
 }
 
 TEST(CircleCauses, AllCausesAtOnceAreToldApart) {
