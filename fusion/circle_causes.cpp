@@ -218,6 +218,7 @@ std::vector<CircleTrial> BestOfEach(const std::vector<CircleTrial>& trials, cons
     if (!added && trial.found.rms_after < at->second.found.rms_after) at->second = trial;
   }
   std::vector<CircleTrial> values;
+  values.reserve(best.size());
   for (auto& [key, trial] : best) values.push_back(std::move(trial));
   return values;
 }
