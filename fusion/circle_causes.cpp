@@ -61,7 +61,7 @@ void LimitOrders(const std::vector<const CircleRun*>& runs, std::size_t causes,
   }
 }
 
-// Of both axes, with their signs; 0 where they are no larger than so many u.
+// What a cause is found to be on each axis; 0 where that is no more than `least` times its u.
 std::array<double, 2> OfBothAxes(const std::string& cause, const CircleCauses& found,
                                  double least = 0.0) {
   std::array<double, 2> values{};
@@ -115,15 +115,19 @@ CircleTrial WithOwnForm(const std::vector<const CircleRun*>& runs, const CauseOp
   return trial;
 }
 
-// The fits with all ways in which backlash may be taken up, beside spikes of this form.
-void FitTakenUp(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
-                const standards::SpikeForm& spike, std::vector<CircleTrial>& trials) {
+standards::SpikeForm StatedSpike(const CauseOptions& options) {
+  return {.width = {options.spike_width, options.spike_width}};
+}
+
+// The fits with all ways in which backlash may be taken up, beside spikes as they are stated.
+std::vector<CircleTrial> FitTakenUp(const std::vector<const CircleRun*>& runs,
+                                    const CauseOptions& options) {
   constexpr int kRounds = 4;  // each brings the way closer to the play by a factor of five
   constexpr std::array kWays{0.5e-6, 1e-6,   2e-6, 5e-6, 10e-6, 20e-6, 50e-6, 100e-6,
                              200e-6, 500e-6, 1e-3, 2e-3, 3e-3,  5e-3,  8e-3};  // m
   const auto fitted = [&](const ReversalForm& form) { return FitWith(runs, options, form); };
-  ReversalForm form{.spike = spike};
-  trials.push_back(fitted(form));
+  ReversalForm form{.spike = StatedSpike(options)};
+  std::vector<CircleTrial> trials{fitted(form)};
   CircleTrial with_play = trials.back();
   with_play.form.how = standards::TakenUp::kWithPlay;
   for (int round = 0; round < kRounds; ++round) {
@@ -137,6 +141,11 @@ void FitTakenUp(const std::vector<const CircleRun*>& runs, const CauseOptions& o
     form.way = {way, way};
     trials.push_back(fitted(form));
   }
+  if (const CircleTrial& best = MostLikely(trials);
+      best.form.how == standards::TakenUp::kByWindUp) {
+    trials.push_back(WithOwnForm(runs, options, best));
+  }
+  return trials;
 }
 
 // The logarithm of the marginal likelihood of a fit, up to what is the same for all. `rows`:
@@ -153,10 +162,6 @@ Eigen::VectorXd ValuesOf(const CircleCauses& fit) {
   Eigen::VectorXd values(fit.causes.size());
   for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = fit.causes[i].value;
   return values;
-}
-
-standards::SpikeForm StatedSpike(const CauseOptions& options) {
-  return {.width = {options.spike_width, options.spike_width}};
 }
 
 // Rounded and sharp, as wide at all feeds or in proportion to them where there are several: in the
@@ -209,18 +214,14 @@ bool HasSpikes(const std::vector<const CircleRun*>& runs, const CauseOptions& op
   return SpikesOf(MostLikely(best).found) != std::array<double, 2>{};
 }
 
-// The best of `trials` of each kind.
-template <typename Kind>
-std::vector<CircleTrial> BestOfEach(const std::vector<CircleTrial>& trials, const Kind& kind) {
-  std::map<decltype(kind(trials.front())), CircleTrial> best;
-  for (const CircleTrial& trial : trials) {
-    const auto [at, added] = best.try_emplace(kind(trial), trial);
-    if (!added && trial.found.rms_after < at->second.found.rms_after) at->second = trial;
-  }
-  std::vector<CircleTrial> values;
-  values.reserve(best.size());
-  for (auto& [key, trial] : best) values.push_back(std::move(trial));
-  return values;
+// For each way in which backlash may be taken up the best of `trials`.
+std::vector<CircleTrial> BestOfEachWay(const std::vector<CircleTrial>& trials) {
+  std::map<standards::TakenUp, std::vector<CircleTrial>> of_way;
+  for (const CircleTrial& trial : trials) of_way[trial.form.how].push_back(trial);
+  std::vector<CircleTrial> best;
+  best.reserve(of_way.size());
+  for (const auto& [how, all] : of_way) best.push_back(MostLikely(all));
+  return best;
 }
 
 // In `form`, with the width of spikes that suits each axis best, and spikes not quite of that form.
@@ -239,15 +240,10 @@ CircleTrial WithSpikes(const std::vector<const CircleRun*>& runs, const CauseOpt
 // form and width; where there are spikes, these not quite of the form of the table.
 std::vector<CircleTrial> FitWithAll(const std::vector<const CircleRun*>& runs,
                                     const CauseOptions& options) {
-  std::vector<CircleTrial> trials;
-  FitTakenUp(runs, options, StatedSpike(options), trials);
-  if (const CircleTrial& best = MostLikely(trials);
-      best.form.how == standards::TakenUp::kByWindUp) {
-    trials.push_back(WithOwnForm(runs, options, best));
-  }
+  std::vector<CircleTrial> trials = FitTakenUp(runs, options);
   const std::vector<standards::SpikeForm> spikes = SpikesLike(runs, options);
   if (!HasSpikes(runs, options, spikes, trials)) return trials;
-  const auto ways = BestOfEach(trials, [](const CircleTrial& trial) { return trial.form.how; });
+  const std::vector<CircleTrial> ways = BestOfEachWay(trials);
   std::vector<CircleTrial> formed;
   for (const standards::SpikeForm& spike : spikes) {
     for (const CircleTrial& way : ways) {

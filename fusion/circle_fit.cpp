@@ -198,9 +198,7 @@ CircleEquations SpikesOnGrid(const CircleRun& run, const CauseOptions& options,
         {run.radius * std::cos(angle), run.radius * std::sin(angle), 0.0, angle, 1, 1});
   }
   CircleEquations equations = EquationsOf(grid, options, form);
-  if (form.spike_size != std::array<double, 2>{}) {
-    equations.alike = ShapesAlike(grid, AfterReversalsOf(grid, form));
-  }
+  equations.alike = ShapesAlike(grid, AfterReversalsOf(grid, form));
   return equations;
 }
 

@@ -148,7 +148,7 @@ MatrixXd LeastDirections(const MatrixXd& groups) {
   return directions;
 }
 
-// Of equal less unequal signs.
+// How many signs are equal, less those that are not, and how many there are.
 struct Signs {
   double sum = 0.0, count = 0.0;
 
@@ -209,7 +209,7 @@ class CopySearch {
   }
 
  private:
-  // Of `found`, the groups of the whole beside those of the part; empty where it has none.
+  // The groups of the part beside those in `found` of the whole, which are empty where it has none.
   Signs SignsAt(const std::vector<VectorXd>& found, int later) const {
     Signs signs;
     for (Index g = 0; g + later < std::ssize(found); ++g) {

@@ -11,7 +11,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Of triangles, with one more on either side, in widths: of one end in one run, and of all together.
+// Where triangles have their peaks, in widths, and one knot more on either side: for one end of an
+// axis in one run, and for both ends in all runs.
 constexpr std::array kKnots{-0.5, 0.0, 0.5, 1.0, 2.0, 3.5, 6.0};
 constexpr std::array kKnotsOfAll{-0.25, 0.0, 0.25, 0.5, 0.75, 1.0, 1.4,
                                  1.8,   2.3, 2.8,  3.4, 4.0,  5.0, 6.0};

@@ -8,7 +8,7 @@
 //   - the spike of the table with the sign of the end where the axis turned, twice `size`,
 //   - at each end five triangles over the angle since the reversal, whose knots are 0, 1/2, 1, 2,
 //     3.5 and 6 widths: a quarter of `size`. A half sine and an exponential pulse of one height and
-//     width differ by up to a fifth of it, at both ends and in all runs alike.
+//     width differ by up to a fifth of it.
 // Nothing where `size` is 0.
 // Units: m, rad. Shapes: points of the run x 22; `spikes` points x 2, the radial deviation by a
 // spike of 1 m of each axis.

@@ -56,7 +56,7 @@ Recording SweepOf(std::uint64_t machine, std::uint64_t run) {
 
 using Change = std::function<double(const std::string& column, double value)>;
 
-// Of the rows that `kept` wants.
+// Only the rows that `kept` wants.
 Recording Changed(
     const Recording& recording, const Change& change,
     const std::function<bool(std::size_t)>& kept = [](std::size_t) { return true; }) {
@@ -80,7 +80,7 @@ double Rounded(const std::string& column, double value) {
 TEST(NearCopy, TrueRepetitionsAreNone) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     EXPECT_FALSE(SharedNoise(SweepOf(seed, 2 * seed), SweepOf(seed, 2 * seed + 1))) << seed;
-    // Of an instrument with steps of 10 nm, twice its noise.
+    // As an instrument reads whose steps of 10 nm are twice its noise.
     const Change steps = [](const std::string& column, double value) {
       return IsProbe(column) ? std::round(value * 1e2) / 1e2 : value;
     };

@@ -32,6 +32,16 @@ Named NamesOf(const Campaign& campaign, const recording::Recording& recording, b
   return names;
 }
 
+// For each of some machines, with the recording of a plate on it.
+template <typename Check>
+void OnMachines(const Check& check) {
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    SCOPED_TRACE(seed);
+    const Campaign campaign(CampaignMachine(), seed);
+    check(campaign, rig::RecordPlate(campaign.rig.world(), {}), seed);
+  }
+}
+
 // Moves the axes at the hole of a set-up.
 void Shift(recording::Recording& recording, std::size_t setup, int hole, double mm) {
   for (std::size_t row = 0; row < recording.rows(); ++row) {
@@ -41,10 +51,7 @@ void Shift(recording::Recording& recording, std::size_t setup, int hole, double 
 }
 
 TEST(WrongHoles, AreNamedAndNoOthers) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    SCOPED_TRACE(seed);
-    const Campaign campaign(CampaignMachine(), seed);
-    recording::Recording recording = rig::RecordPlate(campaign.rig.world(), {});
+  OnMachines([](const Campaign& campaign, recording::Recording recording, std::uint64_t seed) {
     EXPECT_EQ(NamesOf(campaign, recording, false), Named{});
     const random::CounterRandom random(seed, 0xB01E);
     Named wrong;
@@ -53,14 +60,11 @@ TEST(WrongHoles, AreNamedAndNoOthers) {
     }
     for (const auto& [setup, hole] : wrong) Shift(recording, setup, hole, 0.02);
     EXPECT_EQ(NamesOf(campaign, recording, false), wrong);
-  }
+  });
 }
 
 TEST(WrongHoles, AMovedBushIsWrongInAllSetups) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    SCOPED_TRACE(seed);
-    const Campaign campaign(CampaignMachine(), seed);
-    recording::Recording recording = rig::RecordPlate(campaign.rig.world(), {});
+  OnMachines([](const Campaign& campaign, recording::Recording recording, std::uint64_t seed) {
     const int hole = 1 + static_cast<int>(5 * seed);
     Named wrong;
     // The certificate is off, not the hole: the same.
@@ -72,21 +76,18 @@ TEST(WrongHoles, AMovedBushIsWrongInAllSetups) {
     }
     for (std::size_t setup = 0; setup < 5; ++setup) wrong.emplace(setup, hole);
     EXPECT_EQ(NamesOf(campaign, recording, true), wrong);
-  }
+  });
 }
 
 // A machine that jumps by 8 um in the middle of X does it in all rows of holes.
 TEST(WrongHoles, AreNotWhatTheMachineDoes) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    SCOPED_TRACE(seed);
-    const Campaign campaign(CampaignMachine(), seed);
-    recording::Recording recording = rig::RecordPlate(campaign.rig.world(), {});
+  OnMachines([](const Campaign& campaign, recording::Recording recording, std::uint64_t) {
     const std::vector<double> x(recording.At("x_mm").begin(), recording.At("x_mm").end());
     for (std::size_t row = 0; row < recording.rows(); ++row) {
       if (x[row] > 30.0) recording.columns[1].values[row] += 0.008;
     }
     EXPECT_EQ(NamesOf(campaign, recording, false), Named{});
-  }
+  });
 }
 
 TEST(WrongHoles, AreLeftOut) {
