@@ -75,8 +75,7 @@ std::array<double, 2> OfBothAxes(const std::string& cause, const CircleCauses& f
 }
 
 const CircleTrial& MostLikely(const std::vector<CircleTrial>& trials) {
-  return *std::ranges::min_element(trials, {},
-                                   [](const CircleTrial& one) { return one.found.rms_after; });
+  return *std::ranges::min_element(trials, {}, [](const CircleTrial& one) { return one.white; });
 }
 
 // The spikes that are far beyond chance: of smaller ones the form does not matter.
@@ -151,7 +150,7 @@ std::vector<CircleTrial> FitTakenUp(const std::vector<const CircleRun*>& runs,
 // The logarithm of the marginal likelihood of a fit, up to what is the same for all. `rows`:
 // independent ones.
 double LogLikelihood(const CircleTrial& trial, double rows) {
-  return -rows * std::log(std::max(trial.found.rms_after, kLeastRadialNoise)) - trial.improbable;
+  return -rows * std::log(std::max(trial.white, kLeastRadialNoise)) - trial.improbable;
 }
 
 double IndependentRows(const std::vector<const CircleRun*>& runs, const CircleCauses& fit) {
@@ -253,6 +252,15 @@ std::vector<CircleTrial> FitWithAll(const std::vector<const CircleRun*>& runs,
   return formed;
 }
 
+// The same forms beside noise that remembers, where the fit of the likeliest tells that it does.
+std::vector<CircleTrial> Remembering(const std::vector<const CircleRun*>& runs,
+                                     const CauseOptions& options, std::vector<CircleTrial> trials) {
+  const CircleMemory memory = MemoryBeside(runs, options, MostLikely(trials));
+  if (std::ranges::none_of(memory, [](const auto& run) { return run.has_value(); })) return trials;
+  for (CircleTrial& trial : trials) trial = FitWith(runs, options, trial.form, memory);
+  return trials;
+}
+
 }  // namespace
 
 bool CircleCauses::TableHolds() const {
@@ -268,7 +276,7 @@ bool CircleCauses::IsCertain(const CauseEstimate& one) const {
 CircleCauses FitCircleCauses(const std::vector<const CircleRun*>& runs, CauseOptions options) {
   CheckCircles(runs);
   LimitOrders(runs, CausesOf(*runs.front(), options, {}).size(), options.smooth);
-  const std::vector<CircleTrial> trials = FitWithAll(runs, options);
+  const std::vector<CircleTrial> trials = Remembering(runs, options, FitWithAll(runs, options));
   const double rows = IndependentRows(runs, MostLikely(trials).found);
   const CircleTrial& likeliest = *std::ranges::max_element(
       trials, {}, [rows](const CircleTrial& trial) { return LogLikelihood(trial, rows); });

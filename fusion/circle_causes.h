@@ -18,13 +18,13 @@
 // these the way of each axis is one more unknown, known to a factor of e. Spikes rise or are there at
 // once, as wide at all feeds or in proportion to them, the width of each axis one more unknown, and
 // of a form known to a quarter of their height (reversal_shapes.h). Results are the mean of the fits
-// by their likelihood, less what that form costs by its prior, and their spread is in u (Bayesian model averaging: Hoeting et al.,
-// Statistical Science 14 (1999)).
+// by their likelihood, less what that form costs by its prior, and their spread is in u (Bayesian
+// model averaging: Hoeting et al., Statistical Science 14 (1999)).
 // Units: SI; `effect` is the largest radial deviation of a cause in m, without sign.
 // Noise: estimated from the residuals and their degrees of freedom, whose Student's t is in u (2 u is
-// a U95), and enlarged for the correlation of neighbouring rows by the
-// factor by which the means of 10 degrees scatter more than those of independent rows. Deviations
-// that no cause explains therefore enlarge the uncertainties. `seen` is false where the prior (the
+// a U95). What it remembers along the path is estimated for each run (row_memory.h); what is left of
+// that enlarges it by the factor by which the means of 10 degrees scatter more than those of
+// independent rows. Deviations that no cause explains therefore enlarge the uncertainties. `seen` is false where the prior (the
 // `usual` amount of a machine tool) determines the value more than the data: one sense cannot
 // separate squareness from servo mismatch, nor one feed scale from lag.
 // So that enough degrees of freedom are left, sparse points have fewer harmonics.
@@ -67,7 +67,7 @@ struct CircleCauses {
   double rms_before = 0.0;  // m: of the radius about centre and mean radius of each run
   double rms_smooth = 0.0;  // m: of the fitted smooth errors and errors of the instrument
   double rms_after = 0.0;   // m: of the residuals
-  double correlated = 1.0;  // the factor on the standard deviation
+  double correlated = 1.0;  // the factor on the standard deviation of what is not remembered
   // The residuals over their scatter from point to point: near 1 for noise, larger for what no cause
   // of the table does.
   double beyond_noise = 1.0;

@@ -9,9 +9,13 @@
 #include <string>
 #include <utility>
 
+#include "estimation/linearization.h"
+#include "estimation/noise_memory.h"
 #include "estimation/problem.h"
 #include "failure/failure.h"
+#include "fusion/machine_problem.h"
 #include "fusion/reversal_shapes.h"
+#include "fusion/row_memory.h"
 
 namespace abbe::fusion {
 namespace {
@@ -54,6 +58,18 @@ Eigen::MatrixXd Waves(const CircleRun& run, std::size_t orders) {
   return waves;
 }
 
+Eigen::VectorXd Travelled(const CircleRun& run) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  Eigen::VectorXd travelled = Eigen::VectorXd::Zero(std::ssize(run.points));
+  for (Eigen::Index i = 1; i < travelled.size(); ++i) {
+    const CirclePoint &point = run.points[i], &before = run.points[i - 1];
+    const bool goes_on = point.sense == before.sense && point.pass == before.pass;
+    const double step = std::abs(std::remainder(point.angle - before.angle, kTurn));
+    travelled[i] = travelled[i - 1] + step + (goes_on ? 0.0 : kTurn);
+  }
+  return travelled;
+}
+
 CircleEquations EquationsOf(const CircleRun& run, const CauseOptions& options,
                             const ReversalForm& form) {
   const std::vector<Signature> table = SignaturesOf(run, options, form);
@@ -67,7 +83,8 @@ CircleEquations EquationsOf(const CircleRun& run, const CauseOptions& options,
                             {},
                             {},
                             {},
-                            Eigen::VectorXd(n)};
+                            Eigen::VectorXd(n),
+                            Travelled(run)};
   for (Eigen::Index i = 0; i < n; ++i) {
     const CirclePoint& point = run.points[i];
     const standards::CirclePoint at{point.angle, static_cast<double>(point.sense), run.radius,
@@ -152,6 +169,61 @@ estimation::ParameterBlock UnitBlock(const std::string& name, Eigen::Index count
   return block;
 }
 
+// Rows less what they remember of those before, in deviations of the white part.
+void Whiten(const CircleNoise& noise, std::size_t run, const Eigen::VectorXd& travelled,
+            Eigen::Ref<Eigen::MatrixXd> columns) {
+  if (noise.memory.empty() || !noise.memory[run]) return;
+  estimation::MemoryFilter(travelled, *noise.memory[run]).Whiten(columns);
+}
+
+// A source for each run.
+Problem CircleProblem(const std::vector<CircleEquations>& equations,
+                      const std::vector<Signature>& causes, const CauseOptions& options,
+                      const CircleNoise& noise) {
+  Problem problem;
+  estimation::ParameterBlock named{"cause", {"", 1.0}, {}};
+  for (const Signature& cause : causes) {
+    named.entries.push_back({CauseName(cause), 0.0, cause.usual, 0.0});
+  }
+  std::vector<estimation::Input> shared{problem.Add(std::move(named))};
+  if (!options.smooth.empty()) shared.emplace_back(problem.Add(SmoothBlock(options.smooth)));
+  if (!options.shifted.empty()) {
+    shared.emplace_back(problem.Add(UnitBlock("instrument", std::ssize(options.shifted))));
+  }
+  const bool spikes = equations.front().shapes.size() > 0;
+  if (equations.front().between.size() > 0) {
+    shared.emplace_back(problem.Add(UnitBlock("between", equations.front().between.cols())));
+  }
+  if (spikes) {
+    shared.emplace_back(problem.Add(UnitBlock("alike", equations.front().alike.cols())));
+  }
+  if (equations.front().ways.size() > 0)
+    shared.emplace_back(problem.Add(UnitBlock("ways", equations.front().ways.cols())));
+  for (std::size_t run = 0; run < equations.size(); ++run) {
+    const CircleEquations& one = equations[run];
+    std::vector<estimation::Input> inputs = shared;
+    inputs.emplace_back(
+        problem.Add({fmt::format("centre_{}", run), {"um", 1e-6}, {{"first"}, {"second"}}}));
+    if (spikes) {
+      inputs.emplace_back(problem.Add(UnitBlock(fmt::format("shapes_{}", run), one.shapes.cols())));
+    }
+    Eigen::MatrixXd A(one.radial.size(), 0);
+    for (const auto* part : {&one.causes, &one.smooth, &one.instrument, &one.between, &one.alike,
+                             &one.ways, &one.centre, &one.shapes}) {
+      if (part->cols() == 0) continue;
+      A.conservativeResize(Eigen::NoChange, A.cols() + part->cols());
+      A.rightCols(part->cols()) = *part;
+    }
+    Eigen::VectorXd b = one.radial;
+    Whiten(noise, run, one.travelled, A);
+    Whiten(noise, run, one.travelled, b);
+    problem.Add(problem.AddSource(fmt::format("run {}", run + 1)),
+                std::make_shared<estimation::LinearResidual>(std::move(A), std::move(b)), inputs,
+                noise.deviation);
+  }
+  return problem;
+}
+
 }  // namespace
 
 std::string CauseName(const Signature& cause) { return cause.cause + "." + cause.object; }
@@ -204,46 +276,9 @@ CircleEquations SpikesOnGrid(const CircleRun& run, const CauseOptions& options,
 
 CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
                        const std::vector<Signature>& causes, const CauseOptions& options,
-                       double deviation) {
-  Problem problem;
-  estimation::ParameterBlock named{"cause", {"", 1.0}, {}};
-  for (const Signature& cause : causes) {
-    named.entries.push_back({CauseName(cause), 0.0, cause.usual, 0.0});
-  }
-  std::vector<estimation::Input> shared{problem.Add(std::move(named))};
-  if (!options.smooth.empty()) shared.emplace_back(problem.Add(SmoothBlock(options.smooth)));
-  if (!options.shifted.empty()) {
-    shared.emplace_back(problem.Add(UnitBlock("instrument", std::ssize(options.shifted))));
-  }
-  const bool spikes = equations.front().shapes.size() > 0;
-  if (equations.front().between.size() > 0) {
-    shared.emplace_back(problem.Add(UnitBlock("between", equations.front().between.cols())));
-  }
-  if (spikes) {
-    shared.emplace_back(problem.Add(UnitBlock("alike", equations.front().alike.cols())));
-  }
-  const bool ways = equations.front().ways.size() > 0;
-  if (ways) shared.emplace_back(problem.Add(UnitBlock("ways", equations.front().ways.cols())));
-  for (std::size_t run = 0; run < equations.size(); ++run) {
-    const CircleEquations& one = equations[run];
-    std::vector<estimation::Input> inputs = shared;
-    inputs.emplace_back(
-        problem.Add({fmt::format("centre_{}", run), {"um", 1e-6}, {{"first"}, {"second"}}}));
-    if (spikes) {
-      inputs.emplace_back(problem.Add(UnitBlock(fmt::format("shapes_{}", run), one.shapes.cols())));
-    }
-    Eigen::MatrixXd A(one.radial.size(), 0);
-    for (const auto* part : {&one.causes, &one.smooth, &one.instrument, &one.between, &one.alike,
-                             &one.ways, &one.centre, &one.shapes}) {
-      if (part->cols() == 0) continue;
-      A.conservativeResize(Eigen::NoChange, A.cols() + part->cols());
-      A.rightCols(part->cols()) = *part;
-    }
-    problem.Add(problem.AddSource(fmt::format("run {}", run + 1)),
-                std::make_shared<estimation::LinearResidual>(std::move(A), one.radial), inputs,
-                deviation);
-  }
-  CircleFit fit{problem.Solve(), {}, {}, {}, {}, {}};
+                       const CircleNoise& noise) {
+  const Problem problem = CircleProblem(equations, causes, options, noise);
+  CircleFit fit{problem.Solve(), {}, {}, {}, {}, {}, {}};
   if (!fit.result.Usable()) throw NumericalError(fit.result.WhyNotUsable());
   const auto without = [&fit](const Eigen::MatrixXd& columns, const std::string& block,
                               Eigen::VectorXd& left) {
@@ -258,22 +293,40 @@ CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
     without(one.ways, "ways", left);
     without(one.shapes, fmt::format("shapes_{}", run), left);
     without(one.centre, fmt::format("centre_{}", run), left);
-    Eigen::VectorXd& noise = fit.noise.emplace_back(left);
-    without(one.smooth, "smooth", noise);
-    without(one.instrument, "instrument", noise);
-    fit.smooth.emplace_back(left - noise);
+    Eigen::VectorXd& residuals = fit.noise.emplace_back(left);
+    without(one.smooth, "smooth", residuals);
+    without(one.instrument, "instrument", residuals);
+    fit.smooth.emplace_back(left - residuals);
+    Whiten(noise, run, one.travelled, fit.white.emplace_back(residuals));
   }
   for (const estimation::ParameterBlock& block : problem.blocks()) {
     if (block.name == "alike" || block.name == "between" || block.name.starts_with("shapes_")) {
       fit.improbable += 0.5 * fit.result.Block(block.name).Values().squaredNorm();
     }
   }
-  if (ways) {
+  if (equations.front().ways.size() > 0) {
     const Eigen::VectorXd more = fit.result.Block("ways").Values();
     fit.longer = {more[0], more[1]};
     fit.wider = {more[2], more[3]};
   }
   return fit;
+}
+
+CircleMemory MemoryOf(const std::vector<CircleEquations>& equations,
+                      const std::vector<Signature>& causes, const CauseOptions& options,
+                      double deviation) {
+  const Problem problem = CircleProblem(equations, causes, options, {deviation, {}});
+  const estimation::Layout layout(problem);
+  estimation::Linearization at;
+  const estimation::Result result = problem.Solve({}, &at);
+  const Eigen::VectorXd x = ValuesFound(result, result.blocks);
+  CircleMemory memory(equations.size());
+  for (std::size_t run = 0; run < equations.size(); ++run) {
+    const RowMemory found = FindRowMemory(problem, layout, x, at, run, equations[run].travelled);
+    if (!(found.gain > kRemembers)) continue;
+    memory[run] = {1.0, found.noise.slow / found.noise.white, found.noise.time};
+  }
+  return memory;
 }
 
 }  // namespace abbe::fusion

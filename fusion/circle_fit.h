@@ -2,7 +2,7 @@
 // fusion/circle_causes.h averages over forms.
 //
 //   const std::vector<standards::Signature> table = CausesOf(run, options, form);
-//   const CircleFit fit = SolveCircles({CentredEquations(runs, 0, options, form)}, table, options, 1e-7);
+//   const CircleFit fit = SolveCircles({CentredEquations(runs, 0, options, form)}, table, options, {1e-7, {}});
 //
 // Units: SI. Shapes: a row for each point of a run.
 // Failure: NumericalError where the fit fails.
@@ -13,9 +13,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "estimation/noise_memory.h"
 #include "estimation/result.h"
 #include "fusion/circle_causes.h"
 #include "paths/circle_run.h"
@@ -46,6 +48,15 @@ std::vector<standards::Signature> CausesOf(const paths::CircleRun& run, const Ca
 struct CircleEquations {
   Eigen::MatrixXd centre, causes, smooth, instrument, shapes, alike, between, ways;
   Eigen::VectorXd radial;
+  Eigen::VectorXd travelled;  // rad: along the path, a turn more between senses and passes
+};
+
+// The memory of the noise of each run along `travelled`, over a white part of 1; empty: white.
+using CircleMemory = std::vector<std::optional<estimation::NoiseMemory>>;
+
+struct CircleNoise {
+  double deviation = 0.0;  // m: of the white part
+  CircleMemory memory;     // empty: none in any run
 };
 
 // The equations of run number `at` about its middle, so that the square of the offset of the centre
@@ -62,14 +73,20 @@ struct CircleFit {
   // For each run: the deviations without the causes, their fitted smooth part (with the errors of
   // the instrument), and the residuals.
   std::vector<Eigen::VectorXd> unexplained, smooth, noise;
+  std::vector<Eigen::VectorXd> white;  // the residuals without what they remember, m
   // What the fit adds to the logarithm of the way and of the width of each axis.
   std::array<double, 2> longer{}, wider{};
   double improbable = 0.0;  // half the sum of the squares of what spikes do beside their form
 };
 
-// `deviation`: m, of the rows.
 CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
                        const std::vector<standards::Signature>& causes, const CauseOptions& options,
-                       double deviation);
+                       const CircleNoise& noise);
+
+// What the noise of each run remembers where that is told by the fit with white noise of `deviation`
+// (row_memory.h).
+CircleMemory MemoryOf(const std::vector<CircleEquations>& equations,
+                      const std::vector<standards::Signature>& causes, const CauseOptions& options,
+                      double deviation);
 
 }  // namespace abbe::fusion

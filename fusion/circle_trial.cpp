@@ -124,6 +124,15 @@ void TakeWholeSpikes(const CircleFit& fit, const CircleEquations& grid,
   }
 }
 
+std::vector<CircleEquations> EquationsOf(const std::vector<const CircleRun*>& runs,
+                                         const CauseOptions& options, const ReversalForm& form) {
+  std::vector<CircleEquations> equations;
+  for (std::size_t run = 0; run < runs.size(); ++run) {
+    equations.push_back(CentredEquations(runs, run, options, form));
+  }
+  return equations;
+}
+
 }  // namespace
 
 Eigen::Index Rows(const std::vector<const CircleRun*>& runs) {
@@ -133,23 +142,21 @@ Eigen::Index Rows(const std::vector<const CircleRun*>& runs) {
 }
 
 CircleTrial FitWith(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
-                    const ReversalForm& form) {
+                    const ReversalForm& form, const CircleMemory& memory) {
   const std::vector<Signature> table = CausesOf(*runs.front(), options, form);
-  std::vector<CircleEquations> equations;
+  const std::vector<CircleEquations> equations = EquationsOf(runs, options, form);
   CircleCauses found;
   std::vector<Eigen::VectorXd> before;
-  for (std::size_t run = 0; run < runs.size(); ++run) {
-    equations.push_back(CentredEquations(runs, run, options, form));
-    const Eigen::VectorXd& radial = equations.back().radial;
-    before.emplace_back(radial.array() - radial.mean());
+  for (const CircleEquations& one : equations) {
+    before.emplace_back(one.radial.array() - one.radial.mean());
   }
   found.rms_before = Rms(before);
-  const CircleFit first = SolveCircles(equations, table, options, kLeastRadialNoise);
+  const CircleFit first = SolveCircles(equations, table, options, {kLeastRadialNoise, memory});
   const double rows = static_cast<double>(Rows(runs));
   const double rms =
-      std::max(Rms(first.noise) * std::sqrt(rows / FreedomOf(first, rows)), kLeastRadialNoise);
-  found.correlated = Correlated(runs, first.noise, rms);
-  const CircleFit fit = SolveCircles(equations, table, options, rms * found.correlated);
+      std::max(Rms(first.white) * std::sqrt(rows / FreedomOf(first, rows)), kLeastRadialNoise);
+  found.correlated = Correlated(runs, first.white, rms);
+  const CircleFit fit = SolveCircles(equations, table, options, {rms * found.correlated, memory});
   std::vector<Eigen::VectorXd> smooth;
   for (const Eigen::VectorXd& one : fit.smooth) smooth.emplace_back(one.array() - one.mean());
   found.rms_smooth = Rms(smooth);  // a longer ballbar is no error of the machine
@@ -179,7 +186,14 @@ CircleTrial FitWith(const std::vector<const CircleRun*>& runs, const CauseOption
   for (const Eigen::VectorXd& one : fit.unexplained) {
     found.residuals.emplace_back(one.begin(), one.end());
   }
-  return {form, std::move(found), fit.longer, fit.wider, fit.improbable};
+  return {form, std::move(found), fit.longer, fit.wider, fit.improbable, Rms(fit.white)};
+}
+
+CircleMemory MemoryBeside(const std::vector<const CircleRun*>& runs, const CauseOptions& options,
+                          const CircleTrial& trial) {
+  return MemoryOf(EquationsOf(runs, options, trial.form),
+                  CausesOf(*runs.front(), options, trial.form), options,
+                  std::max(trial.white, kLeastRadialNoise));
 }
 
 }  // namespace abbe::fusion

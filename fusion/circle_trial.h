@@ -29,10 +29,15 @@ struct CircleTrial {
   CircleCauses found;
   std::array<double, 2> longer{}, wider{};  // CircleFit
   double improbable = 0.0;                  // the same
+  double white = 0.0;                       // m: the residuals without what they remember, rms
 };
 
 CircleTrial FitWith(const std::vector<const paths::CircleRun*>& runs, const CauseOptions& options,
-                    const ReversalForm& form);
+                    const ReversalForm& form, const CircleMemory& memory = {});
+
+// What the noise of each run remembers beside the fit in this form.
+CircleMemory MemoryBeside(const std::vector<const paths::CircleRun*>& runs,
+                          const CauseOptions& options, const CircleTrial& trial);
 
 // All points.
 Eigen::Index Rows(const std::vector<const paths::CircleRun*>& runs);
