@@ -93,6 +93,39 @@ std::string Cell(double metres, int width) {
   return fmt::format("{:>{}}", text, width);
 }
 
+// What the fit counts as noise beside what the machine file states.
+std::string NoiseCounted(const fusion::CalibrationReport& report,
+                         const std::vector<simulation::LinkageRun>& runs) {
+  std::string text;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const simulation::RunNoise& noise = report.noise[r];
+    if (noise.memory) {
+      text += fmt::format(
+          "\n{}: residuals go on from pose to pose, {:.2g} times the stated noise, remembered for "
+          "{:.3g} s: the reference or the linkage drifts, or the model leaves something out; the "
+          "uncertainties count it.\n",
+          runs[r].name, noise.memory->slow, noise.memory->time);
+    } else if (noise.deviation > kNoticed) {
+      text += fmt::format(
+          "\n{}: residuals are {:.1f} times the stated noise: the reference or the model is worse "
+          "than [linkage.noise]; the uncertainties count it.\n",
+          runs[r].name, noise.deviation);
+    }
+  }
+  return text;
+}
+
+// Over what the machine file states.
+ordered_json NoiseJson(const std::vector<simulation::RunNoise>& noise) {
+  ordered_json all = ordered_json::array();
+  for (const simulation::RunNoise& one : noise) {
+    ordered_json json{{"white", one.memory ? one.memory->white : one.deviation}};
+    if (one.memory) json.update({{"slow", one.memory->slow}, {"time_s", one.memory->time}});
+    all.push_back(std::move(json));
+  }
+  return all;
+}
+
 }  // namespace
 
 ordered_json CalibrationJson(const fusion::CalibrationReport& report,
@@ -120,6 +153,7 @@ ordered_json CalibrationJson(const fusion::CalibrationReport& report,
                       {"after", Json(report.after)},
                       {"held_out", Json(report.held_out)},
                       {"residuals_over_noise", report.excess},
+                      {"noise", NoiseJson(report.noise)},
                       {"combinations", report.seen.parameters},
                       {"combinations_seen", report.seen.rank},
                       {"scaled_condition", report.seen.condition},
@@ -154,12 +188,7 @@ std::string CalibrationTable(const fusion::CalibrationReport& report,
     text += fmt::format("  mapped with {} cells\n", report.calibration.mapped->values.size());
   }
   text += ParameterTable(report.fit) + "\n" + SeenTable(report.seen) + Outliers(report, runs);
-  if (report.excess > kNoticed) {
-    text += fmt::format(
-        "\nThe residuals are {:.1f} times the stated noise: the reference or the model is worse "
-        "than [linkage.noise], and the uncertainties are too small by about this factor.\n",
-        report.excess);
-  }
+  text += NoiseCounted(report, runs);
   for (const auto& run : runs) {
     if (run.referenced[0] && run.referenced[1] && run.referenced[2]) continue;
     text += fmt::format(

@@ -6,13 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "estimation/linearization.h"
 #include "failure/failure.h"
 #include "failure/progress.h"
 #include "fusion/contradiction.h"
 #include "fusion/encoder_check.h"
+#include "fusion/machine_problem.h"
 #include "fusion/mapping.h"
+#include "fusion/row_memory.h"
+#include "simulation/linkage/linkage_gaps.h"
 
 namespace abbe::fusion {
 namespace {
@@ -59,6 +63,10 @@ void RefusePoorPoses(const std::vector<LinkageRun>& runs, Index free) {
   }
 }
 
+double ExcessOf(const estimation::SourceResult& source) {
+  return source.redundancy > 0.0 ? std::sqrt(source.chi_square / source.redundancy) : 1.0;
+}
+
 double Excess(const Result& fit) {
   double chi_square = 0.0, redundancy = 0.0;
   for (const auto& source : fit.sources) {
@@ -92,6 +100,8 @@ class CalibrationJob {
     report.fit = Solve(problem);
     report.excess = Excess(report.fit);
     if (report.excess > kBadFit) CheckAllEncoders();
+    CountNoise(problem, report.fit);
+    report.noise = options_.problem.noise;
     if (!options_.contradict) RefuseContradiction(report.fit, report.excess);
     report.seen = Observe(problem, report.fit);
     report.calibration = From(report.fit, runs_);
@@ -108,7 +118,7 @@ class CalibrationJob {
     const auto held_out = HeldOut();
     report.held_out = DistancesOf(All(held_out));
     report.calibration.held_out_rms = report.held_out.rms;
-    ListResiduals(before, gaps, held_out, report);
+    ListResiduals(before, gaps, held_out, Whitened(problem, report.fit), report);
     return report;
   }
 
@@ -122,6 +132,65 @@ class CalibrationJob {
       CheckAllEncoders();
       throw;
     }
+  }
+
+  // Fits again with the noise of each run as it is.
+  void CountNoise(estimation::Problem& problem, Result& fit) {
+    constexpr int kRounds = 4;
+    std::vector<simulation::RunNoise>& noise = options_.problem.noise;
+    noise.resize(runs_.size());
+    const auto refit = [&] {
+      problem = simulation::MakeLinkageProblem(simulation_, runs_, options_.problem);
+      fit = Solve(problem);
+    };
+    for (int round = 0; round < kRounds && IsLarger(fit, noise); ++round) refit();
+    if (Remember(fit, noise)) refit();
+  }
+
+  // Rows without a memory.
+  static bool IsLarger(const Result& fit, std::vector<simulation::RunNoise>& noise) {
+    constexpr double kNoticed = 1.05;
+    bool larger = false;
+    for (std::size_t r = 0; r < noise.size(); ++r) {
+      const double more = ExcessOf(fit.sources[r]);
+      if (!(more > kNoticed)) continue;
+      noise[r].deviation *= more;
+      larger = true;
+    }
+    return larger;
+  }
+
+  bool Remember(const Result& fit, std::vector<simulation::RunNoise>& noise) const {
+    auto options = options_.problem;
+    const VectorXd x = ValuesFound(fit, fit.blocks);
+    for (std::size_t r = 0; r < noise.size(); ++r) {
+      const simulation::LinkageGaps gaps = simulation::LinkageGaps::Evenly(simulation_, runs_[r]);
+      VectorXd left(gaps.Rows());
+      gaps.Evaluate(simulation::ParametersOf(fit.blocks, runs_[r].mounting), left, nullptr);
+      options.noise[r].memory = {std::max(1.0, FromPoseToPose(left)), 0.0, 1.0};
+    }
+    const estimation::Problem white = simulation::MakeLinkageProblem(simulation_, runs_, options);
+    const estimation::Layout layout(white);
+    const estimation::Linearization at = estimation::Linearize(white, layout, x, 0);
+    bool any = false;
+    for (std::size_t r = 0; r < noise.size(); ++r) {
+      const RowMemory found = FindRowMemory(white, layout, x, at, r, runs_[r].time);
+      if (!(found.gain > kRemembers)) continue;
+      const double unit = options.noise[r].memory->white;
+      noise[r].memory = {unit * found.noise.white, unit * found.noise.slow, found.noise.time};
+      any = true;
+    }
+    return any;
+  }
+
+  // The deviation of rows, three a pose, by their differences from pose to pose.
+  static double FromPoseToPose(const VectorXd& rows) {
+    constexpr double kMedian = 0.6745;  // of a normal number without its sign
+    if (rows.size() <= 3) return 1.0;
+    VectorXd steps = (rows.tail(rows.size() - 3) - rows.head(rows.size() - 3)).cwiseAbs();
+    const auto middle = steps.begin() + steps.size() / 2;
+    std::nth_element(steps.begin(), middle, steps.end());
+    return *middle / (std::numbers::sqrt2 * kMedian);
   }
 
   void CheckAllEncoders() const {
@@ -197,6 +266,16 @@ class CalibrationJob {
     return gaps;
   }
 
+  // The rows of each run, in deviations of its noise as the fit counts it.
+  static PerRun Whitened(const estimation::Problem& problem, const Result& fit) {
+    PerRun white;
+    estimation::VisitRows(problem, estimation::Layout(problem), ValuesFound(fit, fit.blocks), false,
+                          [&](const estimation::WhitenedRows& rows) {
+                            white.emplace_back(rows.r.reshaped(3, rows.r.size() / 3));
+                          });
+    return white;
+  }
+
   static Matrix3Xd All(const PerRun& gaps) {
     Index poses = 0;
     for (const auto& run : gaps) poses += run.cols();
@@ -210,21 +289,16 @@ class CalibrationJob {
   }
 
   void ListResiduals(const PerRun& before, const PerRun& gaps, const PerRun& held_out,
-                     CalibrationReport& report) const {
+                     const PerRun& white, CalibrationReport& report) const {
     for (std::size_t r = 0; r < runs_.size(); ++r) {
-      const Matrix3Xd noise = simulation_.GapNoise(runs_[r]);
       for (Index pose = 0; pose < runs_[r].poses(); ++pose) {
-        const Eigen::Matrix3d factor = noise.middleCols<3>(3 * pose);
-        const Vector3d white = factor.triangularView<Eigen::Lower>().solve(gaps[r].col(pose));
         report.residuals.push_back({r, pose, runs_[r].rows[pose], before[r].col(pose),
                                     gaps[r].col(pose), held_out[r].col(pose),
-                                    white.cwiseAbs().maxCoeff()});
+                                    white[r].col(pose).cwiseAbs().maxCoeff()});
       }
     }
     for (const PoseResidual& residual : report.residuals) {
-      if (residual.normalised > estimation::kOutlierAt * report.excess) {
-        report.outliers.push_back(residual);
-      }
+      if (residual.normalised > estimation::kOutlierAt) report.outliers.push_back(residual);
     }
     std::sort(report.outliers.begin(), report.outliers.end(),
               [](const auto& a, const auto& b) { return a.normalised > b.normalised; });

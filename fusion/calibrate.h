@@ -8,6 +8,8 @@
 // Cross-validation: the poses of each run are split into `folds` blocks in order of time, and each
 // block in turn is predicted by a calibration from all others. Blocks, because neighbouring poses
 // share errors and single held-out poses would be predicted too well.
+// Noise: where the residuals of a run are larger than [linkage.noise] states, or go on from pose to
+// pose (a reference that drifts; row_memory.h), the fit counts them as they are: `noise`.
 // Frames: M; B the base, T the ball (LinkageSimulation).
 // Units: m, rad. Shapes: as in LinkageSimulation.
 // Failure: InputError for too few poses, poses on one line or all in one place, for encoders that
@@ -68,9 +70,8 @@ struct CalibrationReport {
   std::vector<PoseResidual> residuals;  // in the order of runs and poses
   std::vector<PoseResidual> outliers;   // beyond estimation::kOutlierAt, worst first
   Eigen::Matrix3Xd cell_shifts;         // m, with `mapped`: CellShifts, fusion/mapping.h
-  // Excess-noise factor: residuals over stated noise; above 1 the uncertainties are too small by
-  // it.
-  double excess = 1.0;
+  double excess = 1.0;  // residuals over stated noise, at least 1
+  std::vector<simulation::RunNoise> noise;  // of each run, as the fit counts it
 };
 
 // All runs together; a base for each mounting.

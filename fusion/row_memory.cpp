@@ -42,6 +42,24 @@ std::vector<Index> ChosenInstants(Index count) {
   return chosen;
 }
 
+// Without those that a robust loss hardly counts.
+std::vector<Index> UsualInstants(const VectorXd& left, Index channels,
+                                 const std::vector<Index>& instants) {
+  constexpr double kFarOff = 25.0;  // of the median square
+  const auto square = [&](Index instant) {
+    return left.segment(instant * channels, channels).squaredNorm();
+  };
+  std::vector<double> squares;
+  for (const Index instant : instants) squares.push_back(square(instant));
+  const auto middle = squares.begin() + std::ssize(squares) / 2;
+  std::nth_element(squares.begin(), middle, squares.end());
+  std::vector<Index> usual;
+  for (const Index instant : instants) {
+    if (square(instant) <= kFarOff * *middle) usual.push_back(instant);
+  }
+  return usual;
+}
+
 class RowDensity {
  public:
   explicit RowDensity(const RowsInTime& rows) {
@@ -228,7 +246,10 @@ RowMemory FindRowMemory(const estimation::Problem& problem, const estimation::La
   const auto* found = rows.Evaluate(*of_run, x, true);
   if (found == nullptr || found->r.size() % times.size() != 0) return {};
   const Index channels = found->r.size() / times.size();
-  const std::vector<Index> instants = ChosenInstants(times.size());
+  std::vector<Index> instants = ChosenInstants(times.size());
+  if (problem.sources()[run].options.loss.kind != estimation::RobustLoss::Kind::kNone) {
+    instants = UsualInstants(found->r, channels, instants);
+  }
   std::vector<Index> chosen;
   for (const Index instant : instants) {
     for (Index channel = 0; channel < channels; ++channel) {

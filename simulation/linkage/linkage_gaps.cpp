@@ -16,6 +16,18 @@ LinkageGaps::LinkageGaps(LinkageSimulation simulation, LinkageRun run, double ex
       run_(std::move(run)),
       noise_(excess * simulation_.GapNoise(run_)) {}
 
+LinkageGaps LinkageGaps::Evenly(const LinkageSimulation& simulation, const LinkageRun& run) {
+  LinkageGaps gaps(simulation, run);
+  const Index poses = run.poses();
+  Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+  for (Index pose = 0; pose < poses; ++pose) {
+    const Eigen::Matrix3d lower = gaps.noise_.middleCols<3>(3 * pose);
+    mean += lower * lower.transpose() / static_cast<double>(poses);
+  }
+  gaps.noise_ = Eigen::Matrix3d(mean.llt().matrixL()).replicate(1, poses);
+  return gaps;
+}
+
 void LinkageGaps::Evaluate(const VectorXd& x, VectorXd& values,
                            estimation::RowMatrix* jacobian) const {
   Matrix3Xd gap;

@@ -28,6 +28,10 @@ class LinkageGaps : public Responsive {
   // `excess`: how many times larger than stated the noise is.
   LinkageGaps(LinkageSimulation simulation, LinkageRun run, double excess = 1.0);
 
+  // Made white with the mean of GapNoise over the poses, the same for all: what goes on from pose to
+  // pose in space then does so in the rows.
+  static LinkageGaps Evenly(const LinkageSimulation& simulation, const LinkageRun& run);
+
   // Three a pose.
   Eigen::Index Rows() const override { return 3 * run_.poses(); }
   // Whitened.

@@ -9,6 +9,7 @@
 
 #include "failure/failure.h"
 #include "simulation/linkage/linkage_gaps.h"
+#include "simulation/remembered_noise.h"
 
 namespace abbe::simulation {
 namespace {
@@ -39,6 +40,13 @@ std::vector<const ParameterBlock*> BlocksOf(const std::vector<ParameterBlock>& b
     if (!IsBase(block)) found.push_back(&block);
   }
   return found;
+}
+
+std::shared_ptr<const estimation::Residual> GapsOf(const LinkageSimulation& simulation,
+                                                   const LinkageRun& run, const RunNoise& noise) {
+  if (!noise.memory) return std::make_shared<LinkageGaps>(simulation, run);
+  return WithMemory(std::make_shared<LinkageGaps>(LinkageGaps::Evenly(simulation, run)), run.time,
+                    *noise.memory);
 }
 
 }  // namespace
@@ -122,7 +130,9 @@ estimation::Problem MakeLinkageProblem(const LinkageSimulation& simulation,
         unique ? run.name : fmt::format("{} ({})", run.name, r + 1), {.loss = options.loss});
     const std::size_t m =
         std::find(mountings.begin(), mountings.end(), run.mounting) - mountings.begin();
-    problem.Add(source, std::make_shared<simulation::LinkageGaps>(simulation, run), inputs[m], 1.0);
+    const RunNoise noise = options.noise.empty() ? RunNoise{} : options.noise[r];
+    problem.Add(source, GapsOf(simulation, run, noise), inputs[m],
+                noise.memory ? 1.0 : noise.deviation);
   }
   return problem;
 }

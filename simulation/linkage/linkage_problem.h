@@ -18,18 +18,28 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "estimation/noise_memory.h"
 #include "estimation/problem.h"
 #include "simulation/linkage/linkage_simulation.h"
 
 namespace abbe::simulation {
 
+// Over what the machine file states: the deviation of independent rows, or the memory of those that
+// go on from pose to pose (simulation/remembered_noise.h), whitened evenly (linkage_gaps.h).
+struct RunNoise {
+  double deviation = 1.0;
+  std::optional<estimation::NoiseMemory> memory = {};
+};
+
 struct LinkageProblemOptions {
   bool displacement = false;
   // Huber threshold in standard deviations; efficiency loss on normal data 0.1 %.
   estimation::RobustLoss loss = estimation::RobustLoss::Huber(3.0);
+  std::vector<RunNoise> noise = {};  // of each run; none: as stated
 };
 
 // Solves by a few passes from the nominal linkage; where these do not converge, as with a base

@@ -9,10 +9,12 @@
 
 #include "fusion/calibration_file.h"
 #include "linkage_world.h"
+#include "random/counter_random.h"
 
 namespace abbe::fusion {
 namespace calibrate_test {
 
+using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using relm::ErrorModel;
@@ -21,13 +23,17 @@ using ::testing::HasSubstr;
 
 const Vector3d kCube(0.025, 0.025, 0.050);
 
+Matrix3Xd Truth(const LinkageRun& run) {
+  Matrix3Xd truth = run.commanded;
+  truth.topRows<2>() *= -1.0;
+  return truth;
+}
+
 // Ball positions of another run by the calibration, against where the machine truly stands.
 Distances Against(const CalibrationReport& report, const relm::LinkageSettings& settings,
                   const LinkageRun& run) {
   const CalibratedLinkage linkage(settings, report.calibration);
-  Matrix3Xd truth = run.commanded;
-  truth.topRows<2>() *= -1.0;
-  return DistancesOf(linkage.Tips(run.readings) - truth);
+  return DistancesOf(linkage.Tips(run.readings) - Truth(run));
 }
 
 // The check that the RELM paper plans: angles by the inverse equations, calibrate, recover.
@@ -110,6 +116,49 @@ TEST(Calibrate, OutlierIsNamedAndDoesNotPull) {
   ASSERT_FALSE(report.outliers.empty());
   EXPECT_EQ(report.outliers.front().pose, 100);
   EXPECT_LT(Against(report, settings, other).rms, Against(clean, settings, other).rms + 0.2e-6);
+}
+
+// A reference that wanders by 3 um over an hour, or is three times as noisy as stated: differences of
+// ball positions, which a circle shows, are as certain as is said.
+TEST(Calibrate, CountsTheNoiseThatIsThere) {
+  constexpr int kWorlds = 24;
+  const auto settings = WorldSettings();
+  const auto mean_square = [&](double wander, double noise) {
+    double squares = 0.0;
+    for (int seed = 0; seed < kWorlds; ++seed) {
+      const LinkageWorld world = LinkageWorld::Draw(20 + seed, false);
+      auto grid = WorldRun(world, settings, GridPositions({0.06, 0.06, 0.06}, {6, 6, 6}), 1, seed);
+      grid.time.setLinSpaced(grid.poses(), 0.0, 3600.0);
+      const random::CounterRandom random(seed, 0xD21F7);
+      Vector3d off = Vector3d::Zero();
+      std::uint64_t draw = 0;
+      for (Index pose = 0; pose < grid.poses(); ++pose) {
+        for (double& each : off) {
+          each += wander / std::sqrt(grid.poses()) * random.Normal(draw++);
+        }
+        grid.reference.col(pose) += off;
+        for (int i = 0; i < 3; ++i) grid.reference(i, pose) += noise * random.Normal(draw++);
+      }
+      const auto report =
+          Calibrate(WorldChain(), settings, {grid}, {.model = ErrorModel::kPivots, .folds = 0});
+      EXPECT_EQ(report.noise.front().memory.has_value(), wander > 0.0);
+      const auto other = WorldRun(world, settings, RandomPositions(kCube, 40, 30 + seed), 0, 4);
+      const CalibratedLinkage linkage(settings, report.calibration);
+      Matrix3Xd off_by = linkage.Tips(other.readings) - Truth(other);
+      off_by.colwise() -= off_by.rowwise().mean().eval();
+      double variance = 0.0;
+      for (const auto& error : linkage.IndependentErrors({&other.readings}, {""})) {
+        Matrix3Xd shift = error.front();
+        shift.colwise() -= shift.rowwise().mean().eval();
+        variance += shift.squaredNorm();
+      }
+      squares += off_by.squaredNorm() / variance / kWorlds;
+    }
+    return squares;
+  };
+  EXPECT_LT(mean_square(3e-6, 0.0), 1.7);
+  EXPECT_LT(mean_square(0.0, 5e-6), 1.7);
+  EXPECT_LT(mean_square(0.0, 0.0), 1.7);
 }
 
 TEST(Calibrate, TwoMountingsShareTheLinkage) {
