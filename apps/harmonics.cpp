@@ -69,7 +69,7 @@ ordered_json ChannelJson(const std::string& column, const paths::ShaftReadings& 
   const ColumnUnit column_unit = ColumnUnitOf(column);
   const auto key = [&](const char* what) { return what + column_unit.ending; };
   const auto value = [&](double si) { return si / column_unit.si; };
-  const BearingHarmonics fit = fusion::FitBearing(shaft.angle, shaft.value, orders);
+  const BearingHarmonics fit = fusion::FitBearing(shaft.angle, shaft.value, orders, shaft.time);
   const HeldOut held_out = SecondHalf(shaft, orders);
   ordered_json harmonics = ordered_json::array();
   for (const int order : orders) {
@@ -82,14 +82,19 @@ ordered_json ChannelJson(const std::string& column, const paths::ShaftReadings& 
                          {key("amplitude"), value(fit.Amplitude(order))},
                          {key("u"), value(fit.result.Uncertainty(entry("sin")))}});
   }
-  return {{"column", column},
-          {"unit", column_unit.unit},
-          {"readings", shaft.value.size()},
-          {key("mean"), value(fit.result.Value("mean.gap"))},
-          {"harmonics", harmonics},
-          {key("rms"), value(fit.rms)},
-          {key("held_out_rms"), value(held_out.with)},
-          {key("held_out_rms_without"), value(held_out.without)}};
+  ordered_json channel{{"column", column},
+                       {"unit", column_unit.unit},
+                       {"readings", shaft.value.size()},
+                       {key("mean"), value(fit.result.Value("mean.gap"))},
+                       {"harmonics", harmonics},
+                       {key("rms"), value(fit.rms)},
+                       {key("held_out_rms"), value(held_out.with)},
+                       {key("held_out_rms_without"), value(held_out.without)}};
+  if (fit.memory) {
+    channel[key("remembered")] = value(fit.memory->slow);
+    channel["remembered_s"] = fit.memory->time;
+  }
+  return channel;
 }
 
 std::string ChannelTable(const ordered_json& channel) {
@@ -112,6 +117,10 @@ std::string ChannelTable(const ordered_json& channel) {
       "harmonics {:.2f} {}\n",
       number(channel, "rms"), unit, number(channel, "held_out_rms"), unit,
       number(channel, "held_out_rms_without"), unit);
+  if (channel.contains("remembered_s")) {
+    text += fmt::format("of the residuals {:.2f} {} go on for {:.2g} s; u counts it\n",
+                        number(channel, "remembered"), unit, channel["remembered_s"].get<double>());
+  }
   return text;
 }
 

@@ -120,6 +120,20 @@ VectorXd MemoryFilter::Weights() const {
   return weights;
 }
 
+double WhitePart(const std::vector<VectorXd>& channels) {
+  constexpr double kMedian = 0.6745;  // of a normal number without its sign
+  std::vector<double> differences;
+  for (const VectorXd& one : channels) {
+    for (Index i = 1; i + 1 < one.size(); ++i) {
+      differences.push_back(std::abs(one[i - 1] - 2.0 * one[i] + one[i + 1]) / std::sqrt(6.0));
+    }
+  }
+  if (differences.empty()) return 0.0;
+  const auto middle = differences.begin() + std::ssize(differences) / 2;
+  std::nth_element(differences.begin(), middle, differences.end());
+  return *middle / kMedian;
+}
+
 MemoryFit FitMemory(const std::vector<Stay>& stays) {
   constexpr double kLongest = 60.0, kRatio = 1.5;  // steps
   constexpr double kShares = 12.0;

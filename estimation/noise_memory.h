@@ -45,6 +45,10 @@ class MemoryFilter {
   Eigen::VectorXd kept_;       // of the memory until the next reading
 };
 
+// The deviation of what readings do not remember, by the median of their second differences: what goes
+// on from one to the next, and few that are far off, have little part in it. 0 for fewer than three.
+double WhitePart(const std::vector<Eigen::VectorXd>& channels);
+
 // Readings of one channel while nothing moves, about a mean of their own.
 struct Stay {
   Eigen::VectorXd time, value;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "estimation/linearization.h"
 #include "failure/failure.h"
@@ -167,7 +166,11 @@ class CalibrationJob {
       const simulation::LinkageGaps gaps = simulation::LinkageGaps::Evenly(simulation_, runs_[r]);
       VectorXd left(gaps.Rows());
       gaps.Evaluate(simulation::ParametersOf(fit.blocks, runs_[r].mounting), left, nullptr);
-      options.noise[r].memory = {std::max(1.0, FromPoseToPose(left)), 0.0, 1.0};
+      const auto channel = [&](int i) {
+        return VectorXd(left(Eigen::seq(i, Eigen::last, Eigen::fix<3>)));
+      };
+      const double white = estimation::WhitePart({channel(0), channel(1), channel(2)});
+      options.noise[r].memory = {std::max(1.0, white), 0.0, 1.0};
     }
     const estimation::Problem white = simulation::MakeLinkageProblem(simulation_, runs_, options);
     const estimation::Layout layout(white);
@@ -181,16 +184,6 @@ class CalibrationJob {
       any = true;
     }
     return any;
-  }
-
-  // The deviation of rows, three a pose, by their differences from pose to pose.
-  static double FromPoseToPose(const VectorXd& rows) {
-    constexpr double kMedian = 0.6745;  // of a normal number without its sign
-    if (rows.size() <= 3) return 1.0;
-    VectorXd steps = (rows.tail(rows.size() - 3) - rows.head(rows.size() - 3)).cwiseAbs();
-    const auto middle = steps.begin() + steps.size() / 2;
-    std::nth_element(steps.begin(), middle, steps.end());
-    return *middle / (std::numbers::sqrt2 * kMedian);
   }
 
   void CheckAllEncoders() const {

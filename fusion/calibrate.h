@@ -64,13 +64,13 @@ struct CalibrationReport {
   Calibration calibration;
   estimation::Result fit;
   Observability seen;
-  Distances before;                     // nominal linkage, its base registered
-  Distances after;                      // of all poses
-  Distances held_out;                   // NaN without folds
-  std::vector<PoseResidual> residuals;  // in the order of runs and poses
-  std::vector<PoseResidual> outliers;   // beyond estimation::kOutlierAt, worst first
-  Eigen::Matrix3Xd cell_shifts;         // m, with `mapped`: CellShifts, fusion/mapping.h
-  double excess = 1.0;  // residuals over stated noise, at least 1
+  Distances before;                         // nominal linkage, its base registered
+  Distances after;                          // of all poses
+  Distances held_out;                       // NaN without folds
+  std::vector<PoseResidual> residuals;      // in the order of runs and poses
+  std::vector<PoseResidual> outliers;       // beyond estimation::kOutlierAt, worst first
+  Eigen::Matrix3Xd cell_shifts;             // m, with `mapped`: CellShifts, fusion/mapping.h
+  double excess = 1.0;                      // residuals over stated noise, at least 1
   std::vector<simulation::RunNoise> noise;  // of each run, as the fit counts it
 };
 

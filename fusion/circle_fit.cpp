@@ -323,7 +323,7 @@ CircleMemory MemoryOf(const std::vector<CircleEquations>& equations,
   CircleMemory memory(equations.size());
   for (std::size_t run = 0; run < equations.size(); ++run) {
     const RowMemory found = FindRowMemory(problem, layout, x, at, run, equations[run].travelled);
-    if (!(found.gain > kRemembers)) continue;
+    if (!(found.gain > kRemembers) || !found.is_all) continue;
     memory[run] = {1.0, found.noise.slow / found.noise.white, found.noise.time};
   }
   return memory;

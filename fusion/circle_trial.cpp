@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "estimation/noise_memory.h"
 #include "standards/circle_signatures.h"
 
 namespace abbe::fusion {
@@ -58,20 +59,8 @@ double Correlated(const std::vector<const CircleRun*>& runs,
   return rms > 0.0 ? std::sqrt(std::max(1.0, excess / sectors / (rms * rms))) : 1.0;
 }
 
-// By the median of second differences, which leaves out what goes on from point to point, and the
-// few points of a spike.
 double BeyondNoise(const std::vector<Eigen::VectorXd>& residuals, double rms) {
-  constexpr double kMedian = 0.6745;  // of a normal number without its sign
-  std::vector<double> differences;
-  for (const Eigen::VectorXd& one : residuals) {
-    for (Eigen::Index i = 1; i + 1 < one.size(); ++i) {
-      differences.push_back(std::abs(one[i - 1] - 2.0 * one[i] + one[i + 1]) / std::sqrt(6.0));
-    }
-  }
-  if (differences.empty()) return 1.0;
-  const auto middle = differences.begin() + std::ssize(differences) / 2;
-  std::nth_element(differences.begin(), middle, differences.end());
-  return rms / std::max(*middle / kMedian, kLeastRadialNoise);
+  return rms / std::max(estimation::WhitePart(residuals), kLeastRadialNoise);
 }
 
 // The data determine the parameter itself, not only a combination with another.
@@ -193,7 +182,7 @@ CircleMemory MemoryBeside(const std::vector<const CircleRun*>& runs, const Cause
                           const CircleTrial& trial) {
   return MemoryOf(EquationsOf(runs, options, trial.form),
                   CausesOf(*runs.front(), options, trial.form), options,
-                  std::max(trial.white, kLeastRadialNoise));
+                  std::max(trial.found.rms_after / trial.found.beyond_noise, kLeastRadialNoise));
 }
 
 }  // namespace abbe::fusion

@@ -114,11 +114,7 @@ class RowDensity {
     const estimation::MemoryFilter filter(times_, memory);
     MatrixXd open = open_;
     VectorXd off = off_;
-    const Index n = times_.size();
-    for (Index channel = 0; channel < channels_; ++channel) {
-      filter.Whiten(open.middleRows(channel * n, n));
-      filter.Whiten(off.segment(channel * n, n));
-    }
+    WhitenBy(memory, open, off);
     const MatrixXd G = open.transpose() * open;
     const VectorXd g = open.transpose() * off;
     const double squares = off.squaredNorm();
@@ -158,7 +154,51 @@ class RowDensity {
     return {here, std::exp(centre)};
   }
 
+  // Whether the sums of neighbours scatter as this memory says.
+  bool ScattersLike(const estimation::NoiseMemory& noise) const {
+    constexpr double kFewest = 12.0;     // sums
+    constexpr double kImprobable = 3.3;  // standard deviations: one of a thousand
+    MatrixXd open = open_;
+    VectorXd off = off_;
+    WhitenBy(noise, open, off);
+    MatrixXd known = open.transpose() * open;
+    known.diagonal().array() += 1.0;
+    const Eigen::LLT<MatrixXd> factor(known);
+    const VectorXd left = off - open * factor.solve(open.transpose() * off);
+    const Index n = times_.size();
+    for (Index length = 2; channels_ * (n / length) >= kFewest; length *= 2) {
+      const Index of_channel = n / length;
+      VectorXd sums(channels_ * of_channel);
+      MatrixXd by_open(sums.size(), open.cols());
+      for (Index k = 0; k < sums.size(); ++k) {
+        const Index first = (k / of_channel) * n + (k % of_channel) * length;
+        sums[k] = left.segment(first, length).sum();
+        by_open.row(k) = open.middleRows(first, length).colwise().sum();
+      }
+      const double rows = static_cast<double>(length);
+      // What parameters take of the sums is no freedom of theirs.
+      const double taken = factor.matrixL().solve(by_open.transpose()).squaredNorm() / rows;
+      const double freedom = static_cast<double>(sums.size()) - taken;
+      if (freedom < kFewest) continue;
+      // Chi-square as a normal number: Wilson and Hilferty (1931).
+      const double spread = 2.0 / (9.0 * freedom);
+      const double pull =
+          (std::cbrt(sums.squaredNorm() / rows / freedom) - (1.0 - spread)) / std::sqrt(spread);
+      if (std::abs(pull) > kImprobable) return false;
+    }
+    return true;
+  }
+
  private:
+  void WhitenBy(const estimation::NoiseMemory& noise, MatrixXd& open, VectorXd& off) const {
+    const estimation::MemoryFilter filter(times_, noise);
+    const Index n = times_.size();
+    for (Index channel = 0; channel < channels_; ++channel) {
+      filter.Whiten(open.middleRows(channel * n, n));
+      filter.Whiten(off.segment(channel * n, n));
+    }
+  }
+
   Index channels_ = 1;
   VectorXd times_;
   VectorXd off_;   // r - J H^-1 g
@@ -224,6 +264,7 @@ RowMemory FindRowMemory(const RowsInTime& rows) {
   found.noise = MemoryOf(best.form);
   found.noise.white *= best.at.white;
   found.noise.slow *= best.at.white;
+  found.is_all = density.ScattersLike(found.noise);
   return found;
 }
 
