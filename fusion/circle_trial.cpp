@@ -136,6 +136,7 @@ CircleTrial FitWith(const std::vector<const CircleRun*>& runs, const CauseOption
   const std::vector<CircleEquations> equations = EquationsOf(runs, options, form);
   CircleCauses found;
   std::vector<Eigen::VectorXd> before;
+  before.reserve(equations.size());
   for (const CircleEquations& one : equations) {
     before.emplace_back(one.radial.array() - one.radial.mean());
   }

@@ -50,6 +50,7 @@ std::vector<Index> UsualInstants(const VectorXd& left, Index channels,
     return left.segment(instant * channels, channels).squaredNorm();
   };
   std::vector<double> squares;
+  squares.reserve(instants.size());
   for (const Index instant : instants) squares.push_back(square(instant));
   const auto middle = squares.begin() + std::ssize(squares) / 2;
   std::nth_element(squares.begin(), middle, squares.end());
@@ -156,7 +157,7 @@ class RowDensity {
 
   // Whether the sums of neighbours scatter as this memory says.
   bool ScattersLike(const estimation::NoiseMemory& noise) const {
-    constexpr double kFewest = 12.0;     // sums
+    constexpr Index kFewest = 12;        // sums
     constexpr double kImprobable = 3.3;  // standard deviations: one of a thousand
     MatrixXd open = open_;
     VectorXd off = off_;
@@ -179,7 +180,7 @@ class RowDensity {
       // What parameters take of the sums is no freedom of theirs.
       const double taken = factor.matrixL().solve(by_open.transpose()).squaredNorm() / rows;
       const double freedom = static_cast<double>(sums.size()) - taken;
-      if (freedom < kFewest) continue;
+      if (freedom < static_cast<double>(kFewest)) continue;
       // Chi-square as a normal number: Wilson and Hilferty (1931).
       const double spread = 2.0 / (9.0 * freedom);
       const double pull =
