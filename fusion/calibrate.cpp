@@ -177,6 +177,7 @@ class CalibrationJob {
     const estimation::Linearization at = estimation::Linearize(white, layout, x, 0);
     bool any = false;
     for (std::size_t r = 0; r < noise.size(); ++r) {
+      if (runs_[r].one_by_one) continue;
       const RowMemory found = FindRowMemory(white, layout, x, at, r, runs_[r].time);
       if (!(found.gain > kRemembers)) continue;
       const double unit = options.noise[r].memory->white;

@@ -9,7 +9,8 @@
 // block in turn is predicted by a calibration from all others. Blocks, because neighbouring poses
 // share errors and single held-out poses would be predicted too well.
 // Noise: where the residuals of a run are larger than [linkage.noise] states, or go on from pose to
-// pose (a reference that drifts; row_memory.h), the fit counts them as they are: `noise`.
+// pose (a reference that drifts; row_memory.h), the fit counts them as they are: `noise`. A table that
+// knows no time shows no memory.
 // Frames: M; B the base, T the ball (LinkageSimulation).
 // Units: m, rad. Shapes: as in LinkageSimulation.
 // Failure: InputError for too few poses, poses on one line or all in one place, for encoders that
