@@ -115,7 +115,7 @@ std::optional<estimation::NoiseMemory> MemoryBeside(const estimation::Problem& p
   const RowMemory found =
       FindRowMemory(problem, layout, x, estimation::Linearize(problem, layout, x, 0), 0,
                     Eigen::Map<const Eigen::VectorXd>(times.data(), std::ssize(times)));
-  if (!(found.gain > kRemembers) || !found.is_all) return std::nullopt;
+  if (!found.IsDrift()) return std::nullopt;
   return estimation::NoiseMemory{noise * found.noise.white, noise * found.noise.slow,
                                  found.noise.time};
 }

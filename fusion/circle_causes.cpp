@@ -256,7 +256,7 @@ std::vector<CircleTrial> FitWithAll(const std::vector<const CircleRun*>& runs,
 std::vector<CircleTrial> Remembering(const std::vector<const CircleRun*>& runs,
                                      const CauseOptions& options, std::vector<CircleTrial> trials) {
   const CircleMemory memory = MemoryBeside(runs, options, MostLikely(trials));
-  if (std::ranges::none_of(memory, [](const auto& run) { return run.has_value(); })) return trials;
+  if (memory.empty()) return trials;
   for (CircleTrial& trial : trials) trial = FitWith(runs, options, trial.form, memory);
   return trials;
 }

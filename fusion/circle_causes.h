@@ -24,9 +24,9 @@
 // Noise: estimated from the residuals and their degrees of freedom, whose Student's t is in u (2 u is
 // a U95). What it remembers along the path is estimated for each run (row_memory.h); what is left of
 // that enlarges it by the factor by which the means of 10 degrees scatter more than those of
-// independent rows. Deviations that no cause explains therefore enlarge the uncertainties. `seen` is false where the prior (the
-// `usual` amount of a machine tool) determines the value more than the data: one sense cannot
-// separate squareness from servo mismatch, nor one feed scale from lag.
+// independent rows. Deviations that no cause explains therefore enlarge the uncertainties. `seen` is
+// false where the prior (the `usual` amount of a machine tool) determines the value more than the
+// data: one sense cannot separate squareness from servo mismatch, nor one feed scale from lag.
 // So that enough degrees of freedom are left, sparse points have fewer harmonics.
 // Failure: InputError for no run, runs of different circles, or fewer points than parameters;
 // NumericalError from the fit.

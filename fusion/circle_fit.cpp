@@ -169,11 +169,11 @@ estimation::ParameterBlock UnitBlock(const std::string& name, Eigen::Index count
   return block;
 }
 
-// Rows less what they remember of those before, in deviations of the white part.
+// Rows less what they remember of those before, over the noise of their run.
 void Whiten(const CircleNoise& noise, std::size_t run, const Eigen::VectorXd& travelled,
             Eigen::Ref<Eigen::MatrixXd> columns) {
-  if (noise.memory.empty() || !noise.memory[run]) return;
-  estimation::MemoryFilter(travelled, *noise.memory[run]).Whiten(columns);
+  if (noise.memory.empty()) return;
+  estimation::MemoryFilter(travelled, noise.memory[run]).Whiten(columns);
 }
 
 // A source for each run.
@@ -320,13 +320,16 @@ CircleMemory MemoryOf(const std::vector<CircleEquations>& equations,
   estimation::Linearization at;
   const estimation::Result result = problem.Solve({}, &at);
   const Eigen::VectorXd x = ValuesFound(result, result.blocks);
-  CircleMemory memory(equations.size());
+  CircleMemory memory;
+  bool any = false;
   for (std::size_t run = 0; run < equations.size(); ++run) {
     const RowMemory found = FindRowMemory(problem, layout, x, at, run, equations[run].travelled);
-    if (!(found.gain > kRemembers) || !found.is_all) continue;
-    memory[run] = {1.0, found.noise.slow / found.noise.white, found.noise.time};
+    any |= found.IsDrift();
+    const double rows = static_cast<double>(equations[run].radial.size());
+    const double scatter = std::sqrt(result.sources[run].chi_square / rows);
+    memory.push_back(found.IsDrift() ? found.noise : estimation::NoiseMemory{scatter, 0.0, 1.0});
   }
-  return memory;
+  return any ? memory : CircleMemory{};
 }
 
 }  // namespace abbe::fusion

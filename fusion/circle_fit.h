@@ -13,7 +13,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,12 +50,12 @@ struct CircleEquations {
   Eigen::VectorXd travelled;  // rad: along the path, a turn more between senses and passes
 };
 
-// The memory of the noise of each run along `travelled`, over a white part of 1; empty: white.
-using CircleMemory = std::vector<std::optional<estimation::NoiseMemory>>;
+// The noise of each run along `travelled`, white part and memory; empty: white and alike in all runs.
+using CircleMemory = std::vector<estimation::NoiseMemory>;
 
 struct CircleNoise {
-  double deviation = 0.0;  // m: of the white part
-  CircleMemory memory;     // empty: none in any run
+  double deviation = 0.0;  // m
+  CircleMemory memory;     // in units of `deviation`
 };
 
 // The equations of run number `at` about its middle, so that the square of the offset of the centre
@@ -73,7 +72,7 @@ struct CircleFit {
   // For each run: the deviations without the causes, their fitted smooth part (with the errors of
   // the instrument), and the residuals.
   std::vector<Eigen::VectorXd> unexplained, smooth, noise;
-  std::vector<Eigen::VectorXd> white;  // the residuals without what they remember, m
+  std::vector<Eigen::VectorXd> white;  // the residuals over their memory, in m of `deviation`
   // What the fit adds to the logarithm of the way and of the width of each axis.
   std::array<double, 2> longer{}, wider{};
   double improbable = 0.0;  // half the sum of the squares of what spikes do beside their form
@@ -83,8 +82,8 @@ CircleFit SolveCircles(const std::vector<CircleEquations>& equations,
                        const std::vector<standards::Signature>& causes, const CauseOptions& options,
                        const CircleNoise& noise);
 
-// What the noise of each run remembers where that is told by the fit with white noise of `deviation`
-// (row_memory.h).
+// The noise of each run by the residuals of a fit with white noise of `deviation`, in units of it
+// (row_memory.h); empty where none drifts.
 CircleMemory MemoryOf(const std::vector<CircleEquations>& equations,
                       const std::vector<standards::Signature>& causes, const CauseOptions& options,
                       double deviation);

@@ -265,7 +265,7 @@ RowMemory FindRowMemory(const RowsInTime& rows) {
   found.noise = MemoryOf(best.form);
   found.noise.white *= best.at.white;
   found.noise.slow *= best.at.white;
-  found.is_all = density.ScattersLike(found.noise);
+  found.sums_agree = density.ScattersLike(found.noise);
   return found;
 }
 

@@ -45,9 +45,10 @@ struct RowsInTime {
 struct RowMemory {
   estimation::NoiseMemory noise;
   double gain = 0.0;
-  // Whether sums of 2, 4, ... neighbouring rows scatter as it says. Noise that swings, a vibration or
-  // form that is left out, has small steps as a slow drift has, and is none.
-  bool is_all = true;
+  // Whether sums of 2, 4, ... neighbouring rows scatter as it says. A vibration, or form that is left
+  // out, has small steps as a slow drift has, and is none.
+  bool sums_agree = true;
+  bool IsDrift() const { return gain > kRemembers && sums_agree; }
 };
 
 RowMemory FindRowMemory(const RowsInTime& rows);
