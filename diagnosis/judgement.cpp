@@ -8,9 +8,11 @@
 
 #include "diagnosis/alias_group.h"
 #include "diagnosis/doubts.h"
+#include "diagnosis/leftovers.h"
 #include "diagnosis/scatter.h"
 #include "diagnosis/search.h"
 #include "diagnosis/shape_posterior.h"
+#include "diagnosis/structure_search.h"
 #include "failure/failure.h"
 #include "simulation/causes/registry.h"
 

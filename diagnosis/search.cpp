@@ -7,8 +7,10 @@
 #include <limits>
 #include <utility>
 
+#include "diagnosis/leftovers.h"
 #include "diagnosis/scatter.h"
 #include "diagnosis/standing_pairs.h"
+#include "diagnosis/structure_search.h"
 #include "failure/failure.h"
 #include "failure/progress.h"
 #include "simulation/causes/registry.h"

@@ -7,6 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "diagnosis/leftovers.h"
+#include "diagnosis/structure_refinement.h"
+
 namespace abbe::diagnosis {
 namespace {
 

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "diagnosis/candidate.h"
-#include "diagnosis/structure_search.h"
+#include "diagnosis/structure_question.h"
 
 namespace abbe::diagnosis {
 

@@ -1,9 +1,9 @@
 // What is left of the data after all causes: structure that no known cause explains. A channel
-// depends on a recorded variable (structure_search.h), or a run scatters or remembers more than its
+// depends on a recorded variable (structure_question.h), or a run scatters or remembers more than its
 // noise does (scatter.h).
 // Units: SI.
 // Failure: none.
-// Source: structure_search.h, scatter.h.
+// Source: structure_question.h, scatter.h.
 // Validity: a p-value is that of noise alone, corrected for all that was asked.
 #pragma once
 

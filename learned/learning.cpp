@@ -6,8 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "diagnosis/leftovers.h"
 #include "diagnosis/scatter.h"
 #include "diagnosis/something_else.h"
+#include "diagnosis/structure_search.h"
 #include "diagnosis/where_it_shows.h"
 #include "failure/failure.h"
 #include "learned/certificate.h"

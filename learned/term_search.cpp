@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "diagnosis/something_else.h"
+#include "diagnosis/structure_refinement.h"
 #include "learned/number_posterior.h"
 #include "simulation/variables.h"
 
