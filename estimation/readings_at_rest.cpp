@@ -1,9 +1,9 @@
 #include "estimation/readings_at_rest.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
+
+#include "estimation/sine_search.h"
 
 namespace abbe::estimation {
 namespace {
@@ -71,83 +71,21 @@ std::vector<Stay> First(const std::vector<Stay>& stays, Index most) {
   return first;
 }
 
-// A sine on white noise.
-struct Sine {
-  double frequency = 0.0, gain = 0.0, sd = 0.0;
+// What is shown of readings about the means of their stays.
+struct Shown {
+  Sine sine;
+  MemoryFit memory;
 };
 
-VectorXd AboutMeans(const std::vector<Stay>& stays, const VectorXd& values) {
-  VectorXd about = values;
-  Index first = 0;
-  for (const Stay& stay : stays) {
-    auto own = about.segment(first, stay.value.size());
-    own.array() -= own.mean();
-    first += stay.value.size();
-  }
-  return about;
-}
-
-double SpanOf(const std::vector<Stay>& stays) {
-  const VectorXd &first = stays.front().time, &last = stays.back().time;
-  return last[last.size() - 1] - first[0];
-}
-
-constexpr double kOfAWave = 0.4;  // over all readings, from one frequency to the next
-
-// Those that even readings tell apart.
-std::vector<double> FrequenciesUpTo(double highest, double span) {
-  constexpr double kMost = 20000.0;
-  const double apart = std::max(kOfAWave / span, highest / kMost);
-  std::vector<double> frequencies;
-  for (double each = apart; each <= highest; each += apart) frequencies.push_back(each);
-  return frequencies;
-}
-
-// Where the readings are not quite even a line beyond them has no alias among them.
-std::vector<double> FrequenciesOfMains(double span) {
-  constexpr double kOff = 0.1, kClose = 0.25;  // Hz; of the step: an alias differs by little
-  std::vector<double> frequencies;
-  for (const double mains : kMains) {
-    for (double off = -kOff; off <= kOff; off += kClose * kOfAWave / span)
-      frequencies.push_back(mains + off);
-  }
-  return frequencies;
-}
-
-Sine StrongestSine(const std::vector<Stay>& stays, const std::vector<double>& frequencies) {
-  Index count = 0;
-  for (const Stay& stay : stays) count += stay.value.size();
-  VectorXd time(count), value(count);
-  Index first = 0;
-  for (const Stay& stay : stays) {
-    time.segment(first, stay.time.size()) = stay.time;
-    value.segment(first, stay.value.size()) = stay.value;
-    first += stay.value.size();
-  }
-  value = AboutMeans(stays, value);
-  time.array() -= time[0];
-  const double freedom = count - static_cast<double>(stays.size());
-  const double squares = value.squaredNorm();
-  Sine best;
-  double most = 0.0;
-  for (const double frequency : frequencies) {
-    const VectorXd phase = 2.0 * std::numbers::pi * frequency * time;
-    const VectorXd sine = AboutMeans(stays, phase.array().sin());
-    const VectorXd cosine = AboutMeans(stays, phase.array().cos());
-    Eigen::Matrix2d information;
-    information << sine.squaredNorm(), sine.dot(cosine), sine.dot(cosine), cosine.squaredNorm();
-    if (information.determinant() < 1e-6 * freedom * freedom) continue;
-    const Eigen::Vector2d score(sine.dot(value), cosine.dot(value));
-    const double explained = score.dot(information.inverse() * score);
-    if (explained <= most) continue;
-    most = explained;
-    best.frequency = frequency;
-  }
-  if (most == 0.0 || freedom <= 3.0) return best;
-  best.sd = std::sqrt(std::max(0.0, squares - most) / (freedom - 2.0));
-  best.gain = -0.5 * freedom * std::log1p(-std::min(most / squares, 1.0 - 1e-12)) -
-              std::log(static_cast<double>(frequencies.size()));
-  return best;
+Shown ShownBy(const std::vector<Stay>& stays, bool is_white) {
+  const double span = stays.back().time.tail<1>()[0] - stays.front().time[0];
+  Shown shown{StrongestSine(stays, FrequenciesOfMains(span)), {}};
+  if (is_white) return shown;
+  shown.memory = FitMemory(stays);
+  if (!(shown.memory.step > 0.0)) return {};
+  const Sine slow = StrongestSine(stays, FrequenciesUpTo(0.5 / shown.memory.step, span));
+  if (slow.gain > shown.sine.gain) shown.sine = slow;
+  return shown;
 }
 
 }  // namespace
@@ -156,36 +94,37 @@ RestNoise NoiseAtRest(const std::vector<Stay>& stays) {
   constexpr Index kManyForMemory = 1500;
   constexpr double kShown = 8.0;  // logarithm of the likelihood
   constexpr double kNoNoise = 1e-3;
+  constexpr int kMostLines = 4;
   const Differences next = DifferencesAt(stays, 1);
   RestNoise noise;
   if (next.pairs == 0.0) return noise;
   noise.sd = std::sqrt(next.variance);
   noise.freedom = 2.0 / 3.0 * next.pairs;
   noise.scatter = ScatterOf(stays);
-  const std::vector<Stay> first = First(stays, kFewForLines);
-  if (!(next.variance > 0.0) || first.empty() || !(SpanOf(first) > 0.0)) return noise;
-  Sine sine = StrongestSine(first, FrequenciesOfMains(SpanOf(first)));
-  MemoryFit memory;
-  if (!IsWhite(stays, next)) {
-    memory = FitMemory(first);
-    if (!(memory.step > 0.0)) return noise;
-    const Sine slow = StrongestSine(first, FrequenciesUpTo(0.5 / memory.step, SpanOf(first)));
-    if (slow.gain > sine.gain) sine = slow;
-  }
-  if (std::max(sine.gain, memory.gain) < kShown || sine.sd < kNoNoise * noise.scatter) return noise;
-  if (sine.gain > memory.gain) {
-    noise.freedom = std::min<double>(noise.freedom, kFewForLines);
-    noise.kind = RestKind::kLine;
-    noise.frequency = sine.frequency;
-    noise.sd = sine.sd;
-  } else {
-    memory = FitMemory(First(stays, kManyForMemory));
+  std::vector<Stay> left = First(stays, kFewForLines);
+  if (!(next.variance > 0.0) || left.empty()) return noise;
+  if (!(left.back().time.tail<1>()[0] > left.front().time[0])) return noise;
+  for (int line = 0; line < kMostLines; ++line) {
+    const bool is_white = line == 0 ? IsWhite(stays, next) : IsWhite(left, DifferencesAt(left, 1));
+    const auto [sine, memory] = ShownBy(left, is_white);
+    if (std::max(sine.gain, memory.gain) < kShown || sine.sd < kNoNoise * noise.scatter) break;
+    if (sine.gain > memory.gain) {
+      if (line == 0) noise.frequency = sine.frequency;
+      noise.kind = RestKind::kLine;
+      noise.freedom = std::min<double>(noise.freedom, kFewForLines);
+      noise.sd = sine.sd;
+      left = Without(sine, left);
+      continue;
+    }
+    if (line > 0) break;
+    const MemoryFit of_many = FitMemory(First(stays, kManyForMemory));
     noise.kind = RestKind::kMemory;
-    noise.memory = memory.noise;
-    noise.sd = memory.noise.sd();
+    noise.memory = of_many.noise;
+    noise.sd = of_many.noise.sd();
     // A memory of so many readings leaves fewer that are independent.
     noise.freedom =
-        std::min<double>(noise.freedom, kManyForMemory) * memory.noise.Independent(memory.step);
+        std::min<double>(noise.freedom, kManyForMemory) * of_many.noise.Independent(of_many.step);
+    break;
   }
   return noise;
 }

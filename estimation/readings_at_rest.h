@@ -5,9 +5,9 @@
 //
 // Half of the mean square of the differences of readings k apart is the variance of white noise for
 // every k, which a drift hardly enters. Where it is not the same for k of 1 to kLags within 4
-// standard deviations, noise with a memory (noise_memory.h) and one sine on white noise are fitted,
-// each stay about a mean of its own, and the more probable one is told. Differences that stand out
-// six times are left out.
+// standard deviations, noise with a memory (noise_memory.h) and a sine on white noise are fitted,
+// each stay about a mean of its own, and the more probable one is told; a sine is taken out, and
+// what is left asked again, up to four times. Differences that stand out six times are left out.
 // Units: those of the readings, s, Hz. Shapes: one list of times and readings a stay.
 // Failure: none; `freedom` 0 where no stay has two readings.
 // Source: J. von Neumann et al., The mean square successive difference, Ann. Math. Statist. 12
@@ -28,11 +28,11 @@ enum class RestKind { kWhite, kMemory, kLine };
 
 struct RestNoise {
   RestKind kind = RestKind::kWhite;
-  double sd = 0.0;         // of one reading: of its white noise, with the memory; without a line
+  double sd = 0.0;         // of one reading: of its white noise, with the memory; without lines
   double freedom = 0.0;    // degrees of freedom of `sd`
-  double scatter = 0.0;    // of the readings about the means of their stays, a line included
+  double scatter = 0.0;    // of the readings about the means of their stays, lines included
   NoiseMemory memory;      // kMemory
-  double frequency = 0.0;  // Hz, kLine: one of those that the readings do not tell apart
+  double frequency = 0.0;  // Hz, kLine: of the strongest, one of its aliases
 };
 
 inline constexpr std::array kMains{50.0, 60.0};  // Hz

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "estimation/readings_at_rest.h"
 #include "random/counter_random.h"
@@ -112,6 +113,37 @@ TEST(ReadingsAtRest, KnowTheMainsBeyondHalfTheirRate) {
     EXPECT_EQ(noise.kind, RestKind::kLine);
     EXPECT_NEAR(noise.frequency, mains, 0.02);
     EXPECT_LT(noise.sd, 2.0 * kWhite);
+  }
+}
+
+// Between two frequencies that are tried, a sine far above its noise leaves much more than that: a
+// memory of the readings must not be told for it.
+TEST(ReadingsAtRest, FindLinesFarAboveTheirNoise) {
+  constexpr double kWhite = 0.02;
+  for (std::uint64_t stream = 60; stream < 80; ++stream) {
+    const double frequency = 0.5 + 0.0137 * static_cast<double>(stream - 60);
+    for (const double over : {5.0, 20.0, 100.0}) {
+      const RestNoise line =
+          NoiseAtRest(Drawn({kWhite, 0.0, 1.0}, 1, 640, stream, over * kWhite, frequency));
+      EXPECT_EQ(line.kind, RestKind::kLine) << stream << " " << over;
+      EXPECT_NEAR(line.sd, kWhite, kWhite * 4.0 / std::sqrt(2.0 * line.freedom)) << over;
+    }
+  }
+}
+
+// Mains and a vibration in one channel: the noise is what both leave.
+TEST(ReadingsAtRest, TakeOutSeveralLines) {
+  constexpr double kWhite = 0.02;
+  for (std::uint64_t stream = 80; stream < 90; ++stream) {
+    std::vector<Stay> stays = Drawn({kWhite, 0.0, 1.0}, 1, 640, stream, 0.3, 6.1);
+    for (const auto& [amplitude, frequency] : {std::pair{0.15, 0.553}, std::pair{0.08, 3.37}}) {
+      stays[0].value.array() +=
+          amplitude * (2.0 * std::numbers::pi * frequency * stays[0].time).array().cos();
+    }
+    const RestNoise line = NoiseAtRest(stays);
+    EXPECT_EQ(line.kind, RestKind::kLine) << stream;
+    EXPECT_NEAR(line.frequency, 6.1, 0.01);
+    EXPECT_NEAR(line.sd, kWhite, kWhite * 4.0 / std::sqrt(2.0 * line.freedom)) << stream;
   }
 }
 
