@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "standards/coverage.h"
+#include "standards/deviation_of_draws.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -21,9 +22,11 @@ bool IsWithinItsUncertainty(const Finding& finding) {
   const Candidate& candidate = finding.score.candidate;
   const Index count = finding.score.coefficients.size();
   if (candidate.cause->IsBinary() || count == 0) return false;
-  if (candidate.cause->IsRandomField()) {  // known by its size
+  if (candidate.cause->IsRandomField()) {  // of one draw nobody knows whether there are more
+    constexpr double kFewest = 2.0;
     const Keys keys = KeysOf(finding.score);
-    return std::abs(keys.values[0]) < standards::kCoverage * keys.u[0];
+    return standards::DeviationOfDraws(kFewest).u95 * std::abs(keys.values[0]) <
+           standards::kCoverage * keys.u[0];
   }
   const Eigen::MatrixXd covariance = finding.score.covariance.topLeftCorner(count, count);
   if (covariance.isZero(0.0)) return false;

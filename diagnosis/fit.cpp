@@ -11,6 +11,8 @@
 #include "failure/failure.h"
 #include "fusion/machine_problem.h"
 #include "simulation/causes/shaft.h"
+#include "standards/coverage.h"
+#include "standards/deviation_of_draws.h"
 
 namespace abbe::diagnosis {
 namespace {
@@ -319,8 +321,10 @@ Score Fit::ScoreOf(std::size_t taken_in) const {
       score.covariance.topLeftCorner<2, 2>() +=
           std::pow(cause.shape[0] * result_.Uncertainty(zero), 2) * turned * turned.transpose();
     }
-    if (cause.cause->IsRandomField()) {  // so many draws tell their deviation
-      AddShape(score.covariance, 0.5 / SeenOf(cause));
+    if (cause.cause->IsRandomField()) {
+      const auto known = standards::DeviationOfDraws(SeenOf(cause));
+      score.candidate.shape[0] *= known.median;
+      AddShape(score.covariance, std::pow(known.u95 / standards::kCoverage, 2));
     } else if (cause.cause->shape_spread) {
       const double u = cause.cause->shape_spread(campaign_.scene(), cause.shape);
       if (u > 0.0) AddShape(score.covariance, std::pow(u / cause.shape[0], 2));
