@@ -27,8 +27,10 @@ std::vector<double> NumbersOf(const Row& row, const char* key, std::size_t count
 
 Rate RateOf(const Row& row, const char* worlds, const char* met) {
   const Row &all = row.at(worlds), &some = row.at(met);
-  constexpr std::uint64_t kMost = 1'000'000'000;
-  if (!all.is_number_unsigned() || !some.is_number_unsigned() || all > kMost || some > all) {
+  constexpr int kMost = 1'000'000'000;
+  // A count is signed in a row that was just made, unsigned in one that was read.
+  if (!all.is_number_integer() || !some.is_number_integer() || all > kMost || some > all ||
+      some < 0) {
     throw InputError(
         fmt::format("a row has no rate of \"{}\" among \"{}\"; make the store anew", met, worlds));
   }

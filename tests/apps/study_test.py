@@ -143,5 +143,14 @@ class StudyOfTheHead(ProgramCase):
         self.assertEqual(run.returncode, 2)
 
 
+class StudiesOfWorlds(ProgramCase):
+    def test_what_a_study_ends_with_is_what_its_store_shows(self):
+        # Rows that were just made are summed up as those that are read.
+        store = self.path / "circle.jsonl"
+        told = self.done("--machine", MACHINE, "--worlds", 2, "--store", store, "--quiet", command="study circle")
+        self.assertIn("| worlds |", told)
+        self.assertIn(self.done(store, command="study show").strip(), told)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "failure/failure.h"
+#include "study/study.h"
+
 namespace abbe::study {
 namespace {
 
@@ -26,6 +29,23 @@ TEST(Rate, RefutesABoundOnlyOutsideItsInterval) {
   EXPECT_TRUE((Bound{"", most, 0.97, 1.0}).IsRefuted());
   EXPECT_TRUE((Bound{"", most, 0.0, 0.5}).IsRefuted());
   EXPECT_FALSE((Bound{"", {}, 0.97, 1.0}).IsRefuted());
+}
+
+// Counts of a row that was just made are signed, those of one that was read are not.
+TEST(RateOf, TakesRowsJustMadeAndRead) {
+  const Row made{{"sizes", 3}, {"inside", 2}}, read = Row::parse(made.dump());
+  for (const Row& row : {made, read}) {
+    const Rate rate = RateOf(row, "sizes", "inside");
+    EXPECT_EQ(rate.worlds, 3);
+    EXPECT_EQ(rate.met, 2);
+  }
+}
+
+TEST(RateOf, RefusesWhatIsNoRate) {
+  for (const Row& row : {Row{{"sizes", 3}, {"inside", 4}}, Row{{"sizes", 3}, {"inside", -1}},
+                         Row{{"sizes", 3}, {"inside", 0.5}}}) {
+    EXPECT_THROW(RateOf(row, "sizes", "inside"), InputError);
+  }
 }
 
 }  // namespace
