@@ -121,4 +121,14 @@ Keys KeysOf(const Score& score) {
   return keys;
 }
 
+const simulation::CauseKey* BeyondBounds(const Score& score) {
+  const auto& keys = score.candidate.cause->keys;
+  const Eigen::VectorXd values = KeysOf(score).values;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const double value = values[k] / keys[k].unit;
+    if (value < keys[k].least || value > keys[k].most) return &keys[k];
+  }
+  return nullptr;
+}
+
 }  // namespace abbe::diagnosis

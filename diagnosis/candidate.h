@@ -72,5 +72,7 @@ struct Keys {
 };
 // The covariance goes through `tell` by its derivatives.
 Keys KeysOf(const Score& score);
+// The key that lies beyond its physical bounds; null: none.
+const simulation::CauseKey* BeyondBounds(const Score& score);
 
 }  // namespace abbe::diagnosis

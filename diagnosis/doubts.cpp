@@ -35,17 +35,6 @@ bool IsWithinItsUncertainty(const Finding& finding) {
   return square < standards::kCoverage * standards::kCoverage * count;
 }
 
-// The key that lies beyond its bounds; null: none.
-const simulation::CauseKey* BeyondBounds(const Finding& finding) {
-  const auto& keys = finding.score.candidate.cause->keys;
-  const Eigen::VectorXd values = KeysOf(finding.score).values;
-  for (std::size_t k = 0; k < keys.size(); ++k) {
-    const double value = values[k] / keys[k].unit;
-    if (value < keys[k].least || value > keys[k].most) return &keys[k];
-  }
-  return nullptr;
-}
-
 // Between neighbouring places of an axis, m: the median of each run, the least of all runs.
 double StepOf(const simulation::Scene& scene, int axis) {
   constexpr double kSamePlace = 1e-6;  // m
@@ -129,7 +118,7 @@ void AddDoubts(const simulation::Scene& scene, Diagnosis& diagnosis) {
     }
     if (!IsModelled(finding)) continue;
     if (IsWithinItsUncertainty(finding)) Doubt(finding, "its U95 exceeds its size", diagnosis);
-    if (const auto* key = BeyondBounds(finding)) {
+    if (const auto* key = BeyondBounds(finding.score)) {
       Doubt(finding,
             fmt::format("{} lies beyond what is physically possible ({:g} to {:g})", key->name,
                         key->least, key->most),

@@ -44,6 +44,11 @@ bool InReadings(const Candidate& candidate) {
          object == "target_top" || object == "target_side";
 }
 
+// Whether what was taken in last would have to be of a size that nothing of its kind has.
+bool IsImpossible(const Fit& fit) {
+  return BeyondBounds(fit.ScoreOf(fit.taken_in().size() - 1)) != nullptr;
+}
+
 }  // namespace
 
 Search::Search(const Campaign& campaign)
@@ -133,7 +138,7 @@ bool Search::TakeCause(const std::vector<Named>& names, FitPointer decided) {
   std::vector<Candidate> more = Taken();
   more.push_back(finding.score.candidate);
   const auto fit = decided ? std::move(decided) : FitWith(more);
-  if (!fit || !Predicts(*fit)) {
+  if (!fit || !Predicts(*fit) || IsImpossible(*fit)) {
     refused_.push_back(more.back());
     return refused_.size() < (fit ? kMostRefused : kMostCauses);
   }
@@ -235,7 +240,9 @@ Search::FitPointer Search::DecideByFits(std::vector<Named>& names) {
       std::vector<Candidate> with = Taken();
       with.push_back(Refine(*fit_, *named).candidate);
       fit = FitWith(with);
-      if (fit) known->second = fit->log_likelihood() - fit_->log_likelihood();
+      if (fit && !IsImpossible(*fit)) {
+        known->second = fit->log_likelihood() - fit_->log_likelihood();
+      }
     }
     named->log_evidence = known->second;
     if (named->log_evidence > most) of_most = std::move(fit);
