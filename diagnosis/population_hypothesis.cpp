@@ -101,6 +101,35 @@ class Population {
     return knots_ != coarser;
   }
 
+  // With the positioning error of an axis as the others are, where it is rougher than these: what
+  // repeats along the axis, as a screw does, may have made it so. False: it is not.
+  bool AsTheOthers(int axis) {
+    constexpr double kRougher = 1.5;
+    const PopulationEvidence evidence(machine_, stated_.model());
+    VectorXd theta = theta_;
+    bool is_rougher = false;
+    for (Index own = 0; own < evidence.of_functions(); ++own) {
+      const fusion::Knob& knob = evidence.knobs()[own];
+      if (knob.axis != axis || knob.motion != axis) continue;
+      double sum = 0.0, count = 0.0;
+      for (Index other = 0; other < evidence.of_functions(); ++other) {
+        if (other == own || evidence.knobs()[other].line != knob.line) continue;
+        sum += theta_[other];
+        count += 1.0;
+      }
+      if (count == 0.0) continue;
+      theta[own] = sum / count;
+      if (evidence.IsLength(own)) is_rougher = theta[own] - theta_[own] > std::log(kRougher);
+    }
+    if (!is_rougher) return false;
+    const MatrixXd& pi = evidence.precision();
+    prior_ += 0.5 * (theta_.dot(pi * theta_) - theta.dot(pi * theta));
+    theta_ = std::move(theta);
+    population_ = evidence.PopulationAt(theta_);
+    SetLines(evidence);
+    return true;
+  }
+
   Answer Asked() const {
     Answer answer = Ask(campaign_, std::make_shared<Search>(*campaign_), prior_);
     answer.diagnosis.notes.push_back(Note());
@@ -147,12 +176,24 @@ class Population {
   std::shared_ptr<const Campaign> campaign_;
 };
 
-// The answer that goes by what the runs show; the campaign is made.
-Answer AsSeen(Population population) {
+// The answer that goes by a population, and by what it leaves; the campaign is made.
+Answer Settled(Population& population) {
   Answer best = population.Asked();
   if (population.Follow(best.search->fit()) < kAsBefore) return best;
   population.MakeCampaign();
   return MoreProbable(std::move(best), population.Asked());
+}
+
+// The answer that goes by what the runs show; the campaign is made.
+Answer AsSeen(Population population) {
+  Answer best = Settled(population);
+  for (int axis = 0; axis < machine::kAxes; ++axis) {
+    Population other = population;
+    if (!other.AsTheOthers(axis)) continue;
+    other.MakeCampaign();
+    best = MoreProbable(std::move(best), Settled(other));
+  }
+  return best;
 }
 
 }  // namespace

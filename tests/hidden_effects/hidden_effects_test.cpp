@@ -112,6 +112,23 @@ TEST(MachineUnlikeItsFile, IsNoCause) {
       << diagnosis.notes.front();
 }
 
+// Errors that are rough enough make a screw's wave too: of such machines it had been taken for their
+// roughness, `clean` (study hidden, one-effect-rougher, seeds 29, 56, 78, 180, 186, 189 and 197).
+TEST(MachineUnlikeItsFile, StillShowsItsScrew) {
+  const HiddenWorlds worlds = HiddenWorlds(rig::CampaignKind::kStandard).Unlike(kRougher);
+  const std::uint64_t seed = 189;
+  const auto world = worlds.Record(
+      seed, {"leadscrew-cyclic:object=X:pitch_mm=5.118:amplitude_um=3.548:phase_rad=4.664"});
+  const Diagnosis diagnosis = DiagnosisOf(worlds, seed, world);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kExplained);
+  ASSERT_EQ(diagnosis.findings.size(), 1U);
+  EXPECT_TRUE(Names(diagnosis.findings.front(), world.hidden.front()));
+  Rate inside;
+  AddSizes(diagnosis.findings.front(), world.hidden.front(), inside);
+  EXPECT_EQ(inside.met, inside.worlds);
+  EXPECT_GT(inside.worlds, 0);
+}
+
 // Six wrong causes, each at 1.000, had stood beside effects of this kind.
 TEST(EffectsOfNoCatalogue, LeaveNothingToOtherNames) {
   const HiddenWorlds worlds(rig::CampaignKind::kStandard);
