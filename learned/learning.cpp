@@ -12,6 +12,7 @@
 #include "diagnosis/structure_search.h"
 #include "diagnosis/where_it_shows.h"
 #include "failure/failure.h"
+#include "failure/progress.h"
 #include "learned/certificate.h"
 #include "learned/confounding.h"
 #include "simulation/variables.h"

@@ -42,6 +42,7 @@ const StudyKind& StudyNamed(std::string_view name) {
   const auto at = std::ranges::find(kinds, name, &StudyKind::name);
   if (at != kinds.end()) return *at;
   std::vector<std::string> names;
+  names.reserve(kinds.size());
   for (const StudyKind& kind : kinds) names.emplace_back(kind.name);
   throw InputError(fmt::format("{}: there is no such study; did you mean {}?", name,
                                settings::NearestWord(std::string(name), names)));
