@@ -23,7 +23,7 @@ bool IsWithinItsUncertainty(const Finding& finding) {
   const Index count = finding.score.coefficients.size();
   if (candidate.cause->IsBinary() || count == 0) return false;
   if (candidate.cause->IsRandomField()) {  // of one draw nobody knows whether there are more
-    constexpr double kFewest = 2.0;
+    constexpr double kFewest = 1.5;
     const Keys keys = KeysOf(finding.score);
     return standards::DeviationOfDraws(kFewest).u95 * std::abs(keys.values[0]) <
            standards::kCoverage * keys.u[0];
