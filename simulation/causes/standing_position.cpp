@@ -29,14 +29,13 @@ VectorXd StandingRunsOf(const Scene& scene) {
   return shape;
 }
 
-// Those until it moves; of too few rows none: they tell how it began to move, not where it stood.
+// Those until it moves.
 Index RowsThatStand(const Trace& trace, int axis) {
   if (trace.axes.cols() != trace.rows() || trace.axis == "XYZ"[axis]) return 0;
   const RowVectorXd position = trace.axes.row(axis);
-  constexpr Index kFewest = 5;
   Index rows = 0;
   while (rows < position.size() && std::abs(position[rows] - position[0]) < kAxisBand) ++rows;
-  return rows < kFewest ? 0 : rows;
+  return rows;
 }
 
 }  // namespace
