@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -111,14 +112,9 @@ class Population {
     for (Index own = 0; own < evidence.of_functions(); ++own) {
       const fusion::Knob& knob = evidence.knobs()[own];
       if (knob.axis != axis || knob.motion != axis) continue;
-      double sum = 0.0, count = 0.0;
-      for (Index other = 0; other < evidence.of_functions(); ++other) {
-        if (other == own || evidence.knobs()[other].line != knob.line) continue;
-        sum += theta_[other];
-        count += 1.0;
-      }
-      if (count == 0.0) continue;
-      theta[own] = sum / count;
+      const auto others = MeanOf(knob.line, evidence, own);
+      if (!others) continue;
+      theta[own] = *others;
       if (evidence.IsLength(own)) is_rougher = theta[own] - theta_[own] > std::log(kRougher);
     }
     if (!is_rougher) return false;
@@ -139,16 +135,23 @@ class Population {
  private:
   // What the lines of the machine file would be: of all errors that a line is for, the mean.
   void SetLines(const PopulationEvidence& evidence) {
-    std::array<double, fusion::kLines> sums{}, counts{};
-    for (Index i = 0; i < evidence.of_functions(); ++i) {
-      sums[evidence.knobs()[i].line] += theta_[i];
-      counts[evidence.knobs()[i].line] += 1.0;
-    }
     lines_ = machine_.population;
-    for (std::size_t line = 0; line < sums.size(); ++line) {
-      double& value = lines_.*fusion::LinesInFile()[line].value;
-      if (counts[line] > 0.0) value *= std::exp(sums[line] / counts[line]);
+    for (int line = 0; line < fusion::kLines; ++line) {
+      const auto mean = MeanOf(static_cast<fusion::Line>(line), evidence);
+      if (mean) lines_.*fusion::LinesInFile()[line].value *= std::exp(*mean);
     }
+  }
+
+  // Over all functions that a line is for, but for one of theta; empty: there are none.
+  std::optional<double> MeanOf(fusion::Line line, const PopulationEvidence& evidence,
+                               Index but = -1) const {
+    double sum = 0.0, count = 0.0;
+    for (Index i = 0; i < evidence.of_functions(); ++i) {
+      if (i == but || evidence.knobs()[i].line != line) continue;
+      sum += theta_[i];
+      count += 1.0;
+    }
+    return count > 0.0 ? std::optional(sum / count) : std::nullopt;
   }
 
   std::string Note() const {
@@ -191,7 +194,10 @@ Answer AsSeen(Population population) {
     Population other = population;
     if (!other.AsTheOthers(axis)) continue;
     other.MakeCampaign();
-    best = MoreProbable(std::move(best), Settled(other));
+    Answer answer = Settled(other);
+    // What is in no catalogue follows any error too: it is no reason against a rough one.
+    if (answer.diagnosis.verdict == Verdict::kUnexplained) continue;
+    best = MoreProbable(std::move(best), std::move(answer));
   }
   return best;
 }

@@ -12,10 +12,11 @@
 // beside its causes they are more probable than the stated ones by kWorthASearch. A search by them
 // is repeated once with the sizes and lengths that its causes leave; and once for each axis whose
 // positioning error is rougher than the others, with it as these are: the wave of a screw had been
-// taken for such an error. The answer with the larger worth stands, sizes and lengths counted with
-// their prior probability and their own uncertainty (Laplace). Causes widen squarenesses and slopes
-// of the positioning errors, so the runs are not asked for their sizes; these follow the others as
-// far as sizes of one machine go together.
+// taken for such an error, and an answer that leaves nothing unexplained may stand against it. The
+// answer with the larger worth stands, sizes and lengths counted with their prior probability and
+// their own uncertainty (Laplace). Causes widen squarenesses and slopes of the positioning errors,
+// so the runs are not asked for their sizes; these follow the others as far as sizes of one machine
+// go together.
 // Units: SI. Failure: that of Fit.
 // Source: docs/theory-diagnosis.md.
 #pragma once
