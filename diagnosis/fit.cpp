@@ -132,6 +132,20 @@ void FreeShape(MatrixXd& covariance) {
   covariance += information / (1.0 - share) * with_shape * with_shape.transpose();
 }
 
+// How many rows of all runs feel each of the draws of a random field.
+Eigen::ArrayXi RowsFeeling(const Campaign& campaign, const Candidate& cause) {
+  Eigen::ArrayXi rows = Eigen::ArrayXi::Zero(cause.cause->coefficients());
+  for (const PreparedRun& run : campaign.runs()) {
+    const auto columns = cause.cause->columns(run.trace, cause.object, cause.shape);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      for (const auto& [stage, values] : columns[i].stages()) {
+        rows[static_cast<Index>(i)] += static_cast<int>((values.array() != 0.0).count());
+      }
+    }
+  }
+  return rows;
+}
+
 }  // namespace
 
 Fit::Fit(const Campaign& campaign) : campaign_(campaign) {
@@ -185,8 +199,10 @@ double Fit::FollowShapes() {
     if (cause.cause->IsRandomField()) {
       constexpr double kLeast = 0.01;  // of what it was: a deviation of zero is no prior
       const double before = cause.shape[0];
-      cause.shape[0] =
-          std::max(kLeast * before, std::sqrt(coefficients.squaredNorm() / SeenOf(cause)));
+      const Draws draws = DrawsOf(cause);
+      if (draws.squares > 0.0) {
+        cause.shape[0] = std::max(kLeast * before, std::sqrt(draws.squares / draws.seen));
+      }
       // So few draws tell their deviation no better.
       const double moved = std::abs(1.0 - cause.shape[0] / before);
       if (moved > kDrawnFound) most = std::max(most, moved);
@@ -209,16 +225,24 @@ double Fit::FollowShapes() {
   return most;
 }
 
-// How many of the draws of a cause the data determine: against the priors that they had in the fit,
-// which the deviation told since is a little beside. Of eighty draws most are not seen at all.
-double Fit::SeenOf(const Candidate& cause) const {
-  const auto& draws = result_.Block(BlockOf(cause)).entries;
+// The priors are those of the fit: of eighty draws most are not seen at all, and a deviation changed
+// since would count each of them a little. A draw that one row feels alone says how that run
+// begins: where an axis moves from the first row on it counted as a stand without an offset.
+Fit::Draws Fit::DrawsOf(const Candidate& cause) const {
+  const auto& block = result_.Block(BlockOf(cause));
   const MatrixXd covariance = result_.Covariance(BlockOf(cause), BlockOf(cause));
-  Eigen::ArrayXd prior(std::ssize(draws));
-  std::ranges::transform(draws, prior.begin(), &estimation::Parameter::prior_sd);
-  // What neither the data nor the priors determine has no variance.
-  const Eigen::ArrayXd known = 1.0 - covariance.diagonal().array() / prior.square();
-  return std::max(known.isFinite().select(known, 0.0).sum(), 1.0);
+  const Eigen::ArrayXi rows = RowsFeeling(campaign_, cause);
+  Draws draws;
+  for (Index i = 0; i < rows.size(); ++i) {
+    if (rows[i] < 2) continue;
+    const auto& draw = block.entries[static_cast<std::size_t>(i)];
+    // What neither the data nor the priors determine has no variance.
+    const double known = 1.0 - covariance(i, i) / (draw.prior_sd * draw.prior_sd);
+    if (std::isfinite(known)) draws.seen += known;
+    draws.squares += draw.value * draw.value;
+  }
+  draws.seen = std::max(draws.seen, 1.0);
+  return draws;
 }
 
 void Fit::TakeRuns(const Problem& problem) {
@@ -325,7 +349,7 @@ Score Fit::ScoreOf(std::size_t taken_in) const {
           std::pow(cause.shape[0] * result_.Uncertainty(zero), 2) * turned * turned.transpose();
     }
     if (cause.cause->IsRandomField()) {
-      const auto known = standards::DeviationOfDraws(SeenOf(cause));
+      const auto known = standards::DeviationOfDraws(DrawsOf(cause).seen);
       score.candidate.shape[0] *= known.median;
       AddShape(score.covariance, std::pow(known.u95 / standards::kCoverage, 2));
     } else if (cause.cause->shape_spread) {

@@ -109,7 +109,11 @@ class Fit {
   // The same, and what all data say together.
   void Linearize(const estimation::Problem& problem, FitSums at);
   double FollowShapes();
-  double SeenOf(const Candidate& cause) const;
+  // What a random field's draws tell of their deviation.
+  struct Draws {
+    double seen = 0.0, squares = 0.0;  // how many the data determine, at least one; of the found
+  };
+  Draws DrawsOf(const Candidate& cause) const;
   double LeftOut(const Eigen::VectorXd& r, const std::vector<int>& columns,
                  const Eigen::MatrixXd& J) const;
   // [C'J C'r] of one run.

@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
               {{"displacement_um", 0.882940829574997}}},
         Shown{"load-coupling:object=XY:coefficient_nm_per_mm2=2",
               {{"coefficient_nm_per_mm2", 2.0}}},
-        Shown{"standing-position:object=Z:rms_um=1.5"},
+        Shown{"standing-position:object=Z:rms_um=1.5", {{"rms_um", 1.5}}},
         Shown{"mains-pickup:object=probe_b:frequency_hz=50:amplitude_um=0.2",
               {{"frequency_hz", 50.0}, {"amplitude_um", 0.2}}},
         Shown{"stuck-channel:object=probe_c"}));
@@ -112,8 +112,8 @@ TEST(MachineUnlikeItsFile, IsNoCause) {
       << diagnosis.notes.front();
 }
 
-// Errors that are rough enough make a screw's wave too: of such machines it had been taken for their
-// roughness, `clean` (study hidden, one-effect-rougher, seeds 29, 56, 78, 180, 186, 189 and 197).
+// Errors that are rough enough make a screw's wave too: on such machines it had been taken for
+// their roughness, `clean` (study hidden, one-effect-rougher, seeds 29, 56, 78, 180, 186, 189 and 197).
 TEST(MachineUnlikeItsFile, StillShowsItsScrew) {
   const HiddenWorlds worlds = HiddenWorlds(rig::CampaignKind::kStandard).Unlike(kRougher);
   const std::uint64_t seed = 189;
