@@ -2,7 +2,7 @@
 //
 //   StructureQuestions questions(fit);
 //   const std::vector<Found> found = questions.Ask({SmoothIn(channel, "x", range)});
-//   found.front().log_probability;                                    // below log(1e-3): it is there
+//   found.front().log_probability;                      // below log(1e-3): it is there
 //
 // A structure explains what its terms take out of what is left of its channel, free of everything
 // that the simulation could be instead (fit.h): chi-square distributed where nothing is there. The
@@ -46,7 +46,7 @@ class StructureQuestions {
  public:
   explicit StructureQuestions(const Fit& fit) : fit_(fit) {}
 
-  // Of one channel, at least one: they share its stage.
+  // `structures`: at least one, all of one channel, since they share its stage.
   std::vector<Found> Ask(const std::vector<Structure>& structures);
 
  private:

@@ -1,5 +1,5 @@
-// A structure at its best: the borders of an interval, the number of terms of a smooth function, the
-// wave of a line at which most is explained.
+// A structure at its best: the borders of an interval, the number of terms of a smooth function,
+// the wave of a line at which most is explained.
 //
 //   const Found best = Refined(fit, found.front());
 //
@@ -13,7 +13,7 @@
 namespace abbe::diagnosis {
 
 Found Refined(const Fit& fit, Found found);
-// Of an interval.
+// An interval alone.
 Found Sharpened(const Fit& fit, Found found);
 
 // Radians of a wave from one that is tried to the next, over the range.

@@ -1,6 +1,6 @@
 // What is left of the data after all causes: structure that no known cause explains. A channel
-// depends on a recorded variable (structure_question.h), or a run scatters or remembers more than its
-// noise does (scatter.h).
+// depends on a recorded variable (structure_question.h), or a run scatters or remembers more than
+// its noise does (scatter.h).
 // Units: SI.
 // Failure: none.
 // Source: structure_question.h, scatter.h.

@@ -49,7 +49,7 @@ class StayReadings {
     return static_cast<double>(value_.size()) - static_cast<double>(stays_.size());
   }
   double squares() const { return value_.squaredNorm(); }
-  // Of the squares, by the best sine of a frequency.
+  // The part of squares() that the best sine of a frequency takes.
   double ExplainedAt(double frequency) const { return BestAt(frequency).explained; }
   // That sine, about the means.
   VectorXd SineAt(double frequency) const { return BestAt(frequency).values; }

@@ -10,7 +10,8 @@
 //   log evidence   its coefficients as draws of one size, all sizes from 1 nm (nrad) to 1 mm (mrad)
 //                  alike, averaged over the range of its numbers (Laplace's approximation)
 //   log prior      -k ln n of k atoms out of n, and that something is there at all
-// Smooth functions compete (diagnosis/structure_question.h) with the prior odds that they have there.
+// Smooth functions compete (diagnosis/structure_question.h) with the prior odds that they have
+// there.
 // Units: SI. Failure: that of the fit.
 // Source: description length: Rissanen, Automatica 14 (1978); docs/theory-diagnosis.md.
 #pragma once

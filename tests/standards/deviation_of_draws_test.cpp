@@ -10,7 +10,7 @@
 namespace abbe::standards {
 namespace deviation_of_draws_test {
 
-// Of two draws chi-squared exceeds x with exp(-x / 2).
+// Chi-squared of two degrees exceeds x with exp(-x / 2).
 TEST(DeviationOfDraws, IsTheClosedFormOfTwo) {
   const DrawnDeviation known = DeviationOfDraws(2.0);
   EXPECT_NEAR(known.median, 1.0 / std::sqrt(std::log(2.0)), 1e-9);
