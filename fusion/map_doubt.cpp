@@ -33,7 +33,8 @@ VectorXd ParametersOn(const machine::VolumetricModel& model,
       rows.row(i) = gradient.transpose();
       values[i] = other.Function(axis, motion).Evaluate(x[i]);
     }
-    parameters.segment(first, size) = rows.completeOrthogonalDecomposition().solve(values);
+    const VectorXd fit = rows.completeOrthogonalDecomposition().solve(values);
+    parameters.segment(first, size) = fit;
     first += size;
   }
   return parameters;

@@ -60,7 +60,9 @@ Vector3d OffsetSeen(const relm::LinkageSettings& placed, const LinkageRun& run) 
     by_offset.col(k) = (placed.X_MB.R * (TipsOf(moved, run) - nominal)).reshaped();
   }
   const Matrix3Xd gap = run.reference - ((placed.X_MB.R * nominal).colwise() + placed.X_MB.p);
-  return by_offset.completeOrthogonalDecomposition().solve(Eigen::VectorXd(gap.reshaped()));
+  const Eigen::VectorXd offset =
+      by_offset.completeOrthogonalDecomposition().solve(Eigen::VectorXd(gap.reshaped()));
+  return offset;
 }
 
 // What the entries of block "ball" move the ball by, in B at zero angles, and where they stand in x.

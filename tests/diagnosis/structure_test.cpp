@@ -71,7 +71,9 @@ class Structures : public ::testing::Test {
 
 // How much of `function` the functions can make, at best: 1 all of it.
 double Share(const Eigen::MatrixXd& functions, const RowVectorXd& function) {
-  const VectorXd fit = functions.transpose().colPivHouseholderQr().solve(function.transpose());
+  const Eigen::MatrixXd columns = functions.transpose();
+  const VectorXd values = function.transpose();
+  const VectorXd fit = columns.colPivHouseholderQr().solve(values);
   return (fit.transpose() * functions).squaredNorm() / function.squaredNorm();
 }
 

@@ -109,7 +109,8 @@ TEST(Problem, AHeldParameterKeepsItsValueAndIsNotEstimated) {
   const Result result = problem.Solve();
   MatrixXd rest(30, 2);
   rest << a.col(0), a.col(2);
-  const VectorXd x = rest.colPivHouseholderQr().solve(y - 0.7 * a.col(1));
+  const VectorXd left = y - 0.7 * a.col(1);
+  const VectorXd x = rest.colPivHouseholderQr().solve(left);
   EXPECT_NEAR(result.Value("p.a"), x[0], 1e-12);
   EXPECT_EQ(result.Value("p.b"), 0.7);
   EXPECT_EQ(result.Uncertainty("p.b"), 0.0);

@@ -101,7 +101,7 @@ TEST(PoseChoice, StopsWhereNoSingleExchangeGains) {
 // values s: with all poses chosen.
 TEST(PoseChoice, TellsTheUncertaintyOfTheTips) {
   const PoseInformation candidates = Random(5, 30, 6);
-  const Eigen::ArrayXd s2 = candidates.white.bdcSvd().singularValues().array().square();
+  const Eigen::ArrayXd s2 = candidates.white.jacobiSvd().singularValues().array().square();
   const double expected = std::sqrt((s2 / (1.0 + s2)).sum() / 30.0);
   const PoseChoice all = ChoosePoses(candidates, 30);
   EXPECT_NEAR(all.tip_rms, expected, 1e-12);

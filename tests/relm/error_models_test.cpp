@@ -308,7 +308,9 @@ double LeastDistance(const LinkageModel& complete, const std::vector<Index>& fre
     complete.Tips(readings, x, tips, &J);
     const Eigen::MatrixXd slope = J(Eigen::all, free);
     const Matrix3Xd miss = target - tips;
-    x(free) += slope.completeOrthogonalDecomposition().solve(miss.reshaped());
+    const VectorXd change =
+        slope.completeOrthogonalDecomposition().solve(VectorXd(miss.reshaped()));
+    x(free) += change;
   }
   complete.Tips(readings, x, tips);
   return (target - tips).colwise().norm().maxCoeff();

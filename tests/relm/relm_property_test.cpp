@@ -230,7 +230,8 @@ RC_GTEST_PROP(ChainInverseProperty, ForwardAfterInverseIsTheBall, ()) {
   const SerialChain chain = AnyArm();
   VectorXd q = AnglesOf(chain.joints());
   q[2] /= 3;  // bent
-  const auto singular_values = chain.JacobianTipAngles(q).jacobiSvd().singularValues();
+  const Eigen::MatrixXd J = chain.JacobianTipAngles(q);
+  const VectorXd singular_values = J.jacobiSvd().singularValues();
   RC_PRE(singular_values[2] > 0.03 * chain.Reach());
   VectorXd near = q;
   for (double& angle : near) angle += In(-0.2, 0.2);
