@@ -42,12 +42,14 @@ class Residual {
   virtual Eigen::Index Rows() const = 0;
   virtual void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& values,
                         RowMatrix* jacobian) const = 0;
+  // The Jacobian is the same everywhere: the normal equations are solved once, without a search.
+  virtual bool IsLinear() const { return false; }
 };
 
 // A x - b: a model that is linear, or a prior that ties several parameters together (smoothness).
 class LinearResidual : public Residual {
  public:
-  LinearResidual(Eigen::MatrixXd a, Eigen::VectorXd b) : a_(std::move(a)), b_(std::move(b)) {}
+  LinearResidual(RowMatrix a, Eigen::VectorXd b) : a_(std::move(a)), b_(std::move(b)) {}
 
   Eigen::Index Rows() const override { return b_.size(); }
 
@@ -57,9 +59,10 @@ class LinearResidual : public Residual {
     values -= b_;
     if (jacobian != nullptr) *jacobian = a_;
   }
+  bool IsLinear() const override { return true; }
 
  private:
-  Eigen::MatrixXd a_;
+  RowMatrix a_;
   Eigen::VectorXd b_;
 };
 

@@ -116,6 +116,13 @@ void FillOutliers(const Problem& problem, const Layout& layout, const VectorXd& 
   }
 }
 
+bool IsLinear(const Problem& problem) {
+  return std::ranges::all_of(problem.terms(), [&](const Term& term) {
+    const SourceOptions& options = problem.sources()[term.source.index].options;
+    return term.residual->IsLinear() && options.loss.kind == RobustLoss::Kind::kNone;
+  });
+}
+
 }  // namespace
 
 Result Problem::Solve(const SolveOptions& options, Linearization* at) const {
@@ -127,7 +134,8 @@ Result Problem::Solve(const SolveOptions& options, Linearization* at) const {
         fmt::format("the fit cannot start: {}; check the starting values", start.trouble));
   }
   Result result;
-  if (layout.columns() > 0 && JacobianBytes(*this, layout) <= options.jacobian_bytes) {
+  if (layout.columns() > 0 && !IsLinear(*this) &&
+      JacobianBytes(*this, layout) <= options.jacobian_bytes) {
     result.iterations = ApproachMinimum(*this, layout, options, x);
     start = Linearize(*this, layout, x, options.threads);
   }
