@@ -138,7 +138,7 @@ TEST_P(CanopenPeers, EveryGoodValueBelongsToItsSync) {
   ASSERT_TRUE(first.AllGood());
   EXPECT_EQ(first.skew_s, 0.0);
   started_ = static_cast<long>(source_->counts().syncs) - SyncsOf(first.samples[0], 1);
-  EXPECT_GT(ReadAndCheck(500), 0);
+  EXPECT_GT(ReadAndCheck(200), 0);
 
   Run("tc qdisc add dev vcan0 root netem loss 10%");
   const int complete = ReadAndCheck(40);

@@ -584,17 +584,19 @@ test('dark and light by choice and by preference', async () => {
                                          page: getComputedStyle(document.body).backgroundColor,
                                          figure: document.querySelector('.plot').layout.font.color,
                                        }));
-  await withPage({colorScheme: 'light'}, async (page) => {
+  await withPage({}, async (page) => {  // light: Playwright's default
     const light = await look(page);
-    await page.getByRole('button', {name: 'Dark'}).click();
+    const choice = page.getByRole('button', {name: 'Dark'});
+    await choice.click();
     const dark = await look(page);
     assert.notEqual(light.page, dark.page);
     assert.notEqual(light.figure, dark.figure);
-    assert.equal(
-        await page.getByRole('button', {name: 'Dark'}).getAttribute('aria-pressed'), 'true');
+    assert.equal(await choice.getAttribute('aria-pressed'), 'true');
     await page.screenshot({path: join(screenshots, 'desktop_dark.png'), fullPage: true});
     await withPage(
         {colorScheme: 'dark'}, async (other) => assert.deepEqual(await look(other), dark));
+    await choice.click();
+    assert.deepEqual(await look(page), light);
   });
 });
 
