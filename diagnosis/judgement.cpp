@@ -112,7 +112,7 @@ void Search::ForgiveRivalsFound() {
   }
 }
 
-// In the order of the members. A shape that is hardly known widens what stands beside it too.
+// In the order of the members. A shape that is hardly known widens the other parameters too.
 std::vector<Score> Search::Scores() const {
   std::vector<Score> scores;
   const FitPointer fit = WithThoseAlwaysThere(fit_, candidates_);

@@ -7,8 +7,8 @@
 //   memory    the autocorrelations a_k of n rows in time, n (n + 2) sum a_k^2 / (n - k) over the
 //             first kLags of each channel, against chi-square of as many degrees of freedom, where
 //             the a_k are positive on the whole
-// A channel that scatters far more than stated while nothing moves (measured_noise.h) is told too,
-// also where its runs are whitened with that noise.
+// A channel that scatters far more than stated while nothing moves (measured_noise.h) is reported
+// too, also where its runs are whitened with that noise.
 // Source: ISO/IEC Guide 98-3:2008, G.3 (chi-square of residuals); Ljung and Box, Biometrika 65
 // (1978). Units: amplitude in units of the stated noise.
 #pragma once

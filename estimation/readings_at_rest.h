@@ -6,15 +6,15 @@
 // Half of the mean square of the differences of readings k apart is the variance of white noise for
 // every k, which a drift hardly enters. Where it is not the same for k of 1 to kLags within 4
 // standard deviations, noise with a memory (noise_memory.h) and a sine on white noise are fitted,
-// each stay about a mean of its own, and the more probable one is told; a sine is taken out, and
-// what is left asked again, up to four times. Differences that stand out six times are left out.
+// each stay about a mean of its own, and the more probable one is reported; a sine is taken out,
+// and what is left asked again, up to four times. Differences that stand out six times are left out.
 // Units: those of the readings, s, Hz. Shapes: one list of times and readings a stay.
 // Failure: none; `freedom` 0 where no stay has two readings.
 // Source: J. von Neumann et al., The mean square successive difference, Ann. Math. Statist. 12
 // (1941), for the degrees of freedom (2/3 of the differences); Lomb, Astrophys. Space Sci. 39
 // (1976).
 // Validity: which of both it is, is judged by the first kFewForLines readings. A line without any
-// noise was not measured, but planned, and is not told.
+// noise was not measured, but planned, and is not reported.
 #pragma once
 
 #include <array>

@@ -6,7 +6,7 @@
 // The best of the frequencies given, then between its neighbours: half a step aside, a sine that is
 // large over the noise would leave more than a memory of the readings does.
 // Units: those of the readings, s, Hz. Shapes: one list of times and readings a stay, together at
-// least four more readings than stays. Failure: none; gain 0 where no sine can be told.
+// least four more readings than stays. Failure: none; gain 0 where no sine can be seen.
 // Source: Lomb, Astrophys. Space Sci. 39 (1976). Validity: one sine on white noise.
 // For use within estimation/ only.
 #pragma once

@@ -51,7 +51,7 @@ double LogZ(const White& white) {
   return 0.5 * half.squaredNorm() - factor.matrixLLT().diagonal().array().log().sum();
 }
 
-// What is told of some parameters, all others marginalised under the population.
+// What is known of some parameters, all others marginalised under the population.
 White Alone(const White& white, const std::vector<Index>& of) {
   std::vector<Index> others;
   for (Index i = 0; i < white.w.size(); ++i) {

@@ -5,7 +5,7 @@
 //   const Discrepancy something = DiscrepancyOf(runs, prior_sd, off, covariance, 1.0);
 //   covariance += something.covariance;
 //
-// A Gaussian random field stands beside the noise: each joint turns by a field over its own angle
+// Beside the noise there is a Gaussian random field: each joint turns by a field over its own angle
 // and by one over those of all joints, of two lengths each, and by chance in each pose; the ball
 // moves by a field over the time of the run. The distance between two angles is the chord of the
 // unit circle. How large each field is, is what makes the residuals most probable, the parameters

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "simulation/kinds.h"
+
 namespace abbe::fusion {
 namespace {
 
@@ -31,11 +33,11 @@ constexpr double kFewestSigns = 200.0;
 constexpr double kSameReading = 1e-11;  // of the largest
 
 // Neither where, when and how it was measured nor what is known of it.
-bool IsReading(std::string_view name, std::string_view kind) {
+bool IsReading(std::string_view name, const simulation::RunKind& kind) {
   static constexpr std::array kOther{"time_s", "pass", "direction", "flags",
                                      "setup",  "hole", "shaft_deg", "shaft_rad"};
   static constexpr std::array kBegins{"approach_", "feed_", "plate_", "u_", "temp_"};
-  if (std::ranges::find(kAxisColumns, name) != kAxisColumns.end()) return kind == "plate";
+  if (std::ranges::find(kAxisColumns, name) != kAxisColumns.end()) return kind.ReadsAxes();
   return std::ranges::find(kOther, name) == kOther.end() &&
          std::ranges::none_of(kBegins, [&](const char* begin) { return name.starts_with(begin); });
 }
@@ -43,7 +45,8 @@ bool IsReading(std::string_view name, std::string_view kind) {
 // One entry a channel that both have.
 using Channels = std::vector<std::pair<std::span<const double>, std::span<const double>>>;
 
-Channels SharedChannels(const Recording& one, const Recording& other, std::string_view kind) {
+Channels SharedChannels(const Recording& one, const Recording& other,
+                        const simulation::RunKind& kind) {
   Channels channels;
   for (const recording::Column& column : one.columns) {
     if (!IsReading(column.name, kind)) continue;
@@ -284,13 +287,13 @@ class CopySearch {
 std::optional<double> SharedNoise(const Recording& one, const Recording& other) {
   if (other.rows() < one.rows()) return SharedNoise(other, one);
   if (one.rows() == 0) return std::nullopt;
-  const std::string kind = one.Kind();
-  if (kind != other.Kind()) return std::nullopt;
+  const simulation::RunKind& kind = simulation::KindOf(one);
+  if (&kind != &simulation::KindOf(other)) return std::nullopt;
   const Channels channels = SharedChannels(one, other, kind);
   if (channels.empty()) return std::nullopt;
   if (SameReadings(channels)) return 1.0;
-  const bool stands = kind == "dwell" || (one.Find("x_mm") && kind != "plate");
-  if (!stands || !one.Find("time_s") || !other.Find("time_s")) return std::nullopt;
+  const bool stays = kind.Stands() || (one.Find("x_mm") && !kind.ReadsAxes());
+  if (!stays || !one.Find("time_s") || !other.Find("time_s")) return std::nullopt;
   return CopySearch(one, other, channels).Shared();
 }
 

@@ -9,7 +9,7 @@
 // channels together, those two thirds with the largest variance are dropped: settling, mains,
 // vibrations and drifts, which have few directions, are among them. The share S of equal less
 // unequal signs in the rest, rows of equal time after one start at the same places, is 0 for
-// independent noise, with a standard deviation of 1 / sqrt(n). A copy is told where
+// independent noise, with a standard deviation of 1 / sqrt(n). Two are copies where
 //
 //   S > 0.4   and   S sqrt(n) > 10   and   S > 2 max_k |S_k|,     n >= 200
 //
@@ -18,7 +18,7 @@
 // on circles, plates or shafts, recordings are one only where all readings are the same but for a
 // constant in each channel, and have at least kDifferent values.
 // Units: those of the recordings. Shapes: none.
-// Failure: none; recordings without the columns say nothing.
+// Failure: InputError for a kind that is not known; recordings without the columns say nothing.
 // Source: ours; the correlation by signs is Sheppard, Phil. Trans. R. Soc. A 192 (1899).
 // Validity: copies altered by less than the noise itself.
 #pragma once
@@ -33,7 +33,7 @@ namespace abbe::fusion {
 inline constexpr double kStill = 5e-3;          // mm
 inline constexpr std::size_t kDifferent = 100;  // values of all channels together
 
-// Nothing: they are measurements of their own, or it cannot be told.
+// Nothing: they are measurements of their own, or nothing says that they are not.
 std::optional<double> SharedNoise(const recording::Recording& one,
                                   const recording::Recording& other);
 

@@ -98,7 +98,7 @@ class RowDensity {
     open_ = open * eigen.eigenvectors().rightCols(eigen.eigenvectors().cols() - few);
   }
 
-  // Between instants: the median, but no less than a share of the whole that can be told.
+  // Between instants: the median, but no less than a share of the whole that can be resolved.
   double step() const {
     VectorXd steps = times_.tail(times_.size() - 1) - times_.head(times_.size() - 1);
     const auto middle = steps.begin() + steps.size() / 2;

@@ -11,7 +11,7 @@
 #include "failure/sanitized.h"
 
 #if ABBE_ADDRESS_SANITIZER
-// Of the sanitizers' runtime; their header does not come with every compiler.
+// Part of the sanitizers' runtime; their header does not come with every compiler.
 extern "C" {
 int __sanitizer_install_malloc_and_free_hooks(void (*taken)(const volatile void*, std::size_t),
                                               void (*given)(const volatile void*));

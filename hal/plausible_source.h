@@ -90,7 +90,7 @@ class PlausibleSource : public SampleSource {
   std::string slip_;
   std::vector<Few> stay_;
   int in_stay_ = 0;                  // sets; below 0: settling
-  std::vector<std::uint8_t> noisy_;  // by channel, told already
+  std::vector<std::uint8_t> noisy_;  // by channel, warned of already
   std::vector<std::string> warnings_;
 };
 

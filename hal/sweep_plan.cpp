@@ -45,7 +45,8 @@ std::vector<double> ReadStations(const settings::Table& table) {
   const auto listed = table.Quantities("stations_mm", 0, std::vector<double>{});
   if (!table.Has("stations_mm")) return SteppedStations(table);
   for (const char* key : {"first_mm", "last_mm", "step_mm"}) {
-    if (table.Has(key)) throw table.Error(key, "stands beside stations_mm; keep one of the two");
+    if (table.Has(key))
+      throw table.Error(key, "is given together with stations_mm; keep one of the two");
   }
   if (listed.size() < 2) throw table.Error("stations_mm", "must list at least two stations");
   return listed;

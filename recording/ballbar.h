@@ -3,8 +3,8 @@
 //
 //   BallbarOf(table, {.radius_mm = 150.0, .plane = "XY", .feed_mm_min = 1000.0});
 //
-// The table has angle_deg, where the machine was told to be, counter-clockwise from the first axis
-// of the plane, in the order of measurement (descending angles are a clockwise circle), and
+// The table has angle_deg, where the machine was commanded to, counter-clockwise from the first
+// axis of the plane, in the order of measurement (descending angles are a clockwise circle), and
 // deviation_um (radius less the nominal one) or ref_radius_mm. The recording has the commanded
 // positions from the centre of the ballbar (x_mm, y_mm in XY), pass (a new one where the circle
 // turns round), ref_radius_mm, feed_mm_min, temperatures and flags; its header says where the centre

@@ -53,7 +53,7 @@ struct LinkageNoise {
   double machine;        // m: of a commanded position where it is the reference, each direction
   double repeatability;  // m: of the ball when a position is approached again, each direction
   std::vector<double> measured = {};  // rad: like `encoder`, of each joint where recordings tell; 0
-  // Of the variance of an encoder, what goes on from one reading to the next, and for how long, s.
+  // The share of an encoder's variance that goes on from reading to reading, and for how long, s.
   double memory_share = 0.0, memory_time = 0.0;
 
   // rad, one reading: as measured, else as stated.

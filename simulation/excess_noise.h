@@ -9,7 +9,7 @@
 //   excess^2 = chi-square / redundancy * (1 + 2 sum of rho_k),   rho_k: correlation k poses apart,
 //
 // the sum up to the first that white noise could have. Poses that are all of one time are of no
-// known order: then neither a drift nor what neighbours share is told. Up to kNoiseIsKnown the
+// known order: then neither a drift nor what neighbours share is seen. Up to kNoiseIsKnown the
 // stated noise stands.
 // Units: none; residuals in standard deviations.
 // Failure: none.

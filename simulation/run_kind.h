@@ -128,6 +128,10 @@ class RunKind {
   virtual Stays StaysIn(const recording::Recording& recording) const { return StaysOf(recording); }
   // Whether readings there show the noise of a channel.
   virtual bool ShowsNoiseAtRest() const { return true; }
+  // Whether nothing is moved from the first row to the last.
+  virtual bool Stands() const { return false; }
+  // Whether its x_mm, y_mm and z_mm are what was read, not where the axes were sent.
+  virtual bool ReadsAxes() const { return false; }
   // Refuses runs of this kind that do not belong together.
   virtual void RefuseStrangers(const std::vector<RunSource>& sources,
                                const Instruments& instruments) const;

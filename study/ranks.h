@@ -25,7 +25,7 @@ class Ranks {
   int number() const { return number_; }
   int count() const { return count_; }
 
-  // Number 0: answers all that the others ask, until each has been told that no seed is left.
+  // Number 0: answers all that the others ask, until each knows that no seed is left.
   // Other work of this process may go on in threads meanwhile.
   void Serve(const std::function<std::optional<std::uint64_t>()>& next,
              const std::function<void(std::uint64_t seed, const std::string& row)>& keep);

@@ -49,7 +49,7 @@ struct StudyKind {
   std::string_view name, what;  // "head", one line of help
   std::vector<std::string_view> variants;
   std::unique_ptr<const Study> (*make)(const Question& question);
-  // Of rows without those that failed, in the order of their seeds.
+  // Rows without those that failed, in the order of their seeds.
   Summary (*sum)(const std::string& variant, const std::vector<Row>& rows);
 };
 

@@ -141,7 +141,7 @@ class ArmRuns : public RunKind {
       NoteUnknownTimes(recording, prepared.notes);
     } else if (is_new) {
       prepared.notes.push_back(fmt::format(
-          "{}: knows neither the times nor the order of its poses: a drift cannot be told, and what "
+          "{}: knows neither the times nor the order of its poses: a drift cannot be seen, and what "
           "there is of it counts as noise",
           run.name));
     }

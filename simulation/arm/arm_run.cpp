@@ -91,7 +91,7 @@ void PlaceBase(const LinkageRun& run, const Vector3d& offset, relm::LinkageSetti
   if (spread[0] > kTooNear && spread[1] < kTooNear) {
     throw InputError(fmt::format(
         "{}: its {} poses lie on one line, {:.0f} mm rms along it and {:.0f} mm across: where the "
-        "instrument stands cannot be told; record poses that spread",
+        "instrument stands cannot be determined; record poses that spread",
         run.name, run.poses(), 1e3 * spread[0], 1e3 * spread[1]));
   }
   if (spread[1] > kTooNear) {

@@ -13,6 +13,7 @@ class PlateRuns : public RunKind {
  public:
   std::string_view name() const override { return "plate"; }
   bool Takes(const Recording& head) const override { return head.Kind() == name(); }
+  bool ReadsAxes() const override { return true; }
 
   bool MakesMaps() const override { return true; }
   std::vector<SimulatedRun> ForMap(const RunSource& source, const machine::VolumetricModel& model,

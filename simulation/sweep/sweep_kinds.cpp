@@ -335,6 +335,7 @@ class SweepRuns : public HeadKind {
 class DwellRuns : public HeadKind {
  public:
   std::string_view name() const override { return "dwell"; }
+  bool Stands() const override { return true; }
 
   // Runs of what it shows: the probes, the encoders or both.
   PreparedRuns Prepare(const Recording& recording, const machine::VolumetricModel& model,

@@ -71,7 +71,7 @@ class RigMapBound {
     return 3.0 * sum / static_cast<double>(wanted.size());
   }
 
-  // Of all readings and places, in the order in which they were added: x, y, z of a place; the
+  // All readings and places, in the order in which they were added: x, y, z of a place; the
   // probes of a stay; x, y, z of a ball; a length.
   MatrixXd Covariance() const {
     const auto n = static_cast<Index>(data_.size());
@@ -142,7 +142,7 @@ class RigMapBound {
     }
   }
 
-  // Of lengths along one axis: the other axes stand, so both ends share their functions.
+  // Lengths along one axis: the other axes stand, so both ends share their functions.
   void AddLengths(const recording::Recording& recording) {
     const auto u = recording.At("u_length_um");
     const double u_scale = 1e-6 * recording.HeaderNumber("u_scale_ppm").value_or(0.0);

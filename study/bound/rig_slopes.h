@@ -37,7 +37,7 @@ class RigSlopes {
     kSharedCount = 53
   };
 
-  // Of one reading, without noise.
+  // One reading, without noise.
   struct Slopes {
     MotionTable motions = MotionTable::Zero();
     VectorXd shared = VectorXd::Zero(Index{kSharedCount});  // in units of their deviations
@@ -108,7 +108,7 @@ class RigSlopes {
     return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
   }
 
-  // Of the body at the end of these axes, from the bed; `motions` of the axes at `position`.
+  // The body at the end of these axes, from the bed; `motions` of the axes at `position`.
   Eigen::Isometry3d Body(const std::string& axes, const Vector3d& position,
                          const MotionTable& motions, const Vector3d& squareness) const {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

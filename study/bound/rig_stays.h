@@ -15,7 +15,7 @@ struct RigStay {
   Eigen::Vector3d position;
   double time;
 
-  // Of a column, over its rows.
+  // A column's, over its rows.
   double MeanOf(const recording::Recording& recording, const std::string& column) const {
     const auto values = recording.At(column);
     double sum = 0.0;

@@ -136,7 +136,7 @@ class VisibleEffects {
     return R * linkage_.Slope(linkage_.Angles(R.transpose() * ball), 0.0) * angles;
   }
 
-  // Of one probe: white noise, drift, and a mean that nobody knows.
+  // One probe: white noise, drift, and a mean that nobody knows.
   MatrixXd CovarianceOfDwell(const recording::Recording& recording) const {
     constexpr double kAnyMean = 1e3;  // times the noise
     const auto& rig = worlds_.machine().rig;

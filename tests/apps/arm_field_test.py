@@ -122,7 +122,7 @@ class RealArm(ProgramCase):
         self.assertEqual(*text)
         unknown = self.convert("c.csv", shuffled, "--shuffled")
         told = self.done(unknown, "--machine", self.machine, command="diagnose")
-        self.assertIn("a drift cannot be told", told)
+        self.assertIn("a drift cannot be seen", told)
         self.assertIn("These runs cannot show: arm-drift:arm", told)
 
 

@@ -85,7 +85,7 @@ class DiagnoseArm(ProgramCase):
         self.done(self.path / "table.csv", self.path / "unknown.csv", "--where=arm=1", "--shuffled", *COLUMNS,
                   command="convert")
         told = self.done(self.path / "unknown.csv", "--machine", self.path / "arm.toml")
-        self.assertIn("a drift cannot be told", told)
+        self.assertIn("a drift cannot be seen", told)
         self.assertIn("joint-gain", told)
 
     def test_the_gain_of_a_joint_is_found_with_its_size(self):

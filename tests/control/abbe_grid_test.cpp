@@ -85,7 +85,7 @@ class AbbeGrid : public testing::Test {
     return reason;
   }
 
-  // Of the closed form.
+  // By the closed form.
   static Place OffsetAt(const Place& command, const Place& tool_offset) {
     Place d, r, Q, offset;
     for (int k = 0; k < 3; ++k) {

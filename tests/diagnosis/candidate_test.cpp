@@ -61,7 +61,7 @@ std::set<std::string> ObjectsOf(const std::string& cause, const simulation::Scen
   return objects;
 }
 
-// Of X and an axis that never moves, the lag of X is all that shows: under one name.
+// Where X moves and another axis never does, the lag of X is all that shows: under one name.
 TEST(AllCandidates, HasPairsOnlyOfAxesThatMove) {
   const auto plane = TraceThatMoves("XZ");
   const simulation::Scene scene{{&plane}, Eigen::Vector3d::Constant(0.06)};

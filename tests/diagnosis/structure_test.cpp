@@ -100,7 +100,7 @@ TEST_F(Structures, OfItsOwnSpeedLeaveALagToTheCause) {
   Eigen::MatrixXd even = Functions("X", "speed of x");
   even.conservativeResize(even.rows() + 1, Eigen::NoChange);
   even.bottomRows<1>().setOnes();
-  // Of the square all but what eight cosines leave of a parabola.
+  // The square, all but what eight cosines leave of a parabola.
   EXPECT_GT(Share(even, speed.array().square()), 0.999);
 }
 

@@ -237,7 +237,7 @@ TEST(Fleet, NamesCampaignsOfSwappedIdentity) {
   for (const OddIdentity& odd : OddIdentities(fit, campaigns, {})) {
     named.emplace_back(odd.said, odd.fits);
   }
-  // Of two campaigns of a machine that do not belong together either may be the wrong one.
+  // Where two campaigns of a machine do not belong together, either may be the wrong one.
   EXPECT_THAT(named, testing::UnorderedElementsAreArray(
                          std::vector<std::pair<std::string, std::string>>{{"M11", "M12"},
                                                                           {"M11", "M12"},

@@ -367,7 +367,7 @@ TEST(CircleCauses, SmoothErrorsAreNoSpikes) {
   for (const char* cause : {"backlash", "reversal_spike"}) {
     for (const char* axis : {"X", "Y"}) {
       const CauseEstimate& one = Find(with, cause, axis);
-      // Of what there is without the waves nothing changes but their square beside the radius.
+      // Nothing of what there is without the waves changes but their square beside the radius.
       EXPECT_NEAR(one.value, Find(without, cause, axis).value, 1e-9) << cause << axis;
       EXPECT_NEAR(one.u / Find(without, cause, axis).u, 1.0, 0.01) << cause << axis;
     }

@@ -146,7 +146,7 @@ TEST(FuseOfLongRuns, WildRowsDoNotMoveTheMap) {
       0.5);
 }
 
-// Of one probe, or of all of them, in one pass of five; of two nobody could say which is wrong.
+// One probe, or all of them, in one pass of five; in one of two nobody could say which is wrong.
 TEST(FuseOfSweeps, AWildStationDoesNotMoveTheMap) {
   const Campaign world(CampaignMachine({{"passes = 2", "passes = 5"}}), 5);
   const auto clean = world.SweepRecording('X');

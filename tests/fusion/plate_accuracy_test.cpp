@@ -155,7 +155,7 @@ class PlateOfRig : public testing::Test {
   }
 };
 
-// Of every one of the 21 the data know more than the tolerances do.
+// The data know more of every one of the 21 than the tolerances do.
 TEST_F(PlateOfRig, FiveSetupsDetermineAll21Errors) {
   for (const FunctionSeen& seen : All().report.functions) {
     EXPECT_THAT(seen.determined_by, testing::ElementsAre("plate")) << seen.name;

@@ -41,7 +41,7 @@ struct Campaign {
   Campaign(const settings::Document& document, std::uint64_t seed)
       : Campaign(document, document, seed) {}
 
-  // Of a machine that is as `truth` says and believed to be as `document` says.
+  // A machine that is as `truth` says and believed to be as `document` says.
   Campaign(const settings::Document& truth, const settings::Document& document, std::uint64_t seed)
       : machine(machine::ReadMachine(document.Root())),
         reference(machine.reference),

@@ -57,7 +57,7 @@ TEST(SweepPlan, RefusesWithLineKeyAndRemedy) {
       "m.toml:4: sweep.X.step_mm: does not divide the length of 10 mm into whole steps; change "
       "it or list the stations in stations_mm");
   EXPECT_EQ(Refusal("[sweep.X]\nstations_mm = [0, 1]\nstep_mm = 1"),
-            "m.toml:3: sweep.X.step_mm: stands beside stations_mm; keep one of the two");
+            "m.toml:3: sweep.X.step_mm: is given together with stations_mm; keep one of the two");
   EXPECT_EQ(
       Refusal("[sweep.X]\nfirst_mm = 10\nlast_mm = 0\nstep_mm = 1"),
       "m.toml:3: sweep.X.last_mm: must be greater than first_mm; a sweep goes both ways anyway");

@@ -49,7 +49,7 @@ TEST(CircleRun, AWholeCircleIsNotPartial) {
   EXPECT_TRUE(figures.iso.D && figures.ccw);
 }
 
-// Of an arc there are the figures of the arc: the ring around it and the distances to the set-up
+// An arc has the figures of the arc: the ring around it and the distances to the set-up
 // centre; what is a mean of whole turns is left out.
 TEST(CircleRun, PartOfACircle) {
   const Vector3d offset(5e-6, -3e-6, 0.0);

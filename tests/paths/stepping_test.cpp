@@ -107,7 +107,7 @@ TEST(SteppingTest, UncertaintyFollowsTheScatter) {
     return p + Vector3d(++row % 2 == 0 ? 1e-6 : -1e-6, 0.0, 0.0);
   }));
   const SteppingStop& stop = lines.front().stops[2];
-  // Of one coordinate, the mean of three; 15 readings have a mean of 1/15 um.
+  // For one coordinate, the mean of three; 15 readings have a mean of 1/15 um.
   const double of_16 = 1e-12 * 16.0 / 15.0 / 3.0 / 16.0;
   const double of_15 = 1e-12 * (15.0 - 1.0 / 15.0) / 14.0 / 3.0 / 15.0;
   EXPECT_NEAR(stop.u, std::sqrt((2.0 * of_16 + of_16 + of_15) / 4.0), 1e-6 * stop.u);

@@ -148,7 +148,7 @@ TEST(SweepReduction, AFormThatNobodyMeasuredCountsMoreAndIsNamed) {
   EXPECT_THAT(measured.notes, testing::Not(testing::Contains(testing::HasSubstr("form_nm"))));
 }
 
-// Of one pass the drift may be three times what is stated, and no reversal is seen for it.
+// In one pass the drift may be three times what is stated, and no reversal is seen for it.
 TEST(SweepReduction, OnePassKnowsItsNoiseToAFactorOfTwo) {
   SweepSetup setup = NoiseOnly();
   const SweepResult one = ReduceSweep(Record({.passes = 1, .white = 20e-9}, setup), setup);

@@ -147,7 +147,7 @@ TEST(SweepAssumptions, ThePlaceOfTheHeadIsToldWithWhatItMoves) {
   }
 }
 
-// Of 2000 means without any reversal 1.3 may be seen; at 95 % each, 100 would be.
+// Among 2000 means without any reversal 1.3 may be seen; at 95 % each, 100 would be.
 TEST(SweepReversal, IsNotSeenWhereThereIsNone) {
   constexpr int kSweeps = 400;
   int seen = 0, beyond_U95 = 0;

@@ -154,7 +154,7 @@ class CompleteByMatrices {
            At("graduation." + pivot + "_sin_3") * sin(T(3) * q) +
            At("graduation." + pivot + "_cos_3") * cos(T(3) * q);
   }
-  // Of the axis, with the run-out of its bearing.
+  // The axis, with the run-out of its bearing.
   T Shift(const std::string& pivot, const std::string& direction, int joint) const {
     return At("shift." + pivot + "_" + direction) +
            RunOut<T>(x_, pivot + "_" + direction, q_[joint]);

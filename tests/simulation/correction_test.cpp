@@ -36,7 +36,7 @@ struct Case {
 
 // The way that the ball takes, or a play, is known from row to row only, 2 degrees of the circle.
 constexpr double kRowToRow = 0.04;
-// Of q Delta^2 with q Delta = 0.25 a share is left that a quotient would take out too.
+// A share of q Delta^2 with q Delta = 0.25 is left that a quotient would take out too.
 constexpr double kSquare = 0.1;
 // What an axis or a pivot does between two rows may turn it without a trace.
 constexpr double kUnseenTurns = 0.1;

@@ -45,7 +45,7 @@ FormOfTarget FormIn(const SweepRun& run, const SweepInstrument& instrument = Ins
   return FormOfTargetIn(machine::Chain::Parse("[w b X Y Z t]"), instrument, run);
 }
 
-// Of the readings of one run with those of another, over the variance of the form.
+// The readings of one run with those of another, over the variance of the form.
 MatrixXd Correlation(const FormOfTarget& one, const FormOfTarget& other) {
   std::map<std::string, Index> numbers;
   for (std::size_t i = 0; i < other.blocks.size(); ++i) {

@@ -86,7 +86,7 @@ TEST(LinkageParts, NameTheRowOfTheFile) {
                       HasSubstr(fmt::format("all {} rows are flagged", recording.rows()))));
 }
 
-// Of 60 poses drawn a quarter stands in each quarter of the run, and half at even places: within
+// A quarter of 60 poses drawn stands in each quarter of the run, and half at even places: within
 // four standard deviations of a binomial.
 TEST(LinkageSample, IsSpreadEvenly) {
   const LinkageParts parts = PartsOf(Cut(World().LinkageRecording(5), 300), World().linkage);

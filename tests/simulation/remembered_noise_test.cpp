@@ -54,7 +54,7 @@ class Plain : public Responsive {
 const VectorXd kTimes{{0.0, 0.1, 0.25, 0.3, 0.9, 1.0}};
 const estimation::NoiseMemory kNoise{0.6, 0.9, 0.3};
 
-// Of the rows: the channels are independent of each other.
+// The rows: the channels are independent of each other.
 MatrixXd Covariance() {
   MatrixXd V = MatrixXd::Zero(kRows, kRows);
   for (Index a = 0; a < kInstants; ++a) {
