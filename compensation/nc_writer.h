@@ -1,4 +1,4 @@
-// Writes the corrected program: words, and positions as they must be commanded to be reached.
+// Writes the corrected program: words, and the positions that, commanded, reach the wanted ones.
 //
 // Positions are in the program's units and its G90 or G91, to 1e-6 mm or 1e-7 inch. An increment
 // starts from the written, rounded position, so that rounding does not accumulate.

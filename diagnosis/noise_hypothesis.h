@@ -8,8 +8,8 @@
 // white noise by kShown in the logarithm, and the search is repeated with runs whitened by it.
 // The answer is the one with the larger marginal likelihood, its causes and memories counted with
 // their prior probabilities. The memory of a run fades within kMostSteps rows, slower ones are a
-// drift, which is no noise; and a run that leaves more than is stated scatters (scatter.h), with a memory
-// or without.
+// drift, which is no noise; and a run that leaves more than is stated scatters (scatter.h),
+// with a memory or without.
 // Failure: that of Fit.
 #pragma once
 

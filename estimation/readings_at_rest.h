@@ -7,7 +7,8 @@
 // every k, which a drift hardly enters. Where it is not the same for k of 1 to kLags within 4
 // standard deviations, noise with a memory (noise_memory.h) and a sine on white noise are fitted,
 // each stay about a mean of its own, and the more probable one is reported; a sine is taken out,
-// and what is left asked again, up to four times. Differences that stand out six times are left out.
+// and what is left asked again, up to four times. Differences that stand out six times are left
+// out.
 // Units: those of the readings, s, Hz. Shapes: one list of times and readings a stay.
 // Failure: none; `freedom` 0 where no stay has two readings.
 // Source: J. von Neumann et al., The mean square successive difference, Ann. Math. Statist. 12

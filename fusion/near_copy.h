@@ -33,7 +33,7 @@ namespace abbe::fusion {
 inline constexpr double kStill = 5e-3;          // mm
 inline constexpr std::size_t kDifferent = 100;  // values of all channels together
 
-// Nothing: they are measurements of their own, or nothing says that they are not.
+// Nothing: two measurements, as far as can be seen.
 std::optional<double> SharedNoise(const recording::Recording& one,
                                   const recording::Recording& other);
 

@@ -6,8 +6,8 @@
 // The noise of a sweep contains the form that the file states: right for one sweep, and wrong for
 // several, in which it is the same. As parameters it is one form for all of them. In a single
 // mounting it cannot be separated from the straightness and the angles of the axis, however often
-// that is swept, and their uncertainty keeps it; a target that is shifted or reversed, and runs that see
-// these errors otherwise, tell the two apart.
+// that is swept, and their uncertainty keeps it; a target that is shifted or reversed, and runs
+// that see these errors otherwise, tell the two apart.
 // Units: m. Shapes: one block of one entry for each place (simulation/sweep/form_of_target.h).
 // Failure: none; runs without a target, or whose file states no form, stay as they are.
 // Source: simulation/sweep/form_of_target.h.

@@ -1,4 +1,4 @@
-// Certified nonlinear regressions: NIST/ITL Statistical Reference Datasets (StRD), nonlinear
+// Certified regressions: NIST/ITL Statistical Reference Datasets (StRD), nonlinear and linear
 // regression, www.itl.nist.gov/div898/strd. Data and certified values are in the public domain. The
 // data are checked against the certified residual sum of squares at the certified parameters.
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "estimation/autodiff_residual.h"
@@ -134,6 +135,52 @@ TYPED_TEST(Nist, GivesTheCertifiedValuesFromBothStarts) {
       EXPECT_NEAR(entry.uncertainty / data.deviation[i], 1.0, 1e-6) << entry.name;
     }
     EXPECT_TRUE(result.weak_directions.empty());
+  }
+}
+
+// Linear regression, dataset Longley: columns that are nearly dependent, condition 4e4 scaled to 1.
+TEST(NistLinear, GivesTheCertifiedValuesOfLongley) {
+  Eigen::Matrix<double, 16, 7> rows;                      // y, x1 to x6
+  rows << 60323, 83.0, 234289, 2356, 1590, 107608, 1947,  //
+      61122, 88.5, 259426, 2325, 1456, 108632, 1948,      //
+      60171, 88.2, 258054, 3682, 1616, 109773, 1949,      //
+      61187, 89.5, 284599, 3351, 1650, 110929, 1950,      //
+      63221, 96.2, 328975, 2099, 3099, 112075, 1951,      //
+      63639, 98.1, 346999, 1932, 3594, 113270, 1952,      //
+      64989, 99.0, 365385, 1870, 3547, 115094, 1953,      //
+      63761, 100.0, 363112, 3578, 3350, 116219, 1954,     //
+      66019, 101.2, 397469, 2904, 3048, 117388, 1955,     //
+      67857, 104.6, 419180, 2822, 2857, 118734, 1956,     //
+      68169, 108.4, 442769, 2936, 2798, 120445, 1957,     //
+      66513, 110.8, 444546, 4681, 2637, 121950, 1958,     //
+      68655, 112.6, 482704, 3813, 2552, 123366, 1959,     //
+      69564, 114.2, 502601, 3931, 2514, 125368, 1960,     //
+      69331, 115.7, 518173, 4806, 2572, 127852, 1961,     //
+      70551, 116.9, 554894, 4007, 2827, 130081, 1962;
+  const std::vector<double> certified{-3482258.63459582, 15.0618722713733,  -0.0358191792925910,
+                                      -2.02022980381683, -1.03322686717359, -0.0511041056535807,
+                                      1829.15146461355};
+  const std::vector<double> deviation{890420.383607373,  84.9149257747669,  0.0334910077722432,
+                                      0.488399681651699, 0.214274163161675, 0.226073200069370,
+                                      455.478499142212};
+  constexpr double kSigma = 304.854073561965;
+  RowMatrix a = rows;
+  a.col(0).setOnes();
+  Problem problem;
+  ParameterBlock block{"b", {}, {}};
+  for (std::size_t i = 0; i < certified.size(); ++i) block.entries.push_back({std::to_string(i)});
+  const BlockId b = problem.Add(block);
+  problem.Add(problem.AddSource("data"),
+              std::make_shared<LinearResidual>(std::move(a), Eigen::VectorXd(rows.col(0))), {b},
+              kSigma);
+  const Result result = problem.Solve();
+  ASSERT_TRUE(result.Usable());
+  EXPECT_LE(result.iterations, 3);  // no search
+  EXPECT_NEAR(result.chi_square / 9.0, 1.0, kCertified);
+  for (std::size_t i = 0; i < certified.size(); ++i) {
+    const Parameter& entry = result.blocks[0].entries[i];
+    EXPECT_NEAR(entry.value, certified[i], 1e-6 * deviation[i]) << i;
+    EXPECT_NEAR(entry.uncertainty / deviation[i], 1.0, 1e-6) << i;
   }
 }
 

@@ -38,7 +38,7 @@ double ExcessIn(const VectorXd& left, const VectorXd& time = kInOrder) {
   return ExcessOf(run, left, time, 1.0);
 }
 
-// Among 3000 numbers, whose deviation is known to 1.3 %; twice that, and some correlations by chance.
+// The deviation of 3000 numbers is known to 1.3 %; twice that, and some correlations by chance.
 constexpr double kByChance = 0.1;
 
 TEST(ExcessNoise, OfWhiteNoiseIsItsSize) {
